@@ -1,0 +1,1 @@
+//! Numbers and series from a finished result file.

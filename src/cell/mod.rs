@@ -1,0 +1,1 @@
+//! What a living cell does with mechanics: it wanders and is attracted.

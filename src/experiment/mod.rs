@@ -1,0 +1,1 @@
+//! The experiment document: read, checked as a whole, compiled.

@@ -1,0 +1,2 @@
+//! The command `pseudopod`.
+fn main() {}

@@ -1,0 +1,1 @@
+//! How forces move atoms: elasticity, loads, integration in time, constraints.

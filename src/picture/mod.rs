@@ -1,0 +1,1 @@
+//! Pictures and charts made by software, without a display.

@@ -1,0 +1,1 @@
+//! The loop: steps, records, checkpoints, progress, stop and resume.

@@ -1,0 +1,1 @@
+//! The simulator: model, state, workspace and the step.
