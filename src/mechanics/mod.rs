@@ -1,1 +1,8 @@
 //! How forces move atoms: elasticity, loads, integration in time, constraints.
+//!
+//! Every force is one file: its parameters, `add_forces` (which returns the energy) written over
+//! [`lanes::Real`], and `add_stiffness`, its constant linear part for the implicit step.
+
+pub mod lanes;
+pub mod shape_memory;
+pub mod stiffness;
