@@ -7,7 +7,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use pulp::Simd;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Lanes of a block of cells that share a mesh. One AVX-512 register, two AVX2 registers.
 pub const LANES: usize = 8;
@@ -29,6 +29,10 @@ pub trait Real:
     type Raw: Copy;
     /// The proof that the processor has these registers; `()` for `f64`.
     type Token: Copy;
+    /// The numbers of an array as registers; its length is a multiple of the lanes.
+    fn view(token: Self::Token, data: &[f64]) -> &[Self::Raw];
+    /// The numbers of an array as registers, to be written.
+    fn view_mut(token: Self::Token, data: &mut [f64]) -> &mut [Self::Raw];
     /// From memory to register.
     fn load(token: Self::Token, raw: Self::Raw) -> Self;
     /// From register to memory.
@@ -48,6 +52,14 @@ pub trait Real:
 impl Real for f64 {
     type Raw = f64;
     type Token = ();
+    #[inline(always)]
+    fn view(_: (), data: &[f64]) -> &[f64] {
+        data
+    }
+    #[inline(always)]
+    fn view_mut(_: (), data: &mut [f64]) -> &mut [f64] {
+        data
+    }
     #[inline(always)]
     fn load(_: (), raw: f64) -> f64 {
         raw
@@ -88,6 +100,14 @@ pub struct Lane<S: Simd> {
 impl<S: Simd> Real for Lane<S> {
     type Raw = S::f64s;
     type Token = S;
+    #[inline(always)]
+    fn view(_: S, data: &[f64]) -> &[S::f64s] {
+        S::as_simd_f64s(data).0
+    }
+    #[inline(always)]
+    fn view_mut(_: S, data: &mut [f64]) -> &mut [S::f64s] {
+        S::as_mut_simd_f64s(data).0
+    }
     #[inline(always)]
     fn load(simd: S, value: S::f64s) -> Self {
         Self { simd, value }
@@ -340,4 +360,28 @@ impl<'a, T: Real> VectorsMut<'a, T> {
     pub fn sub(&mut self, atom: usize, value: V3<T>) {
         self.set(atom, self.get(atom) - value);
     }
+}
+
+/// Work on one block of cells, written once for any number of lanes. Everything it calls must be `#[inline(always)]`,
+/// or it runs without the processor's wide registers.
+pub trait BlockWork {
+    /// What the work returns.
+    type Output;
+    /// Does the work; the lanes of the block fill `stride` registers, taken one `part` after the other.
+    fn run<T: Real>(self, token: T::Token, stride: usize) -> Self::Output;
+}
+
+struct Vectorised<W>(W);
+
+impl<W: BlockWork> WithSimd for Vectorised<W> {
+    type Output = W::Output;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> W::Output {
+        self.0.run::<Lane<S>>(simd, LANES / S::F64_LANES)
+    }
+}
+
+/// Runs work on a block of `lanes` cells ([`LANES`] or 1) with the widest registers this processor has.
+pub fn dispatch<W: BlockWork>(lanes: usize, work: W) -> W::Output {
+    if lanes == 1 { work.run::<f64>((), 1) } else { Arch::new().dispatch(Vectorised(work)) }
 }

@@ -3,6 +3,13 @@
 //! Every force is one file: its parameters, `add_forces` (which returns the energy) written over
 //! [`lanes::Real`], and `add_stiffness`, its constant linear part for the implicit step.
 
+pub mod course;
+pub mod integrator;
+pub mod stability;
+pub mod elasticity;
+pub mod implicit;
 pub mod lanes;
+pub mod rigid;
 pub mod shape_memory;
 pub mod stiffness;
+pub mod volume;

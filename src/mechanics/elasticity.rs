@@ -1,0 +1,52 @@
+//! All that resists a change of shape in one kind of cell: a list per force, empty where a feature is absent.
+
+use super::lanes::{BlockWork, Real, Vectors, VectorsMut, dispatch};
+use super::shape_memory::ShapeMemory;
+use super::stiffness::StiffnessMatrix;
+
+/// The elastic forces of a mesh, shared by all cells that have it.
+#[derive(Debug, Clone, Default)]
+pub struct Elasticity {
+    /// Shape memory in the triplet form.
+    pub shape_memory: Vec<ShapeMemory>,
+}
+
+impl Elasticity {
+    /// Adds the forces on the atoms of a block (pN) and adds the energy of each lane (pN·µm) to `energy`.
+    pub fn add_forces(&self, lanes: usize, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
+        dispatch(lanes, Work { elasticity: self, x, f, energy });
+    }
+
+    /// The constant linear part of all forces, for the implicit step.
+    pub fn stiffness(&self, atoms: usize) -> StiffnessMatrix {
+        let mut matrix = StiffnessMatrix::new(atoms);
+        self.shape_memory.iter().for_each(|force| force.add_stiffness(&mut matrix));
+        matrix
+    }
+}
+
+struct Work<'a> {
+    elasticity: &'a Elasticity,
+    x: &'a [f64],
+    f: &'a mut [f64],
+    energy: &'a mut [f64],
+}
+
+impl BlockWork for Work<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<T: Real>(self, token: T::Token, stride: usize) {
+        let x = T::view(token, self.x);
+        let f = T::view_mut(token, self.f);
+        let energy = T::view_mut(token, self.energy);
+        for part in 0..stride {
+            let x = Vectors::<T>::new(token, x, stride, part);
+            let mut f = VectorsMut::<T>::new(token, f, stride, part);
+            let mut sum = T::load(token, energy[part]);
+            for force in &self.elasticity.shape_memory {
+                sum += force.add_forces(&x, &mut f);
+            }
+            energy[part] = sum.raw();
+        }
+    }
+}
