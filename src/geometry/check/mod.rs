@@ -30,7 +30,7 @@ pub struct SurfaceRules {
 }
 
 /// The least facet quality accepted by default: a needle 35 times as long as it is wide, or a cap 46 times as wide as
-/// it is high. In a rest mesh such a facet is an accident, not a choice. The meshes made here all stay above 0.75.
+/// it is high. In a rest mesh such a facet is an accident, not a choice. The spheres and red cells made here stay above 0.75.
 pub const LEAST_FACET_QUALITY: f64 = 0.05;
 
 /// A closed surface with less volume than this times its area to the power 3/2 encloses nothing. A sphere has 0.094,
