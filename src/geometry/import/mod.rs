@@ -7,7 +7,8 @@ mod stl;
 mod tests;
 mod text;
 
-use super::{MeshFault, Surface, Topology, volume};
+use super::check::bad_volume;
+use super::{MeshFault, Surface, SurfaceRules, check_surface};
 use crate::error::{Error, Fault, Result};
 use std::path::Path;
 
@@ -51,6 +52,19 @@ pub fn read_surface(path: &Path, scale_to_um: f64) -> Result<Surface> {
     finish(&name, surface).map_err(Error::input)
 }
 
+/// Reads a surface as [`read_surface`] does and checks it against the rules.
+///
+/// # Errors
+/// Those of [`read_surface`], and [`Error::Input`] with every fault that [`check_surface`] finds.
+pub fn read_checked_surface(path: &Path, scale_to_um: f64, rules: &SurfaceRules) -> Result<Surface> {
+    let surface = read_surface(path, scale_to_um)?;
+    let mesh = format!("mesh file `{}`", path.display());
+    match check_surface(&surface, rules) {
+        Ok(()) => Ok(surface),
+        Err(faults) => Err(Error::Input(faults.into_iter().map(|fault| fault.into_fault(&mesh)).collect())),
+    }
+}
+
 /// What every format must yield: facets, numbers that are still finite after scaling, an inside within.
 fn finish(name: &str, surface: Surface) -> std::result::Result<Surface, Fault> {
     let mesh = format!("mesh file `{name}`");
@@ -61,9 +75,8 @@ fn finish(name: &str, surface: Surface) -> std::result::Result<Surface, Fault> {
         let position = surface.positions[atom].into();
         return Err(MeshFault::NotFinite { atom: atom as u32, position }.into_fault(&mesh));
     }
-    let volume = volume(&surface);
-    if volume < 0.0 && Topology::of(&surface).is_closed() {
-        return Err(MeshFault::Inverted { volume }.into_fault(&mesh));
+    if let Some(fault @ MeshFault::Inverted { .. }) = bad_volume(&surface) {
+        return Err(fault.into_fault(&mesh));
     }
     Ok(surface)
 }
@@ -95,10 +108,8 @@ fn not_readable(path: &Path, failure: &std::io::Error) -> Fault {
             });
             meshes.truncate(5);
             let there = meshes.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-            match meshes.is_empty() {
-                true => format!("looked in {looked_in}, which holds no mesh file"),
-                false => format!("looked in {looked_in}, which holds {there}"),
-            }
+            let holds = if meshes.is_empty() { "no mesh file" } else { &there };
+            format!("looked in {looked_in}, which holds {holds}")
         }
     };
     Fault::new(format!("mesh file `{name}` does not exist")).help(help)

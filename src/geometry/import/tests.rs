@@ -1,8 +1,9 @@
 use super::*;
-use crate::geometry::{SurfaceRules, check_surface, export_surface, red_cell, write_ply, write_stl};
+use crate::geometry::{SurfaceRules, check_surface, export_surface, red_cell, volume, write_ply, write_stl};
 
 /// A tetrahedron of volume 1/6 as PLY text.
-const TETRAHEDRON: &str = "ply\nformat ascii 1.0\ncomment a corner of a cube\nelement vertex 4\nproperty float x\nproperty float y\n\
+const TETRAHEDRON: &str = "ply\nformat ascii 1.0\ncomment a corner of a cube\nelement vertex 4\n\
+     property float x\nproperty float y\n\
      property float z\nproperty uchar red\nelement face 4\nproperty list uchar int vertex_index\nend_header\n\
      0 0 0 255\n1 0 0 255\n0 1 0 255\n0 0 1 255\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
