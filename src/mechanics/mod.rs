@@ -4,12 +4,12 @@
 //! [`lanes::Real`], and `add_stiffness`, its constant linear part for the implicit step.
 
 pub mod course;
-pub mod integrator;
-pub mod stability;
 pub mod elasticity;
 pub mod implicit;
+pub mod integrator;
 pub mod lanes;
 pub mod rigid;
 pub mod shape_memory;
+pub mod stability;
 pub mod stiffness;
 pub mod volume;

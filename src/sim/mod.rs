@@ -1,1 +1,20 @@
-//! The simulator: model, state, workspace and the step.
+//! The simulator: model, state, workspace and the step. It knows no files, formats or clocks.
+
+pub mod constraints;
+pub mod forces;
+pub mod implicit;
+pub mod inertial;
+pub mod model;
+mod motility;
+pub mod observe;
+pub mod planes;
+pub mod state;
+mod step;
+pub mod trouble;
+pub mod workspace;
+
+pub use model::{Attraction, Kind, Load, Model, Plane, VolumeRule};
+pub use state::{Inertia, KindState, State};
+pub use step::{StepReport, step};
+pub use trouble::Trouble;
+pub use workspace::Workspace;

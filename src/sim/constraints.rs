@@ -1,0 +1,74 @@
+//! The stage that makes constraints exact after the atoms moved: planes and the volume of every cell.
+
+use rayon::prelude::*;
+
+use super::model::{Model, VolumeRule};
+use super::planes::project_cell;
+use super::state::State;
+use super::workspace::{KindScratch, Workspace};
+use crate::mechanics::volume;
+
+/// The volume error that a step may leave, relative to the target.
+pub const VOLUME_TOLERANCE: f64 = 1e-10;
+
+/// A cell whose volume could not be restored.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolumeFailure {
+    /// Number of the kind.
+    pub kind: usize,
+    /// Number of the cell within its kind.
+    pub cell: usize,
+    /// Relative error left.
+    pub error: f64,
+}
+
+/// Puts atoms back outside the planes and every exact volume back on its target.
+pub fn enforce_constraints(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), VolumeFailure> {
+    for (number, ((kind, now), w)) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds).enumerate() {
+        let exact = matches!(kind.volume, VolumeRule::Exact(_));
+        if !exact && model.planes.is_empty() {
+            continue;
+        }
+        let (length, lanes) = (kind.block_len(), kind.lanes);
+        let KindScratch { spare, spare2, target, left, .. } = w;
+        (now.positions.par_chunks_exact_mut(length))
+            .zip(spare.par_chunks_exact_mut(length).zip(spare2.par_chunks_exact_mut(length)))
+            .zip(target.par_chunks_exact(lanes).zip(left.par_chunks_exact_mut(lanes)))
+            .for_each(|((x, (spare, spare2)), (target, left))| {
+                if !model.planes.is_empty() {
+                    project_block(model, kind, exact, x, target, left);
+                } else {
+                    volume::enforce_block(&kind.rest.facets, x, &kind.held, target, spare, spare2, left);
+                    left.iter_mut().zip(target).for_each(|(left, target)| *left /= target);
+                    if left.iter().any(|error| error.is_nan() || *error > VOLUME_TOLERANCE) {
+                        project_block(model, kind, exact, x, target, left);
+                    }
+                }
+            });
+        if exact {
+            if let Some(cell) = (0..kind.cells).find(|&cell| left[cell].is_nan() || left[cell] > VOLUME_TOLERANCE) {
+                return Err(VolumeFailure { kind: number, cell, error: left[cell] });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Cell by cell, the thorough way.
+fn project_block(
+    model: &Model,
+    kind: &super::model::Kind,
+    exact: bool,
+    x: &mut [f64],
+    target: &[f64],
+    left: &mut [f64],
+) {
+    let lanes = kind.lanes;
+    for lane in 0..lanes {
+        let mut alone: Vec<f64> = x.chunks_exact(lanes).map(|row| row[lane]).collect();
+        left[lane] = project_cell(model, kind, &mut alone, exact.then_some(target[lane]));
+        for (row, value) in x.chunks_exact_mut(lanes).zip(alone) {
+            row[lane] = value;
+        }
+    }
+}

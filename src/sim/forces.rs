@@ -1,0 +1,117 @@
+//! The stage that adds up every force on every atom.
+
+use rayon::prelude::*;
+
+use super::model::{Kind, Model, VolumeRule};
+use super::state::State;
+use super::workspace::Workspace;
+use crate::mechanics::volume;
+
+/// Sets `force` of every kind to the sum of all forces at time `time` (pN), drag not included, and `energy` to the
+/// elastic energy of every cell. Motility enters as the drag that its velocity overcomes.
+pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
+    for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&mut ws.kinds) {
+        let cells = kind.first_cell..kind.first_cell + kind.cells;
+        let drive = &ws.drive[cells];
+        let (length, lanes) = (kind.block_len(), kind.lanes);
+        (w.force.par_chunks_exact_mut(length))
+            .zip(now.positions.par_chunks_exact(length))
+            .zip(w.energy.par_chunks_exact_mut(lanes))
+            .zip(w.spare.par_chunks_exact_mut(length))
+            .zip(now.rest_volumes.par_chunks_exact(lanes))
+            .enumerate()
+            .for_each(|(block, ((((f, x), energy), spare), rest))| {
+                f.fill(0.0);
+                energy.fill(0.0);
+                kind.elasticity.add_forces(lanes, x, f, energy);
+                add_loads(kind, time, f);
+                add_gravity(model, kind, f);
+                add_attraction(kind, x, f, energy);
+                add_drive(kind, drive, block, f);
+                add_pressure(kind, time, x, rest, spare, f, energy);
+            });
+    }
+}
+
+/// Elastic energy of each cell of a kind alone, pN·µm, for observers.
+pub fn elastic_energy(kind: &Kind, positions: &[f64]) -> Vec<f64> {
+    let mut energy = vec![0.0; kind.blocks() * kind.lanes];
+    let mut force = vec![0.0; kind.block_len()];
+    for (x, energy) in positions.chunks_exact(kind.block_len()).zip(energy.chunks_exact_mut(kind.lanes)) {
+        kind.elasticity.add_forces(kind.lanes, x, &mut force, energy);
+    }
+    energy.truncate(kind.cells);
+    energy
+}
+
+fn add_loads(kind: &Kind, time: f64, f: &mut [f64]) {
+    for load in &kind.loads {
+        let force = load.force.at(time);
+        for &(atom, share) in &load.atoms {
+            for axis in 0..3 {
+                let value = force * share * load.direction[axis];
+                let at = (3 * atom as usize + axis) * kind.lanes;
+                f[at..at + kind.lanes].iter_mut().for_each(|slot| *slot += value);
+            }
+        }
+    }
+}
+
+fn add_gravity(model: &Model, kind: &Kind, f: &mut [f64]) {
+    let weight = model.gravity * kind.mass;
+    if weight.norm_squared() > 0.0 {
+        for (i, row) in f.chunks_exact_mut(kind.lanes).enumerate() {
+            row.iter_mut().for_each(|slot| *slot += weight[i % 3]);
+        }
+    }
+}
+
+fn add_attraction(kind: &Kind, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
+    let Some(attraction) = &kind.attraction else { return };
+    for (i, (row, place)) in f.chunks_exact_mut(kind.lanes).zip(x.chunks_exact(kind.lanes)).enumerate() {
+        for ((slot, here), energy) in row.iter_mut().zip(place).zip(energy.iter_mut()) {
+            let away = here - attraction.to[i % 3];
+            *slot -= attraction.stiffness * away;
+            *energy += 0.5 * attraction.stiffness * away * away;
+        }
+    }
+}
+
+fn add_drive(kind: &Kind, drive: &[[f64; 3]], block: usize, f: &mut [f64]) {
+    if kind.brownian.is_none() {
+        return;
+    }
+    for (lane, velocity) in drive.iter().skip(block * kind.lanes).take(kind.lanes).enumerate() {
+        for atom in 0..kind.atoms() {
+            for axis in 0..3 {
+                f[(3 * atom + axis) * kind.lanes + lane] += kind.drag * velocity[axis];
+            }
+        }
+    }
+}
+
+/// The pressure of a compressible cell, `−K (V − V₀)/V₀ ∇V`, eq. (volume.4).
+fn add_pressure(
+    kind: &Kind,
+    time: f64,
+    x: &[f64],
+    rest: &[f64],
+    gradient: &mut [f64],
+    f: &mut [f64],
+    energy: &mut [f64],
+) {
+    let VolumeRule::Compressible { modulus, course } = &kind.volume else { return };
+    let factor = course.at(time);
+    let mut volumes = [0.0; crate::mechanics::lanes::LANES];
+    let volumes = &mut volumes[..kind.lanes];
+    volume::measure_block(&kind.rest.facets, x, &[], gradient, volumes);
+    for lane in 0..kind.lanes {
+        let target = rest[lane] * factor;
+        let strain = (volumes[lane] - target) / target;
+        energy[lane] += 0.5 * modulus * strain * strain * target;
+        for i in 0..3 * kind.atoms() {
+            let at = i * kind.lanes + lane;
+            f[at] -= modulus * strain * gradient[at];
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The schemes with inertia, `m ẍ = F − k_a ẋ`, eq. (step.6): explicit and semi-implicit Euler, velocity Verlet with the
+//! drag inside, and the classical Runge–Kutta scheme of fourth order; and over-damped explicit Euler, eq. (step.1).
+
+use super::forces::add_forces;
+use super::model::{Kind, Model, VolumeRule};
+use super::state::State;
+use super::workspace::Workspace;
+use crate::mechanics::integrator::Method;
+use crate::mechanics::volume;
+
+/// Moves all atoms freely by one step; the forces at the start of the step are not known yet.
+pub fn advance_freely(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
+    let start = state.time;
+    add_forces(model, start, state, ws);
+    match model.integrator.method {
+        Method::Explicit => each(model, state, ws, |kind, x, _, f, _, _| {
+            let mobility = dt / kind.drag;
+            x.iter_mut().zip(f).for_each(|(x, f)| *x += mobility * f);
+        }),
+        Method::Euler => each(model, state, ws, |kind, x, v, f, _, _| {
+            for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
+                *x += dt * *v;
+                *v += dt * (f - kind.drag * *v) / kind.mass;
+            }
+        }),
+        Method::SemiImplicitEuler => each(model, state, ws, |kind, x, v, f, _, _| {
+            for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
+                *v += dt * (f - kind.drag * *v) / kind.mass;
+                *x += dt * *v;
+            }
+        }),
+        Method::Verlet => {
+            each(model, state, ws, |kind, x, v, f, _, _| {
+                let (kick, slow) = (0.5 * dt / kind.mass, 1.0 / (1.0 + 0.5 * dt * kind.drag / kind.mass));
+                for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
+                    *v = (*v + kick * f) * slow;
+                    *x += dt * *v;
+                }
+            });
+            add_forces(model, start + dt, state, ws);
+            each(model, state, ws, |kind, _, v, f, _, _| {
+                let (kick, keep) = (0.5 * dt / kind.mass, 1.0 - 0.5 * dt * kind.drag / kind.mass);
+                v.iter_mut().zip(f).for_each(|(v, f)| *v = *v * keep + kick * f);
+            });
+        }
+        Method::RungeKutta4 => runge_kutta(model, dt, state, ws),
+        Method::Implicit { .. } => unreachable!("the implicit scheme has its own stages"),
+    }
+}
+
+/// Runs work over the arrays of every kind: positions, velocities, forces and two sums, with held atoms kept still.
+fn each(
+    model: &Model,
+    state: &mut State,
+    ws: &mut Workspace,
+    work: impl Fn(&Kind, &mut [f64], &mut [f64], &[f64], &mut [f64], &mut [f64]),
+) {
+    for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds) {
+        if kind.is_held() {
+            for block in w.force.chunks_exact_mut(kind.block_len()) {
+                volume::hold(kind.lanes, &kind.held, block);
+            }
+        }
+        work(kind, &mut now.positions, &mut now.velocities, &w.force, &mut w.first, &mut w.swell);
+    }
+}
+
+/// The classical scheme; `first` sums the velocities and `swell` the accelerations of the four stages.
+fn runge_kutta(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
+    let start = state.time;
+    // (weight of the stage in the sum, time and step from the start at which the next stage is taken)
+    let stages = [(1.0, Some(0.5)), (2.0, Some(0.5)), (2.0, Some(1.0)), (1.0, None)];
+    for (number, (weight, next)) in stages.into_iter().enumerate() {
+        if number > 0 {
+            let at = stages[number - 1].1.unwrap_or(1.0);
+            add_forces(model, start + at * dt, state, ws);
+        }
+        for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds) {
+            if kind.is_held() {
+                for block in w.force.chunks_exact_mut(kind.block_len()) {
+                    volume::hold(kind.lanes, &kind.held, block);
+                }
+            }
+            if number == 0 {
+                w.first.fill(0.0);
+                w.swell.fill(0.0);
+            }
+            for i in 0..now.positions.len() {
+                let (rate, acceleration) =
+                    (now.velocities[i], (w.force[i] - kind.drag * now.velocities[i]) / kind.mass);
+                w.first[i] += weight * rate;
+                w.swell[i] += weight * acceleration;
+                let (move_by, x_rate, v_rate) = match next {
+                    Some(part) => (part * dt, rate, acceleration),
+                    None => (dt / 6.0, w.first[i], w.swell[i]),
+                };
+                now.positions[i] = w.start[i] + move_by * x_rate;
+                now.velocities[i] = w.start_velocity[i] + move_by * v_rate;
+            }
+        }
+    }
+}
+
+/// Corrects the velocities by what the constraints moved, eq. (step.7); `spare` holds the free positions.
+pub fn correct_velocities(model: &Model, dt: f64, state: &mut State, ws: &Workspace) {
+    for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&ws.kinds) {
+        let constrained = !model.planes.is_empty() || matches!(kind.volume, VolumeRule::Exact(_));
+        if constrained {
+            for ((v, x), free) in now.velocities.iter_mut().zip(&now.positions).zip(&w.force) {
+                *v += (x - free) / dt;
+            }
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! What an experiment means: kinds of cells, loads and planes in µm, s and pN. Nothing here changes during a run.
+
+use crate::Vec3;
+use crate::cell::motility::BrownianMotility;
+use crate::geometry::{self, Surface, Topology};
+use crate::mechanics::course::Course;
+use crate::mechanics::elasticity::Elasticity;
+use crate::mechanics::integrator::Integrator;
+use crate::mechanics::lanes::LANES;
+use crate::mechanics::stiffness::StiffnessMatrix;
+
+/// Rounds of the power iteration for the largest stiffness.
+const POWER_ROUNDS: usize = 150;
+
+/// The compiled experiment.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// The kinds of cells, in the order of the document.
+    pub kinds: Vec<Kind>,
+    /// Rigid planes that no atom passes.
+    pub planes: Vec<Plane>,
+    /// Acceleration of gravity, µm/s².
+    pub gravity: Vec3,
+    /// Scheme and step.
+    pub integrator: Integrator,
+    /// End of the run, s.
+    pub until: f64,
+    /// Times at which a course bends, rising; a step ends there.
+    pub kinks: Vec<f64>,
+}
+
+/// A rigid plane: the half space that its normal points into is free.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plane {
+    /// Name for pictures and messages.
+    pub name: String,
+    /// A point of the plane, µm.
+    pub point: Vec3,
+    /// Unit normal towards the free side.
+    pub normal: Vec3,
+}
+
+/// The cells that share a mesh and a material.
+#[derive(Debug, Clone)]
+pub struct Kind {
+    /// The type's name in the document.
+    pub name: String,
+    /// The mesh at rest, around its own origin, µm.
+    pub rest: Surface,
+    /// Whether the surface encloses a volume.
+    pub closed: bool,
+    /// Elastic forces.
+    pub elasticity: Elasticity,
+    /// The constant linear part of all forces, pN/µm.
+    pub stiffness: StiffnessMatrix,
+    /// Largest eigenvalue of the true stiffness at rest, pN/µm.
+    pub largest_stiffness: f64,
+    /// Drag of an atom, pN·s/µm.
+    pub drag: f64,
+    /// Mass of an atom, pN·s²/µm.
+    pub mass: f64,
+    /// One factor an atom and axis, 0 where held; empty when nothing is held.
+    pub held: Vec<f64>,
+    /// What the volume does.
+    pub volume: VolumeRule,
+    /// Loads.
+    pub loads: Vec<Load>,
+    /// Brownian persistence.
+    pub brownian: Option<BrownianMotility>,
+    /// Central attraction.
+    pub attraction: Option<Attraction>,
+    /// Number of the first cell in the order of all cells.
+    pub first_cell: usize,
+    /// Number of cells.
+    pub cells: usize,
+    /// Lanes of a block: [`LANES`], or 1 for a few cells.
+    pub lanes: usize,
+    /// Mean edge length at rest, µm.
+    pub edge: f64,
+}
+
+/// What the volume of a closed cell does.
+#[derive(Debug, Clone, PartialEq)]
+pub enum VolumeRule {
+    /// Nothing keeps it.
+    Free,
+    /// Exactly the cell's rest volume times the course.
+    Exact(Course),
+    /// Energy `½ K (V − V₀)²/V₀`, eq. (volume.4).
+    Compressible {
+        /// K, Pa.
+        modulus: f64,
+        /// Factor of the rest volume.
+        course: Course,
+    },
+}
+
+/// A force with a course in time, spread over some atoms of every cell of a kind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// Its name; the series is `load.<name>`.
+    pub name: String,
+    /// Atoms and their shares, which sum to one.
+    pub atoms: Vec<(u32, f64)>,
+    /// Unit direction.
+    pub direction: Vec3,
+    /// Total force, pN.
+    pub force: Course,
+}
+
+/// A linear pull of every atom to a point, a stand-in for a diffusing attractant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Attraction {
+    /// The point, µm.
+    pub to: Vec3,
+    /// Stiffness an atom, pN/µm.
+    pub stiffness: f64,
+}
+
+impl Kind {
+    /// One cell of a mesh and its elastic forces, without loads or motility: drag and mass of an atom 1, exact volume
+    /// where the mesh is closed.
+    pub fn new(name: &str, rest: Surface, elasticity: Elasticity) -> Self {
+        let closed = !rest.facets.is_empty() && Topology::of(&rest).is_closed();
+        let stiffness = elasticity.stiffness(rest.positions.len());
+        Self {
+            name: name.to_owned(),
+            closed,
+            largest_stiffness: stiffness.largest(),
+            stiffness,
+            elasticity,
+            drag: 1.0,
+            mass: 1.0,
+            held: Vec::new(),
+            volume: if closed { VolumeRule::Exact(Course::constant(1.0)) } else { VolumeRule::Free },
+            loads: Vec::new(),
+            brownian: None,
+            attraction: None,
+            first_cell: 0,
+            cells: 1,
+            lanes: 1,
+            edge: geometry::mean_edge_length(&rest),
+            rest,
+        }
+    }
+
+    /// The same kind with a number of cells, from `first_cell` on in the order of all cells.
+    pub fn with_cells(mut self, first_cell: usize, cells: usize) -> Self {
+        (self.first_cell, self.cells, self.lanes) = (first_cell, cells, Self::best_lanes(cells));
+        self
+    }
+
+    /// Largest eigenvalue of the true stiffness at rest, attraction included, pN/µm, by power iteration on differences
+    /// of the force; what explicit schemes need to know.
+    pub fn measure_largest_stiffness(&self) -> f64 {
+        let x: Vec<f64> = self.rest.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+        let epsilon = 1e-6 * self.edge;
+        // Any vector will do that is not an eigenvector of a smaller value; this one has no symmetry.
+        let mut v: Vec<f64> = (0..x.len()).map(|i| ((i * 7919 + 13) % 101) as f64 / 50.5 - 1.0).collect();
+        let mut largest = 0.0;
+        for _ in 0..POWER_ROUNDS {
+            crate::mechanics::volume::hold(1, &self.held, &mut v);
+            let size = v.iter().map(|a| a * a).sum::<f64>().sqrt();
+            if size == 0.0 {
+                break;
+            }
+            v.iter_mut().for_each(|a| *a /= size);
+            let force = |sign: f64| {
+                let moved: Vec<f64> = x.iter().zip(&v).map(|(x, v)| x + sign * epsilon * v).collect();
+                let mut f = vec![0.0; x.len()];
+                self.elasticity.add_forces(1, &moved, &mut f, &mut [0.0]);
+                f
+            };
+            let (plus, minus) = (force(1.0), force(-1.0));
+            let next: Vec<f64> = minus.iter().zip(&plus).map(|(m, p)| (m - p) / (2.0 * epsilon)).collect();
+            largest = next.iter().zip(&v).map(|(a, b)| a * b).sum::<f64>();
+            v = next;
+        }
+        // Power iteration approaches from below; two percent cover what is left after the last round.
+        1.02 * largest + self.attraction.map_or(0.0, |attraction| attraction.stiffness)
+    }
+
+    /// Atoms of a cell.
+    pub fn atoms(&self) -> usize {
+        self.rest.positions.len()
+    }
+    /// Numbers in a block: 3 · atoms · lanes.
+    pub fn block_len(&self) -> usize {
+        3 * self.atoms() * self.lanes
+    }
+    /// Number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.cells.div_ceil(self.lanes)
+    }
+    /// The lanes that a number of cells is best run on: single cells run alone, more fill blocks.
+    pub fn best_lanes(cells: usize) -> usize {
+        if cells < 3 { 1 } else { LANES }
+    }
+    /// Whether any atom is held.
+    pub fn is_held(&self) -> bool {
+        !self.held.is_empty()
+    }
+}
+
+impl Model {
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.kinds.iter().map(|kind| kind.cells).sum()
+    }
+    /// Number of atoms of all cells.
+    pub fn atoms(&self) -> usize {
+        self.kinds.iter().map(|kind| kind.cells * kind.atoms()).sum()
+    }
+}

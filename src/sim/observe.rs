@@ -1,0 +1,97 @@
+//! What an observer may know of a cell at one instant. Observers hold shared references only.
+
+use rayon::prelude::*;
+
+use super::forces::elastic_energy;
+use super::model::{Kind, Model, VolumeRule};
+use super::state::State;
+use super::workspace::Workspace;
+use crate::Vec3;
+use crate::geometry::{self, Surface};
+
+/// One cell at one instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellMeasure {
+    /// Positions of the atoms, µm.
+    pub positions: Vec<Vec3>,
+    /// Centre of volume (mean of the atoms for an open surface), µm.
+    pub centre: Vec3,
+    /// Enclosed volume, µm³ (0 for an open surface).
+    pub volume: f64,
+    /// (V − target)/target, 0 for an open surface.
+    pub volume_error: f64,
+    /// Surface area, µm².
+    pub area: f64,
+    /// Elastic energy, pN·µm.
+    pub energy: f64,
+    /// Extents of the axis-aligned bounding box, µm.
+    pub size: Vec3,
+    /// Extents along the principal axes, longest first, µm.
+    pub principal: [f64; 3],
+    /// Smallest area of a facet over its area at rest.
+    pub smallest_facet: f64,
+}
+
+/// Measures every cell, in the order of cells.
+pub fn measure_cells(model: &Model, state: &State) -> Vec<CellMeasure> {
+    let mut all = Vec::with_capacity(model.cells());
+    for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+        let energy = elastic_energy(kind, &now.positions);
+        let rest_areas = geometry::facet_areas(&kind.rest);
+        let factor = match &kind.volume {
+            VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.at(state.time),
+            VolumeRule::Free => 1.0,
+        };
+        let measured: Vec<CellMeasure> = (0..kind.cells)
+            .into_par_iter()
+            .map(|cell| {
+                let positions = now.cell(kind, cell);
+                measure_cell(kind, positions, now.rest_volumes[cell] * factor, energy[cell], &rest_areas)
+            })
+            .collect();
+        all.extend(measured);
+    }
+    all
+}
+
+fn measure_cell(kind: &Kind, positions: Vec<Vec3>, target: f64, energy: f64, rest_areas: &[f64]) -> CellMeasure {
+    let surface = Surface { positions, facets: kind.rest.facets.clone() };
+    let areas = geometry::facet_areas(&surface);
+    let (low, high) = geometry::bounding_box(&surface.positions).unwrap_or_default();
+    let volume = if kind.closed { geometry::volume(&surface) } else { 0.0 };
+    let smallest = areas.iter().zip(rest_areas).map(|(now, rest)| now / rest).fold(f64::INFINITY, f64::min);
+    CellMeasure {
+        centre: if kind.closed {
+            geometry::centre_of_volume(&surface)
+        } else {
+            surface.positions.iter().sum::<Vec3>() / surface.positions.len() as f64
+        },
+        volume,
+        volume_error: if kind.closed { (volume - target) / target } else { 0.0 },
+        area: areas.iter().sum(),
+        energy,
+        size: high - low,
+        principal: geometry::principal_extents(&surface.positions),
+        smallest_facet: smallest,
+        positions: surface.positions,
+    }
+}
+
+/// Mean velocity of the atoms of every cell over the last step, µm/s; zero before the first.
+pub fn mean_velocities(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Vec<Vec3> {
+    let mut all = Vec::with_capacity(model.cells());
+    for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&ws.kinds) {
+        for cell in 0..kind.cells {
+            if state.step == 0 || dt <= 0.0 {
+                all.push(Vec3::zeros());
+                continue;
+            }
+            let mean = |values: &[f64]| -> Vec3 {
+                (0..kind.atoms()).map(|atom| super::state::vector(kind, values, cell, atom)).sum::<Vec3>()
+                    / kind.atoms() as f64
+            };
+            all.push((mean(&now.positions) - mean(&w.start)) / dt);
+        }
+    }
+    all
+}

@@ -1,0 +1,96 @@
+//! Where a run is. A checkpoint is exactly this.
+
+use serde::{Deserialize, Serialize};
+
+use super::model::{Kind, Model};
+use crate::Vec3;
+use crate::cell::motility::Walk;
+
+/// Everything that changes and is needed to go on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Steps made.
+    pub step: u64,
+    /// The step that the error estimate proposes next, s.
+    pub next_step: f64,
+    /// One entry a kind.
+    pub kinds: Vec<KindState>,
+    /// One walk for every cell of a kind with Brownian motility, in the order of cells.
+    pub walks: Vec<Walk>,
+    /// Motility runs that ended and are not recorded yet: (cell, end s, duration s).
+    pub ended_runs: Vec<(u32, f64, f64)>,
+}
+
+/// The cells of a kind, in blocks of lanes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KindState {
+    /// Positions, µm: `[block][atom][axis][lane]`. Lanes beyond the last cell repeat it and are never read.
+    pub positions: Vec<f64>,
+    /// Velocities, µm/s, the same shape; empty in over-damped runs.
+    pub velocities: Vec<f64>,
+    /// Rest volume of every cell, µm³, padded to whole blocks.
+    pub rest_volumes: Vec<f64>,
+}
+
+/// Index of a number in a block array.
+pub fn index(kind: &Kind, cell: usize, atom: usize, axis: usize) -> usize {
+    let (block, lane) = (cell / kind.lanes, cell % kind.lanes);
+    block * kind.block_len() + (3 * atom + axis) * kind.lanes + lane
+}
+
+/// The vector of an atom of a cell of a kind in a block array.
+pub fn vector(kind: &Kind, values: &[f64], cell: usize, atom: usize) -> Vec3 {
+    Vec3::from_fn(|axis, _| values[index(kind, cell, atom, axis)])
+}
+
+impl KindState {
+    /// Places cells; `places[cell]` are the positions of a cell's atoms.
+    pub fn new(kind: &Kind, places: &[Vec<Vec3>], inertial: Inertia) -> Self {
+        let mut positions = vec![0.0; kind.blocks() * kind.block_len()];
+        for slot in 0..kind.blocks() * kind.lanes {
+            let place = &places[slot.min(places.len() - 1)];
+            for (atom, x) in place.iter().enumerate() {
+                for axis in 0..3 {
+                    positions[index(kind, slot, atom, axis)] = x[axis];
+                }
+            }
+        }
+        let velocities = match inertial {
+            Inertia::Inertial => vec![0.0; positions.len()],
+            Inertia::OverDamped => Vec::new(),
+        };
+        let volume = if kind.closed { crate::geometry::volume(&kind.rest) } else { 0.0 };
+        Self { positions, velocities, rest_volumes: vec![volume; kind.blocks() * kind.lanes] }
+    }
+
+    /// Positions of the atoms of a cell, µm.
+    pub fn cell(&self, kind: &Kind, cell: usize) -> Vec<Vec3> {
+        (0..kind.atoms()).map(|atom| vector(kind, &self.positions, cell, atom)).collect()
+    }
+}
+
+/// Whether atoms keep velocities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Inertia {
+    /// Drag balances force at every instant.
+    OverDamped,
+    /// Atoms have mass and velocity.
+    Inertial,
+}
+
+impl State {
+    /// The start of a run with every cell at rest; `places[kind][cell][atom]`.
+    pub fn new(model: &Model, places: &[Vec<Vec<Vec3>>]) -> Self {
+        let inertia = if model.integrator.method.is_inertial() { Inertia::Inertial } else { Inertia::OverDamped };
+        let kinds = model.kinds.iter().zip(places).map(|(kind, cells)| KindState::new(kind, cells, inertia)).collect();
+        let mut walks = Vec::new();
+        for kind in &model.kinds {
+            if let Some(motility) = &kind.brownian {
+                walks.extend((0..kind.cells).map(|cell| motility.start(model.seed, (kind.first_cell + cell) as u64)));
+            }
+        }
+        Self { time: 0.0, step: 0, next_step: 0.0, kinds, walks, ended_runs: Vec::new() }
+    }
+}

@@ -1,0 +1,162 @@
+//! One step of the simulation, on one screen.
+
+use super::constraints::enforce_constraints;
+use super::forces::add_forces;
+use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
+use super::inertial::{advance_freely, correct_velocities};
+use super::model::Model;
+use super::motility::advance_motility;
+use super::state::State;
+use super::trouble::{Trouble, check_finite};
+use super::workspace::Workspace;
+use crate::mechanics::integrator::{Method, Order, StepSize};
+
+/// What a step did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepReport {
+    /// Its size, s.
+    pub dt: f64,
+    /// Tries that the error estimate refused before it.
+    pub refused: u32,
+    /// Error estimate over the mean edge, 0 for schemes without one.
+    pub error: f64,
+}
+
+/// Tries before a step is given up; each is at least 0.3 times the one before, so that 60 shrink it by 30 decades.
+const TRIES: u32 = 60;
+
+/// Moves the state by one step. After an error the state is the one before the step.
+pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<StepReport, Trouble> {
+    remember(state, ws);
+    let mut dt = plan_step(model, state);
+    for refused in 0..TRIES {
+        let dt_now = end_at_kinks(model, state.time, dt);
+        let error = match try_step(model, dt_now, state, ws) {
+            Ok(error) => error,
+            Err(trouble) if matches!(model.integrator.size, StepSize::Fixed(_)) || refused + 1 == TRIES => {
+                restore(state, ws);
+                return Err(trouble);
+            }
+            Err(_) => f64::INFINITY,
+        };
+        let (accepted, next) = judge(model, dt_now, error);
+        if accepted {
+            // A step cut short by a kink says nothing against the step planned before it.
+            state.next_step = if dt_now < dt { dt.max(next) } else { next };
+            advance_clock(model, dt_now, state, ws);
+            return Ok(StepReport { dt: dt_now, refused, error });
+        }
+        restore(state, ws);
+        dt = next;
+    }
+    Err(Trouble::StepTooSmall { time: state.time, dt })
+}
+
+/// The stages of a step; returns the error estimate over the mean edge.
+fn try_step(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<f64, Trouble> {
+    let end = state.time + dt;
+    advance_motility(model, dt, state, ws);
+    measure_volumes(model, end, state, ws);
+    let error = match model.integrator.method {
+        Method::Implicit { order } => advance_implicitly(model, dt, order, state, ws),
+        _ => {
+            advance_freely(model, dt, state, ws);
+            0.0
+        }
+    };
+    keep_free_positions(state, ws);
+    check_finite(model, end, state)?;
+    enforce_constraints(model, state, ws).map_err(|failure| Trouble::of_volume(model, end, failure))?;
+    if model.integrator.method.is_inertial() {
+        correct_velocities(model, dt, state, ws);
+    }
+    check_finite(model, end, state)?;
+    Ok(error)
+}
+
+/// Stages of the linearly implicit schemes.
+fn advance_implicitly(model: &Model, dt: f64, order: Order, state: &mut State, ws: &mut Workspace) -> f64 {
+    solve_swell(model, dt, order, ws);
+    add_forces(model, state.time, state, ws);
+    solve_increments(model, dt, order, Stage::First, state, ws);
+    move_first(model, state, ws);
+    if order == Order::First {
+        return 0.0;
+    }
+    add_forces(model, state.time + dt, state, ws);
+    solve_increments(model, dt, order, Stage::Second, state, ws);
+    move_second(model, state, ws)
+}
+
+fn remember(state: &State, ws: &mut Workspace) {
+    for (now, w) in state.kinds.iter().zip(&mut ws.kinds) {
+        w.start.copy_from_slice(&now.positions);
+        w.start_velocity.copy_from_slice(&now.velocities);
+    }
+}
+
+fn restore(state: &mut State, ws: &Workspace) {
+    for (now, w) in state.kinds.iter_mut().zip(&ws.kinds) {
+        now.positions.copy_from_slice(&w.start);
+        now.velocities.copy_from_slice(&w.start_velocity);
+    }
+}
+
+/// Keeps the freely moved positions for the correction of velocities.
+fn keep_free_positions(state: &State, ws: &mut Workspace) {
+    for (now, w) in state.kinds.iter().zip(&mut ws.kinds) {
+        if !now.velocities.is_empty() {
+            w.force.copy_from_slice(&now.positions);
+        }
+    }
+}
+
+/// The step to try first.
+fn plan_step(model: &Model, state: &State) -> f64 {
+    match model.integrator.size {
+        StepSize::Fixed(dt) => dt,
+        StepSize::Adaptive { largest, .. } if state.next_step > 0.0 => state.next_step.min(largest),
+        StepSize::Adaptive { largest, .. } => {
+            let relax = |kind: &super::model::Kind| kind.drag / kind.largest_stiffness.max(f64::MIN_POSITIVE);
+            on_ladder(model.kinds.iter().map(relax).fold(largest, f64::min)).min(largest)
+        }
+    }
+}
+
+/// A step never runs over a bend of a course or the end of the run.
+fn end_at_kinks(model: &Model, time: f64, dt: f64) -> f64 {
+    // Room for the round-off of a clock that adds many steps.
+    let slack = 1e-12 * model.until;
+    let ahead = model.kinks.iter().copied().chain([model.until]).filter(|&kink| kink > time + slack);
+    let left = ahead.fold(f64::INFINITY, f64::min) - time;
+    if dt >= left - slack { left } else { dt }
+}
+
+/// Whether the error allows the step, and the step to try next.
+fn judge(model: &Model, dt: f64, error: f64) -> (bool, f64) {
+    let StepSize::Adaptive { tolerance, largest } = model.integrator.size else { return (true, dt) };
+    if error.is_nan() || error.is_infinite() {
+        return (false, on_ladder(0.3 * dt));
+    }
+    // The estimate is of first order, so that the error grows with the square of the step.
+    let ideal = dt * (0.9 * (tolerance / error.max(1e-300)).sqrt()).clamp(0.3, 4.0);
+    (error <= tolerance, on_ladder(ideal).min(largest))
+}
+
+/// The largest power of √2 seconds not above a step: few different steps mean few factorisations.
+fn on_ladder(dt: f64) -> f64 {
+    (0.5 * (2.0 * dt.log2() + 1e-9).floor()).exp2()
+}
+
+fn advance_clock(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
+    state.time += dt;
+    let slack = 1e-12 * model.until;
+    if let Some(&kink) = model.kinks.iter().chain([&model.until]).find(|&&kink| (kink - state.time).abs() <= slack) {
+        state.time = kink;
+    }
+    state.step += 1;
+    if !ws.walks.is_empty() {
+        state.walks.copy_from_slice(&ws.walks);
+        state.ended_runs.append(&mut ws.ended_runs);
+    }
+}
