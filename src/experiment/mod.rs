@@ -31,15 +31,21 @@
 //! ```
 
 mod cells;
+mod check;
+mod document;
 mod loads;
 mod measures;
 mod mechanics;
 mod pictures;
 mod scene;
 mod schema;
+mod semantics;
+mod tree;
 mod values;
+mod words;
 
 pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
+pub use document::Document;
 pub use loads::{Cap, CapExtent, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
 pub use measures::{Comparison, Measure, MeasureKind, Over, Reduction};
 pub use mechanics::{
@@ -115,12 +121,5 @@ impl Experiment {
             picture: Picture::default(),
             plot: Vec::new(),
         }
-    }
-}
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn dump() {
-        println!("{}", serde_json::to_string_pretty(&super::schema()).unwrap());
     }
 }
