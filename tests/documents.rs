@@ -1,5 +1,6 @@
 //! The experiment document: what it says is what is understood, from a file or from Rust.
 
+use proptest::prelude::*;
 use pseudopod::experiment::{Course, Document, Mesh, Selection, When};
 use pseudopod::units::{Force, Length, LineStiffness, Time};
 use std::path::Path;
@@ -73,4 +74,19 @@ fn the_schema_in_the_documents_is_the_one_of_the_types() {
     }
     let kept = std::fs::read_to_string(path).unwrap_or_default();
     assert!(kept == now, "{path} is not current; run: pseudopod schema -o {path}");
+}
+
+proptest! {
+    /// Whatever is cut out of a document, or written over it, is answered by faults and never by a panic.
+    #[test]
+    fn a_damaged_document_never_panics(start in 0usize..6000, length in 0usize..40, other in "[\\[\\]{}=\"a-z0-9., -]{0,6}") {
+        let mut text = everything(&[]).source.text.clone();
+        let boundary = |at: usize, text: &str| (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
+        let (from, to) = (boundary(start, &text), boundary(start + length, &text));
+        text.replace_range(from..to, &other);
+        if let Err(error) = Document::parse("damaged.toml", &text, Path::new("tests/documents"), &[]) {
+            let message = pseudopod::error::render(&error, pseudopod::error::Paint::Plain);
+            prop_assert!(!message.contains("cannot be understood"), "the checker missed what serde found:\n{message}");
+        }
+    }
 }

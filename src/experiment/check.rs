@@ -54,6 +54,13 @@ struct Keys {
     named: Option<Json>,
 }
 
+impl Keys {
+    /// The names of the keys that are known.
+    fn known(&self) -> impl Iterator<Item = &str> {
+        self.known.keys().map(String::as_str)
+    }
+}
+
 impl Walk<'_> {
     /// Follows `$ref`; what stands beside it comes first.
     fn resolve(&self, schema: &Json) -> Map<String, Json> {
@@ -230,24 +237,45 @@ impl Walk<'_> {
         let path = if path.is_empty() { "the document" } else { path };
         let fault = Fault::new(format!("`{path}` is {}; {wanted} was expected", node.kind()));
         let fault = fault.at(node.place(format!("{wanted} was expected")));
-        let number_in_quotes = matches!(&node.value, Value::Text(text) if text.trim().parse::<f64>().is_ok());
-        self.faults.push(match &node.value {
-            Value::Text(text) if number_in_quotes && wanted.contains("number") => {
-                fault.help(format!("write the number without quotes: {}", text.trim()))
-            }
-            Value::Text(text) if wanted == "true or false" && (text == "true" || text == "false") => {
-                fault.help(format!("write it without quotes: {text}"))
-            }
-            _ => with_purpose(fault, schema),
+        self.faults.push(match rewrite(node, wanted) {
+            Some(advice) => fault.help(advice),
+            None => with_purpose(fault, schema),
         });
+    }
+}
+
+/// How a value of the wrong kind is written right, if that can be told from the value.
+fn rewrite(node: &Node, wanted: &str) -> Option<String> {
+    let written = node.written();
+    match (&node.value, wanted) {
+        (Value::Text(text), "a number" | "a whole number") if text.trim().parse::<f64>().is_ok() => {
+            Some(format!("write the number without quotes: {}", text.trim()))
+        }
+        (Value::Text(text), "true or false") if text == "true" || text == "false" => {
+            Some(format!("write it without quotes: {text}"))
+        }
+        (Value::Integer(_) | Value::Truth(_) | Value::Number(_), "a text") => {
+            Some(format!("write it in quotes: \"{written}\""))
+        }
+        (Value::Number(number), "a whole number") if number.fract() == 0.0 => {
+            Some(format!("write it without a decimal point: {number}"))
+        }
+        (Value::Table(_), "a list") if written.starts_with('[') => {
+            let name = written.trim_matches(['[', ']']);
+            Some(format!("begin every entry with two brackets: [[{name}]]"))
+        }
+        (Value::Integer(_) | Value::Text(_) | Value::Number(_), "a list") if !written.contains('\n') => {
+            Some(format!("write a list, in brackets: [{written}]"))
+        }
+        _ => None,
     }
 }
 
 /// Adds what a key is for, in the words of its type.
 fn with_purpose(fault: Fault, schema: &Map<String, Json>) -> Fault {
     match schema.get("description").and_then(Json::as_str) {
-        Some(purpose) => fault.help(format!("this is for: {purpose}")),
-        None => fault,
+        Some(purpose) => fault.help(format!("the key is for: {purpose}")),
+        None => fault.help("write another value; `pseudopod schema` tells what is allowed"),
     }
 }
 
@@ -320,7 +348,8 @@ fn expectation(schema: &Map<String, Json>) -> String {
 fn inherit(parent: &Map<String, Json>, child: &Map<String, Json>) -> Map<String, Json> {
     let mut child = child.clone();
     for (key, value) in parent {
-        if key.starts_with("x-") && key != "x-dimension" && key != "x-words" {
+        let bound_or_meaning = key.starts_with("x-") && key != "x-dimension" && key != "x-words";
+        if bound_or_meaning || key == "description" {
             child.entry(key.clone()).or_insert(value.clone());
         }
     }

@@ -26,7 +26,7 @@
 //!
 //! // The same checks as for a file; the document carries its text into the result.
 //! let document = Document::from_experiment(experiment)?;
-//! assert!(document.source.text.contains("[cells.white]"));
+//! assert!(document.source.text.contains("[[cells.white.loads]]"));
 //! # Ok::<(), pseudopod::error::Error>(())
 //! ```
 

@@ -33,7 +33,12 @@ pub struct UnitError {
 /// # Errors
 /// Says what is wrong and where: no number, an unknown unit, an ambiguous product.
 pub fn parse(text: &str) -> Result<Measured, UnitError> {
-    let (number, start) = split_number(text)?;
+    parse_like(text, "5 um")
+}
+
+/// Reads a quantity; `example` stands in the advice to a text that is none at all.
+fn parse_like(text: &str, example: &str) -> Result<Measured, UnitError> {
+    let (number, start) = split_number(text, example)?;
     let scale = Units { text, position: start, divided: false }.whole()?;
     measured(&number, scale, text)
 }
@@ -43,7 +48,7 @@ pub fn parse(text: &str) -> Result<Measured, UnitError> {
 /// # Errors
 /// As [`parse`], and when it is something else: "is a speed; a length was expected".
 pub fn parse_as(text: &str, expected: Dimension) -> Result<f64, UnitError> {
-    let found = parse(text)?;
+    let found = parse_like(text, &expected.example())?;
     if found.dimension == expected {
         return Ok(found.value);
     }
@@ -93,7 +98,7 @@ fn measured(number: &str, scale: Scale, text: &str) -> Result<Measured, UnitErro
 }
 
 /// Splits the leading number off; returns it in a form that `f64` reads, and where the rest starts.
-fn split_number(text: &str) -> Result<(String, usize), UnitError> {
+fn split_number(text: &str, example: &str) -> Result<(String, usize), UnitError> {
     let start = text.len() - text.trim_start().len();
     let mut number = String::new();
     let mut end = start;
@@ -119,11 +124,12 @@ fn split_number(text: &str) -> Result<(String, usize), UnitError> {
     let fault = |message: String, help: &str, at: Range<usize>| Err(UnitError { message, help: help.to_owned(), at });
     if number.is_empty() {
         let message = format!("\"{text}\" does not begin with a number");
-        return fault(message, "write a number and a unit, such as \"5 um\"", 0..text.len());
+        return fault(message, &format!("write a number and a unit, such as \"{example}\""), 0..text.len());
     }
     if text[end..].starts_with(',') {
         let message = format!("\"{text}\" has a comma in its number");
-        return fault(message, "write a decimal point, such as \"5.3 um\"", end..end + 1);
+        let help = format!("write a decimal point: \"{}\"", text.replacen(',', ".", 1));
+        return fault(message, &help, end..end + 1);
     }
     if number.parse::<f64>().is_err() {
         let message = format!("\"{}\" is not a number", &text[start..end]);
@@ -332,7 +338,7 @@ mod tests {
             ("5 umm", 2..5, "unknown unit \"umm\"; did you mean \"um\"?"),
             ("5 um/sec", 5..8, "unknown unit \"sec\"; did you mean \"s\"?"),
             ("5 PN", 2..4, "unknown unit \"PN\"; did you mean \"pN\"?"),
-            ("5,3 um", 1..2, "\"5,3 um\" has a comma in its number; write a decimal point, such as \"5.3 um\""),
+            ("5,3 um", 1..2, "\"5,3 um\" has a comma in its number; write a decimal point: \"5.3 um\""),
             ("um", 0..2, "\"um\" does not begin with a number; write a number and a unit, such as \"5 um\""),
             ("1.2.3 um", 0..5, "\"1.2.3\" is not a number; write it such as \"5\", \"0.2\" or \"1e-19\""),
             ("1 um^1.5", 6..7, "\".\" where a unit was expected"),

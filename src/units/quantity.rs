@@ -1,6 +1,6 @@
 //! Quantities as the types of a document hold them: a value in base units and, in its type, what it is.
 
-use super::dimension::{Dimension, label};
+use super::dimension::Dimension;
 use super::parse::{UnitError, parse_as};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
@@ -99,7 +99,6 @@ impl<const L: i8, const T: i8, const F: i8, const A: i8> JsonSchema for Quantity
         let dimension = Self::DIMENSION;
         json_schema!({
             "type": "string",
-            "description": format!("{} with its unit (inside: {})", dimension.name(), label(dimension)),
             "x-dimension": dimension.name(),
             "examples": [dimension.example()],
         })

@@ -10,7 +10,11 @@ impl Walk<'_> {
     /// A plain number against `minimum`, `exclusiveMinimum`, `maximum`.
     pub(super) fn number_bounds(&mut self, node: &Node, value: f64, schema: &Map<String, Json>, path: &str) {
         let bounds = ["exclusiveMinimum", "minimum", "maximum"];
-        self.bounds(node, value, bounds, |bound| format!("{bound}"), schema, path);
+        let mut schema = schema.clone();
+        if schema.get("format").is_some_and(|format| format == "uint32") {
+            schema.entry("maximum").or_insert(u32::MAX.into());
+        }
+        self.bounds(node, value, bounds, |bound| format!("{bound}"), &schema, path);
     }
 
     /// A quantity (in base units) against `x-minimum`, `x-exclusive-minimum`, `x-maximum`.

@@ -26,7 +26,10 @@ impl Walk<'_> {
         if let Some(named) = &keys.named {
             self.named(node, table, schema, named, path);
         }
-        for key in keys.required.iter().filter(|key| !table.contains_key(*key)) {
+        // A key that is only misspelt is told once, where it is misspelt.
+        let strangers = || table.keys().filter(|key| !keys.known.contains_key(*key));
+        let misspelt = |key: &str| strangers().any(|stranger| words::meant(stranger, keys.known()) == Some(key));
+        for key in keys.required.iter().filter(|key| !table.contains_key(*key) && !misspelt(key)) {
             let property = keys.known.get(key).map(|property| self.resolve(property)).unwrap_or_default();
             self.faults.push(missing(node, key, &property, path));
         }
@@ -73,7 +76,7 @@ impl Walk<'_> {
         };
         let alternatives = schema.get("oneOf").or(schema.get("anyOf")).and_then(Json::as_array);
         let variants: Vec<Variant> =
-            alternatives.into_iter().flatten().map(|one| variant(&self.resolve(one))).collect();
+            alternatives.into_iter().flatten().map(|one| described(variant(&self.resolve(one)), one)).collect();
         if variants.is_empty() {
             return keys;
         }
@@ -158,6 +161,17 @@ fn variant(schema: &Map<String, Json>) -> Variant {
     Variant { properties, required: required.filter_map(Json::as_str).map(str::to_owned).collect() }
 }
 
+/// An alternative of a single key without a description of its own: the alternative's is the key's.
+fn described(mut variant: Variant, schema: &Json) -> Variant {
+    let single = variant.properties.len() == 1;
+    if let (Some(description), Some(Json::Object(property))) =
+        (schema.get("description").filter(|_| single), variant.properties.values_mut().next())
+    {
+        property.entry("description").or_insert(description.clone());
+    }
+    variant
+}
+
 /// The key that has a fixed word in every alternative.
 fn tag(variants: &[Variant]) -> Option<String> {
     let fixed = |one: &Variant, key: &str| one.properties.get(key).is_some_and(|value| value["const"].is_string());
@@ -178,7 +192,10 @@ fn missing(node: &Node, key: &str, property: &Map<String, Json>, path: &str) -> 
     let example = match (dimension_of(property), words_of(property), kinds_of(property).first().map(String::as_str)) {
         (Some(dimension), ..) => format!("`{key} = \"{}\"`", dimension.example()),
         (_, Some(words), _) => format!("`{key}`, one of {}", words::any_of(words.iter().map(String::as_str))),
-        (_, _, Some("object")) if path.is_empty() => format!("a table `[{key}]`"),
+        (_, _, Some("object")) if path.is_empty() => {
+            let names_are_chosen = property.get("additionalProperties").is_some_and(Json::is_object);
+            format!("a table `[{key}{}]`", if names_are_chosen { ".NAME" } else { "" })
+        }
         (_, _, Some("string")) => format!("`{key} = \"…\"`"),
         _ => format!("`{key}`"),
     };
@@ -188,14 +205,14 @@ fn missing(node: &Node, key: &str, property: &Map<String, Json>, path: &str) -> 
 }
 
 fn unknown(value: &Node, key: &str, keys: &Keys, path: &str) -> Fault {
-    let list = words::all_of(keys.known.keys().map(String::as_str));
+    let list = words::all_of(keys.known());
     let here = keys.chosen.as_ref().map_or("here".to_owned(), |chosen| format!("with {chosen}"));
     let help = format!("keys {here} are {list}");
     if let Some(chosen) = keys.chosen.as_ref().filter(|_| keys.elsewhere.iter().any(|other| other == key)) {
         let fault = Fault::new(format!("`{key}` in {} does not go with {chosen}", named(path)));
         return fault.at(value.key_place("not with this one")).help(help);
     }
-    let meant = words::meant(key, keys.known.keys().map(String::as_str));
+    let meant = words::meant(key, keys.known());
     let label = meant.map_or("unknown key".to_owned(), |meant| format!("did you mean `{meant}`?"));
     Fault::new(format!("unknown key `{key}` in {}", named(path))).at(value.key_place(label)).help(help)
 }
