@@ -1,5 +1,9 @@
 //! What can go wrong, told so that the reader knows where, what was found, what was expected and what to do.
 
+mod render;
+
+pub use render::{Paint, render};
+
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -1,1 +1,125 @@
-//! The experiment document: read, checked as a whole, compiled.
+//! The experiment document: what a user wants to see happen, described, read, checked as a whole, compiled.
+//!
+//! The types here are the only definition of the document: `serde` reads and writes them, their doc comments and
+//! attributes become the JSON schema ([`schema()`]), and the schema drives the checker that finds every fault of a
+//! text at once ([`Document::read`]). Library users build the same [`Experiment`] without a file:
+//!
+//! ```
+//! use pseudopod::experiment::*;
+//! use pseudopod::units::{Drag, Force, Length, LineStiffness, Time};
+//!
+//! let mechanics = Mechanics {
+//!     drag: Some(Drag::new(20.0)),
+//!     shape_memory: Some(ShapeMemory::of_modulus(LineStiffness::new(5.0))),
+//!     ..Mechanics::default()
+//! };
+//! let mut cell = CellType::new(Mesh::Icosphere { radius: Length::new(5.0), level: 2 }, mechanics);
+//! cell.loads.push(Load {
+//!     name: "pull".into(),
+//!     selection: Selection::Cap(Cap { direction: [1.0, 0.0, 0.0], extent: CapExtent::Number(5) }),
+//!     direction: [1.0, 0.0, 0.0],
+//!     force: Course::Constant(Force::new(10.0)),
+//!     spread: Spread::Equal,
+//! });
+//! let mut experiment = Experiment::new("A pulled cell", Time::new(30.0));
+//! experiment.cells.insert("white".into(), cell);
+//!
+//! // The same checks as for a file; the document carries its text into the result.
+//! let document = Document::from_experiment(experiment)?;
+//! assert!(document.source.text.contains("[[cells.white.loads]]"));
+//! # Ok::<(), pseudopod::error::Error>(())
+//! ```
+
+mod cells;
+mod check;
+mod document;
+mod loads;
+mod measures;
+mod mechanics;
+mod pictures;
+mod scene;
+mod schema;
+mod semantics;
+mod tree;
+mod values;
+mod words;
+
+pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
+pub use document::Document;
+pub use loads::{Cap, CapExtent, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
+pub use measures::{Comparison, Measure, MeasureKind, Over, Reduction};
+pub use mechanics::{
+    Barrier, BendingRest, Form, Law, Mechanics, Membrane, Reaction, ShapeMemory, ShapeStrength, Springs, VolumeControl,
+    VolumeRule,
+};
+pub use pictures::{Picture, Plot, PlotKind, PlotTable, View};
+pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
+pub use schema::schema;
+pub use values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};
+
+use crate::units::Time;
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// An experiment of Pseudopod: cells, what they are made of, what is done to them, what is recorded and measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "Pseudopod experiment")]
+pub struct Experiment {
+    /// One line that names the experiment.
+    pub title: String,
+    /// What the experiment shows, in a few sentences.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// The publication that the experiment follows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference: Option<String>,
+    /// Everything random follows from this number.
+    #[serde(default)]
+    #[schemars(range(max = 9_223_372_036_854_775_807_u64))]
+    pub seed: u64,
+    /// How long and with which integrator to run.
+    pub run: Run,
+    /// The types of cells, by name.
+    #[schemars(extend("minProperties" = 1))]
+    pub cells: IndexMap<String, CellType>,
+    /// What acts everywhere.
+    #[serde(default)]
+    pub environment: Environment,
+    /// Rigid planes that no cell passes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub planes: Vec<Plane>,
+    /// What is recorded, and how often.
+    #[serde(default)]
+    pub output: Output,
+    /// Numbers computed from the finished run, by name; they are stored in the result.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub measure: IndexMap<String, Measure>,
+    /// The picture made at the end of a run.
+    #[serde(default)]
+    pub picture: Picture,
+    /// Charts made at the end of a run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plot: Vec<Plot>,
+}
+
+impl Experiment {
+    /// An experiment that lasts `until`, still without cells, with the defaults everywhere else.
+    pub fn new(title: impl Into<String>, until: Time) -> Self {
+        Self {
+            title: title.into(),
+            description: None,
+            reference: None,
+            seed: 0,
+            run: Run { until, integrator: Integrator::default() },
+            cells: IndexMap::new(),
+            environment: Environment::default(),
+            planes: Vec::new(),
+            output: Output::default(),
+            measure: IndexMap::new(),
+            picture: Picture::default(),
+            plot: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! Types of cells: how many, of which shape, where, and how they move about.
+
+use super::loads::{Fixed, Link, Load};
+use super::mechanics::Mechanics;
+use super::values::{Colour, LengthUnit};
+use crate::units::{Angle, Length, LineStiffness, Speed, Time};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// A type of cells that share shape and mechanics.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CellType {
+    /// How many cells; without it as many as the placement says, or one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 4_294_967_295_u32))]
+    pub number: Option<u32>,
+    /// The colour in pictures, "#c0392b"; chosen when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
+    /// The surface at rest.
+    pub mesh: Mesh,
+    /// How the surface is turned before it is placed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orientation: Option<Orientation>,
+    /// Where the cells start; at the origin if there is one, else on a square grid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub placement: Option<Placement>,
+    /// What the cells are made of.
+    pub mechanics: Mechanics,
+    /// Atoms that are held where they start, along some axes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fixed: Vec<Fixed>,
+    /// Forces applied to some atoms.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<Load>,
+    /// Internal springs between atoms of the same cell.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub links: Vec<Link>,
+    /// How the cells move by themselves.
+    #[serde(default)]
+    pub motility: Motility,
+}
+
+impl CellType {
+    /// A type with this surface and mechanics, and nothing else.
+    pub fn new(mesh: Mesh, mechanics: Mechanics) -> Self {
+        Self {
+            number: None,
+            colour: None,
+            mesh,
+            orientation: None,
+            placement: None,
+            mechanics,
+            fixed: Vec::new(),
+            loads: Vec::new(),
+            links: Vec::new(),
+            motility: Motility::default(),
+        }
+    }
+
+    /// How many cells there are: `number` if given, else one for each place of the placement, else one.
+    pub fn count(&self) -> usize {
+        let places = match &self.placement {
+            Some(Placement::At { at }) => at.len(),
+            Some(Placement::Grid { grid, .. }) => grid.iter().map(|n| *n as usize).fold(1, usize::saturating_mul),
+            Some(Placement::Random { .. }) | None => 1,
+        };
+        self.number.map_or(places, |number| number as usize)
+    }
+}
+
+/// The surface of a cell at rest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "shape", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Mesh {
+    /// The biconcave red cell of Evans and Fung (1972) on an icosphere, its axis along z.
+    RedCell {
+        /// Diameter of the disc.
+        #[schemars(extend("x-exclusive-minimum" = 0))]
+        diameter: Length,
+        /// Refinement: 12, 42, 162, 642, 2562 … atoms.
+        #[schemars(range(min = 0, max = 6))]
+        level: u8,
+    },
+    /// A sphere refined from an icosahedron.
+    Icosphere {
+        /// Distance of every atom from the centre.
+        #[schemars(extend("x-exclusive-minimum" = 0))]
+        radius: Length,
+        /// Refinement: 12, 42, 162, 642, 2562 … atoms.
+        #[schemars(range(min = 0, max = 6))]
+        level: u8,
+    },
+    /// A sphere refined from an octahedron; 66 atoms with 4 divisions.
+    Octasphere {
+        /// Distance of every atom from the centre.
+        #[schemars(extend("x-exclusive-minimum" = 0))]
+        radius: Length,
+        /// Parts that every edge of the octahedron is divided into.
+        #[schemars(range(min = 1, max = 64))]
+        divisions: u32,
+    },
+    /// A closed rectangular box, centred.
+    Box {
+        /// Lengths of its edges along x, y and z.
+        #[schemars(extend("x-exclusive-minimum" = 0))]
+        size: [Length; 3],
+        /// Parts that the edges are divided into.
+        #[schemars(inner(range(min = 1, max = 1000)))]
+        divisions: [u32; 3],
+    },
+    /// An open flat sheet in the plane z = 0, centred.
+    Sheet {
+        /// Lengths of its sides along x and y.
+        #[schemars(extend("x-exclusive-minimum" = 0))]
+        size: [Length; 2],
+        /// Parts that the sides are divided into.
+        #[schemars(inner(range(min = 1, max = 10000)))]
+        divisions: [u32; 2],
+    },
+    /// A single open equilateral facet, for studies of stability.
+    Triangle {
+        /// Length of its sides.
+        #[schemars(extend("x-exclusive-minimum" = 0))]
+        side: Length,
+    },
+    /// A surface from a file: OBJ, STL or PLY.
+    File {
+        /// The file, relative to the document.
+        #[schemars(extend("x-text" = "file"))]
+        path: PathBuf,
+        /// The length that a coordinate of 1 stands for.
+        #[serde(default)]
+        unit: LengthUnit,
+    },
+}
+
+impl Mesh {
+    /// Whether the surface has a border, as far as that is known without reading a file.
+    pub fn is_open(&self) -> bool {
+        matches!(self, Self::Sheet { .. } | Self::Triangle { .. })
+    }
+}
+
+/// A turn about an axis through the cell's centre.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Orientation {
+    /// The axis; its length does not matter.
+    pub axis: [f64; 3],
+    /// The angle, right-handed.
+    pub angle: Angle,
+}
+
+/// Where the cells of a type start.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, deny_unknown_fields)]
+pub enum Placement {
+    /// Centres, one for each cell.
+    At {
+        /// The centres.
+        at: Vec<[Length; 3]>,
+    },
+    /// A regular grid, filled along x, then y, then z.
+    Grid {
+        /// Places along x, y and z.
+        #[schemars(inner(range(min = 1, max = 100_000_000)))]
+        grid: [u32; 3],
+        /// Distance between neighbouring centres.
+        #[schemars(extend("x-exclusive-minimum" = 0))]
+        spacing: Length,
+        /// The centre of the grid.
+        #[serde(default)]
+        origin: [Length; 3],
+    },
+    /// Uniformly at random in a box.
+    Random {
+        /// The corner with the smallest coordinates.
+        random_from: [Length; 3],
+        /// The corner with the largest coordinates.
+        random_to: [Length; 3],
+    },
+}
+
+/// How cells move by themselves; nothing of it is on unless it is given.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Motility {
+    /// Straight runs of random direction and exponential duration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub brownian: Option<Brownian>,
+    /// A pull of every atom towards one point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub attraction: Option<Attraction>,
+}
+
+/// Brownian persistence: the cell keeps its direction for a random time, then takes another.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Brownian {
+    /// Speed during a run.
+    #[schemars(extend("x-minimum" = 0))]
+    pub speed: Speed,
+    /// Mean duration of a run.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub persistence: Time,
+    /// Whether directions lie in the plane of the substrate or anywhere in space.
+    #[serde(default)]
+    pub space: Space,
+}
+
+/// Where the directions of motility lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum Space {
+    /// In the plane x, y.
+    #[default]
+    Plane,
+    /// Anywhere on the sphere.
+    Volume,
+}
+
+/// A pull of every atom towards a point, the stand-in for a diffusing attractant.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Attraction {
+    /// The point.
+    pub to: [Length; 3],
+    /// Force on an atom over its distance from the point.
+    #[schemars(extend("x-minimum" = 0))]
+    pub stiffness: LineStiffness,
+}

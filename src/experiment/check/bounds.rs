@@ -1,0 +1,59 @@
+//! Ranges of numbers and quantities.
+
+use super::{Walk, with_purpose};
+use crate::error::Fault;
+use crate::experiment::tree::Node;
+use crate::units::{self, Dimension};
+use serde_json::{Map, Value as Json};
+
+impl Walk<'_> {
+    /// A plain number against `minimum`, `exclusiveMinimum`, `maximum`.
+    pub(super) fn number_bounds(&mut self, node: &Node, value: f64, schema: &Map<String, Json>, path: &str) {
+        let bounds = ["exclusiveMinimum", "minimum", "maximum"];
+        let mut schema = schema.clone();
+        if schema.get("format").is_some_and(|format| format == "uint32") {
+            schema.entry("maximum").or_insert(u32::MAX.into());
+        }
+        self.bounds(node, value, bounds, |bound| format!("{bound}"), &schema, path);
+    }
+
+    /// A quantity (in base units) against `x-minimum`, `x-exclusive-minimum`, `x-maximum`.
+    pub(super) fn quantity_bounds(
+        &mut self,
+        node: &Node,
+        value: f64,
+        dimension: Dimension,
+        schema: &Map<String, Json>,
+        path: &str,
+    ) {
+        let bounds = ["x-exclusive-minimum", "x-minimum", "x-maximum"];
+        let shown = |bound: f64| if bound == 0.0 { "0".to_owned() } else { units::pretty(bound, dimension) };
+        self.bounds(node, value, bounds, shown, schema, path);
+    }
+
+    fn bounds(
+        &mut self,
+        node: &Node,
+        value: f64,
+        [above, least, most]: [&str; 3],
+        shown: impl Fn(f64) -> String,
+        schema: &Map<String, Json>,
+        path: &str,
+    ) {
+        let bound = |key: &str| schema.get(key).and_then(Json::as_f64);
+        let demand = if !value.is_finite() {
+            Some("must be finite".to_owned())
+        } else if let Some(bound) = bound(above).filter(|bound| value <= *bound) {
+            Some(format!("must be more than {}", shown(bound)))
+        } else if let Some(bound) = bound(least).filter(|bound| value < *bound) {
+            Some(format!("must be at least {}", shown(bound)))
+        } else {
+            bound(most).filter(|bound| value > *bound).map(|bound| format!("must be at most {}", shown(bound)))
+        };
+        if let Some(demand) = demand {
+            let found = node.written().trim_matches(['"', '\'']);
+            let fault = Fault::new(format!("`{path}` is {found} and {demand}")).at(node.place(demand));
+            self.faults.push(with_purpose(fault, schema));
+        }
+    }
+}

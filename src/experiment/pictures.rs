@@ -1,0 +1,135 @@
+//! The picture and the charts that a run makes when it ends.
+
+use super::values::{OneOrMany, When};
+use crate::units::{Speed, Time};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// The picture made at the end of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Picture {
+    /// The instant that is shown.
+    pub time: When,
+    /// What the colours show: "type", or the name of a series of the cells such as "volume".
+    pub colour_by: String,
+    /// The ends of the scale of colours, in base units; chosen when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colour_range: Option<[f64; 2]>,
+    /// Where the picture is taken from.
+    pub view: View,
+    /// Width in pixels.
+    #[schemars(range(min = 16, max = 16384))]
+    pub width: u32,
+    /// Height in pixels.
+    #[schemars(range(min = 16, max = 16384))]
+    pub height: u32,
+}
+
+impl Default for Picture {
+    fn default() -> Self {
+        let (width, height) = (1280, 720);
+        Self { time: When::Last, colour_by: "type".into(), colour_range: None, view: View::default(), width, height }
+    }
+}
+
+/// Where a picture is taken from; the distance is chosen so that all cells are in it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct View {
+    /// The direction from the cells to the eye.
+    pub from: [f64; 3],
+    /// The direction that is up in the picture.
+    pub up: [f64; 3],
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self { from: [1.0, -2.0, 1.0], up: [0.0, 0.0, 1.0] }
+    }
+}
+
+/// A chart made at the end of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("unevaluatedProperties" = false))]
+pub struct Plot {
+    /// Names the files of the chart.
+    #[schemars(extend("x-text" = "name"))]
+    pub name: String,
+    /// What is drawn.
+    #[serde(flatten)]
+    pub kind: PlotKind,
+    /// The type of cells; all when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-text" = "cell type"))]
+    pub cells: Option<String>,
+    /// Measured points drawn over the curves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<OneOrMany<PlotTable>>,
+    /// The title above the chart; the experiment's when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
+    /// The label of the x axis; the series' name and unit when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x_label: Option<String>,
+    /// The label of the y axis; the series' name and unit when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y_label: Option<String>,
+}
+
+/// What a chart shows. Series are named as in the result: `size_x`, `volume`, `load.pull`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum PlotKind {
+    /// Series against time.
+    Series {
+        /// The series, one or several.
+        #[schemars(extend("x-text" = "series"))]
+        y: OneOrMany<String>,
+    },
+    /// Series against another one.
+    Curve {
+        /// The series along x.
+        #[schemars(extend("x-text" = "series"))]
+        x: String,
+        /// The series along y, one or several.
+        #[schemars(extend("x-text" = "series"))]
+        y: OneOrMany<String>,
+    },
+    /// The paths of the cells seen from above.
+    Tracks,
+    /// The mean squared displacement against the lag.
+    Msd {
+        /// Speed in Fürth's formula; the curve is drawn when speed and persistence are given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("x-exclusive-minimum" = 0))]
+        speed: Option<Speed>,
+        /// Persistence in Fürth's formula.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("x-exclusive-minimum" = 0))]
+        persistence: Option<Time>,
+    },
+}
+
+/// Measured points from a table (CSV with a line of column names).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlotTable {
+    /// The table, relative to the document.
+    #[schemars(extend("x-text" = "file"))]
+    pub file: PathBuf,
+    /// Its column along x.
+    pub x: String,
+    /// Its columns along y, one or several.
+    pub y: OneOrMany<String>,
+    /// The columns with the lower ends of the bars, in the order of `y`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low: Option<OneOrMany<String>>,
+    /// The columns with the upper ends of the bars, in the order of `y`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub high: Option<OneOrMany<String>>,
+    /// The entry in the legend.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
+}

@@ -1,0 +1,116 @@
+//! Checks that need more than one key: what requires, excludes or names what.
+
+use super::check::Reference;
+use super::document::{Document, near_file};
+use super::words;
+use crate::error::Fault;
+use std::path::Path;
+
+/// Series of every cell that the result holds, besides those of the scene (`load.NAME`, `time`).
+#[rustfmt::skip] // a table
+const CELL_SERIES: [&str; 18] = [
+    "position_x", "position_y", "position_z", "velocity_x", "velocity_y", "velocity_z", "speed", "volume",
+    "volume_error", "area", "energy", "size_x", "size_y", "size_z", "principal_1", "principal_2", "principal_3",
+    "smallest_facet",
+];
+
+mod cells;
+mod scene;
+
+struct Check<'a> {
+    document: &'a Document,
+    faults: Vec<Fault>,
+}
+
+/// Finds the faults that the keys of a well-formed document have together.
+pub(super) fn check(document: &Document, references: &[Reference]) -> Vec<Fault> {
+    let mut check = Check { document, faults: Vec::new() };
+    for reference in references {
+        check.reference(reference);
+    }
+    for (name, cell) in &document.experiment.cells {
+        let path = format!("cells.{name}");
+        check.drag_and_mass(&path, cell);
+        check.places(&path, cell);
+        check.volume(&path, cell);
+        check.links(&path, cell);
+        check.loads(&path, cell);
+        if let Some(turn) = &cell.orientation {
+            check.direction(&format!("{path}.orientation.axis"), turn.axis);
+        }
+    }
+    check.scene();
+    check.measures();
+    check.faults
+}
+
+impl Check<'_> {
+    /// A fault at the value of a key.
+    fn fault(&mut self, path: &str, label: &str, message: String, help: impl Into<String>) {
+        let mut fault = Fault::new(message).help(help);
+        fault.place = self.document.place(path, label);
+        self.faults.push(fault);
+    }
+
+    fn reference(&mut self, Reference { kind, path, text }: &Reference) {
+        match kind.as_str() {
+            "file" => self.file(path, text),
+            "cell type" => self.cell_type(path, text),
+            "series" => self.series(path, text),
+            _ => {}
+        }
+    }
+
+    fn file(&mut self, path: &str, text: &str) {
+        let file = self.document.resolve(Path::new(text));
+        if file.is_file() {
+            return;
+        }
+        let (message, help) = match (file.is_dir(), near_file(&file)) {
+            (true, _) => (format!("`{path}`: {text} is a folder"), "name a file in it".to_owned()),
+            (false, Some(near)) => {
+                let near = Path::new(text).with_file_name(near.file_name().unwrap_or_default());
+                (format!("`{path}`: there is no file {text}"), format!("did you mean {}?", near.display()))
+            }
+            (false, None) => {
+                let help = "paths start from the folder of the document".to_owned();
+                (format!("`{path}`: there is no file {text}"), help)
+            }
+        };
+        self.fault(path, "not found", message, help);
+    }
+
+    fn cell_type(&mut self, path: &str, text: &str) {
+        let known = &self.document.experiment.cells;
+        if known.contains_key(text) {
+            return;
+        }
+        let meant = words::meant(text, known.keys().map(String::as_str));
+        let label = meant.map_or("unknown type".to_owned(), |meant| format!("did you mean \"{meant}\"?"));
+        let help = format!("types of cells here are {}", words::all_of(known.keys().map(String::as_str)));
+        self.fault(path, &label, format!("`{path}`: there is no type of cells \"{text}\""), help);
+    }
+
+    fn series(&mut self, path: &str, text: &str) {
+        let cells = self.document.experiment.cells.values();
+        let loads: Vec<String> = cells.flat_map(|cell| &cell.loads).map(|load| format!("load.{}", load.name)).collect();
+        let known = || CELL_SERIES.into_iter().chain(["time"]).chain(loads.iter().map(String::as_str));
+        if known().any(|name| name == text) {
+            return;
+        }
+        let label = words::meant(text, known()).map(|meant| format!("did you mean \"{meant}\"?"));
+        let mut list: Vec<&str> = loads.iter().map(String::as_str).collect();
+        list.extend(["time", "volume", "area", "energy", "speed", "position_x", "velocity_x", "size_x", "principal_1"]);
+        let help = format!("there are series such as {}", words::all_of(list));
+        let message = format!("`{path}`: there is no series \"{text}\"");
+        self.fault(path, label.as_deref().unwrap_or("unknown series"), message, help);
+    }
+
+    /// A direction must not be zero.
+    fn direction(&mut self, path: &str, direction: [f64; 3]) {
+        if direction.iter().all(|component| *component == 0.0) {
+            let message = format!("`{path}` has no length and so no direction");
+            self.fault(path, "is zero", message, "give at least one component, such as [1, 0, 0]");
+        }
+    }
+}

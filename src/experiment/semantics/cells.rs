@@ -1,0 +1,178 @@
+//! What must hold within a type of cells.
+
+use super::Check;
+use crate::experiment::{CellType, Course, Linked, Placement, Selection, VolumeRule};
+
+impl Check<'_> {
+    pub(super) fn drag_and_mass(&mut self, path: &str, cell: &CellType) {
+        let experiment = &self.document.experiment;
+        let method = experiment.run.integrator.method;
+        let mechanics = format!("{path}.mechanics");
+        if cell.mechanics.drag.is_none() && !method.is_inertial() {
+            let help = "add `drag = \"20 pN s/um\"`, or choose a method with mass in [run.integrator]";
+            let message = format!("`{mechanics}` lacks `drag`, which motion without inertia needs");
+            self.fault(&mechanics, "`drag` is missing here", message, help);
+        }
+        let falls = experiment.environment.gravity.is_some_and(|gravity| gravity.iter().any(|g| g.value() != 0.0));
+        if cell.mechanics.mass.is_none() && (method.is_inertial() || falls) {
+            let reason = if method.is_inertial() { "the inertial method" } else { "gravity" };
+            let message = format!("`{mechanics}` lacks `mass`, which {reason} needs");
+            self.fault(
+                &mechanics,
+                "`mass` is missing here",
+                message,
+                "add `mass = \"1 mg\"`: the mass of the whole cell",
+            );
+        }
+    }
+
+    pub(super) fn places(&mut self, path: &str, cell: &CellType) {
+        let number = cell.count();
+        let placement = format!("{path}.placement");
+        match &cell.placement {
+            Some(Placement::At { at }) if at.len() != number || at.is_empty() => {
+                let places = if at.len() == 1 { "1 place".to_owned() } else { format!("{} places", at.len()) };
+                let message = format!("`{placement}.at` has {places} for {number} cells");
+                self.fault(
+                    &format!("{placement}.at"),
+                    "not one for each cell",
+                    message,
+                    "give one place for each cell, or leave `number` out",
+                );
+            }
+            Some(Placement::Grid { grid, .. }) => {
+                let places = grid.iter().map(|n| *n as usize).fold(1, usize::saturating_mul);
+                if places < number {
+                    let message = format!("`{placement}.grid` has {places} places for {number} cells");
+                    self.fault(
+                        &format!("{placement}.grid"),
+                        "too small",
+                        message,
+                        "make the grid larger, or `number` smaller",
+                    );
+                }
+            }
+            Some(Placement::Random { random_from, random_to }) => {
+                let crossed = (0..3).find(|axis| random_from[*axis] > random_to[*axis]);
+                if let Some(axis) = crossed {
+                    let axis = ["x", "y", "z"][axis];
+                    let message = format!("`{placement}.random_to` lies below `random_from` along {axis}");
+                    self.fault(&format!("{placement}.random_to"), "too small", message, "exchange the two corners");
+                }
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn volume(&mut self, path: &str, cell: &CellType) {
+        let (control, path) = (&cell.mechanics.volume, format!("{path}.mechanics.volume"));
+        let compressible = control.rule == Some(VolumeRule::Compressible);
+        if compressible && control.modulus.is_none() {
+            let message = format!("`{path}` lacks `modulus`, which the compressible rule needs");
+            self.fault(&path, "`modulus` is missing here", message, "add `modulus = \"1 kPa\"`");
+        }
+        if !compressible && control.modulus.is_some() {
+            let message = format!("`{path}.modulus` has no meaning unless the rule is compressible");
+            self.fault(
+                &format!("{path}.modulus"),
+                "not used",
+                message,
+                "add `rule = \"compressible\"`, or remove the modulus",
+            );
+        }
+        if control.target.is_some() && control.ratio.is_some() {
+            let message = format!("`{path}` has both `target` and `ratio`");
+            self.fault(&format!("{path}.ratio"), "only one of them may be given", message, "remove one of them");
+        }
+        let driven = control.target.is_some() || control.ratio.is_some();
+        let free = control.rule == Some(VolumeRule::Free) || cell.mesh.is_open();
+        if driven && free {
+            let key = if control.target.is_some() { "target" } else { "ratio" };
+            let message = format!("`{path}.{key}` has no meaning for a volume that nothing keeps");
+            let help = "remove it, or give a closed mesh and the rule exact or compressible";
+            self.fault(&format!("{path}.{key}"), "not used", message, help);
+        }
+        if cell.mesh.is_open() && control.rule.is_some_and(|rule| rule != VolumeRule::Free) {
+            let message = format!("`{path}.rule` needs a closed mesh; a sheet or a triangle encloses no volume");
+            self.fault(&format!("{path}.rule"), "no volume to keep", message, "remove the rule, or write \"free\"");
+        }
+        let points = control.target.as_ref().map(|course| ("target", course.points(), is_course(course)));
+        let points = points.or(control.ratio.as_ref().map(|course| ("ratio", course.points(), is_course(course))));
+        if let Some((key, points, several)) = points {
+            let path = format!("{path}.{key}");
+            self.course(&path, &points);
+            if let Some(index) = points.iter().position(|(_, volume)| *volume <= 0.0) {
+                let at = if several { format!("{path}[{index}][1]") } else { path.clone() };
+                self.fault(&at, "must be more than 0", format!("`{at}` is not a volume"), "give a volume above 0");
+            }
+        }
+    }
+
+    /// Times of a course must increase.
+    fn course(&mut self, path: &str, points: &[(f64, f64)]) {
+        if points.is_empty() {
+            self.fault(path, "no points", format!("`{path}` has no points"), "give points [time, value], or one value");
+        }
+        if let Some(index) = points.windows(2).position(|pair| pair[1].0 <= pair[0].0) {
+            let at = format!("{path}[{}][0]", index + 1);
+            let message = format!("`{at}` is not later than the time before it");
+            self.fault(&at, "times must increase", message, "order the points by time");
+        }
+    }
+
+    pub(super) fn loads(&mut self, path: &str, cell: &CellType) {
+        for (index, fixed) in cell.fixed.iter().enumerate() {
+            self.selection(&format!("{path}.fixed[{index}]"), &fixed.selection);
+        }
+        for (index, load) in cell.loads.iter().enumerate() {
+            let path = format!("{path}.loads[{index}]");
+            self.selection(&path, &load.selection);
+            self.direction(&format!("{path}.direction"), load.direction);
+            self.course(&format!("{path}.force"), &load.force.points());
+            if let Some(other) = cell.loads[..index].iter().position(|other| other.name == load.name) {
+                let message = format!("`{path}.name` is the name of load {other} too");
+                self.fault(&format!("{path}.name"), "taken", message, "names of loads differ within a type of cells");
+            }
+        }
+    }
+
+    fn selection(&mut self, path: &str, selection: &Selection) {
+        match selection {
+            Selection::Cap(cap) => self.direction(&format!("{path}.cap.direction"), cap.direction),
+            Selection::Atoms(atoms) => {
+                let twice = (1..atoms.len()).find(|index| atoms[..*index].contains(&atoms[*index]));
+                if let Some(index) = twice {
+                    let message = format!("`{path}.atoms` names atom {} twice", atoms[index]);
+                    self.fault(&format!("{path}.atoms[{index}]"), "named before", message, "name every atom once");
+                }
+            }
+            Selection::All(_) => {}
+        }
+    }
+
+    pub(super) fn links(&mut self, path: &str, cell: &CellType) {
+        for (index, link) in cell.links.iter().enumerate() {
+            let path = format!("{path}.links[{index}]");
+            if let Linked::Pairs(pairs) = &link.linked
+                && let Some(pair) = pairs.iter().position(|[a, b]| a == b)
+            {
+                let at = format!("{path}.pairs[{pair}]");
+                let message = format!("`{at}` links atom {} with itself", pairs[pair][0]);
+                self.fault(&at, "the same atom", message, "name two different atoms");
+            }
+            if link.rest_length.is_some() && link.rest_ratio.is_some() {
+                let message = format!("`{path}` has both `rest_length` and `rest_ratio`");
+                self.fault(
+                    &format!("{path}.rest_ratio"),
+                    "only one of them may be given",
+                    message,
+                    "remove one of them",
+                );
+            }
+        }
+    }
+}
+
+fn is_course<T>(course: &Course<T>) -> bool {
+    matches!(course, Course::Points(_))
+}

@@ -1,0 +1,82 @@
+//! What must hold between planes, pictures, plots, measures and the run.
+
+use super::Check;
+use crate::experiment::{MeasureKind, Reduction, When};
+use crate::units::{Dimension, pretty};
+
+impl Check<'_> {
+    pub(super) fn scene(&mut self) {
+        let experiment = &self.document.experiment;
+        for (index, plane) in experiment.planes.iter().enumerate() {
+            self.direction(&format!("planes[{index}].normal"), plane.normal);
+            if experiment.planes[..index].iter().any(|other| other.name == plane.name) {
+                let message = format!("`planes[{index}].name` is the name of another plane too");
+                self.fault(&format!("planes[{index}].name"), "taken", message, "give every plane its own name");
+            }
+        }
+        for (index, plot) in experiment.plot.iter().enumerate() {
+            if experiment.plot[..index].iter().any(|other| other.name == plot.name) {
+                let message = format!("`plot[{index}].name` is the name of another plot too");
+                let help = "give every plot its own name: it names its files";
+                self.fault(&format!("plot[{index}].name"), "taken", message, help);
+            }
+        }
+        let view = &experiment.picture.view;
+        let (from, up) = (crate::Vec3::from(view.from), crate::Vec3::from(view.up));
+        self.direction("picture.view.from", view.from);
+        self.direction("picture.view.up", view.up);
+        let parallel = from.norm() > 0.0 && up.norm() > 0.0 && from.cross(&up).norm() <= 1e-9 * from.norm() * up.norm();
+        if parallel {
+            let message = "`picture.view.up` is the direction of sight".to_owned();
+            self.fault(
+                "picture.view.up",
+                "parallel to `from`",
+                message,
+                "choose another direction as up, such as [0, 1, 0]",
+            );
+        }
+        if let When::At(time) = experiment.picture.time {
+            self.instant("picture.time", time.value());
+        }
+    }
+
+    /// An instant must lie within the run.
+    fn instant(&mut self, path: &str, time: f64) {
+        let until = self.document.experiment.run.until.value();
+        if !(0.0..=until).contains(&time) {
+            let (time, until) = (pretty(time, Dimension::TIME), pretty(until, Dimension::TIME));
+            let message = format!("`{path}` is {time}, which the run does not reach");
+            self.fault(path, "outside of the run", message, format!("give a time from 0 s to {until} (run.until)"));
+        }
+    }
+
+    pub(super) fn measures(&mut self) {
+        for (name, measure) in &self.document.experiment.measure {
+            let path = format!("measure.{name}");
+            match &measure.kind {
+                MeasureKind::Value { time: Reduction::At(time), .. } => {
+                    self.instant(&format!("{path}.time"), time.value());
+                }
+                MeasureKind::Slope { x_from: Some(from), x_to: Some(to), .. }
+                | MeasureKind::RSquared { x_from: Some(from), x_to: Some(to), .. }
+                    if from >= to =>
+                {
+                    let message = format!("`{path}.x_to` is not above `x_from`");
+                    self.fault(&format!("{path}.x_to"), "too small", message, "exchange the two");
+                }
+                MeasureKind::TableBars(table) if table.low_column.is_none() || table.high_column.is_none() => {
+                    let message = format!("`{path}` lacks the columns of the bars");
+                    self.fault(&path, "columns are missing here", message, "add `low_column` and `high_column`");
+                }
+                MeasureKind::MsdDeviation { lag_from, lag_to, .. } => {
+                    if lag_from >= lag_to {
+                        let message = format!("`{path}.lag_to` is not above `lag_from`");
+                        self.fault(&format!("{path}.lag_to"), "too small", message, "exchange the two");
+                    }
+                    self.instant(&format!("{path}.lag_to"), lag_to.value());
+                }
+                _ => {}
+            }
+        }
+    }
+}
