@@ -11,7 +11,7 @@ mod raster;
 mod scene;
 mod shade;
 #[cfg(test)]
-mod tests;
+pub(in crate::picture) mod tests;
 mod tubes;
 
 use rayon::prelude::*;
@@ -48,6 +48,7 @@ pub fn draw(scene: &Scene, camera: &Camera, overlay: &Overlay, width: usize, hei
         for triangle in &bins[number] {
             band.add(&geometry, *triangle);
         }
+        band.settle();
         shader.resolve(&band, &geometry, rows);
     });
     overlay.lay_over(&mut image, camera);

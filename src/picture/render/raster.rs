@@ -34,6 +34,8 @@ pub(super) struct Triangle {
     /// Where in the colours its own stand: three corners' or one for all.
     pub colour: [u32; 3],
     pub edges: Edges,
+    /// 1 for a skin that hides everything behind it.
+    pub opacity: f32,
 }
 
 impl Geometry {
@@ -91,6 +93,7 @@ impl Geometry {
                     corners: facet.map(|atom| first + atom),
                     colour: own.map(|place| first_colour + place.min(last)),
                     edges: surface.edges,
+                    opacity: surface.opacity.clamp(0.0, 1.0),
                 });
             }
         }
@@ -135,18 +138,25 @@ pub(super) struct Band {
     pub nearness: Vec<f32>,
     /// Facet, [`FLOOR`] or [`NOTHING`].
     pub seen: Vec<u32>,
+    /// The nearest translucent facet, or [`NOTHING`], and its nearness; left out when it lies behind what is seen.
+    pub veil: Vec<u32>,
+    pub veil_nearness: Vec<f32>,
 }
 
 impl Band {
     /// A band of `rows` rows of pixels that begins at row `first_row`.
     pub fn new(width: usize, rows: usize, first_row: usize, samples: usize) -> Self {
         let (width, height, first) = (width * samples, rows * samples, first_row * samples);
-        Self {
-            width,
-            height,
-            first,
-            nearness: vec![f32::NEG_INFINITY; width * height],
-            seen: vec![NOTHING; width * height],
+        let (far, nothing) = (vec![f32::NEG_INFINITY; width * height], vec![NOTHING; width * height]);
+        Self { width, height, first, nearness: far.clone(), seen: nothing.clone(), veil: nothing, veil_nearness: far }
+    }
+
+    /// Forgets translucent facets that lie behind something opaque.
+    pub fn settle(&mut self) {
+        for k in 0..self.veil.len() {
+            if self.veil_nearness[k] <= self.nearness[k] {
+                self.veil[k] = NOTHING;
+            }
         }
     }
 
@@ -170,6 +180,11 @@ impl Band {
             return;
         }
         let (step_b, step_c) = ((c[1] - a[1]) / area, -(b[1] - a[1]) / area);
+        let (nearness, seen) = if triangle.opacity < 1.0 {
+            (&mut self.veil_nearness, &mut self.veil)
+        } else {
+            (&mut self.nearness, &mut self.seen)
+        };
         // A sample on an edge may miss both neighbours by rounding; an overlap of a ten-thousandth closes the gap.
         let slack = -1e-4;
         for y in top..=bottom {
@@ -183,9 +198,9 @@ impl Band {
                 let wa = 1.0 - wb - wc;
                 if wa >= slack && wb >= slack && wc >= slack {
                     let near = wa * a[2] + wb * b[2] + wc * c[2];
-                    if near > self.nearness[row + x] {
-                        self.nearness[row + x] = near;
-                        self.seen[row + x] = number;
+                    if near > nearness[row + x] {
+                        nearness[row + x] = near;
+                        seen[row + x] = number;
                     }
                 }
             }

@@ -18,18 +18,34 @@ pub struct Scene {
 }
 
 /// A surface of triangles, closed or open.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     /// Positions of the atoms, µm.
     pub positions: Vec<[f64; 3]>,
     /// Normal at each atom for smooth shading; empty to take the mean of the facets around.
     pub normals: Vec<[f64; 3]>,
-    /// Facets: three atoms each. The order does not matter for drawing.
+    /// Facets: three atoms each, all turning the same way round so that normals can be averaged.
     pub facets: Vec<[u32; 3]>,
     /// Colour.
     pub colour: SurfaceColour,
     /// Whether the edges of facets are drawn.
     pub edges: Edges,
+    /// How much the skin hides: 1 everything, less lets lines, floor and opaque surfaces behind it shine through. Of
+    /// several such skins behind each other only the nearest shows.
+    pub opacity: f32,
+}
+
+impl Default for Surface {
+    fn default() -> Self {
+        Self {
+            positions: Vec::new(),
+            normals: Vec::new(),
+            facets: Vec::new(),
+            colour: SurfaceColour::default(),
+            edges: Edges::default(),
+            opacity: 1.0,
+        }
+    }
 }
 
 /// The colour of a surface, in sRGB.

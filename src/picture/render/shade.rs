@@ -9,8 +9,8 @@ use super::scene::{Background, Edges, Pane, Scene};
 use crate::Vec3;
 
 /// Colour of the floor and of its grid, sRGB from 0 to 1.
-const FLOOR_COLOUR: [f32; 3] = [0.905, 0.918, 0.933];
-const GRID_COLOUR: [f32; 3] = [0.755, 0.785, 0.82];
+const FLOOR_COLOUR: [f32; 3] = [0.930, 0.940, 0.952];
+const GRID_COLOUR: [f32; 3] = [0.795, 0.82, 0.85];
 /// Shares of light that the two kinds of shadow on the floor take away where they are full.
 const SHADOW_DEPTH: f32 = 0.20;
 const CONTACT_DEPTH: f32 = 0.46;
@@ -84,20 +84,18 @@ impl<'a> Shader<'a> {
             while left != 0 {
                 let lead = left.trailing_zeros() as usize;
                 let place = |k: usize| (py * s + k / s) * band.width + px * s + k % s;
-                let seen = band.seen[place(lead)];
+                let (seen, veil) = (band.seen[place(lead)], band.veil[place(lead)]);
+                let alike = |k: usize| band.seen[place(k)] == seen && band.veil[place(k)] == veil;
                 let (mut count, mut x, mut y, mut near) = (0.0f32, 0.0f32, 0.0f32, 0.0f32);
-                for k in (lead..s * s).filter(|k| left >> k & 1 == 1 && band.seen[place(*k)] == seen) {
+                let waiting = left;
+                for k in (lead..s * s).filter(|k| waiting >> k & 1 == 1 && alike(*k)) {
                     count += 1.0;
                     x += (px * s + k % s) as f32 + 0.5;
                     y += (band.first + py * s + k / s) as f32 + 0.5;
                     near += band.nearness[place(k)];
+                    left &= !(1 << k);
                 }
-                for k in lead..s * s {
-                    if band.seen[place(k)] == seen {
-                        left &= !(1 << k);
-                    }
-                }
-                let colour = self.colour(geometry, seen, x / count, y / count, near / count);
+                let colour = self.colour(geometry, [seen, veil], x / count, y / count, near / count);
                 for k in 0..3 {
                     sum[k] += count * colour[k];
                 }
@@ -109,7 +107,7 @@ impl<'a> Shader<'a> {
     }
 
     /// sRGB colour, 0 to 1, seen at a place given in samples.
-    fn colour(&self, geometry: &Geometry, seen: u32, x: f32, y: f32, near: f32) -> [f32; 3] {
+    fn colour(&self, geometry: &Geometry, [seen, veil]: [u32; 2], x: f32, y: f32, near: f32) -> [f32; 3] {
         let (px, py) = (f64::from(x) / self.samples as f64, f64::from(y) / self.samples as f64);
         let behind = || {
             let share = (py / self.view.height as f64).clamp(0.0, 1.0) as f32;
@@ -119,8 +117,14 @@ impl<'a> Shader<'a> {
         let mut colour = match (seen, &self.ground) {
             (NOTHING, _) | (FLOOR, None) => behind(),
             (FLOOR, Some(ground)) => self.floor_colour(ground, behind(), px, py),
-            (facet, _) => self.facet_colour(geometry, &geometry.triangles[facet as usize], x, y),
+            (facet, _) => self.facet_colour(geometry, &geometry.triangles[facet as usize], x, y).0,
         };
+        if veil != NOTHING {
+            let (skin, share) = self.facet_colour(geometry, &geometry.triangles[veil as usize], x, y);
+            for k in 0..3 {
+                colour[k] += share * (skin[k] - colour[k]);
+            }
+        }
         for glass in &self.panes {
             if let Some(strength) = glass.strength(self.view, px, py, near) {
                 for k in 0..3 {
@@ -150,7 +154,8 @@ impl<'a> Shader<'a> {
         })
     }
 
-    fn facet_colour(&self, geometry: &Geometry, triangle: &Triangle, x: f32, y: f32) -> [f32; 3] {
+    /// Colour of a facet at a place and how much of what lies behind it hides.
+    fn facet_colour(&self, geometry: &Geometry, triangle: &Triangle, x: f32, y: f32) -> ([f32; 3], f32) {
         let (area, flat) = geometry.barycentric(triangle, x, y);
         // The mean place of some samples may lie a little outside the facet.
         let flat = flat.map(|w| w.clamp(0.0, 1.0));
@@ -170,11 +175,15 @@ impl<'a> Shader<'a> {
             normal = -normal;
         }
         let mut colour = self.lit(paint, &normal, &viewer);
+        // A thin skin seen edge on is looked through at a slant and hides more.
+        let slant = 1.0 - normal.dot(&viewer).clamp(0.0, 1.0);
+        let mut share = triangle.opacity + (1.0 - triangle.opacity) * slant * slant;
         if triangle.edges == Edges::Thin {
-            let dark = 1.0 - 0.5 * edge_strength(geometry, triangle, area, flat, self.samples as f32);
-            colour = colour.map(|c| c * dark);
+            let line = edge_strength(geometry, triangle, area, flat, self.samples as f32);
+            colour = colour.map(|c| c * (1.0 - 0.5 * line));
+            share = share.max(0.6 * line);
         }
-        colour
+        (colour, share)
     }
 
     /// A painted skin under a bright sky, a main light and a weak lamp at the camera: sRGB from 0 to 1.

@@ -19,7 +19,8 @@ pub(crate) fn sphere(centre: [f64; 3], radius: f64, splits: usize) -> Surface {
         for j in i + 1..12 {
             for k in j + 1..12 {
                 if near(&points, i, j) && near(&points, j, k) && near(&points, i, k) {
-                    facets.push([i as u32, j as u32, k as u32]);
+                    let outward = (points[j] - points[i]).cross(&(points[k] - points[i])).dot(&points[i]) > 0.0;
+                    facets.push(if outward { [i, j, k] } else { [i, k, j] }.map(|n| n as u32));
                 }
             }
         }
@@ -259,9 +260,10 @@ fn gallery_of_scenes() {
     cell.positions.iter_mut().for_each(|p| p[2] = 2.6 + 0.81 * (p[2] - 2.6));
     cell.edges = Edges::Thin;
     cell.colour = SurfaceColour::Uniform(Colour::of_palette(2));
+    cell.opacity = 0.3;
     for facet in &cell.facets.clone() {
         let at = |k: usize| cell.positions[facet[k] as usize];
-        scene.add_line(at(0), [0.0, 0.0, 2.6], 0.04, dark);
+        scene.add_line(at(0), [0.0, 0.0, 2.6], 0.03, dark);
     }
     scene.surfaces.push(cell);
     scene.floor = Some(Floor { point: [0.0; 3], normal: [0.0, 0.0, 1.0], grid: 1.0, radius: 12.0 });
