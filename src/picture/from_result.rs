@@ -89,6 +89,8 @@ pub struct Framing {
     /// For each of a set of directions seen by the camera the outermost point so far.
     outermost: Vec<(Vec3, f64, [f64; 3])>,
     bounds: Option<Bounds>,
+    /// Corners of the panes, which are to be seen whole.
+    pane_corners: Vec<[f64; 3]>,
     range: [f64; 2],
     longest: f64,
 }
@@ -107,7 +109,14 @@ impl Framing {
                 outermost.push((direction, f64::NEG_INFINITY, [0.0; 3]));
             }
         }
-        Self { axes, outermost, bounds: None, range: [f64::INFINITY, f64::NEG_INFINITY], longest: 0.0 }
+        Self {
+            axes,
+            outermost,
+            bounds: None,
+            pane_corners: Vec::new(),
+            range: [f64::INFINITY, f64::NEG_INFINITY],
+            longest: 0.0,
+        }
     }
 
     /// Makes room for a frame that will be drawn.
@@ -123,7 +132,11 @@ impl Framing {
             }
         }
         if let Some(bounds) = Bounds::around(points()) {
-            self.bounds = Some(self.bounds.map_or(bounds, |before| before.joined(bounds)));
+            let bounds = self.bounds.map_or(bounds, |before| before.joined(bounds));
+            self.bounds = Some(bounds);
+            let mut planes = Scene::default();
+            add_planes(&mut planes, snapshot.layout, &bounds, 1.0);
+            self.pane_corners = planes.panes.iter().flat_map(corners).collect();
         }
         if let Values::Atoms(values) | Values::Cells(values) = snapshot.values {
             for value in values.iter().filter(|value| value.is_finite()) {
@@ -135,7 +148,8 @@ impl Framing {
 
     /// The camera that shows everything included.
     pub fn camera(&self, look: &Look, aspect: f64, insets: Insets) -> Camera {
-        let points: Vec<[f64; 3]> = self.outermost.iter().filter(|o| o.1.is_finite()).map(|o| o.2).collect();
+        let mut points: Vec<[f64; 3]> = self.outermost.iter().filter(|o| o.1.is_finite()).map(|o| o.2).collect();
+        points.extend(&self.pane_corners);
         Camera::fit(&points, self.axes[2].into(), look.projection, aspect, insets)
     }
 
@@ -242,12 +256,23 @@ fn add_planes(scene: &mut Scene, layout: &Layout, bounds: &Bounds, typical: f64)
             let radius = 2.2 * bounds.diagonal().max(2.0 * typical);
             scene.floor = Some(Floor { point: middle.into(), normal: n.into(), grid, radius });
         } else {
-            let u = n.cross(&if n.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() }).normalize();
-            let half = 0.5 * bounds.diagonal();
-            let (half_u, half_v) = ((u * half).into(), (n.cross(&u) * half).into());
+            let v = n.cross(&if n.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() }).normalize();
+            let u = v.cross(&n);
+            // As large as the cells' box along both sides and a little more.
+            let reach = |side: &Vec3| {
+                let offsets = bounds.corners().map(|corner| (Vec3::from(corner) - centre).dot(side).abs());
+                side * (1.08 * offsets.into_iter().fold(0.0, f64::max))
+            };
+            let (half_u, half_v) = (reach(&u).into(), reach(&v).into());
             scene.panes.push(Pane { centre: below.into(), half_u, half_v, colour: Colour([0x7f, 0x98, 0xb0]) });
         }
     }
+}
+
+/// The four corners of a pane.
+fn corners(pane: &Pane) -> [[f64; 3]; 4] {
+    let (centre, u, v) = (Vec3::from(pane.centre), Vec3::from(pane.half_u), Vec3::from(pane.half_v));
+    [centre + u + v, centre + u - v, centre - u + v, centre - u - v].map(Into::into)
 }
 
 fn type_colour(look: &Look, kind: usize) -> Colour {

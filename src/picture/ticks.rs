@@ -32,8 +32,7 @@ pub fn nice_below(value: f64) -> f64 {
     if (lead - 5.0).abs() < 0.1 { above * 0.4 } else { above * 0.5 }
 }
 
-/// Marks for values from `low` to `high` on a linear axis with room for about `room` labels. With `cover` the axis is
-/// widened to whole steps so that its ends are labelled; without, it ends exactly where asked.
+/// Marks for values from `low` to `high` on a linear axis with room for about `room` labels.
 pub(crate) fn linear(low: f64, high: f64, room: usize, ends: Ends) -> Ticks {
     let (low, high) = opened(low, high);
     let step = nice_above((high - low) / room.max(1) as f64);
@@ -201,7 +200,7 @@ mod tests {
     fn short_texts_keep_three_digits() {
         assert_eq!(short(12.0), "12");
         assert_eq!(short(0.5), "0.5");
-        assert_eq!(short(-3.14159), "−3.14");
+        assert_eq!(short(-2.6666), "−2.67");
         assert_eq!(short(2.5e-6), "2.50×10⁻⁶");
     }
 }

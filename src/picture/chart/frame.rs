@@ -122,7 +122,8 @@ fn marks(axis: &Axis, data: [f64; 2], room: usize) -> Ticks {
     };
     match axis.scale {
         Scale::Linear => ticks::linear(low, high, room, ends),
-        Scale::Log => ticks::logarithmic(low, high, room, ends),
+        // Decades carry short labels.
+        Scale::Log => ticks::logarithmic(low, high, room + room / 2, ends),
     }
 }
 

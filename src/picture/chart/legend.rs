@@ -33,7 +33,7 @@ impl Box {
     /// Draws the legend with its top left corner at a place.
     pub fn write(&self, svg: &mut String, left: f64, top: f64) {
         svg.push_str(&format!(
-            r##"<rect x="{left:.1}" y="{top:.1}" width="{:.1}" height="{:.1}" rx="4" fill="#ffffff" fill-opacity="0.86"/>"##,
+            r##"<rect x="{left:.1}" y="{top:.1}" width="{:.1}" height="{:.1}" rx="4" fill="#ffffff" fill-opacity="0.86" stroke="#e3e6ea"/>"##,
             self.width, self.height
         ));
         svg.push('\n');

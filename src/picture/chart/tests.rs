@@ -10,7 +10,7 @@ fn walk(seed: u32, steps: usize) -> Vec<[f64; 2]> {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as f64 / (1u64 << 31) as f64
     };
-    let (mut at, mut angle) = ([0.0, 0.0], 6.283 * uniform());
+    let (mut at, mut angle) = ([0.0, 0.0], std::f64::consts::TAU * uniform());
     (0..steps)
         .map(|_| {
             angle += 0.9 * (uniform() - 0.5);

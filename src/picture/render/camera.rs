@@ -171,7 +171,6 @@ fn basis(forward: Vec3, up: Vec3) -> [Vec3; 3] {
 
 /// A camera made ready for a picture of a certain size. Positions are taken relative to the target.
 pub(super) struct View {
-    pub width: usize,
     pub height: usize,
     pub target: Vec3,
     pub right: Vec3,
@@ -197,7 +196,7 @@ impl View {
         };
         let centre = [0.5 * width as f64 + camera.shift[0] * pixels, 0.5 * pixels - camera.shift[1] * pixels];
         let distance = (target - eye).norm();
-        Self { width, height, target, right, up, forward, distance, scale, is_perspective, centre }
+        Self { height, target, right, up, forward, distance, scale, is_perspective, centre }
     }
 
     /// The pixel of a point relative to the target, a nearness that changes linearly across the picture and grows
@@ -208,16 +207,16 @@ impl View {
             let at = [self.centre[0] + x * self.scale, self.centre[1] - y * self.scale, -self.forward.dot(point)];
             return Some((at.map(|v| v as f32), 1.0));
         }
-        if !(z > 1e-3 * self.distance) {
+        if z.is_nan() || z <= 1e-3 * self.distance {
             return None;
         }
         let at = [self.centre[0] + x * self.scale / z, self.centre[1] - y * self.scale / z, self.distance / z];
         Some((at.map(|v| v as f32), (self.distance / z) as f32))
     }
 
-    /// The line of sight through a place in the picture: a point on it, relative to the target, and its direction.
-    /// Along an orthographic ray the direction has length 1, along a perspective one it has length 1 in depth.
-    pub fn ray(&self, x: f64, y: f64) -> (Vec3, Vec3) {
+    /// The line of sight through a place in the picture: a point on it, relative to the target, and its direction,
+    /// which has length 1 along the camera's axis.
+    fn ray(&self, x: f64, y: f64) -> (Vec3, Vec3) {
         let (a, b) = ((x - self.centre[0]) / self.scale, (self.centre[1] - y) / self.scale);
         if self.is_perspective {
             (-self.forward * self.distance, self.forward + self.right * a + self.up * b)
@@ -226,9 +225,13 @@ impl View {
         }
     }
 
-    /// Nearness (as [`View::project`] has it) of the point at `along` times the ray's direction.
-    pub fn nearness(&self, along: f64) -> f64 {
-        if self.is_perspective { self.distance / along } else { self.distance - along }
+    /// Whether the camera sees the side of a plane that its normal points to.
+    pub fn is_above(&self, point: &Vec3, normal: &Vec3) -> bool {
+        if self.is_perspective {
+            normal.dot(&(-self.forward * self.distance - point)) > 1e-9 * self.distance
+        } else {
+            normal.dot(&self.forward) < -1e-9
+        }
     }
 
     /// Unit vector from a point (relative to the target) towards the viewer.
@@ -239,5 +242,68 @@ impl View {
             -self.forward.cast::<f32>()
         }
         .normalize()
+    }
+}
+
+/// A plane as the camera sees it: how near it is and which of its places is seen at every pixel.
+///
+/// With x and y in pixels, nearness is an affine function of them and the plane's own coordinates are quotients of
+/// affine functions; each is kept as three factors, for x, y and 1.
+pub(super) struct PlaneOnScreen {
+    nearness: [f64; 3],
+    u: [f64; 3],
+    v: [f64; 3],
+    w: [f64; 3],
+}
+
+impl PlaneOnScreen {
+    /// A plane through `point` (relative to the target) with unit vectors `u` and `v` in it.
+    pub fn new(view: &View, point: &Vec3, u: &Vec3, v: &Vec3) -> Self {
+        let normal = u.cross(v);
+        let affine = |value: &dyn Fn(Vec3, Vec3) -> f64| {
+            let at = |x: f64, y: f64| {
+                let (start, direction) = view.ray(x, y);
+                value(start, direction)
+            };
+            let origin = at(0.0, 0.0);
+            // A long base keeps digits that neighbouring pixels would lose.
+            [(at(1e3, 0.0) - origin) * 1e-3, (at(0.0, 1e3) - origin) * 1e-3, origin]
+        };
+        // A line of sight meets the plane `height / fall` along itself; multiplied by `fall` everything is affine.
+        let height = |start: Vec3| normal.dot(&(point - start));
+        let fall = |direction: Vec3| normal.dot(&direction);
+        let place = |axis: &Vec3, start: Vec3, direction: Vec3| {
+            axis.dot(&(start - point)) * fall(direction) + axis.dot(&direction) * height(start)
+        };
+        Self {
+            nearness: affine(&|start, direction| {
+                if view.is_perspective {
+                    view.distance * fall(direction) / height(start)
+                } else {
+                    view.distance - height(start) / fall(direction)
+                }
+            }),
+            u: affine(&|start, direction| place(u, start, direction)),
+            v: affine(&|start, direction| place(v, start, direction)),
+            w: affine(&|_, direction| fall(direction)),
+        }
+    }
+
+    /// Nearness, as [`View::project`] has it, along a row: how much it grows a pixel, and its value at x = 0.
+    pub fn nearness_along_row(&self, y: f64) -> [f64; 2] {
+        [self.nearness[0], self.nearness[1] * y + self.nearness[2]]
+    }
+
+    /// The plane's own coordinates (µm from its point) at a pixel, and how far a pixel reaches along each.
+    pub fn meet(&self, x: f64, y: f64) -> ([f64; 2], [f64; 2]) {
+        let value = |factors: &[f64; 3]| factors[0] * x + factors[1] * y + factors[2];
+        let inverse = 1.0 / value(&self.w);
+        let (mut at, mut pixel) = ([0.0; 2], [0.0; 2]);
+        for (k, axis) in [&self.u, &self.v].into_iter().enumerate() {
+            at[k] = value(axis) * inverse;
+            let slope = |n: usize| (axis[n] - at[k] * self.w[n]) * inverse;
+            pixel[k] = (slope(0) * slope(0) + slope(1) * slope(1)).sqrt();
+        }
+        (at, pixel)
     }
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::camera::View;
-use super::raster::Geometry;
+use super::camera::{PlaneOnScreen, View};
+use super::raster::{Geometry, SLACK, row_span};
 use super::scene::Floor;
 use crate::Vec3;
 
@@ -12,9 +12,10 @@ const TEXELS: usize = 512;
 
 /// The floor made ready for drawing.
 pub(super) struct Ground {
+    pub screen: PlaneOnScreen,
     /// A point of it relative to the camera's target, and its unit normal.
-    pub point: Vec3,
-    pub normal: Vec3,
+    point: Vec3,
+    normal: Vec3,
     u: Vec3,
     v: Vec3,
     grid: f64,
@@ -35,14 +36,13 @@ impl Ground {
     pub fn new(floor: &Floor, view: &View, geometry: &Geometry, light: &Vec3) -> Option<Self> {
         let normal = Vec3::from(floor.normal).try_normalize(1e-300)?;
         let point = Vec3::from(floor.point) - view.target;
-        let (start, direction) = view.ray(0.5 * view.width as f64, 0.5 * view.height as f64);
-        let above = if view.is_perspective { normal.dot(&(start - point)) > 0.0 } else { normal.dot(&direction) < 0.0 };
-        if !above {
+        if !view.is_above(&point, &normal) {
             return None;
         }
         let u = normal.cross(&if normal.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() }).normalize().cross(&normal);
         let v = normal.cross(&u);
         let mut ground = Self {
+            screen: PlaneOnScreen::new(view, &point, &u, &v),
             point,
             normal,
             u,
@@ -59,43 +59,25 @@ impl Ground {
         Some(ground)
     }
 
-    /// Nearness of the floor per sample as a function a x + b y + c of sample coordinates.
-    pub fn nearness_plane(&self, view: &View, samples: usize) -> [f64; 3] {
-        let at = |x: f64, y: f64| {
-            let (start, direction) = view.ray(x, y);
-            let (height, fall) = (self.normal.dot(&(self.point - start)), self.normal.dot(&direction));
-            // 1/along is linear for perspective, along itself for parallel rays; both stay finite here.
-            if view.is_perspective { view.nearness(1.0) * fall / height } else { view.nearness(height / fall) }
-        };
-        let (origin, right, down) = (at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0));
-        [(right - origin) / samples as f64, (down - origin) / samples as f64, origin]
-    }
-
-    /// Where a line of sight meets the floor, in the floor's own coordinates (µm from its middle).
-    pub fn meet(&self, view: &View, x: f64, y: f64) -> [f64; 2] {
-        let (start, direction) = view.ray(x, y);
-        let along = self.normal.dot(&(self.point - start)) / self.normal.dot(&direction);
-        let hit = start + direction * along - self.point;
-        [self.u.dot(&hit), self.v.dot(&hit)]
-    }
-
     /// How strongly the floor shows at a place: 1 in the middle, 0 at its radius.
     pub fn presence(&self, at: [f64; 2]) -> f32 {
-        let share = (at[0].hypot(at[1]) / self.radius).min(1.0) as f32;
+        let share = ((at[0] * at[0] + at[1] * at[1]).sqrt() / self.radius).min(1.0) as f32;
         let t = ((1.0 - share) / 0.75).min(1.0);
         t * t * (3.0 - 2.0 * t)
     }
 
     /// Strength of the grid's lines at a place, 0 to 1; `pixel` is the size of a pixel there, µm along u and v.
     pub fn grid_strength(&self, at: [f64; 2], pixel: [f64; 2]) -> f32 {
-        if !(self.grid > 0.0) {
+        if self.grid.is_nan() || self.grid <= 0.0 {
             return 0.0;
         }
         let line = |spacing: f64| -> f32 {
             let mut strength = 0.0f64;
             for k in 0..2 {
                 let width = pixel[k].max(1e-9);
-                let away = (at[k] / spacing - (at[k] / spacing).round()).abs() * spacing;
+                // The distance to the nearest whole number; a cast is quicker than `round` on plain processors.
+                let share = at[k] / spacing;
+                let away = (share - (share + 0.5f64.copysign(share)) as i64 as f64).abs() * spacing;
                 // Lines nearer than a few pixels would turn into a pattern; they fade out before.
                 let room = (spacing / width / 6.0 - 1.0).clamp(0.0, 1.0);
                 strength = strength.max(room * (1.2 - away / width).clamp(0.0, 1.0));
@@ -144,7 +126,7 @@ impl Ground {
                 high[k] = high[k].max(place[k]);
             }
         }
-        if !(low[0] <= high[0]) {
+        if low[0] > high[0] {
             return;
         }
         let radius = geometry.typical_radius as f32;
@@ -172,20 +154,24 @@ impl Ground {
         let [a, b, c] =
             corners.map(|p| [(p[0] - self.corner[0]) / self.texel, (p[1] - self.corner[1]) / self.texel, p[2]]);
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-        if !(area.abs() > 1e-9) {
+        if area.is_nan() || area.abs() <= 1e-9 {
             return;
         }
         let range = |k: usize| {
             let (low, high) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
             ((low - 0.5).ceil().max(0.0) as usize)..((high + 0.5).floor().max(0.0) as usize).min(self.size[k])
         };
+        let (step_b, step_c) = ((c[1] - a[1]) / area, -(b[1] - a[1]) / area);
+        let (columns, steps) = (range(0), [-step_b - step_c, step_b, step_c]);
         for j in range(1) {
-            for i in range(0) {
-                let (dx, dy) = (i as f32 + 0.5 - a[0], j as f32 + 0.5 - a[1]);
-                let wb = (dx * (c[1] - a[1]) - (c[0] - a[0]) * dy) / area;
-                let wc = ((b[0] - a[0]) * dy - dx * (b[1] - a[1])) / area;
+            let (dx, dy) = (columns.start as f32 + 0.5 - a[0], j as f32 + 0.5 - a[1]);
+            let start_b = (dx * (c[1] - a[1]) - (c[0] - a[0]) * dy) / area;
+            let start_c = ((b[0] - a[0]) * dy - dx * (b[1] - a[1])) / area;
+            for n in row_span([1.0 - start_b - start_c, start_b, start_c], steps, SLACK, columns.len()) {
+                let i = columns.start + n;
+                let (wb, wc) = (start_b + n as f32 * step_b, start_c + n as f32 * step_c);
                 let wa = 1.0 - wb - wc;
-                if wa >= -1e-4 && wb >= -1e-4 && wc >= -1e-4 {
+                if wa >= SLACK && wb >= SLACK && wc >= SLACK {
                     let cell = &mut map[j * self.size[0] + i];
                     *cell = cell.max(value(wa * a[2] + wb * b[2] + wc * c[2]));
                 }

@@ -37,13 +37,13 @@ const BAND_ROWS: usize = 8;
 pub fn draw(scene: &Scene, camera: &Camera, overlay: &Overlay, width: usize, height: usize) -> Image {
     let (width, height) = (width.clamp(1, 16_384), height.clamp(1, 16_384));
     let view = View::new(camera, width, height);
-    let geometry = Geometry::new(scene, &view, SAMPLES);
-    let bins = geometry.bins(height, BAND_ROWS, SAMPLES);
-    let shader = Shader::new(scene, &view, &geometry, SAMPLES);
+    let geometry = Geometry::new(scene, &view);
+    let bins = geometry.bins(height);
+    let shader = Shader::new(scene, &view, &geometry);
     let mut image = Image { width, height, rgb: vec![0; 3 * width * height] };
     image.rgb.par_chunks_mut(3 * width * BAND_ROWS).enumerate().for_each(|(number, rows)| {
         let first_row = number * BAND_ROWS;
-        let mut band = Band::new(width, rows.len() / (3 * width), first_row, SAMPLES);
+        let mut band = Band::new(width, rows.len() / (3 * width), first_row);
         shader.lay_floor(&mut band);
         for triangle in &bins[number] {
             band.add(&geometry, *triangle);

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::camera::View;
 use super::scene::{Edges, Scene, Surface, SurfaceColour};
+use super::{BAND_ROWS, SAMPLES};
 
 /// A sample through which nothing but the background is seen.
 pub(super) const NOTHING: u32 = u32::MAX;
@@ -39,7 +40,7 @@ pub(super) struct Triangle {
 }
 
 impl Geometry {
-    pub fn new(scene: &Scene, view: &View, samples: usize) -> Self {
+    pub fn new(scene: &Scene, view: &View) -> Self {
         let mut geometry = Self {
             screen: Vec::new(),
             weights: Vec::new(),
@@ -51,10 +52,10 @@ impl Geometry {
         };
         let mut radii: Vec<f64> = Vec::with_capacity(scene.surfaces.len());
         for surface in &scene.surfaces {
-            geometry.append(surface, view, samples);
+            geometry.append(surface, view);
             radii.extend(super::Bounds::around(&surface.positions).map(|bounds| 0.5 * bounds.diagonal()));
         }
-        geometry.append(&scene.strokes, view, samples);
+        geometry.append(&scene.strokes, view);
         if !radii.is_empty() {
             let middle = radii.len() / 2;
             geometry.typical_radius = radii.select_nth_unstable_by(middle, f64::total_cmp).1.max(1e-6);
@@ -62,7 +63,7 @@ impl Geometry {
         geometry
     }
 
-    fn append(&mut self, surface: &Surface, view: &View, samples: usize) {
+    fn append(&mut self, surface: &Surface, view: &View) {
         let first = self.screen.len() as u32;
         let mut visible = Vec::with_capacity(surface.positions.len());
         for position in &surface.positions {
@@ -70,7 +71,7 @@ impl Geometry {
             let placed = view.project(&point).filter(|(at, _)| at.iter().all(|v| v.is_finite() && v.abs() < 1e6));
             visible.push(placed.is_some());
             let ([x, y, near], weight) = placed.unwrap_or_default();
-            self.screen.push([x * samples as f32, y * samples as f32, near]);
+            self.screen.push([x * SAMPLES as f32, y * SAMPLES as f32, near]);
             self.weights.push(weight);
             self.points.push(point.cast());
         }
@@ -100,9 +101,9 @@ impl Geometry {
     }
 
     /// For every band of rows the facets that touch it, in the order of the scene.
-    pub fn bins(&self, height: usize, band_rows: usize, samples: usize) -> Vec<Vec<u32>> {
-        let mut bins = vec![Vec::new(); height.div_ceil(band_rows)];
-        let rows = (band_rows * samples) as f32;
+    pub fn bins(&self, height: usize) -> Vec<Vec<u32>> {
+        let mut bins = vec![Vec::new(); height.div_ceil(BAND_ROWS)];
+        let rows = (BAND_ROWS * SAMPLES) as f32;
         for (number, triangle) in self.triangles.iter().enumerate() {
             let y = triangle.corners.map(|corner| self.screen[corner as usize][1]);
             let (low, high) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
@@ -145,8 +146,8 @@ pub(super) struct Band {
 
 impl Band {
     /// A band of `rows` rows of pixels that begins at row `first_row`.
-    pub fn new(width: usize, rows: usize, first_row: usize, samples: usize) -> Self {
-        let (width, height, first) = (width * samples, rows * samples, first_row * samples);
+    pub fn new(width: usize, rows: usize, first_row: usize) -> Self {
+        let (width, height, first) = (width * SAMPLES, rows * SAMPLES, first_row * SAMPLES);
         let (far, nothing) = (vec![f32::NEG_INFINITY; width * height], vec![NOTHING; width * height]);
         Self { width, height, first, nearness: far.clone(), seen: nothing.clone(), veil: nothing, veil_nearness: far }
     }
@@ -176,7 +177,7 @@ impl Band {
             return;
         };
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-        if !(area.abs() > 1e-9) {
+        if area.is_nan() || area.abs() <= 1e-9 {
             return;
         }
         let (step_b, step_c) = ((c[1] - a[1]) / area, -(b[1] - a[1]) / area);
@@ -185,18 +186,18 @@ impl Band {
         } else {
             (&mut self.nearness, &mut self.seen)
         };
-        // A sample on an edge may miss both neighbours by rounding; an overlap of a ten-thousandth closes the gap.
-        let slack = -1e-4;
+        let steps = [-step_b - step_c, step_b, step_c];
         for y in top..=bottom {
             let (dx, dy) = (left as f32 + 0.5 - a[0], y as f32 + 0.5 - a[1]);
             let start_b = (dx * (c[1] - a[1]) - (c[0] - a[0]) * dy) / area;
             let start_c = ((b[0] - a[0]) * dy - dx * (b[1] - a[1])) / area;
             let row = (y - self.first) * self.width;
-            for x in left..=right {
-                let n = (x - left) as f32;
+            let starts = [1.0 - start_b - start_c, start_b, start_c];
+            for n in row_span(starts, steps, SLACK, right - left + 1) {
+                let (x, n) = (left + n, n as f32);
                 let (wb, wc) = (start_b + n * step_b, start_c + n * step_c);
                 let wa = 1.0 - wb - wc;
-                if wa >= slack && wb >= slack && wc >= slack {
+                if wa >= SLACK && wb >= SLACK && wc >= SLACK {
                     let near = wa * a[2] + wb * b[2] + wc * c[2];
                     if near > nearness[row + x] {
                         nearness[row + x] = near;
@@ -206,4 +207,26 @@ impl Band {
             }
         }
     }
+}
+
+/// A sample on an edge may miss both neighbours by rounding; an overlap of a ten-thousandth closes the gap.
+pub(super) const SLACK: f32 = -1e-4;
+
+/// The columns, counted from the start of a row of `count`, where all three weights of a triangle's corners can be at
+/// least `least`, given the weights at column 0 and their change per column; a column too many at either end, so that
+/// the exact test stays with the caller. Thin slanted triangles would otherwise cost their whole bounding box.
+pub(super) fn row_span(starts: [f32; 3], steps: [f32; 3], least: f32, count: usize) -> std::ops::Range<usize> {
+    let (mut from, mut to) = (0.0f32, count as f32);
+    for (start, step) in starts.into_iter().zip(steps) {
+        let crossing = (least - start) / step;
+        if step > 0.0 {
+            from = from.max(crossing - 1.0);
+        } else if step < 0.0 {
+            to = to.min(crossing + 2.0);
+        } else if start < least {
+            return 0..0;
+        }
+    }
+    let from = from.max(0.0) as usize;
+    from..(to.max(0.0) as usize).min(count).max(from)
 }

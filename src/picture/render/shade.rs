@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::camera::View;
+use super::SAMPLES;
+use super::camera::{PlaneOnScreen, View};
 use super::floor::Ground;
 use super::raster::{Band, FLOOR, Geometry, NOTHING, Triangle};
 use super::scene::{Background, Edges, Pane, Scene};
@@ -13,16 +14,14 @@ const FLOOR_COLOUR: [f32; 3] = [0.930, 0.940, 0.952];
 const GRID_COLOUR: [f32; 3] = [0.795, 0.82, 0.85];
 /// Shares of light that the two kinds of shadow on the floor take away where they are full.
 const SHADOW_DEPTH: f32 = 0.20;
-const CONTACT_DEPTH: f32 = 0.46;
+const CONTACT_DEPTH: f32 = 0.42;
 /// Entries of the table from linear light to sRGB: steps below a third of a grey level at the dark end.
 const GAMMA_STEPS: usize = 8192;
 
 /// A scene's lights and planes made ready for shading.
 pub(super) struct Shader<'a> {
     view: &'a View,
-    samples: usize,
     ground: Option<Ground>,
-    floor_nearness: [f64; 3],
     panes: Vec<Glass>,
     background: Background,
     /// Unit vector towards the main light.
@@ -34,37 +33,31 @@ pub(super) struct Shader<'a> {
 
 /// A pane with what its drawing needs.
 struct Glass {
-    centre: Vec3,
-    normal: Vec3,
-    u: Vec3,
-    v: Vec3,
+    screen: PlaneOnScreen,
     half: [f64; 2],
     colour: [f32; 3],
 }
 
 impl<'a> Shader<'a> {
-    pub fn new(scene: &Scene, view: &'a View, geometry: &Geometry, samples: usize) -> Self {
+    pub fn new(scene: &Scene, view: &'a View, geometry: &Geometry) -> Self {
         let sky = scene.floor.and_then(|f| Vec3::from(f.normal).try_normalize(1e-300)).unwrap_or(Vec3::z());
         // Over the viewer's left shoulder, and always well above the floor.
         let light = (-view.forward * 0.75 - view.right * 0.62 + view.up * 0.5 + sky * 0.75).normalize();
         let ground = scene.floor.and_then(|floor| Ground::new(&floor, view, geometry, &light));
-        let floor_nearness = ground.as_ref().map_or([0.0; 3], |ground| ground.nearness_plane(view, samples));
         let gamma = (0..=GAMMA_STEPS).map(|k| to_srgb(k as f32 / GAMMA_STEPS as f32)).collect();
         let panes = scene.panes.iter().filter_map(|pane| Glass::new(pane, view)).collect();
         let (light, sky) = (light.cast(), sky.cast());
-        Self { view, samples, ground, floor_nearness, panes, background: scene.background, light, sky, gamma }
+        Self { view, ground, panes, background: scene.background, light, sky, gamma }
     }
 
     /// Puts the floor into the samples of a band that show it.
     pub fn lay_floor(&self, band: &mut Band) {
-        if self.ground.is_none() {
-            return;
-        }
-        let [a, b, c] = self.floor_nearness;
+        let Some(ground) = &self.ground else { return };
+        let per_sample = 1.0 / SAMPLES as f64;
         for y in 0..band.height {
-            let start = b * ((band.first + y) as f64 + 0.5) + c;
+            let [grow, start] = ground.screen.nearness_along_row(((band.first + y) as f64 + 0.5) * per_sample);
             for x in 0..band.width {
-                let near = a * (x as f64 + 0.5) + start;
+                let near = grow * (x as f64 + 0.5) * per_sample + start;
                 if near > 0.0 || !self.view.is_perspective {
                     band.nearness[y * band.width + x] = near as f32;
                     band.seen[y * band.width + x] = FLOOR;
@@ -75,40 +68,44 @@ impl<'a> Shader<'a> {
 
     /// Turns a band into pixels: everything that a pixel's samples show is shaded once and weighted by its samples.
     pub fn resolve(&self, band: &Band, geometry: &Geometry, rows: &mut [u8]) {
-        let s = self.samples;
-        let width = band.width / s;
-        for (n, pixel) in rows.chunks_exact_mut(3).enumerate() {
-            let (px, py) = (n % width, n / width);
-            let mut left: u32 = (1 << (s * s)) - 1;
-            let mut sum = [0.0f32; 3];
-            while left != 0 {
-                let lead = left.trailing_zeros() as usize;
-                let place = |k: usize| (py * s + k / s) * band.width + px * s + k % s;
-                let (seen, veil) = (band.seen[place(lead)], band.veil[place(lead)]);
-                let alike = |k: usize| band.seen[place(k)] == seen && band.veil[place(k)] == veil;
-                let (mut count, mut x, mut y, mut near) = (0.0f32, 0.0f32, 0.0f32, 0.0f32);
-                let waiting = left;
-                for k in (lead..s * s).filter(|k| waiting >> k & 1 == 1 && alike(*k)) {
-                    count += 1.0;
-                    x += (px * s + k % s) as f32 + 0.5;
-                    y += (band.first + py * s + k / s) as f32 + 0.5;
-                    near += band.nearness[place(k)];
-                    left &= !(1 << k);
+        const ALL: u32 = (1 << (SAMPLES * SAMPLES)) - 1;
+        let width = band.width / SAMPLES;
+        for (py, row) in rows.chunks_exact_mut(3 * width).enumerate() {
+            for (px, pixel) in row.chunks_exact_mut(3).enumerate() {
+                let corner = py * SAMPLES * band.width + px * SAMPLES;
+                let place = |k: usize| corner + k / SAMPLES * band.width + k % SAMPLES;
+                let mut waiting = ALL;
+                let mut sum = [0.0f32; 3];
+                while waiting != 0 {
+                    let lead = place(waiting.trailing_zeros() as usize);
+                    let shown = [band.seen[lead], band.veil[lead]];
+                    let (mut count, mut x, mut y, mut near) = (0.0f32, 0.0f32, 0.0f32, 0.0f32);
+                    for k in 0..SAMPLES * SAMPLES {
+                        if waiting >> k & 1 == 1 && [band.seen[place(k)], band.veil[place(k)]] == shown {
+                            count += 1.0;
+                            x += (k % SAMPLES) as f32;
+                            y += (k / SAMPLES) as f32;
+                            near += band.nearness[place(k)];
+                            waiting &= !(1 << k);
+                        }
+                    }
+                    let (x, y) = (x / count + 0.5, y / count + 0.5);
+                    let (x, y) = ((px * SAMPLES) as f32 + x, (band.first + py * SAMPLES) as f32 + y);
+                    let colour = self.colour(geometry, shown, x, y, near / count);
+                    for k in 0..3 {
+                        sum[k] += count * colour[k];
+                    }
                 }
-                let colour = self.colour(geometry, [seen, veil], x / count, y / count, near / count);
                 for k in 0..3 {
-                    sum[k] += count * colour[k];
+                    pixel[k] = (sum[k] * (255.0 / (SAMPLES * SAMPLES) as f32) + 0.5).clamp(0.0, 255.0) as u8;
                 }
-            }
-            for k in 0..3 {
-                pixel[k] = (255.0 * sum[k] / (s * s) as f32 + 0.5).clamp(0.0, 255.0) as u8;
             }
         }
     }
 
     /// sRGB colour, 0 to 1, seen at a place given in samples.
     fn colour(&self, geometry: &Geometry, [seen, veil]: [u32; 2], x: f32, y: f32, near: f32) -> [f32; 3] {
-        let (px, py) = (f64::from(x) / self.samples as f64, f64::from(y) / self.samples as f64);
+        let (px, py) = (f64::from(x) / SAMPLES as f64, f64::from(y) / SAMPLES as f64);
         let behind = || {
             let share = (py / self.view.height as f64).clamp(0.0, 1.0) as f32;
             let (top, bottom) = (self.background.top.0, self.background.bottom.0);
@@ -136,13 +133,11 @@ impl<'a> Shader<'a> {
     }
 
     fn floor_colour(&self, ground: &Ground, behind: [f32; 3], px: f64, py: f64) -> [f32; 3] {
-        let at = ground.meet(self.view, px, py);
+        let (at, pixel) = ground.screen.meet(px, py);
         let presence = ground.presence(at);
         if presence <= 0.0 {
             return behind;
         }
-        let (right, down) = (ground.meet(self.view, px + 1.0, py), ground.meet(self.view, px, py + 1.0));
-        let pixel = [0, 1].map(|k| (right[k] - at[k]).abs().max((down[k] - at[k]).abs()));
         let line = ground.grid_strength(at, pixel);
         let [shadow, contact] = ground.shade(at);
         let light = (1.0 - SHADOW_DEPTH * shadow) * (1.0 - CONTACT_DEPTH * contact);
@@ -179,7 +174,7 @@ impl<'a> Shader<'a> {
         let slant = 1.0 - normal.dot(&viewer).clamp(0.0, 1.0);
         let mut share = triangle.opacity + (1.0 - triangle.opacity) * slant * slant;
         if triangle.edges == Edges::Thin {
-            let line = edge_strength(geometry, triangle, area, flat, self.samples as f32);
+            let line = edge_strength(geometry, triangle, area, flat, SAMPLES as f32);
             colour = colour.map(|c| c * (1.0 - 0.5 * line));
             share = share.max(0.6 * line);
         }
@@ -219,14 +214,17 @@ fn edge_strength(geometry: &Geometry, triangle: &Triangle, area: f32, flat: [f32
 }
 
 impl Glass {
+    /// Prepares a pane; `None` when it has no area or is seen exactly edge on.
     fn new(pane: &Pane, view: &View) -> Option<Self> {
         let (half_u, half_v) = (Vec3::from(pane.half_u), Vec3::from(pane.half_v));
         let (u, v) = (half_u.try_normalize(1e-300)?, half_v.try_normalize(1e-300)?);
+        let normal = u.cross(&v).try_normalize(1e-9)?;
+        let centre = Vec3::from(pane.centre) - view.target;
+        if !view.is_above(&centre, &normal) && !view.is_above(&centre, &-normal) {
+            return None;
+        }
         Some(Self {
-            centre: Vec3::from(pane.centre) - view.target,
-            normal: u.cross(&v).try_normalize(1e-9)?,
-            u,
-            v,
+            screen: PlaneOnScreen::new(view, &centre, &u, &v),
             half: [half_u.norm(), half_v.norm()],
             colour: pane.colour.0.map(|byte| f32::from(byte) / 255.0),
         })
@@ -234,19 +232,17 @@ impl Glass {
 
     /// How much of the pane's colour covers what lies at nearness `near`; `None` where it does not.
     fn strength(&self, view: &View, px: f64, py: f64, near: f32) -> Option<f32> {
-        let (start, direction) = view.ray(px, py);
-        let along = self.normal.dot(&(self.centre - start)) / self.normal.dot(&direction);
-        if !along.is_finite() || along <= 0.0 || (view.nearness(along) as f32) < near {
+        let [grow, start] = self.screen.nearness_along_row(py);
+        let own = grow * px + start;
+        // Beyond the horizon of a perspective plane its nearness is negative.
+        if (own as f32) < near || (view.is_perspective && own <= 0.0) {
             return None;
         }
-        let hit = start + direction * along - self.centre;
-        let inside = [self.half[0] - self.u.dot(&hit).abs(), self.half[1] - self.v.dot(&hit).abs()];
-        if inside[0] < 0.0 || inside[1] < 0.0 {
-            return None;
-        }
-        // The rim is as wide as 0.6 % of the pane: glass shows at its edges.
-        let rim = 0.006 * (self.half[0] + self.half[1]);
-        Some(if inside[0].min(inside[1]) < rim { 0.65 } else { 0.16 })
+        let (at, pixel) = self.screen.meet(px, py);
+        let away = |k: usize| (self.half[k] - at[k].abs()) / pixel[k].max(1e-12);
+        let inside = away(0).min(away(1)) + 0.5;
+        let rim = (1.9 - inside).clamp(0.0, 1.0) as f32;
+        (inside > 0.0).then(|| inside.min(1.0) as f32 * (0.13 + 0.52 * rim))
     }
 }
 

@@ -27,7 +27,7 @@ impl Scene {
         let (a, b) = (Vec3::from(tail), Vec3::from(tip));
         let length = (b - a).norm();
         let head = (6.0 * radius).min(0.6 * length);
-        if !(length > 0.0) {
+        if length.is_nan() || length <= 0.0 {
             return;
         }
         let neck = b - (b - a) * (head / length);
