@@ -7,6 +7,7 @@
 mod draw;
 mod frame;
 mod legend;
+mod series;
 #[cfg(test)]
 mod tests;
 

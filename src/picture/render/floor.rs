@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::camera::{PlaneOnScreen, View};
 use super::raster::{Geometry, SLACK, row_span};
 use super::scene::Floor;
+use super::view::{PlaneOnScreen, View};
 use crate::Vec3;
 
 /// Texels along the longer side of the shadow maps.

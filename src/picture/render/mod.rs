@@ -13,6 +13,7 @@ mod shade;
 #[cfg(test)]
 pub(in crate::picture) mod tests;
 mod tubes;
+mod view;
 
 use rayon::prelude::*;
 
@@ -22,9 +23,9 @@ pub use camera::{Bounds, Camera, Insets, Projection};
 pub use overlay::{Key, Overlay, ScaleBar, time_text};
 pub use scene::{Background, Edges, Floor, Pane, Scene, Surface, SurfaceColour};
 
-use camera::View;
 use raster::{Band, Geometry};
 use shade::Shader;
+use view::View;
 
 /// Samples per pixel along each side; 2 × 2 samples smooth outlines at a third of the cost of 3 × 3.
 const SAMPLES: usize = 2;

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::camera::View;
 use super::scene::{Edges, Scene, Surface, SurfaceColour};
+use super::view::View;
 use super::{BAND_ROWS, SAMPLES};
 
 /// A sample through which nothing but the background is seen.

@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::SAMPLES;
-use super::camera::{PlaneOnScreen, View};
 use super::floor::Ground;
 use super::raster::{Band, FLOOR, Geometry, NOTHING, Triangle};
 use super::scene::{Background, Edges, Pane, Scene};
+use super::view::{PlaneOnScreen, View};
 use crate::Vec3;
 
 /// Colour of the floor and of its grid, sRGB from 0 to 1.
