@@ -372,6 +372,8 @@ mod tests {
             movie.add(&image).unwrap();
         }
         let written = movie.finish().unwrap();
+        let (shown, _) = crate::picture::movie::tests::played(&written.path);
+        shown[12].save_png(&folder.join("approach_from_gif.png")).unwrap();
         println!("{:?} in {:?}, {} bytes", written, start.elapsed(), written.path.metadata().unwrap().len());
     }
 }

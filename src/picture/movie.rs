@@ -201,9 +201,29 @@ fn finish_ffmpeg(child: Option<Child>, path: &Path) -> Result<()> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::picture::Colour;
+
+    /// What a viewer of a GIF shows, frame after frame, and how long it plays (hundredths of a second).
+    pub(in crate::picture) fn played(path: &Path) -> (Vec<Image>, u32) {
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
+        let mut decoder = options.read_info(File::open(path).unwrap()).unwrap();
+        let (width, height) = (usize::from(decoder.width()), usize::from(decoder.height()));
+        let mut screen = Image::filled(width, height, Colour([0; 3]));
+        let (mut shown, mut hundredths) = (Vec::new(), 0);
+        while let Some(frame) = decoder.read_next_frame().unwrap() {
+            hundredths += u32::from(frame.delay);
+            for (n, pixel) in frame.buffer.chunks_exact(4).enumerate().filter(|(_, pixel)| pixel[3] != 0) {
+                let (x, y) = (n % usize::from(frame.width), n / usize::from(frame.width));
+                let to = 3 * ((y + usize::from(frame.top)) * width + x + usize::from(frame.left));
+                screen.rgb[to..to + 3].copy_from_slice(&pixel[..3]);
+            }
+            shown.push(screen.clone());
+        }
+        (shown, hundredths)
+    }
 
     fn moving_square(frame: usize) -> Image {
         let mut image = Image::filled(64, 40, Colour([250, 250, 250]));
@@ -223,30 +243,13 @@ mod tests {
         let mut movie = Movie::create(&path, 12.0).unwrap();
         (0..6).for_each(|frame| movie.add(&moving_square(frame)).unwrap());
         assert_eq!(movie.finish().unwrap(), Written { path: path.clone(), frames: 6, notice: None });
-        let mut options = gif::DecodeOptions::new();
-        options.set_color_output(gif::ColorOutput::RGBA);
-        let mut decoder = options.read_info(File::open(&path).unwrap()).unwrap();
-        let mut screen = vec![0u8; 64 * 40 * 4];
-        let (mut frames, mut hundredths) = (0, 0);
-        while let Some(frame) = decoder.read_next_frame().unwrap() {
-            hundredths += u32::from(frame.delay);
-            for y in 0..usize::from(frame.height) {
-                for x in 0..usize::from(frame.width) {
-                    let from = 4 * (y * usize::from(frame.width) + x);
-                    let to = 4 * ((y + usize::from(frame.top)) * 64 + x + usize::from(frame.left));
-                    if frame.buffer[from + 3] != 0 {
-                        screen[to..to + 4].copy_from_slice(&frame.buffer[from..from + 4]);
-                    }
-                }
-            }
-            let wanted = moving_square(frames);
-            for (shown, meant) in screen.chunks_exact(4).zip(wanted.rgb.chunks_exact(3)) {
-                // Two colours fit a palette exactly; light dithering may move a colour to its neighbour only.
-                assert!((0..3).all(|k| shown[k].abs_diff(meant[k]) <= 2), "{shown:?} {meant:?}");
-            }
-            frames += 1;
+        let (shown, hundredths) = played(&path);
+        for (frame, screen) in shown.iter().enumerate() {
+            let meant = moving_square(frame);
+            // Two colours fit a palette exactly; light dithering may move a colour to its neighbour only.
+            assert!(screen.rgb.iter().zip(&meant.rgb).all(|(a, b)| a.abs_diff(*b) <= 2), "frame {frame}");
         }
-        assert_eq!((frames, hundredths), (6, 50));
+        assert_eq!((shown.len(), hundredths), (6, 50));
     }
 
     #[test]
