@@ -1,0 +1,216 @@
+//! Writes a chart as SVG.
+
+use std::fmt::Write;
+
+use super::frame::{FittedAxis, Frame, LABEL, NUMBER, TITLE};
+use super::legend::{self, Box};
+use super::series::{dashes, write_bar, write_marker, write_points, write_series};
+use super::{Chart, Legend, Marker, Series, Stroke};
+use crate::picture::colour::Colour;
+use crate::picture::text::{self, Anchor, Style, Weight, write_text, write_turned_text};
+use crate::picture::ticks;
+
+const FRAME_COLOUR: &str = "#5a616b";
+const GRID_COLOUR: &str = "#e3e6ea";
+const FINE_GRID_COLOUR: &str = "#f2f4f6";
+
+/// What the legend shows of one series.
+pub(super) struct Entry {
+    pub label: String,
+    shape: Shape,
+    colour: Colour,
+}
+
+enum Shape {
+    Line(Stroke, f64),
+    Points(Marker, bool),
+    Band,
+    /// A line and its band under one name.
+    LineInBand(Stroke, f64),
+}
+
+/// Draws a chart on a page of `width` × `height` px. Any contents give a valid SVG document.
+pub fn to_svg(chart: &Chart, width: f64, height: f64) -> String {
+    let (width, height) = (width.clamp(160.0, 20_000.0), height.clamp(120.0, 20_000.0));
+    let colours = colours(chart);
+    let key = if chart.legend == Legend::Hidden { None } else { Box::of(entries(chart, &colours)) };
+    let mut frame = Frame::fit(chart, width, height, 0.0);
+    let mut key_at = None;
+    if let Some(key) = &key {
+        key_at = match chart.legend {
+            Legend::At(corner) => Some(key.corner(&frame, corner)),
+            _ if legend::always_beside(chart) => None,
+            _ => key.free_corner(&frame, chart),
+        };
+        if key_at.is_none() {
+            frame = Frame::fit(chart, width, height, (key.width + 4.0).min(0.5 * width));
+            key_at = Some([frame.right + 12.0, frame.top]);
+        }
+    }
+    let mut svg = String::with_capacity(1 << 14);
+    let _ = writeln!(
+        svg,
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="{}">
+<rect width="100%" height="100%" fill="#ffffff"/>"##,
+        text::FONT_FAMILY
+    );
+    write_grid(&mut svg, &frame);
+    let _ = writeln!(
+        svg,
+        r#"<clipPath id="frame"><rect x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}"/></clipPath><g clip-path="url(#frame)">"#,
+        frame.left,
+        frame.top - 1.0,
+        frame.right - frame.left + 1.0,
+        frame.bottom - frame.top + 1.0
+    );
+    for (series, colour) in chart.series.iter().zip(&colours) {
+        write_series(&mut svg, series, *colour, &frame);
+    }
+    svg.push_str("</g>\n");
+    // Points stay whole at the edge of the frame, hence outside the clipped group.
+    for (series, colour) in chart.series.iter().zip(&colours) {
+        if let Series::Points { points, bars, marker, .. } = series {
+            write_points(&mut svg, points, bars, *marker, *colour, &frame);
+        }
+    }
+    write_axes(&mut svg, chart, &frame);
+    if let (Some(key), Some([left, top])) = (&key, key_at) {
+        key.write(&mut svg, left, top);
+    }
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// The colour of every series: its own, or the next of the palette; series of one name share one, so that a measured
+/// set and its band match.
+fn colours(chart: &Chart) -> Vec<Colour> {
+    let mut next = 0;
+    let mut named: Vec<(&str, Colour)> = Vec::new();
+    chart
+        .series
+        .iter()
+        .map(|series| {
+            let (Series::Line { colour, .. }
+            | Series::Points { colour, .. }
+            | Series::Band { colour, .. }
+            | Series::Tracks { colour, .. }) = series;
+            let label = series.label();
+            let known = named.iter().find(|(name, _)| !label.is_empty() && *name == label).map(|n| n.1);
+            let colour = colour.or(known).unwrap_or_else(|| {
+                next += 1;
+                Colour::of_palette(next - 1)
+            });
+            named.push((label, colour));
+            colour
+        })
+        .collect()
+}
+
+/// The named series, a line and a band of one name in one entry.
+fn entries(chart: &Chart, colours: &[Colour]) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for (series, colour) in chart.series.iter().zip(colours) {
+        let label = series.label();
+        if label.is_empty() {
+            continue;
+        }
+        let shape = match series {
+            Series::Line { stroke, width, .. } => Shape::Line(*stroke, *width),
+            Series::Points { marker, bars, .. } => Shape::Points(*marker, !bars.is_empty()),
+            Series::Band { .. } => Shape::Band,
+            Series::Tracks { .. } => Shape::Line(Stroke::Solid, 1.6),
+        };
+        match (entries.iter_mut().find(|entry| entry.label == label), shape) {
+            (Some(Entry { shape: known @ Shape::Band, .. }), Shape::Line(stroke, width)) => {
+                *known = Shape::LineInBand(stroke, width);
+            }
+            (Some(Entry { shape: known @ Shape::Line(..), .. }), Shape::Band) => {
+                if let Shape::Line(stroke, width) = *known {
+                    *known = Shape::LineInBand(stroke, width);
+                }
+            }
+            (_, shape) => entries.push(Entry { label: label.into(), shape, colour: *colour }),
+        }
+    }
+    entries
+}
+
+/// Draws the sample of a series in the legend between two x at height `y`.
+pub(super) fn write_sample(svg: &mut String, entry: &Entry, left: f64, right: f64, y: f64) {
+    let colour = entry.colour.hex();
+    if let Shape::Band | Shape::LineInBand(..) = entry.shape {
+        let _ = writeln!(
+            svg,
+            r#"<rect x="{left:.1}" y="{:.1}" width="{:.1}" height="11" fill="{colour}" fill-opacity="0.2"/>"#,
+            y - 5.5,
+            right - left
+        );
+    }
+    match entry.shape {
+        Shape::Line(stroke, width) | Shape::LineInBand(stroke, width) => {
+            let dash = dashes(stroke, width);
+            let _ = writeln!(
+                svg,
+                r#"<path d="M{left:.1} {y:.1}H{right:.1}" stroke="{colour}" stroke-width="{width}"{dash}/>"#
+            );
+        }
+        Shape::Points(marker, bar) => {
+            let x = 0.5 * (left + right);
+            if bar {
+                write_bar(svg, x, y - 8.0, y + 8.0, &colour);
+            }
+            write_marker(svg, marker, x, y, &colour);
+        }
+        Shape::Band => {}
+    }
+}
+
+fn write_grid(svg: &mut String, frame: &Frame) {
+    let lines = |out: &mut String, colour: &str, x: &mut dyn Iterator<Item = f64>, y: &mut dyn Iterator<Item = f64>| {
+        let _ = write!(out, r#"<path stroke="{colour}" fill="none" d=""#);
+        for at in x {
+            let _ = write!(out, "M{:.1} {:.1}V{:.1}", frame.x.place(at), frame.top, frame.bottom);
+        }
+        for at in y {
+            let _ = write!(out, "M{:.1} {:.1}H{:.1}", frame.left, frame.y.place(at), frame.right);
+        }
+        out.push_str("\"/>\n");
+    };
+    let (x, y) = (&frame.x.ticks, &frame.y.ticks);
+    lines(svg, FINE_GRID_COLOUR, &mut x.minor.iter().copied(), &mut y.minor.iter().copied());
+    lines(svg, GRID_COLOUR, &mut x.major.iter().map(|m| m.0), &mut y.major.iter().map(|m| m.0));
+}
+
+fn write_axes(svg: &mut String, chart: &Chart, frame: &Frame) {
+    let _ = write!(
+        svg,
+        r#"<path stroke="{FRAME_COLOUR}" stroke-width="1.1" fill="none" stroke-linecap="square" d="M{:.1} {:.1}V{:.1}H{:.1}"#,
+        frame.left, frame.top, frame.bottom, frame.right
+    );
+    for (at, _) in &frame.x.ticks.major {
+        let _ = write!(svg, "M{:.1} {:.1}v5", frame.x.place(*at), frame.bottom);
+    }
+    for (at, _) in &frame.y.ticks.major {
+        let _ = write!(svg, "M{:.1} {:.1}h-5", frame.left, frame.y.place(*at));
+    }
+    svg.push_str("\"/>\n");
+    let number = |anchor| Style { size: NUMBER, anchor, weight: Weight::Soft };
+    for (at, label) in &frame.x.ticks.major {
+        write_text(svg, frame.x.place(*at), frame.bottom + 20.0, number(Anchor::Middle), label);
+    }
+    for (at, label) in &frame.y.ticks.major {
+        write_text(svg, frame.left - 9.0, frame.y.place(*at) + 0.36 * NUMBER, number(Anchor::End), label);
+    }
+    let named = |label: &str, axis: &FittedAxis| match axis.ticks.exponent {
+        0 => label.to_string(),
+        power => format!("{label}  ×{}", ticks::power_of_ten(power)),
+    };
+    let style = Style { size: LABEL, anchor: Anchor::Middle, weight: Weight::Plain };
+    let (middle_x, middle_y) = (0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom));
+    write_text(svg, middle_x, frame.bottom + 46.0, style, &named(&chart.x.label, &frame.x));
+    write_turned_text(svg, 20.0, middle_y, -90.0, style, &named(&chart.y.label, &frame.y));
+    if !chart.title.is_empty() {
+        let style = Style { size: TITLE, anchor: Anchor::Start, weight: Weight::Strong };
+        write_text(svg, frame.left, 28.0, style, &chart.title);
+    }
+}

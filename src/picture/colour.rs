@@ -1,0 +1,131 @@
+//! Colours for cells, curves and numbers, chosen so that readers with any colour vision can tell them apart.
+
+/// A colour in sRGB, as screens and image files mean it: red, green, blue, 0 to 255.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Colour(pub [u8; 3]);
+
+/// The palette of Okabe and Ito (2008), which stays distinct under all common colour deficiencies, in the order in
+/// which curves and cell types take from it.
+pub const PALETTE: [Colour; 8] = [
+    Colour([0x00, 0x72, 0xb2]), // blue
+    Colour([0xd5, 0x5e, 0x00]), // vermilion
+    Colour([0x00, 0x9e, 0x73]), // bluish green
+    Colour([0xe6, 0x9f, 0x00]), // orange
+    Colour([0xcc, 0x79, 0xa7]), // reddish purple
+    Colour([0x56, 0xb4, 0xe9]), // sky blue
+    Colour([0x3c, 0x40, 0x48]), // near black
+    Colour([0xf0, 0xe4, 0x42]), // yellow
+];
+
+impl Colour {
+    /// The colour of the palette for the curve or cell type number `index`; it repeats after eight.
+    pub fn of_palette(index: usize) -> Self {
+        PALETTE[index % PALETTE.len()]
+    }
+
+    /// The form `#rrggbb` that SVG reads.
+    pub fn hex(self) -> String {
+        let [r, g, b] = self.0;
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }
+
+    /// Reads `#rrggbb` (the `#` may be missing); `None` when the text is not that.
+    pub fn from_hex(text: &str) -> Option<Self> {
+        let digits = text.strip_prefix('#').unwrap_or(text);
+        if digits.len() != 6 || !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+            return None;
+        }
+        let number = u32::from_str_radix(digits, 16).ok()?;
+        Some(Self([(number >> 16) as u8, (number >> 8) as u8, number as u8]))
+    }
+
+    /// A mixture in sRGB: this colour at `share` 0, `other` at 1.
+    pub fn mixed(self, other: Self, share: f64) -> Self {
+        let share = share.clamp(0.0, 1.0);
+        Self(std::array::from_fn(|k| {
+            (f64::from(self.0[k]) + share * (f64::from(other.0[k]) - f64::from(self.0[k]))).round() as u8
+        }))
+    }
+
+    /// The amounts of light, 0 to 1 and linear, that shading calculates with.
+    pub(crate) fn linear(self) -> [f32; 3] {
+        self.0.map(|byte| {
+            let value = f32::from(byte) / 255.0;
+            if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        })
+    }
+}
+
+/// How a number becomes a colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ColourMap {
+    /// Dark violet to yellow, equally bright steps; the default for quantities that start at zero.
+    #[default]
+    Viridis,
+    /// Black to pale yellow.
+    Magma,
+    /// Blue to red through grey, for quantities with a meaningful middle such as a signed error.
+    Coolwarm,
+}
+
+impl ColourMap {
+    /// The colour at `position` between 0 (lowest) and 1 (highest); outside values take the end's colour and a value
+    /// that is not a number a neutral grey.
+    pub fn at(self, position: f64) -> Colour {
+        if position.is_nan() {
+            return Colour([0xb0, 0xb4, 0xba]);
+        }
+        let stops = self.stops();
+        let place = position.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+        let below = (place as usize).min(stops.len() - 2);
+        let rgb = |hex: u32| Colour([(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]);
+        rgb(stops[below]).mixed(rgb(stops[below + 1]), place - below as f64)
+    }
+
+    /// Eleven equally spaced samples of the map (viridis and magma as published with matplotlib, coolwarm after
+    /// Moreland 2009); between them the map is linear to within what an eye can tell.
+    fn stops(self) -> [u32; 11] {
+        match self {
+            Self::Viridis => [
+                0x440154, 0x482576, 0x414487, 0x35608d, 0x2a788e, 0x21908c, 0x22a884, 0x43bf71, 0x7ad151, 0xbbdf27,
+                0xfde725,
+            ],
+            Self::Magma => [
+                0x000004, 0x140e36, 0x3b0f70, 0x641a80, 0x8c2981, 0xb73779, 0xde4968, 0xf7705c, 0xfe9f6d, 0xfecf92,
+                0xfcfdbf,
+            ],
+            Self::Coolwarm => [
+                0x3b4cc0, 0x5977e3, 0x7b9ff9, 0x9ebeff, 0xc0d4f5, 0xdddcdc, 0xf2cbb7, 0xf7ac8e, 0xee8468, 0xd65244,
+                0xb40426,
+            ],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colour_maps_start_and_end_at_their_published_colours() {
+        assert_eq!(ColourMap::Viridis.at(-3.0).hex(), "#440154");
+        assert_eq!(ColourMap::Viridis.at(1.0).hex(), "#fde725");
+        assert_eq!(ColourMap::Magma.at(0.0).hex(), "#000004");
+        assert_eq!(ColourMap::Coolwarm.at(0.5).hex(), "#dddcdc");
+        assert_eq!(ColourMap::Coolwarm.at(9.0).hex(), "#b40426");
+    }
+
+    #[test]
+    fn a_value_that_is_not_a_number_is_grey() {
+        assert_eq!(ColourMap::Viridis.at(f64::NAN), ColourMap::Magma.at(f64::NAN));
+    }
+
+    #[test]
+    fn hex_is_read_as_it_is_written() {
+        for colour in PALETTE {
+            assert_eq!(Colour::from_hex(&colour.hex()), Some(colour));
+        }
+        assert_eq!(Colour::from_hex("#12"), None);
+        assert_eq!(Colour::from_hex("#+12345"), None);
+    }
+}

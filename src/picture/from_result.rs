@@ -1,0 +1,379 @@
+//! Makes pictures out of what a run records: cells coloured by type or by any stored quantity, on their planes.
+//!
+//! [`Framing`] looks at all frames that will be drawn and fixes what must not jump between them (camera, floor, range
+//! of colours); [`picture_of`] then draws any one of them.
+
+use super::Image;
+use super::colour::{Colour, ColourMap};
+use super::render::{
+    Bounds, Camera, Edges, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Surface, SurfaceColour,
+    draw, time_text,
+};
+use super::ticks::nice_above;
+use crate::Vec3;
+use crate::output::Layout;
+
+/// One recorded instant.
+#[derive(Debug, Clone, Copy)]
+pub struct Snapshot<'a> {
+    /// Cells, facets, links and planes.
+    pub layout: &'a Layout,
+    /// Positions of all atoms, µm.
+    pub positions: &'a [[f64; 3]],
+    /// Simulated time, s.
+    pub time: f64,
+    /// What colours show.
+    pub values: Values<'a>,
+    /// Arrows over the cells, from tail to tip (µm): loads, velocities.
+    pub arrows: &'a [[[f64; 3]; 2]],
+}
+
+/// What colours show.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Values<'a> {
+    /// The type of the cell.
+    #[default]
+    Type,
+    /// One number per atom, in the order of the positions.
+    Atoms(&'a [f64]),
+    /// One number per cell, in the order of the layout.
+    Cells(&'a [f64]),
+}
+
+/// How the pictures of a run look.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Look {
+    /// Top left; empty for none.
+    pub title: String,
+    /// Colours of the types; a missing one comes from the palette.
+    pub type_colours: Vec<Colour>,
+    /// Colours of numbers.
+    pub map: ColourMap,
+    /// Lowest and highest number of the colour bar; `None` takes them from the frames that were included.
+    pub range: Option<[f64; 2]>,
+    /// Name of the numbers with unit.
+    pub label: String,
+    /// Whether the edges of facets are drawn.
+    pub edges: Edges,
+    /// How much skins hide, 0 to 1; `None` lets them be translucent where there are links inside.
+    pub opacity: Option<f32>,
+    /// From the scene towards the camera; only the direction counts.
+    pub direction: [f64; 3],
+    /// Parallel or perspective; the height of a parallel projection is fitted.
+    pub projection: Projection,
+    /// The scale bar.
+    pub scale_bar: ScaleBar,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            type_colours: Vec::new(),
+            map: ColourMap::default(),
+            range: None,
+            label: String::new(),
+            edges: Edges::Hidden,
+            opacity: None,
+            direction: [0.35, -1.0, 0.75],
+            projection: Projection::Orthographic { height: 1.0 },
+            scale_bar: ScaleBar::Auto,
+        }
+    }
+}
+
+/// What stays the same in all pictures of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Framing {
+    axes: [Vec3; 3],
+    /// For each of a set of directions seen by the camera the outermost point so far.
+    outermost: Vec<(Vec3, f64, [f64; 3])>,
+    bounds: Option<Bounds>,
+    /// Corners of the panes, which are to be seen whole.
+    pane_corners: Vec<[f64; 3]>,
+    range: [f64; 2],
+    longest: f64,
+}
+
+impl Framing {
+    /// Nothing seen yet, for pictures with this look.
+    pub fn new(look: &Look) -> Self {
+        let back = Vec3::from(look.direction).try_normalize(1e-300).unwrap_or(Vec3::z());
+        let right = Vec3::z().cross(&back).try_normalize(1e-6).unwrap_or(Vec3::x());
+        let axes = [right, back.cross(&right), back];
+        let mut outermost = Vec::new();
+        for n in 0..27 {
+            let signs = [n % 3, n / 3 % 3, n / 9].map(|k| f64::from(k) - 1.0);
+            let direction = axes[0] * signs[0] + axes[1] * signs[1] + axes[2] * signs[2];
+            if n != 13 {
+                outermost.push((direction, f64::NEG_INFINITY, [0.0; 3]));
+            }
+        }
+        Self {
+            axes,
+            outermost,
+            bounds: None,
+            pane_corners: Vec::new(),
+            range: [f64::INFINITY, f64::NEG_INFINITY],
+            longest: 0.0,
+        }
+    }
+
+    /// Makes room for a frame that will be drawn.
+    pub fn include(&mut self, snapshot: &Snapshot) {
+        let points = || snapshot.positions.iter().chain(snapshot.arrows.iter().flatten());
+        for point in points().filter(|point| point.iter().all(|v| v.is_finite())) {
+            let at = Vec3::from(*point);
+            for (direction, far, outermost) in &mut self.outermost {
+                let along = direction.dot(&at);
+                if along > *far {
+                    (*far, *outermost) = (along, *point);
+                }
+            }
+        }
+        if let Some(bounds) = Bounds::around(points()) {
+            let bounds = self.bounds.map_or(bounds, |before| before.joined(bounds));
+            self.bounds = Some(bounds);
+            let mut planes = Scene::default();
+            add_planes(&mut planes, snapshot.layout, &bounds, 1.0);
+            self.pane_corners = planes.panes.iter().flat_map(corners).collect();
+        }
+        if let Values::Atoms(values) | Values::Cells(values) = snapshot.values {
+            for value in values.iter().filter(|value| value.is_finite()) {
+                self.range = [self.range[0].min(*value), self.range[1].max(*value)];
+            }
+        }
+        self.longest = self.longest.max(snapshot.time);
+    }
+
+    /// The camera that shows everything included.
+    pub fn camera(&self, look: &Look, aspect: f64, insets: Insets) -> Camera {
+        let mut points: Vec<[f64; 3]> = self.outermost.iter().filter(|o| o.1.is_finite()).map(|o| o.2).collect();
+        points.extend(&self.pane_corners);
+        Camera::fit(&points, self.axes[2].into(), look.projection, aspect, insets)
+    }
+
+    /// The numbers at the ends of the colour bar.
+    fn ends(&self, look: &Look) -> [f64; 2] {
+        let [low, high] = look.range.unwrap_or(self.range);
+        match (low.is_finite() && high.is_finite(), high > low) {
+            (true, true) => [low, high],
+            (true, false) => [low - 0.5 * low.abs().max(1e-3), low + 0.5 * low.abs().max(1e-3)],
+            (false, _) => [0.0, 1.0],
+        }
+    }
+}
+
+/// Draws one recorded instant.
+///
+/// # Panics
+/// When the layout names atoms or facets that are not there; result files are checked when they are read.
+pub fn picture_of(snapshot: &Snapshot, look: &Look, framing: &Framing, width: usize, height: usize) -> Image {
+    let overlay = overlay_of(snapshot, look, framing);
+    let camera = framing.camera(look, width as f64 / height.max(1) as f64, overlay.insets());
+    draw(&scene_of(snapshot, look, framing), &camera, &overlay, width, height)
+}
+
+/// The lettering for one recorded instant.
+pub fn overlay_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Overlay {
+    let [low, high] = framing.ends(look);
+    let key = match snapshot.values {
+        Values::Type if snapshot.layout.types.len() < 2 => Key::None,
+        Values::Type => {
+            let named = |(kind, name): (usize, &String)| (name.clone(), type_colour(look, kind));
+            Key::Names(snapshot.layout.types.iter().enumerate().map(named).collect())
+        }
+        _ => Key::Bar { map: look.map, low, high, label: look.label.clone() },
+    };
+    let time = time_text(snapshot.time, framing.longest);
+    Overlay { title: look.title.clone(), time, scale_bar: look.scale_bar, key }
+}
+
+/// Cells, links, arrows and planes of one recorded instant.
+///
+/// # Panics
+/// As [`picture_of`].
+pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
+    let (layout, positions) = (snapshot.layout, snapshot.positions);
+    let [low, high] = framing.ends(look);
+    let number_colour = |value: f64| look.map.at((value - low) / (high - low));
+    let opacity = look.opacity.unwrap_or(if layout.links.is_empty() { 1.0 } else { 0.35 });
+    let mut scene = Scene::default();
+    let mut sizes = Vec::with_capacity(layout.cells.len());
+    for (number, cell) in layout.cells.iter().enumerate() {
+        let atoms = cell.first_atom as usize..(cell.first_atom + cell.atoms) as usize;
+        let facets = &layout.facets[cell.first_facet as usize..(cell.first_facet + cell.facets) as usize];
+        let colour = match snapshot.values {
+            Values::Type => SurfaceColour::Uniform(type_colour(look, cell.kind as usize)),
+            Values::Cells(values) => {
+                SurfaceColour::Uniform(number_colour(values.get(number).copied().unwrap_or(f64::NAN)))
+            }
+            Values::Atoms(values) => SurfaceColour::PerAtom(
+                atoms.clone().map(|atom| number_colour(values.get(atom).copied().unwrap_or(f64::NAN))).collect(),
+            ),
+        };
+        let own = positions[atoms].to_vec();
+        sizes.extend(Bounds::around(&own).map(|bounds| bounds.diagonal()));
+        scene.surfaces.push(Surface {
+            positions: own,
+            facets: facets.iter().map(|facet| facet.map(|atom| atom - cell.first_atom)).collect(),
+            colour,
+            edges: look.edges,
+            opacity,
+            ..Surface::default()
+        });
+    }
+    sizes.sort_unstable_by(f64::total_cmp);
+    let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(1.0);
+    let dark = Colour([0x3a, 0x40, 0x4a]);
+    for [a, b] in &layout.links {
+        scene.add_line(positions[*a as usize], positions[*b as usize], 0.004 * typical, dark);
+    }
+    for [tail, tip] in snapshot.arrows {
+        scene.add_arrow(*tail, *tip, 0.011 * typical, dark);
+    }
+    if let Some(bounds) = framing.bounds.or_else(|| Bounds::around(positions)) {
+        add_planes(&mut scene, layout, &bounds, typical);
+    }
+    scene
+}
+
+/// The plane that looks up most becomes the floor, the others panes around the cells.
+fn add_planes(scene: &mut Scene, layout: &Layout, bounds: &Bounds, typical: f64) {
+    let up = |plane: &(String, [f64; 3], [f64; 3])| Vec3::from(plane.2).try_normalize(1e-300).map_or(0.0, |n| n.z);
+    let floor = (0..layout.planes.len())
+        .filter(|k| up(&layout.planes[*k]) > 0.7)
+        .max_by(|a, b| up(&layout.planes[*a]).total_cmp(&up(&layout.planes[*b])).then(b.cmp(a)));
+    let centre = Vec3::from(bounds.centre());
+    for (number, (_, point, normal)) in layout.planes.iter().enumerate() {
+        let Some(n) = Vec3::from(*normal).try_normalize(1e-300) else { continue };
+        let below = centre - n * (centre - Vec3::from(*point)).dot(&n);
+        if floor == Some(number) {
+            // Grid lines lie at whole multiples of their distance, so that they can be read as a ruler.
+            let grid = nice_above(0.8 * typical);
+            let snapped = below - Vec3::new(below.x % (5.0 * grid), below.y % (5.0 * grid), 0.0);
+            let middle = if n.z > 0.999 { snapped } else { below };
+            let radius = 2.2 * bounds.diagonal().max(2.0 * typical);
+            scene.floor = Some(Floor { point: middle.into(), normal: n.into(), grid, radius });
+        } else {
+            let v = n.cross(&if n.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() }).normalize();
+            let u = v.cross(&n);
+            // As large as the cells' box along both sides and a little more.
+            let reach = |side: &Vec3| {
+                let offsets = bounds.corners().map(|corner| (Vec3::from(corner) - centre).dot(side).abs());
+                side * (1.08 * offsets.into_iter().fold(0.0, f64::max))
+            };
+            let (half_u, half_v) = (reach(&u).into(), reach(&v).into());
+            scene.panes.push(Pane { centre: below.into(), half_u, half_v, colour: Colour([0x7f, 0x98, 0xb0]) });
+        }
+    }
+}
+
+/// The four corners of a pane.
+fn corners(pane: &Pane) -> [[f64; 3]; 4] {
+    let (centre, u, v) = (Vec3::from(pane.centre), Vec3::from(pane.half_u), Vec3::from(pane.half_v));
+    [centre + u + v, centre + u - v, centre - u + v, centre - u - v].map(Into::into)
+}
+
+fn type_colour(look: &Look, kind: usize) -> Colour {
+    look.type_colours.get(kind).copied().unwrap_or_else(|| Colour::of_palette(kind))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::CellLayout;
+
+    fn two_cells() -> (Layout, Vec<[f64; 3]>) {
+        let (mut layout, mut positions) = (Layout::default(), Vec::new());
+        layout.types = vec!["round".into(), "square".into()];
+        for kind in 0..2u32 {
+            let cell = crate::picture::render::tests::sphere([12.0 * f64::from(kind), 0.0, 5.0], 5.0, 2);
+            let first_atom = positions.len() as u32;
+            layout.cells.push(CellLayout {
+                kind,
+                first_atom,
+                atoms: cell.positions.len() as u32,
+                first_facet: layout.facets.len() as u32,
+                facets: cell.facets.len() as u32,
+            });
+            layout.facets.extend(cell.facets.iter().map(|facet| facet.map(|atom| atom + first_atom)));
+            positions.extend(cell.positions);
+        }
+        layout.planes =
+            vec![("ground".into(), [0.0; 3], [0.0, 0.0, 1.0]), ("lid".into(), [0.0, 0.0, 10.0], [0.0, 0.0, -1.0])];
+        (layout, positions)
+    }
+
+    #[test]
+    fn types_and_numbers_colour_the_cells() {
+        let (layout, positions) = two_cells();
+        let mut snapshot =
+            Snapshot { layout: &layout, positions: &positions, time: 3.0, values: Values::Type, arrows: &[] };
+        let look = Look::default();
+        let mut framing = Framing::new(&look);
+        framing.include(&snapshot);
+        let scene = scene_of(&snapshot, &look, &framing);
+        assert_eq!(scene.surfaces[1].colour, SurfaceColour::Uniform(Colour::of_palette(1)));
+        assert!(scene.floor.is_some() && scene.panes.len() == 1);
+        assert!(matches!(overlay_of(&snapshot, &look, &framing).key, Key::Names(names) if names.len() == 2));
+        snapshot.values = Values::Cells(&[-1.0, 4.0]);
+        framing.include(&snapshot);
+        let scene = scene_of(&snapshot, &look, &framing);
+        assert_eq!(scene.surfaces[0].colour, SurfaceColour::Uniform(ColourMap::Viridis.at(0.0)));
+        assert_eq!(scene.surfaces[1].colour, SurfaceColour::Uniform(ColourMap::Viridis.at(1.0)));
+        let key = overlay_of(&snapshot, &look, &framing).key;
+        assert!(matches!(key, Key::Bar { low, high, .. } if low == -1.0 && high == 4.0));
+    }
+
+    #[test]
+    fn the_camera_leaves_room_for_all_frames() {
+        let (layout, positions) = two_cells();
+        let moved: Vec<[f64; 3]> = positions.iter().map(|p| [p[0] + 40.0, p[1], p[2]]).collect();
+        let look = Look::default();
+        let still = |positions| Snapshot { layout: &layout, positions, time: 0.0, values: Values::Type, arrows: &[] };
+        let (mut one, mut both) = (Framing::new(&look), Framing::new(&look));
+        one.include(&still(&positions));
+        both.include(&still(&positions));
+        both.include(&still(&moved));
+        let across =
+            |framing: &Framing| 720.0 / framing.camera(&look, 16.0 / 9.0, Insets::default()).pixels_per_micron(720);
+        assert!(across(&both) > 2.0 * across(&one), "{} {}", across(&both), across(&one));
+    }
+
+    #[test]
+    #[ignore = "gallery: writes pictures for a person to judge into PICTURES or the temporary folder"]
+    fn gallery_of_frames() {
+        let folder = std::env::var_os("PICTURES").map_or_else(std::env::temp_dir, std::path::PathBuf::from);
+        let (layout, positions) = two_cells();
+        let look = Look { title: "Two cells approach".into(), label: "height (µm)".into(), ..Look::default() };
+        let frames: Vec<Vec<[f64; 3]>> = (0..20)
+            .map(|k| {
+                positions.iter().map(|p| [p[0] + 0.2 * f64::from(k) * (6.0 - p[0]).signum(), p[1], p[2]]).collect()
+            })
+            .collect();
+        let heights: Vec<f64> = positions.iter().map(|p| p[2]).collect();
+        let snapshot = |k: usize| Snapshot {
+            layout: &layout,
+            positions: &frames[k],
+            time: k as f64,
+            values: Values::Atoms(&heights),
+            arrows: &[],
+        };
+        let mut framing = Framing::new(&look);
+        (0..20).for_each(|k| framing.include(&snapshot(k)));
+        let mut movie = crate::picture::Movie::create(&folder.join("approach.gif"), 10.0).unwrap();
+        let start = std::time::Instant::now();
+        for k in 0..20 {
+            let image = picture_of(&snapshot(k), &look, &framing, 960, 540);
+            if k == 12 {
+                image.save_png(&folder.join("approach.png")).unwrap();
+            }
+            movie.add(&image).unwrap();
+        }
+        let written = movie.finish().unwrap();
+        let (shown, _) = crate::picture::movie::tests::played(&written.path);
+        shown[12].save_png(&folder.join("approach_from_gif.png")).unwrap();
+        println!("{:?} in {:?}, {} bytes", written, start.elapsed(), written.path.metadata().unwrap().len());
+    }
+}

@@ -1,0 +1,121 @@
+//! A finished picture in memory and its way into a PNG file.
+
+use std::path::Path;
+
+use super::colour::Colour;
+use crate::error::{Error, Result};
+
+/// A picture: rows from top to bottom, three sRGB bytes a pixel, no transparency.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    /// Pixels across.
+    pub width: usize,
+    /// Pixels down.
+    pub height: usize,
+    /// Red, green, blue of every pixel; the length is 3 · width · height.
+    pub rgb: Vec<u8>,
+}
+
+impl Image {
+    /// A picture of one colour.
+    pub fn filled(width: usize, height: usize, colour: Colour) -> Self {
+        Self { width, height, rgb: colour.0.repeat(width * height) }
+    }
+
+    /// The colour of the pixel in column `x` and row `y`, counted from the top left corner.
+    ///
+    /// # Panics
+    /// When the pixel lies outside the picture.
+    pub fn pixel(&self, x: usize, y: usize) -> Colour {
+        assert!(x < self.width && y < self.height, "pixel ({x}, {y}) is outside {}×{}", self.width, self.height);
+        let start = 3 * (y * self.width + x);
+        Colour([self.rgb[start], self.rgb[start + 1], self.rgb[start + 2]])
+    }
+
+    /// The bytes of a PNG file that shows the picture, packed as small as is possible in about half a second.
+    ///
+    /// # Errors
+    /// When the picture has no pixels or more than PNG can hold.
+    pub fn to_png(&self) -> Result<Vec<u8>> {
+        self.packed(png::Compression::High)
+    }
+
+    fn packed(&self, compression: png::Compression) -> Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(compression);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&self.rgb));
+        match written {
+            Ok(()) => Ok(bytes),
+            Err(error) => Err(Error::Machine {
+                message: format!("a picture of {}×{} pixels could not be encoded: {error}", self.width, self.height),
+                help: "choose a width and a height of at least one pixel".into(),
+            }),
+        }
+    }
+
+    /// Writes the picture as a PNG file, over one that exists.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn save_png(&self, path: &Path) -> Result<()> {
+        write_file(path, &self.to_png()?)
+    }
+
+    /// As [`Image::save_png`], ten times faster for a file a tenth larger: one of many frames.
+    pub(crate) fn save_frame(&self, path: &Path) -> Result<()> {
+        write_file(path, &self.packed(png::Compression::Balanced)?)
+    }
+
+    /// Lays an overlay with premultiplied transparency (four bytes a pixel, same size) over the picture.
+    pub(crate) fn lay_over(&mut self, overlay: &[u8]) {
+        for (below, above) in self.rgb.chunks_exact_mut(3).zip(overlay.chunks_exact(4)) {
+            let share = 255 - u32::from(above[3]);
+            if share < 255 {
+                for k in 0..3 {
+                    below[k] = (u32::from(above[k]) + (u32::from(below[k]) * share + 127) / 255).min(255) as u8;
+                }
+            }
+        }
+    }
+}
+
+/// Writes a whole file or says which one failed and what to do.
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    std::fs::write(path, bytes).map_err(|error| unwritable(path, &error))
+}
+
+/// The error for a picture file that cannot be written.
+pub(crate) fn unwritable(path: &Path, error: &std::io::Error) -> Error {
+    Error::Machine {
+        message: format!("cannot write the picture {}: {error}", path.display()),
+        help: "check that its folder exists, that you may write there and that the disk is not full".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_that_cannot_be_written_names_its_path() {
+        let image = Image::filled(2, 2, Colour([1, 2, 3]));
+        let error = image.save_png(Path::new("/nowhere/at/all.png")).unwrap_err();
+        assert!(error.to_string().contains("/nowhere/at/all.png"), "{error}");
+        assert_eq!(error.exit_code(), 1);
+    }
+
+    #[test]
+    fn a_saved_picture_reads_back_the_same() {
+        let mut image = Image::filled(5, 3, Colour([10, 20, 30]));
+        image.rgb[7] = 200;
+        let bytes = image.to_png().unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+        let mut read = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut read).unwrap();
+        assert_eq!(read, image.rgb);
+    }
+}

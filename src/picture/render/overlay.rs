@@ -1,0 +1,237 @@
+//! What is written over a picture: title, time, scale bar, and the legend or colour bar.
+
+use std::fmt::Write;
+
+use super::camera::{Camera, Insets};
+use crate::picture::Image;
+use crate::picture::colour::{Colour, ColourMap};
+use crate::picture::text::{self, Anchor, Style, Weight, text_width, write_text};
+use crate::picture::ticks::{self, Ends, nice_below, short};
+
+/// The lettering of a picture.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Overlay {
+    /// Top left; empty for none.
+    pub title: String,
+    /// Top right, usually from [`time_text`]; empty for none.
+    pub time: String,
+    /// Bottom left.
+    pub scale_bar: ScaleBar,
+    /// Bottom right.
+    pub key: Key,
+}
+
+/// The line that says how long a µm is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum ScaleBar {
+    /// A round length, about a sixth of the picture's width.
+    #[default]
+    Auto,
+    /// This length, µm.
+    Length(f64),
+    /// None.
+    Hidden,
+}
+
+/// What the colours mean.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Key {
+    /// Nothing that needs words.
+    #[default]
+    None,
+    /// Kinds of cells.
+    Names(Vec<(String, Colour)>),
+    /// A number per place.
+    Bar {
+        /// The colours.
+        map: ColourMap,
+        /// Value of the first colour.
+        low: f64,
+        /// Value of the last colour.
+        high: f64,
+        /// Quantity with unit.
+        label: String,
+    },
+}
+
+/// A time for a picture or a frame of a movie that lasts until `longest` (both s), in a unit that stays the same for
+/// the whole movie: "t = 12.0 s", "t = 3.5 min", "t = 2.00 h".
+pub fn time_text(time: f64, longest: f64) -> String {
+    let longest = longest.abs().max(time.abs());
+    let (unit, name) = match longest {
+        _ if longest < 1e-3 => (1e-6, "µs"),
+        _ if longest < 1.0 => (1e-3, "ms"),
+        _ if longest < 600.0 => (1.0, "s"),
+        _ if longest < 36_000.0 => (60.0, "min"),
+        _ => (3600.0, "h"),
+    };
+    let digits = (2.0 - (longest / unit * 1.000_001).log10().floor()).clamp(0.0, 2.0);
+    let digits = if longest == 0.0 { 1.0 } else { digits };
+    format!("t = {} {name}", ticks::plain(time / unit, 10f64.powf(-digits)))
+}
+
+impl Overlay {
+    /// Room that the lettering needs around the scene, for [`Camera::fit`].
+    pub fn insets(&self) -> Insets {
+        let above = if self.title.is_empty() && self.time.is_empty() { 0.04 } else { 0.085 };
+        let below = match (&self.key, self.scale_bar) {
+            (Key::Bar { .. }, _) => 0.12,
+            (Key::None, ScaleBar::Hidden) => 0.04,
+            _ => 0.095,
+        };
+        Insets { sides: 0.045, top: above, bottom: below }
+    }
+
+    /// Writes the overlay over a picture taken with a camera. A picture too small for letters stays as it is.
+    pub(super) fn lay_over(&self, image: &mut Image, camera: &Camera) {
+        if image.width < 80 || image.height < 60 {
+            return;
+        }
+        let svg = self.to_svg(image.width, image.height, camera.pixels_per_micron(image.height));
+        if let Ok(mut pixels) = text::svg_to_pixels(&svg, 1.0) {
+            image.lay_over(pixels.data_mut());
+        }
+    }
+
+    /// The overlay as SVG of the picture's size.
+    pub(super) fn to_svg(&self, width: usize, height: usize, pixels_per_micron: f64) -> String {
+        let (width, height) = (width as f64, height as f64);
+        // Lengths below are for a picture 720 px high; a tall narrow one is measured by its width.
+        let unit = (height / 720.0).min(width / 720.0).max(0.45);
+        let mut svg = String::new();
+        let _ = writeln!(
+            svg,
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="{}">"#,
+            text::FONT_FAMILY
+        );
+        let margin = 28.0 * unit;
+        let style = |size: f64, anchor, weight| Style { size: size * unit, anchor, weight };
+        if !self.title.is_empty() {
+            let style = style(21.0, Anchor::Start, Weight::Strong);
+            write_text(&mut svg, margin, margin + 15.0 * unit, style, &self.title);
+        }
+        if !self.time.is_empty() {
+            let style = style(19.0, Anchor::End, Weight::Plain);
+            write_text(&mut svg, width - margin, margin + 15.0 * unit, style, &self.time);
+        }
+        if let Some(length) = self.bar_length(width / pixels_per_micron) {
+            let pixels = length * pixels_per_micron;
+            let (y, thick) = (height - margin - 1.0 * unit, (4.0 * unit).max(2.0).round());
+            let _ = writeln!(
+                svg,
+                r#"<rect class="scale" x="{margin:.1}" y="{:.1}" width="{pixels:.3}" height="{thick}" fill="{}"/>"#,
+                (y - thick).round(),
+                text::INK
+            );
+            let style = style(17.0, Anchor::Middle, Weight::Plain);
+            write_text(&mut svg, margin + 0.5 * pixels, y - thick - 8.0 * unit, style, &length_text(length));
+        }
+        match &self.key {
+            Key::None => {}
+            Key::Names(names) => write_names(&mut svg, names, width - margin, height - margin, unit),
+            Key::Bar { map, low, high, label } => {
+                write_colour_bar(&mut svg, *map, [*low, *high], label, width - margin, height - margin, unit);
+            }
+        }
+        svg.push_str("</svg>\n");
+        svg
+    }
+
+    /// Length of the scale bar in a picture that is `across` µm wide.
+    fn bar_length(&self, across: f64) -> Option<f64> {
+        match self.scale_bar {
+            _ if !(across.is_finite() && across > 0.0) => None,
+            ScaleBar::Hidden => None,
+            ScaleBar::Auto => Some(nice_below(0.2 * across)),
+            ScaleBar::Length(length) => (length > 0.0 && length < across).then_some(length),
+        }
+    }
+}
+
+/// "20 µm", "500 nm", "2 mm".
+fn length_text(length: f64) -> String {
+    let (value, name) = match length {
+        _ if length >= 999.99 => (length * 1e-3, "mm"),
+        _ if length >= 0.999 => (length, "µm"),
+        _ => (length * 1e3, "nm"),
+    };
+    format!("{} {name}", short(value))
+}
+
+/// Dots with names in rows that end at the right margin, from the bottom upwards.
+fn write_names(svg: &mut String, names: &[(String, Colour)], right: f64, bottom: f64, unit: f64) {
+    let (size, dot, gap) = (17.0 * unit, 7.0 * unit, 26.0 * unit);
+    let wide = |name: &str| text_width(name, size) + 2.0 * dot + 9.0 * unit;
+    let mut rows: Vec<Vec<&(String, Colour)>> = vec![Vec::new()];
+    let mut used = 0.0;
+    for entry in names {
+        let more = wide(&entry.0) + gap;
+        if used + more > 0.62 * right && used > 0.0 {
+            rows.push(Vec::new());
+            used = 0.0;
+        }
+        used += more;
+        rows.last_mut().expect("there is a first row").push(entry);
+    }
+    for (number, row) in rows.iter().rev().enumerate() {
+        let y = bottom - 6.0 * unit - 27.0 * unit * number as f64;
+        let total: f64 = row.iter().map(|(name, _)| wide(name)).sum::<f64>() + gap * row.len().saturating_sub(1) as f64;
+        let mut x = right - total;
+        for (name, colour) in row {
+            let _ = writeln!(
+                svg,
+                r#"<circle cx="{:.1}" cy="{:.1}" r="{dot:.1}" fill="{}"/>"#,
+                x + dot,
+                y - 0.34 * size,
+                colour.hex()
+            );
+            let style = Style { size, anchor: Anchor::Start, weight: Weight::Plain };
+            write_text(svg, x + 2.0 * dot + 8.0 * unit, y, style, name);
+            x += wide(name) + gap;
+        }
+    }
+}
+
+/// A horizontal bar of colours with marks below and the quantity above, its right bottom corner at the margin.
+fn write_colour_bar(
+    svg: &mut String,
+    map: ColourMap,
+    [low, high]: [f64; 2],
+    label: &str,
+    right: f64,
+    bottom: f64,
+    unit: f64,
+) {
+    let (long, thick) = (270.0 * unit, 13.0 * unit);
+    let (left, top) = (right - long - 8.0 * unit, bottom - 20.0 * unit - thick);
+    let _ = write!(svg, r#"<linearGradient id="bar">"#);
+    for k in 0..=20 {
+        let share = f64::from(k) / 20.0;
+        let _ = write!(svg, r#"<stop offset="{share}" stop-color="{}"/>"#, map.at(share).hex());
+    }
+    let _ = writeln!(
+        svg,
+        r##"</linearGradient><rect x="{left:.1}" y="{top:.1}" width="{long:.1}" height="{thick:.1}" rx="2" fill="url(#bar)"/>"##
+    );
+    let (low, high) = if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) };
+    let ticks = ticks::linear(low.min(high), low.max(high), 4, Ends::Exact);
+    for (value, text) in &ticks.major {
+        let x = left + (value - ticks.low) / (ticks.high - ticks.low) * long;
+        let _ = writeln!(
+            svg,
+            r#"<path d="M{x:.1} {:.1}v{:.1}" stroke="{}" stroke-width="{:.1}"/>"#,
+            top + thick,
+            4.0 * unit,
+            text::SOFT_INK,
+            unit.max(1.0)
+        );
+        let style = Style { size: 15.0 * unit, anchor: Anchor::Middle, weight: Weight::Soft };
+        write_text(svg, x, top + thick + 20.0 * unit, style, text);
+    }
+    let label = match ticks.exponent {
+        0 => label.to_string(),
+        power => format!("{label}  ×{}", ticks::power_of_ten(power)),
+    };
+    let style = Style { size: 17.0 * unit, anchor: Anchor::End, weight: Weight::Plain };
+    write_text(svg, left + long, top - 8.0 * unit, style, &label);
+}

@@ -1,0 +1,151 @@
+//! What can be drawn: surfaces, lines, a floor and panes, all in µm.
+
+use crate::picture::colour::Colour;
+
+/// Everything in front of the camera.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Scene {
+    /// Cells and other surfaces.
+    pub surfaces: Vec<Surface>,
+    /// Lines and arrows, kept as thin tubes; see [`Scene::add_line`].
+    pub strokes: Surface,
+    /// The substrate that cells sit on and throw shadows on; seen from its free side only.
+    pub floor: Option<Floor>,
+    /// Translucent rectangles: walls, plates.
+    pub panes: Vec<Pane>,
+    /// What is behind everything.
+    pub background: Background,
+}
+
+/// A surface of triangles, closed or open.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Positions of the atoms, µm.
+    pub positions: Vec<[f64; 3]>,
+    /// Normal at each atom for smooth shading; empty to take the mean of the facets around.
+    pub normals: Vec<[f64; 3]>,
+    /// Facets: three atoms each, all turning the same way round so that normals can be averaged.
+    pub facets: Vec<[u32; 3]>,
+    /// Colour.
+    pub colour: SurfaceColour,
+    /// Whether the edges of facets are drawn.
+    pub edges: Edges,
+    /// How much the skin hides: 1 everything, less lets lines, floor and opaque surfaces behind it shine through. Of
+    /// several such skins behind each other only the nearest shows.
+    pub opacity: f32,
+}
+
+impl Default for Surface {
+    fn default() -> Self {
+        Self {
+            positions: Vec::new(),
+            normals: Vec::new(),
+            facets: Vec::new(),
+            colour: SurfaceColour::default(),
+            edges: Edges::default(),
+            opacity: 1.0,
+        }
+    }
+}
+
+/// The colour of a surface, in sRGB.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SurfaceColour {
+    /// The same everywhere.
+    Uniform(Colour),
+    /// One per atom, blended across facets.
+    PerAtom(Vec<Colour>),
+    /// One per facet.
+    PerFacet(Vec<Colour>),
+}
+
+impl Default for SurfaceColour {
+    fn default() -> Self {
+        Self::Uniform(Colour([0xb8, 0xbe, 0xc6]))
+    }
+}
+
+/// Whether the edges of facets are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Edges {
+    /// A smooth skin.
+    #[default]
+    Hidden,
+    /// Thin dark lines, so that the mesh can be judged. They fade where facets get small.
+    Thin,
+}
+
+/// A plane that cells sit on, drawn as a disc with a faint grid that fades into the background.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Floor {
+    /// A point of the plane, µm; the middle of the disc.
+    pub point: [f64; 3],
+    /// Normal towards the free side.
+    pub normal: [f64; 3],
+    /// Distance between grid lines, µm; every fifth is stronger. Zero for no grid.
+    pub grid: f64,
+    /// Radius where the floor has faded away, µm.
+    pub radius: f64,
+}
+
+/// A translucent rectangle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pane {
+    /// Its middle, µm.
+    pub centre: [f64; 3],
+    /// Half its first side as a vector, µm.
+    pub half_u: [f64; 3],
+    /// Half its second side as a vector at a right angle to the first, µm.
+    pub half_v: [f64; 3],
+    /// Colour of the glass.
+    pub colour: Colour,
+}
+
+/// What is behind everything: a vertical gradient.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Background {
+    /// Colour of the top row.
+    pub top: Colour,
+    /// Colour of the bottom row.
+    pub bottom: Colour,
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self { top: Colour([0xff, 0xff, 0xff]), bottom: Colour([0xf1, 0xf3, 0xf6]) }
+    }
+}
+
+impl Background {
+    /// The same colour everywhere.
+    pub fn plain(colour: Colour) -> Self {
+        Self { top: colour, bottom: colour }
+    }
+}
+
+impl Surface {
+    /// A surface of one colour with smooth shading and hidden edges.
+    pub fn new(positions: Vec<[f64; 3]>, facets: Vec<[u32; 3]>, colour: Colour) -> Self {
+        Self { positions, facets, colour: SurfaceColour::Uniform(colour), ..Self::default() }
+    }
+
+    /// Whether a facet names atoms that exist and have finite positions.
+    pub(super) fn is_drawable(&self, facet: &[u32; 3]) -> bool {
+        facet.iter().all(|atom| self.positions.get(*atom as usize).is_some_and(|p| p.iter().all(|v| v.is_finite())))
+    }
+
+    /// The unit normal at every atom: as given, or the mean over the facets around weighted by their area.
+    pub(super) fn unit_normals(&self) -> Vec<nalgebra::Vector3<f32>> {
+        let unit = |sum: crate::Vec3| sum.try_normalize(1e-300).unwrap_or(crate::Vec3::z()).cast::<f32>();
+        if self.normals.len() == self.positions.len() {
+            return self.normals.iter().map(|n| unit(crate::Vec3::from(*n))).collect();
+        }
+        let mut sums = vec![crate::Vec3::zeros(); self.positions.len()];
+        for facet in self.facets.iter().filter(|facet| self.is_drawable(facet)) {
+            let [a, b, c] = facet.map(|atom| crate::Vec3::from(self.positions[atom as usize]));
+            let area = (b - a).cross(&(c - a));
+            facet.iter().for_each(|atom| sums[*atom as usize] += area);
+        }
+        sums.into_iter().map(unit).collect()
+    }
+}
