@@ -1,14 +1,32 @@
 //! All that resists a change of shape in one kind of cell: a list per force, empty where a feature is absent.
 
+use super::angles::Angles;
+use super::barrier::Barrier;
+use super::bending::Bending;
 use super::lanes::{BlockWork, Real, Vectors, VectorsMut, dispatch};
+use super::membrane::Membrane;
 use super::shape_memory::ShapeMemory;
+use super::springs::Springs;
 use super::stiffness::StiffnessMatrix;
+use super::tension::Tension;
 
 /// The elastic forces of a mesh, shared by all cells that have it.
 #[derive(Debug, Clone, Default)]
 pub struct Elasticity {
     /// Shape memory in the triplet form.
     pub shape_memory: Vec<ShapeMemory>,
+    /// Shape memory in the (α, β, γ) form.
+    pub angles: Vec<Angles>,
+    /// In-plane elasticity of a membrane.
+    pub membrane: Vec<Membrane>,
+    /// Surface tension and the modulus of the total area.
+    pub tension: Vec<Tension>,
+    /// Bending of a membrane.
+    pub bending: Vec<Bending>,
+    /// Springs on edges and links between any two atoms.
+    pub springs: Vec<Springs>,
+    /// The barrier against folding and collapsing facets.
+    pub barrier: Vec<Barrier>,
 }
 
 impl Elasticity {
@@ -21,6 +39,12 @@ impl Elasticity {
     pub fn stiffness(&self, atoms: usize) -> StiffnessMatrix {
         let mut matrix = StiffnessMatrix::new(atoms);
         self.shape_memory.iter().for_each(|force| force.add_stiffness(&mut matrix));
+        self.angles.iter().for_each(|force| force.add_stiffness(&mut matrix));
+        self.membrane.iter().for_each(|force| force.add_stiffness(&mut matrix));
+        self.tension.iter().for_each(|force| force.add_stiffness(&mut matrix));
+        self.bending.iter().for_each(|force| force.add_stiffness(&mut matrix));
+        self.springs.iter().for_each(|force| force.add_stiffness(&mut matrix));
+        self.barrier.iter().for_each(|force| force.add_stiffness(&mut matrix));
         matrix
     }
 }
@@ -44,6 +68,24 @@ impl BlockWork for Work<'_> {
             let mut f = VectorsMut::<T>::new(token, f, stride, part);
             let mut sum = T::load(token, energy[part]);
             for force in &self.elasticity.shape_memory {
+                sum += force.add_forces(&x, &mut f);
+            }
+            for force in &self.elasticity.angles {
+                sum += force.add_forces(&x, &mut f);
+            }
+            for force in &self.elasticity.membrane {
+                sum += force.add_forces(&x, &mut f);
+            }
+            for force in &self.elasticity.tension {
+                sum += force.add_forces(&x, &mut f);
+            }
+            for force in &self.elasticity.bending {
+                sum += force.add_forces(&x, &mut f);
+            }
+            for force in &self.elasticity.springs {
+                sum += force.add_forces(&x, &mut f);
+            }
+            for force in &self.elasticity.barrier {
                 sum += force.add_forces(&x, &mut f);
             }
             energy[part] = sum.raw();
