@@ -32,6 +32,7 @@
 
 mod cells;
 mod check;
+mod compile;
 mod document;
 mod loads;
 mod measures;
@@ -45,6 +46,7 @@ mod values;
 mod words;
 
 pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
+pub use compile::{Compiled, Schedule, compile};
 pub use document::Document;
 pub use loads::{Cap, CapExtent, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
 pub use measures::{Comparison, Measure, MeasureKind, Over, Reduction};

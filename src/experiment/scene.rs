@@ -22,6 +22,9 @@ pub struct Run {
 pub struct Integrator {
     /// The method.
     pub method: Method,
+    /// Order of the implicit method: 2 has an error estimate and adapts, 1 costs half and needs a fixed step.
+    #[schemars(range(min = 1, max = 2))]
+    pub order: u8,
     /// A fixed step. Without it the implicit method adapts and the others choose a stable step.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
@@ -39,7 +42,7 @@ pub struct Integrator {
 
 impl Default for Integrator {
     fn default() -> Self {
-        Self { method: Method::Implicit, step: None, tolerance: 1e-3, max_step: None, allow_unstable: false }
+        Self { method: Method::Implicit, order: 2, step: None, tolerance: 1e-3, max_step: None, allow_unstable: false }
     }
 }
 

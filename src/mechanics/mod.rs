@@ -15,6 +15,7 @@ pub mod lanes;
 pub mod membrane;
 pub mod rigid;
 pub mod shape_memory;
+pub mod shape_modulus;
 pub mod springs;
 pub mod stability;
 pub mod stiffness;

@@ -28,6 +28,10 @@ impl StiffnessMatrix {
         self.add(i, j, -stiffness);
         self.add(j, i, -stiffness);
     }
+    /// The entry on the diagonal.
+    pub fn diagonal(&self, i: usize) -> f64 {
+        self.rows[i].get(&(i as u32)).copied().unwrap_or(0.0)
+    }
     /// The entries of a row, by column.
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.rows[i].iter().map(|(&j, &value)| (j as usize, value))

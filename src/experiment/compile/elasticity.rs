@@ -1,0 +1,171 @@
+//! Builds the elastic forces of a type of cells.
+
+use super::super::{
+    BendingRest, CellType, Document, Form, Law, LinkPattern, Linked, Membrane as MembraneText,
+    Reaction as ReactionText, Rest, ShapeStrength,
+};
+use super::mesh::Built;
+use super::select::mirrored;
+use crate::Vec3;
+use crate::error::Fault;
+use crate::geometry::{self, Surface, Topology};
+use crate::mechanics::angles::Angles;
+use crate::mechanics::barrier::{Barrier, BarrierRules};
+use crate::mechanics::bending::{Bending, RestAngle};
+use crate::mechanics::elasticity::Elasticity;
+use crate::mechanics::membrane::{Membrane, MembraneLaw};
+use crate::mechanics::shape_memory::{Reaction, ShapeMemory};
+use crate::mechanics::shape_modulus::stiffness_of_modulus;
+use crate::mechanics::springs::{Spring, Springs};
+use crate::mechanics::tension::Tension;
+
+/// The energy scale of the barrier where the document names none: this part of the elastic energy that moves an atom
+/// by an edge, so that the barrier is as stiff as the cell that it guards.
+const BARRIER_SHARE: f64 = 0.1;
+
+/// All elastic forces of a type; faults for what only the mesh can tell.
+pub fn elasticity(
+    document: &Document,
+    key: &str,
+    cell: &CellType,
+    built: &Built,
+    faults: &mut Vec<Fault>,
+) -> Elasticity {
+    let rest = &built.turned;
+    let topology = Topology::of(rest);
+    let mut elasticity = Elasticity::default();
+    add_shape_memory(document, key, cell, rest, &topology, &mut elasticity, faults);
+    if let Some(membrane) = &cell.mechanics.membrane {
+        add_membrane(document, key, membrane, rest, &topology, &mut elasticity, faults);
+    }
+    if let Some(springs) = &cell.mechanics.springs {
+        elasticity.springs.push(Springs::on_edges(&rest.positions, &topology.edges, springs.stiffness.value()));
+    }
+    add_links(document, key, cell, built, &mut elasticity, faults);
+    add_barrier(cell, rest, &topology, &mut elasticity);
+    elasticity
+}
+
+fn add_shape_memory(
+    document: &Document,
+    key: &str,
+    cell: &CellType,
+    rest: &Surface,
+    topology: &Topology,
+    elasticity: &mut Elasticity,
+    faults: &mut Vec<Fault>,
+) {
+    let Some(memory) = &cell.mechanics.shape_memory else { return };
+    let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
+    let stiffness = match memory.strength {
+        ShapeStrength::Stiffness(stiffness) => stiffness.value(),
+        ShapeStrength::ShapeModulus(modulus) => match stiffness_of_modulus(rest, &rings, modulus.value()) {
+            Some(stiffness) => stiffness,
+            None => {
+                let fault = Fault::new("a flat mesh has no shape modulus: its shape memory does not resist stretching")
+                    .help("give shape_memory = { stiffness = \"…\" }, or use membrane or springs");
+                let place = document.place(&format!("{key}.mechanics.shape_memory"), "on a flat mesh");
+                faults.push(place.into_iter().fold(fault, Fault::at));
+                return;
+            }
+        },
+    };
+    let reaction = match memory.reaction {
+        ReactionText::Exact => Reaction::Exact,
+        ReactionText::Spread => Reaction::Spread,
+    };
+    match memory.form {
+        Form::Triplets => {
+            elasticity.shape_memory.push(ShapeMemory::new(&rest.positions, &rings, stiffness, reaction));
+        }
+        Form::Angles => elasticity.angles.push(Angles::new(&rest.positions, &rings, stiffness)),
+    }
+}
+
+fn add_membrane(
+    document: &Document,
+    key: &str,
+    text: &MembraneText,
+    rest: &Surface,
+    topology: &Topology,
+    elasticity: &mut Elasticity,
+    faults: &mut Vec<Fault>,
+) {
+    let (shear, area) = (text.shear.value(), text.area.value());
+    let law = match text.law {
+        Law::Skalak => MembraneLaw::Skalak { shear, area },
+        Law::NeoHookean => MembraneLaw::NeoHookean { shear, area, hardening: text.hardening },
+    };
+    if text.law == Law::Skalak && area < shear {
+        let fault = Fault::new("Skalak's law needs an area modulus of at least the shear modulus")
+            .help("raise `area`, or use law = \"neo_hookean\"");
+        let place = document.place(&format!("{key}.mechanics.membrane.area"), "below the shear modulus");
+        faults.push(place.into_iter().fold(fault, Fault::at));
+    }
+    if shear > 0.0 || area > 0.0 {
+        elasticity.membrane.push(Membrane::new(&rest.positions, &rest.facets, law));
+    }
+    if text.tension.value() != 0.0 || text.total_area.value() != 0.0 {
+        let (tension, total) = (text.tension.value(), text.total_area.value());
+        elasticity.tension.push(Tension::new(&rest.positions, &rest.facets, tension, total));
+    }
+    if text.bending.value() > 0.0 {
+        let angle = match text.bending_rest {
+            BendingRest::Shape => RestAngle::Remembered,
+            BendingRest::Flat => RestAngle::Flat,
+        };
+        elasticity.bending.push(Bending::new(&rest.positions, &topology.flaps, text.bending.value(), angle));
+    }
+}
+
+fn add_links(
+    document: &Document,
+    key: &str,
+    cell: &CellType,
+    built: &Built,
+    elasticity: &mut Elasticity,
+    faults: &mut Vec<Fault>,
+) {
+    let atoms = built.plain.positions.len();
+    for (i, link) in cell.links.iter().enumerate() {
+        let pairs = match &link.linked {
+            Linked::Pairs(pairs) => pairs.clone(),
+            Linked::Pattern(LinkPattern::Horizontal) => mirrored(&built.plain, |p| Vec3::new(-p.x, -p.y, p.z)),
+            Linked::Pattern(LinkPattern::Diagonal) => mirrored(&built.plain, |p| -p),
+        };
+        let mut springs = Vec::new();
+        for (j, &[from, to]) in pairs.iter().enumerate() {
+            if from as usize >= atoms || to as usize >= atoms || from == to {
+                let fault = Fault::new(format!("atoms {from} and {to} cannot be linked: the mesh has {atoms} atoms"))
+                    .help(format!("give two different atoms from 0 to {}", atoms - 1));
+                let place = document.place(&format!("{key}.links[{i}].pairs[{j}]"), "not two atoms of this mesh");
+                faults.push(place.into_iter().fold(fault, Fault::at));
+                continue;
+            }
+            let apart = (built.plain.positions[from as usize] - built.plain.positions[to as usize]).norm();
+            let rest_length = match link.rest() {
+                Rest::Length(length) => length.value(),
+                Rest::Ratio(ratio) => ratio * apart,
+            };
+            springs.push(Spring { from, to, rest_length, stiffness: link.stiffness.value() });
+        }
+        elasticity.springs.push(Springs::between(springs));
+    }
+}
+
+fn add_barrier(cell: &CellType, rest: &Surface, topology: &Topology, elasticity: &mut Elasticity) {
+    let text = &cell.mechanics.barrier;
+    let edge = geometry::mean_edge_length(rest);
+    let stiffness = match text.stiffness {
+        Some(stiffness) => stiffness.value(),
+        None => {
+            let matrix = elasticity.stiffness(rest.positions.len());
+            BARRIER_SHARE * (0..rest.positions.len()).map(|i| matrix.diagonal(i)).fold(0.0, f64::max)
+        }
+    };
+    if !text.active || stiffness == 0.0 {
+        return;
+    }
+    let rules = BarrierRules { energy: stiffness * edge * edge, area_share: text.area, fold_angle: text.angle.value() };
+    elasticity.barrier.push(Barrier::new(&rest.positions, &rest.facets, &topology.flaps, rules));
+}

@@ -1,0 +1,64 @@
+//! Builds the surface of a type of cells.
+
+use super::super::{CellType, Document, Mesh, VolumeRule};
+use super::unit;
+use crate::Vec3;
+use crate::error::{Error, Fault};
+use crate::geometry::{self, Surface, SurfaceRules};
+use nalgebra::{Unit, UnitQuaternion};
+
+/// A surface as its mesh is made, and turned as the document says.
+pub struct Built {
+    /// Before it is turned: symmetric about the z axis where the shape is.
+    pub plain: Surface,
+    /// Turned.
+    pub turned: Surface,
+}
+
+/// The surface of a type, or nothing and a fault.
+pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Vec<Fault>) -> Option<Built> {
+    let plain = match &cell.mesh {
+        Mesh::RedCell { diameter, level } => geometry::red_cell(diameter.value(), u32::from(*level)),
+        Mesh::Icosphere { radius, level } => geometry::icosphere(radius.value(), u32::from(*level)),
+        Mesh::Octasphere { radius, divisions } => geometry::octasphere(radius.value(), *divisions),
+        Mesh::Box { size, divisions } => geometry::box_surface(size.map(|x| x.value()), *divisions),
+        Mesh::Sheet { size, divisions } => {
+            geometry::sheet(size[0].value(), size[1].value(), divisions[0], divisions[1])
+        }
+        Mesh::Triangle { side } => triangle(side.value()),
+        Mesh::File { path, unit } => {
+            let free = cell.mechanics.volume.rule == Some(VolumeRule::Free);
+            let rules = if free { &SurfaceRules::SHEET } else { &SurfaceRules::CELL };
+            match geometry::read_checked_surface(&document.resolve(path), unit.micrometres(), rules) {
+                Ok(surface) => surface,
+                Err(Error::Input(found)) => {
+                    let key = format!("cells.{name}.mesh.path");
+                    let placed = |fault: Fault| match (&fault.place, document.place(&key, "this file")) {
+                        (None, Some(place)) => fault.at(place),
+                        _ => fault,
+                    };
+                    faults.extend(found.into_iter().map(placed));
+                    return None;
+                }
+                Err(other) => {
+                    faults.push(Fault::new(other.to_string()));
+                    return None;
+                }
+            }
+        }
+    };
+    let mut turned = plain.clone();
+    if let Some(orientation) = &cell.orientation {
+        let axis = Unit::new_unchecked(unit(orientation.axis));
+        geometry::rotate(&mut turned, &UnitQuaternion::from_axis_angle(&axis, orientation.angle.value()));
+    }
+    Some(Built { plain, turned })
+}
+
+/// One equilateral facet in the plane z = 0: atoms 0 and 1 on its base, atom 2 above it along y.
+fn triangle(side: f64) -> Surface {
+    let height = side * 0.75f64.sqrt();
+    let positions =
+        vec![Vec3::new(-0.5 * side, 0.0, 0.0), Vec3::new(0.5 * side, 0.0, 0.0), Vec3::new(0.0, height, 0.0)];
+    Surface { positions, facets: vec![[0, 1, 2]] }
+}

@@ -1,0 +1,208 @@
+//! From what the user wrote to what it means: a [`Model`] in µm, s and pN, and the [`State`] it starts from.
+
+mod elasticity;
+mod mesh;
+mod place;
+mod select;
+mod steps;
+
+use super::{CellType, Document, Experiment, Space, Spread, VolumeRule as Rule};
+use crate::Vec3;
+use crate::cell::motility::{BrownianMotility, Space as WalkSpace};
+use crate::error::{Error, Fault, Result};
+use crate::geometry::{self, Surface};
+use crate::mechanics::course::Course;
+use crate::sim::{Attraction, Kind, Load, Model, Plane, State, VolumeRule};
+
+/// When the run records.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Schedule {
+    /// Simulated time between frames, s.
+    pub every: f64,
+    /// Simulated time between checkpoints, s.
+    pub checkpoint: f64,
+    /// Whether the force on every atom is recorded.
+    pub forces: bool,
+}
+
+/// An experiment ready to run.
+#[derive(Debug, Clone)]
+pub struct Compiled {
+    /// What it means.
+    pub model: Model,
+    /// Where it starts.
+    pub state: State,
+    /// When it is recorded.
+    pub schedule: Schedule,
+}
+
+/// Compiles a checked document.
+///
+/// # Errors
+/// [`Error::Input`] with every fault that shows only once meshes are built: files that cannot be read, atoms that do
+/// not exist, a step that is not stable.
+pub fn compile(document: &Document) -> Result<Compiled> {
+    let experiment = &document.experiment;
+    let (mut kinds, mut places, mut faults) = (Vec::new(), Vec::new(), Vec::new());
+    let mut first_cell = 0;
+    for (name, cell) in &experiment.cells {
+        let before = faults.len();
+        let Some(surface) = mesh::surface(document, name, cell, &mut faults) else { continue };
+        let kind = compile_kind(document, name, cell, surface, &mut faults);
+        if faults.len() > before {
+            continue;
+        }
+        let kind = kind.with_cells(first_cell, cell.count());
+        first_cell += cell.count();
+        places.push(place::place(experiment, cell, &kind));
+        kinds.push(kind);
+    }
+    if !faults.is_empty() {
+        return Err(Error::Input(faults));
+    }
+    let model = Model {
+        seed: experiment.seed,
+        kinks: kinks(&kinds),
+        integrator: steps::integrator(document, &mut kinds)?,
+        kinds,
+        planes: planes(experiment),
+        gravity: vector(experiment.environment.gravity.map_or([0.0; 3], |g| g.map(|a| a.value()))),
+        until: experiment.run.until.value(),
+    };
+    let schedule = steps::schedule(document, &model)?;
+    let state = State::new(&model, &places);
+    Ok(Compiled { model, state, schedule })
+}
+
+/// Three numbers as a vector.
+fn vector(components: [f64; 3]) -> Vec3 {
+    Vec3::from(components)
+}
+
+/// The unit vector along a direction; the document's checks have refused the null vector.
+fn unit(direction: [f64; 3]) -> Vec3 {
+    vector(direction).normalize()
+}
+
+fn compile_kind(
+    document: &Document,
+    name: &str,
+    cell: &CellType,
+    surface: mesh::Built,
+    faults: &mut Vec<Fault>,
+) -> Kind {
+    let key = format!("cells.{name}");
+    let elasticity = elasticity::elasticity(document, &key, cell, &surface, faults);
+    let atoms = surface.turned.positions.len() as f64;
+    let mut kind = Kind::new(name, surface.turned, elasticity);
+    kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
+    kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
+    kind.held = held(document, &key, cell, &kind.rest, faults);
+    kind.volume = volume_rule(document, &key, cell, &kind, faults);
+    kind.loads = loads(document, &key, cell, &kind.rest, faults);
+    kind.brownian = cell.motility.brownian.as_ref().map(|brownian| BrownianMotility {
+        speed: brownian.speed.value(),
+        persistence: brownian.persistence.value(),
+        space: match brownian.space {
+            Space::Plane => WalkSpace::Plane,
+            Space::Volume => WalkSpace::Volume,
+        },
+    });
+    kind.attraction = cell.motility.attraction.as_ref().map(|attraction| Attraction {
+        to: vector(attraction.to.map(|x| x.value())),
+        stiffness: attraction.stiffness.value(),
+    });
+    if let Some(attraction) = kind.attraction {
+        (0..kind.atoms()).for_each(|atom| kind.stiffness.add(atom, atom, attraction.stiffness));
+    }
+    kind
+}
+
+/// Factors of the atoms that are held: 0 held, 1 free; empty when none is.
+fn held(document: &Document, key: &str, cell: &CellType, rest: &Surface, faults: &mut Vec<Fault>) -> Vec<f64> {
+    if cell.fixed.is_empty() {
+        return Vec::new();
+    }
+    let mut factors = vec![1.0; 3 * rest.positions.len()];
+    for (i, fixed) in cell.fixed.iter().enumerate() {
+        let atoms = select::atoms(document, &format!("{key}.fixed[{i}]"), &fixed.selection, rest, faults);
+        for atom in atoms {
+            fixed.axes.iter().for_each(|axis| factors[3 * atom as usize + *axis as usize] = 0.0);
+        }
+    }
+    factors
+}
+
+fn loads(document: &Document, key: &str, cell: &CellType, rest: &Surface, faults: &mut Vec<Fault>) -> Vec<Load> {
+    let areas = geometry::atom_areas(rest);
+    let mut loads = Vec::new();
+    for (i, load) in cell.loads.iter().enumerate() {
+        let atoms = select::atoms(document, &format!("{key}.loads[{i}]"), &load.selection, rest, faults);
+        let weight = |atom: u32| match load.spread {
+            Spread::Equal => 1.0,
+            Spread::Area => areas[atom as usize],
+        };
+        let total: f64 = atoms.iter().map(|&atom| weight(atom)).sum();
+        loads.push(Load {
+            name: load.name.clone(),
+            atoms: atoms.into_iter().map(|atom| (atom, weight(atom) / total)).collect(),
+            direction: unit(load.direction),
+            force: course(load.force.points()),
+        });
+    }
+    loads
+}
+
+/// The document's checks have made sure that times rise.
+fn course(points: Vec<(f64, f64)>) -> Course {
+    Course::through(points).unwrap_or_else(|| Course::constant(0.0))
+}
+
+fn volume_rule(document: &Document, key: &str, cell: &CellType, kind: &Kind, faults: &mut Vec<Fault>) -> VolumeRule {
+    let control = &cell.mechanics.volume;
+    let rule = control.rule.unwrap_or(if kind.closed { Rule::Exact } else { Rule::Free });
+    if rule != Rule::Free && !kind.closed {
+        let fault = Fault::new(format!("the surface of `{}` is open and encloses no volume", kind.name))
+            .help("use volume = { rule = \"free\" }, or a closed mesh");
+        let place = document.place(&format!("{key}.mechanics.volume"), "needs a closed surface");
+        faults.push(place.into_iter().fold(fault, Fault::at));
+        return VolumeRule::Free;
+    }
+    let rest = geometry::volume(&kind.rest);
+    let factor = match (&control.target, &control.ratio) {
+        (Some(target), _) => course(target.points().into_iter().map(|(t, v)| (t, v / rest)).collect()),
+        (None, Some(ratio)) => course(ratio.points()),
+        (None, None) => Course::constant(1.0),
+    };
+    match rule {
+        Rule::Free => VolumeRule::Free,
+        Rule::Exact => VolumeRule::Exact(factor),
+        Rule::Compressible => {
+            VolumeRule::Compressible { modulus: control.modulus.map_or(0.0, |modulus| modulus.value()), course: factor }
+        }
+    }
+}
+
+fn planes(experiment: &Experiment) -> Vec<Plane> {
+    let plane = |plane: &super::Plane| Plane {
+        name: plane.name.clone(),
+        point: vector(plane.point.map(|x| x.value())),
+        normal: unit(plane.normal),
+    };
+    experiment.planes.iter().map(plane).collect()
+}
+
+/// All times at which a course bends, rising.
+fn kinks(kinds: &[Kind]) -> Vec<f64> {
+    let mut kinks: Vec<f64> = Vec::new();
+    for kind in kinds {
+        kind.loads.iter().for_each(|load| kinks.extend(load.force.kinks()));
+        if let VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } = &kind.volume {
+            kinks.extend(course.kinks());
+        }
+    }
+    kinks.retain(|&kink| kink > 0.0);
+    kinks.sort_by(f64::total_cmp);
+    kinks.dedup();
+    kinks
+}

@@ -1,0 +1,51 @@
+//! Puts cells where they start.
+
+use super::super::{CellType, Experiment, Placement};
+use super::vector;
+use crate::Vec3;
+use crate::random::{Purpose, Stream};
+use crate::sim::Kind;
+
+/// Distance of neighbours on the default grid over the cell's largest extent.
+const GRID_SPACING: f64 = 1.5;
+
+/// Positions of all atoms of all cells of a kind: `[cell][atom]`.
+pub fn place(experiment: &Experiment, cell: &CellType, kind: &Kind) -> Vec<Vec<Vec3>> {
+    let number = cell.count();
+    let centres: Vec<Vec3> = match &cell.placement {
+        Some(Placement::At { at }) => at.iter().map(|x| vector(x.map(|x| x.value()))).collect(),
+        Some(Placement::Grid { grid, spacing, origin }) => {
+            grid_places(*grid, spacing.value(), vector(origin.map(|x| x.value())))
+        }
+        Some(Placement::Random { random_from, random_to }) => {
+            let (low, high) = (vector(random_from.map(|x| x.value())), vector(random_to.map(|x| x.value())));
+            (0..number).map(|i| random_place(experiment.seed, (kind.first_cell + i) as u32, low, high)).collect()
+        }
+        None => {
+            let side = (number as f64).sqrt().ceil() as u32;
+            let extent = crate::geometry::bounding_box(&kind.rest.positions).map_or(1.0, |(a, b)| (b - a).max());
+            grid_places([side, side, 1], GRID_SPACING * extent, Vec3::zeros())
+        }
+    };
+    let at = |centre: &Vec3| kind.rest.positions.iter().map(|p| p + centre).collect();
+    centres.iter().take(number).map(at).collect()
+}
+
+fn grid_places(grid: [u32; 3], spacing: f64, origin: Vec3) -> Vec<Vec3> {
+    let middle = Vec3::from(grid.map(|n| 0.5 * f64::from(n - 1)));
+    let mut places = Vec::new();
+    for z in 0..grid[2] {
+        for y in 0..grid[1] {
+            for x in 0..grid[0] {
+                places.push(origin + spacing * (Vec3::new(f64::from(x), f64::from(y), f64::from(z)) - middle));
+            }
+        }
+    }
+    places
+}
+
+fn random_place(seed: u64, cell: u32, low: Vec3, high: Vec3) -> Vec3 {
+    let mut stream = Stream::new(seed, Purpose::Placement, cell, 0);
+    let ([x, y], [z, _]) = (stream.uniform_pair(), stream.uniform_pair());
+    low + (high - low).component_mul(&Vec3::new(x, y, z))
+}

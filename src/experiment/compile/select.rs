@@ -1,0 +1,70 @@
+//! Finds the atoms that a selection means.
+
+use super::super::{Cap, CapExtent, Document, Selection};
+use super::unit;
+use crate::Vec3;
+use crate::error::Fault;
+use crate::geometry::Surface;
+
+/// The atoms of a selection, each once, rising; faults for those that do not exist.
+pub fn atoms(
+    document: &Document,
+    key: &str,
+    selection: &Selection,
+    rest: &Surface,
+    faults: &mut Vec<Fault>,
+) -> Vec<u32> {
+    let count = rest.positions.len();
+    let mut chosen: Vec<u32> = match selection {
+        Selection::All(_) => (0..count as u32).collect(),
+        Selection::Cap(cap) => cap_atoms(cap, rest),
+        Selection::Atoms(list) => {
+            for (i, &atom) in list.iter().enumerate().filter(|(_, atom)| **atom as usize >= count) {
+                let fault = Fault::new(format!("atom {atom} does not exist: the mesh has {count} atoms"))
+                    .help(format!("atoms are numbered from 0 to {}", count - 1));
+                let place = document.place(&format!("{key}.atoms[{i}]"), "no such atom");
+                faults.push(place.into_iter().fold(fault, Fault::at));
+            }
+            list.iter().copied().filter(|&atom| (atom as usize) < count).collect()
+        }
+    };
+    chosen.sort_unstable();
+    chosen.dedup();
+    chosen
+}
+
+/// The atoms of the rest shape that lie furthest along a direction from its centre.
+fn cap_atoms(cap: &Cap, rest: &Surface) -> Vec<u32> {
+    let direction = unit(cap.direction);
+    let centre = rest.positions.iter().sum::<Vec3>() / rest.positions.len() as f64;
+    let height = |atom: &u32| (rest.positions[*atom as usize] - centre).dot(&direction);
+    let mut order: Vec<u32> = (0..rest.positions.len() as u32).collect();
+    // Heights that differ by round-off count as equal, so that symmetric atoms keep the order of their numbers.
+    let size = order.iter().map(|atom| height(atom).abs()).fold(0.0, f64::max);
+    order.sort_by_key(|atom| ((-height(atom) / size * 1e9).round() as i64, *atom));
+    match cap.extent {
+        CapExtent::Number(number) => order.truncate(number as usize),
+        CapExtent::Fraction(fraction) => {
+            let number = (fraction * rest.positions.len() as f64).round() as usize;
+            order.truncate(number.max(1));
+        }
+        CapExtent::Angle(angle) => order.retain(|atom| {
+            let away = rest.positions[*atom as usize] - centre;
+            away.dot(&direction) >= (angle.value().cos() - 1e-12) * away.norm()
+        }),
+    }
+    order
+}
+
+/// Pairs of atoms that are each other's image under a symmetry of the plain mesh, each pair once.
+pub fn mirrored(plain: &Surface, image: impl Fn(Vec3) -> Vec3) -> Vec<[u32; 2]> {
+    let size = plain.positions.iter().map(|p| p.norm()).fold(0.0, f64::max);
+    let find = |place: Vec3| plain.positions.iter().position(|p| (p - place).norm() < 1e-6 * size);
+    let mut pairs = Vec::new();
+    for (i, place) in plain.positions.iter().enumerate() {
+        if let Some(j) = find(image(*place)).filter(|&j| j > i) {
+            pairs.push([i as u32, j as u32]);
+        }
+    }
+    pairs
+}

@@ -1,0 +1,86 @@
+//! Chooses how the run steps and when it records.
+
+use super::super::{Document, Method as Text};
+use super::Schedule;
+use crate::error::{Error, Fault, Result};
+use crate::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use crate::mechanics::stability::{Body, largest_stable_step};
+use crate::sim::{Kind, Model};
+
+/// The part of the largest stable step that is taken where the user names none: stiffness grows as a cell deforms.
+const SAFETY: f64 = 0.5;
+
+/// The default longest step, and the default time between frames, over the duration of the run.
+const HUNDREDTH: f64 = 0.01;
+
+/// Scheme and step; measures the true stiffness of every kind where the scheme needs it.
+pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator> {
+    let text = &document.experiment.run.integrator;
+    let order = if text.order == 1 { Order::First } else { Order::Second };
+    let method = match text.method {
+        Text::Implicit => Method::Implicit { order },
+        Text::Explicit => Method::Explicit,
+        Text::Euler => Method::Euler,
+        Text::SemiImplicitEuler => Method::SemiImplicitEuler,
+        Text::Verlet => Method::Verlet,
+        Text::RungeKutta4 => Method::RungeKutta4,
+    };
+    let until = document.experiment.run.until.value();
+    if let Method::Implicit { order } = method {
+        let largest = text.max_step.map_or(HUNDREDTH * until, |step| step.value());
+        let size = match (text.step, order) {
+            (Some(step), _) => StepSize::Fixed(step.value()),
+            (None, Order::Second) => StepSize::Adaptive { tolerance: text.tolerance, largest },
+            (None, Order::First) => {
+                let fault = Fault::new("the implicit scheme of order 1 has no error estimate to choose a step by")
+                    .help("give run.integrator.step, or use order = 2");
+                let place = document.place("run.integrator.order", "needs a fixed step");
+                return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
+            }
+        };
+        return Ok(Integrator { method, size });
+    }
+    let mut limit = (f64::INFINITY, String::new());
+    for kind in kinds {
+        kind.largest_stiffness = kind.measure_largest_stiffness();
+        let body = Body { mass: kind.mass, drag: kind.drag, largest_stiffness: kind.largest_stiffness };
+        let stable = largest_stable_step(method, &body);
+        if stable < limit.0 {
+            limit = (stable, kind.name.clone());
+        }
+    }
+    let Some(step) = text.step.map(|step| step.value()) else {
+        let step = (SAFETY * limit.0).min(HUNDREDTH * until);
+        return Ok(Integrator { method, size: StepSize::Fixed(step) });
+    };
+    if step > limit.0 && !text.allow_unstable {
+        let fault = Fault::new(format!("the step is not stable: {step:.3e} s is above the limit of {:.3e} s", limit.0))
+            .help(format!(
+                "the limit comes from the stiffness of type `{}`; leave the step out and a stable one is chosen, use \
+                 method = \"implicit\", or set allow_unstable = true to see it fail",
+                limit.1
+            ));
+        let place = document.place("run.integrator.step", "too large");
+        return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
+    }
+    Ok(Integrator { method, size: StepSize::Fixed(step) })
+}
+
+/// When to record. Output never shortens a step, so that frames may not be asked for more often than steps are made.
+pub fn schedule(document: &Document, model: &Model) -> Result<Schedule> {
+    let output = &document.experiment.output;
+    let every = output.every.map_or(HUNDREDTH * model.until, |every| every.value());
+    let longest = match model.integrator.size {
+        StepSize::Fixed(step) => step,
+        StepSize::Adaptive { largest, .. } => largest,
+    };
+    if every < longest * (1.0 - 1e-9) {
+        let fault =
+            Fault::new(format!("frames are asked for every {every:.3e} s, but a step may take {longest:.3e} s"))
+                .help("output never shortens a step: set run.integrator.max_step (or step) to at most output.every");
+        let place = document.place("output.every", "shorter than a step");
+        return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
+    }
+    let checkpoint = output.checkpoint.map_or(0.1 * model.until, |checkpoint| checkpoint.value());
+    Ok(Schedule { every, checkpoint, forces: output.forces })
+}
