@@ -67,6 +67,8 @@ pub struct Kind {
     pub volume: VolumeRule,
     /// Loads.
     pub loads: Vec<Load>,
+    /// Pairs of atoms whose links are drawn.
+    pub drawn_links: Vec<[u32; 2]>,
     /// Brownian persistence.
     pub brownian: Option<BrownianMotility>,
     /// Central attraction.
@@ -136,6 +138,7 @@ impl Kind {
             held: Vec::new(),
             volume: if closed { VolumeRule::Exact(Course::constant(1.0)) } else { VolumeRule::Free },
             loads: Vec::new(),
+            drawn_links: Vec::new(),
             brownian: None,
             attraction: None,
             first_cell: 0,

@@ -92,9 +92,11 @@ fn compile_kind(
     faults: &mut Vec<Fault>,
 ) -> Kind {
     let key = format!("cells.{name}");
-    let elasticity = elasticity::elasticity(document, &key, cell, &surface, faults);
+    let mut drawn_links = Vec::new();
+    let elasticity = elasticity::elasticity(document, &key, cell, &surface, &mut drawn_links, faults);
     let atoms = surface.turned.positions.len() as f64;
     let mut kind = Kind::new(name, surface.turned, elasticity);
+    kind.drawn_links = drawn_links;
     kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
     kind.held = held(document, &key, cell, &kind.rest, faults);
