@@ -1,0 +1,8 @@
+//! What the result file promises: what was recorded is read back, whatever happened to the run.
+
+mod example;
+mod faults;
+mod kill;
+mod python;
+mod resume;
+mod round_trip;
