@@ -2,7 +2,5 @@
 
 mod example;
 mod faults;
-mod kill;
-mod python;
 mod resume;
 mod round_trip;

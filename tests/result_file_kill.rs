@@ -1,16 +1,24 @@
 //! A run killed at any moment leaves a file that opens, with every frame that was flushed.
+//!
+//! A test program of its own: HDF5 locks the files it opens, and a child inherits the locks of its parent.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use pseudopod::output::{Overwrite, ResultFile, ResultWriter, load_checkpoint};
 
-use crate::example::{frame, header, layout};
+#[path = "result_file/example.rs"]
+#[allow(dead_code)]
+mod example;
+use example::{frame, header, layout};
 
 /// Names the file that the child process writes, and the milliseconds between its flushes.
 const TASK: &str = "PSEUDOPOD_TEST_WRITE";
 const CELLS: u32 = 30;
+/// Held while a test has children, for the same reason.
+static CHILDREN: Mutex<()> = Mutex::new(());
 
 /// Not a test by itself: the process that is killed. It writes frames as fast as it can.
 #[test]
@@ -30,12 +38,13 @@ fn child_that_writes_until_it_is_killed() {
 
 /// Kills a writer after each of these times; how many files open with all their numbers right.
 fn survivors(interval: Duration, lives: impl Iterator<Item = Duration>) -> (usize, usize, usize) {
+    let _alone = CHILDREN.lock();
     let (mut whole, mut resumable, mut most_frames) = (0, 0, 0);
     for life in lives {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.h5");
         let mut child = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "kill::child_that_writes_until_it_is_killed"])
+            .args(["--exact", "child_that_writes_until_it_is_killed"])
             .env(TASK, format!("{} {}", interval.as_millis(), path.display()))
             .stdout(Stdio::null())
             .stderr(Stdio::null())
@@ -103,14 +112,14 @@ fn a_killed_run_opens_and_resumes() {
 }
 
 #[test]
-#[ignore = "slow: kills 40 runs at the usual flush of once a second (2 min)"]
+#[ignore = "slow: kills 40 runs at the usual flush of once a second (3 min)"]
 fn forty_killed_runs_open_and_resume() {
     let (whole, resumable, most_frames) = survivors(Duration::from_secs(1), moments(40, Duration::from_secs(4)));
     eprintln!("{whole} of 40 open with all frames right, {resumable} resume, at most {most_frames} frames");
     assert_eq!((whole, resumable), (40, 40));
 }
 
-/// What a kill costs at worst: no flush in between. Not a promise, so it only counts.
+/// The worst case: nearly every kill falls into a flush. A torn flush is possible, so this counts rather than promises.
 #[test]
 #[ignore = "slow: kills 100 runs that flush every frame, to see how often a flush is torn (1 min)"]
 fn runs_that_flush_every_frame_are_rarely_torn() {

@@ -2,7 +2,10 @@
 
 use std::process::Command;
 
-use crate::example::{layout, write};
+#[path = "result_file/example.rs"]
+#[allow(dead_code)]
+mod example;
+use example::{layout, write};
 
 /// Steps through time with VTK's reader, as ParaView does, and compares with the numbers that h5py reads.
 const SCRIPT: &str = r#"
@@ -42,19 +45,20 @@ for step in [*range(frames), 1, frames - 1, 0]:
     assert surface.GetNumberOfLines() == links
     assert np.array_equal(vtk_to_numpy(surface.GetCellData().GetArray("cell")), owner)
     assert surface.GetPointData().GetArray("type").GetNumberOfTuples() == atoms
-import pyvista
+import pyvista  # takes VTK's reader for the endings .vtkhdf and .hdf, and reads the first step
 mesh = pyvista.read(path)
+assert np.array_equal(mesh.points, points[offsets[0]:offsets[0] + atoms])
 assert mesh.n_points == atoms and mesh.n_faces_strict == len(facets), mesh
 print("h5py, VTK and PyVista agree on", frames, "frames")
 "#;
 
 /// `python3 -m venv /tmp/venv && /tmp/venv/bin/pip install h5py vtk pyvista`, then
-/// `PYTHON=/tmp/venv/bin/python cargo test --release --test result_file -- --ignored python`.
+/// `PYTHON=/tmp/venv/bin/python cargo test --release --test result_file_python -- --ignored`.
 #[test]
 #[ignore = "slow: needs python3 with h5py, vtk and pyvista"]
 fn python_reads_the_animated_surface() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, finish) in [("finished.h5", true), ("interrupted.h5", false)] {
+    for (name, finish) in [("finished.vtkhdf", true), ("interrupted.vtkhdf", false)] {
         let path = folder.path().join(name);
         let writer = write(&path, &layout(3), 20);
         if finish { writer.finish(1.0).unwrap() } else { drop(writer) }
