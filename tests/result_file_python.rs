@@ -61,7 +61,11 @@ fn python_reads_the_animated_surface() {
     for (name, finish) in [("finished.vtkhdf", true), ("interrupted.vtkhdf", false)] {
         let path = folder.path().join(name);
         let writer = write(&path, &layout(3), 20);
-        if finish { writer.finish(1.0).unwrap() } else { drop(writer) }
+        if finish {
+            writer.finish(1.0).unwrap()
+        } else {
+            drop(writer)
+        }
         let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
         let answer = Command::new(python).args(["-c", SCRIPT]).arg(&path).arg("20").output().unwrap();
         let words = String::from_utf8_lossy(&answer.stderr);

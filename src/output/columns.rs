@@ -12,6 +12,9 @@ use super::{CellRecord, Frame, Layout};
 /// From this many cells on, a frame of a per-cell series is a compressed piece of its own.
 const MANY_CELLS: usize = 1024;
 
+/// Frames after which HDF5 is made to forget where the pieces lie, a few MB.
+const REMEMBERED_FRAMES: usize = 5000;
+
 type FrameNumber = fn(&Frame) -> f64;
 type Counted = fn(&Instant) -> i64;
 type AtomVectors = fn(&Frame) -> &[[f64; 3]];
@@ -52,6 +55,8 @@ pub(super) struct Columns {
     run_numbers: Vec<(RunSource, Column)>,
     scene: Vec<Column>,
     forces: bool,
+    /// Frames at the last [`Columns::forget_history`].
+    forgotten: usize,
 }
 
 /// Whether datasets are made or opened and cut.
@@ -196,6 +201,22 @@ impl Columns {
     /// Hands all rows that are still in memory to the file.
     pub fn write(&mut self) -> hdf5::Result<()> {
         self.small().try_for_each(|(column, _)| column.write())
+    }
+
+    /// Lets go of what HDF5 keeps in memory about the frames so far, when it has become much. To be called right
+    /// after a flush.
+    pub fn forget_history(&mut self, file: &File) -> hdf5::Result<()> {
+        if self.frames < self.forgotten + REMEMBERED_FRAMES {
+            return Ok(());
+        }
+        self.forgotten = self.frames;
+        for (value, column) in std::mem::take(&mut self.atom_vectors) {
+            self.atom_vectors.push((value, column.renewed(file)?));
+        }
+        for (source, column) in std::mem::take(&mut self.many_cells) {
+            self.many_cells.push((source, column.renewed(file)?));
+        }
+        Ok(())
     }
 
     /// Cuts all datasets; nothing can be appended after that.

@@ -161,7 +161,8 @@ impl ResultWriter {
         {
             let _ = file.set_len(size);
         }
-        self.file.flush()
+        self.file.flush()?;
+        self.columns.forget_history(&self.file)
     }
 
     /// Flushes, then saves the checkpoint of this instant beside the result, on the disk itself.

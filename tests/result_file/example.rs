@@ -7,8 +7,7 @@ use pseudopod::output::{CellLayout, CellRecord, Frame, Header, Layout, Overwrite
 /// Corners of an octahedron.
 const CORNERS: [[f64; 3]; 6] =
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
-const FACETS: [[u32; 3]; 8] =
-    [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+const FACETS: [[u32; 3]; 8] = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
 
 /// Octahedral cells of two types, each with one internal link.
 pub fn layout(cells: u32) -> Layout {
@@ -16,13 +15,7 @@ pub fn layout(cells: u32) -> Layout {
     Layout {
         types: vec!["round".into(), "lone".into()],
         cells: (0..cells)
-            .map(|cell| CellLayout {
-                kind: cell % 2,
-                first_atom: 6 * cell,
-                atoms: 6,
-                first_facet: 8 * cell,
-                facets: 8,
-            })
+            .map(|cell| CellLayout { kind: cell % 2, first_atom: 6 * cell, atoms: 6, first_facet: 8 * cell, facets: 8 })
             .collect(),
         facets: facets.collect(),
         links: (0..cells).map(|cell| [6 * cell, 6 * cell + 3]).collect(),

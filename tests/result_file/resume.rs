@@ -1,8 +1,6 @@
 //! A run that goes on leaves the file of a run that never stopped.
 
-use pseudopod::output::{
-    Frame, Layout, Measure, ResultFile, ResultWriter, checkpoint_path, load_checkpoint,
-};
+use pseudopod::output::{Frame, Layout, Measure, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
 
 use crate::example::{frame, header, layout, write};
 use crate::round_trip::assert_holds;

@@ -39,12 +39,8 @@ fn a_finished_run_is_read_as_it_was_written() {
         let path = folder.path().join(format!("{cells}.h5"));
         let layout = layout(cells);
         let mut writer = write(&path, &layout, frames);
-        let measure = |name: &str, value| Measure {
-            name: name.into(),
-            value,
-            unit: "um".into(),
-            description: "How far.".into(),
-        };
+        let measure =
+            |name: &str, value| Measure { name: name.into(), value, unit: "um".into(), description: "How far.".into() };
         writer.write_summary(&[measure("reach", 1.0), measure("drift", 0.5)]).unwrap();
         writer.write_summary(&[measure("reach", 2.5)]).unwrap();
         writer.finish(12.5).unwrap();
@@ -82,7 +78,8 @@ fn a_run_that_was_dropped_is_read_and_said_to_be_interrupted() {
     assert_holds(&result, &layout, &(0..9).map(|number| frame(&layout, number)).collect::<Vec<_>>());
     assert!(!result.ending().finished);
     let page = describe(&result).unwrap();
-    for words in ["A walk", "2 (1 round, 1 lone)", "12 atoms, 16 facets, 2 links", "9, from 0 s to 2 s", "interrupted"] {
+    for words in ["A walk", "2 (1 round, 1 lone)", "12 atoms, 16 facets, 2 links", "9, from 0 s to 2 s", "interrupted"]
+    {
         assert!(page.contains(words), "`{words}` is missing from\n{page}");
     }
 }
