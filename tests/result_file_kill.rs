@@ -2,7 +2,7 @@
 //!
 //! A test program of its own: HDF5 locks the files it opens, and a child inherits the locks of its parent.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -30,10 +30,18 @@ fn child_that_writes_until_it_is_killed() {
     writer.set_flush_interval(Duration::from_millis(interval.parse().unwrap()));
     for number in 0.. {
         writer.append(&frame(&layout, number)).unwrap();
+        if number == 0 {
+            std::fs::write(begun(Path::new(path)), b"").unwrap();
+        }
         if number % 500 == 499 {
             writer.save_checkpoint(10 * number as u64, 0.25 * number as f64, &[7; 100_000]).unwrap();
         }
     }
+}
+
+/// The file by which the child says that it has appended the first frame.
+fn begun(path: &Path) -> PathBuf {
+    path.with_extension("begun")
 }
 
 /// Kills a writer after each of these times; how many files open with all their numbers right.
@@ -52,7 +60,7 @@ fn survivors(interval: Duration, lives: impl Iterator<Item = Duration>) -> (usiz
             .unwrap();
         // The clock starts with the first frame: a run killed before it has nothing to lose.
         let start = Instant::now();
-        while ResultFile::open(&path).is_err() && std::fs::metadata(&path).map_or(0, |file| file.len()) < 100_000 {
+        while !begun(&path).exists() {
             assert!(start.elapsed() < Duration::from_secs(20), "the child writes nothing");
             std::thread::sleep(Duration::from_millis(2));
         }

@@ -200,7 +200,11 @@ impl Columns {
 
     /// Hands all rows that are still in memory to the file.
     pub fn write(&mut self) -> hdf5::Result<()> {
-        self.small().try_for_each(|(column, _)| column.write())
+        let frames = self.counters.iter_mut().map(|(_, _, column)| column);
+        let frames = frames.chain(self.frame_numbers.iter_mut().map(|(_, column)| column));
+        let frames = frames.chain(self.few_cells.iter_mut().map(|(_, column)| column)).chain(&mut self.scene);
+        let mut all = frames.chain(self.run_numbers.iter_mut().map(|(_, column)| column));
+        all.try_for_each(Column::write)
     }
 
     /// Lets go of what HDF5 keeps in memory about the frames so far, when it has become much. To be called right
@@ -217,27 +221,6 @@ impl Columns {
             self.many_cells.push((source, column.renewed(file)?));
         }
         Ok(())
-    }
-
-    /// Cuts all datasets; nothing can be appended after that.
-    pub fn take_back(&mut self, frames: usize, runs: usize) -> hdf5::Result<()> {
-        let large = self.atom_vectors.iter_mut().map(|(_, column)| column);
-        for column in large.chain(self.many_cells.iter_mut().map(|(_, column)| column)) {
-            column.resize(frames)?;
-        }
-        for (column, per_run) in self.small() {
-            column.resize(if per_run { runs } else { frames })?;
-        }
-        Ok(())
-    }
-
-    /// All small datasets, and whether they have a row per motility run instead of per frame.
-    fn small(&mut self) -> impl Iterator<Item = (&mut Column, bool)> {
-        let frames = self.counters.iter_mut().map(|(_, _, column)| column);
-        let frames = frames.chain(self.frame_numbers.iter_mut().map(|(_, column)| column));
-        let frames = frames.chain(self.few_cells.iter_mut().map(|(_, column)| column)).chain(&mut self.scene);
-        let runs = self.run_numbers.iter_mut().map(|(_, column)| (column, true));
-        frames.map(|column| (column, false)).chain(runs)
     }
 }
 
