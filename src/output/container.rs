@@ -53,7 +53,8 @@ pub(super) enum Access {
 pub(super) fn open(path: &Path, access: Access) -> Result<File> {
     check_signature(path)?;
     let opened = match access {
-        Access::Read => FileBuilder::new().open(path),
+        // As for writing, or HDF5 would refuse a file that this process is writing.
+        Access::Read => FileBuilder::new().with_fapl(|access| access.evict_on_close(true)).open(path),
         Access::Append => kill_safe().open_rw(path),
     };
     let file = opened.map_err(|error| refused(path, access, &error))?;

@@ -10,7 +10,7 @@ use super::columns::Columns;
 use super::container::{self, Access, failed, machine_error, set_number, set_text};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout, write_header, write_layout};
-use super::reader::whole_frames;
+use super::reader::{ResultFile, whole_frames};
 use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
 
@@ -161,6 +161,15 @@ impl ResultWriter {
         save_checkpoint(&self.path, &CheckpointMeta::new(&self.header, step, time), payload)
     }
 
+    /// Opens what is recorded so far for reading, to find the measures before the file is finished.
+    ///
+    /// # Errors
+    /// As [`append`](Self::append) and [`ResultFile::open`]: there must be a frame.
+    pub fn read(&mut self) -> Result<ResultFile> {
+        self.flush()?;
+        ResultFile::open(&self.path)
+    }
+
     /// Writes the measures of the experiment under `/summary`; one of the same name is replaced.
     ///
     /// # Errors
@@ -259,18 +268,30 @@ impl Drop for ResultWriter {
 /// HDF5 writes the length before it makes the file that long, and a kill in between would leave a file that is too
 /// short to open. And a disk that becomes full while HDF5 writes out what it knows of the file would leave half of it.
 fn reserve(path: &Path, size: u64) -> hdf5::Result<()> {
-    use rustix::io::Errno;
     let reserved = || -> std::io::Result<()> {
         let file = std::fs::OpenOptions::new().write(true).open(path)?;
-        let known = file.metadata()?.len();
-        match rustix::fs::fallocate(&file, rustix::fs::FallocateFlags::empty(), 0, size.max(known)) {
-            // Some file systems cannot promise room; the length is worth something by itself.
-            Err(Errno::OPNOTSUPP | Errno::INVAL | Errno::NOSYS) if known < size => file.set_len(size),
-            Err(Errno::OPNOTSUPP | Errno::INVAL | Errno::NOSYS) | Ok(()) => Ok(()),
-            Err(error) => Err(error.into()),
-        }
+        let size = size.max(file.metadata()?.len());
+        allocate(&file, size)?;
+        file.set_len(size)
     };
     reserved().map_err(|error| error.to_string().as_str().into())
+}
+
+/// Takes room for the whole file on the disk; what is in the file stays.
+#[cfg(target_os = "linux")]
+fn allocate(file: &std::fs::File, size: u64) -> std::io::Result<()> {
+    use rustix::io::Errno;
+    match rustix::fs::fallocate(file, rustix::fs::FallocateFlags::empty(), 0, size) {
+        // Some file systems cannot promise room.
+        Ok(()) | Err(Errno::OPNOTSUPP | Errno::INVAL | Errno::NOSYS) => Ok(()),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Other systems have no common way to ask for room.
+#[cfg(not(target_os = "linux"))]
+fn allocate(_: &std::fs::File, _: u64) -> std::io::Result<()> {
+    Ok(())
 }
 
 /// Makes sure that the path may be written, with errors that HDF5 does not tell apart.

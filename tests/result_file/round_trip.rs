@@ -85,6 +85,22 @@ fn a_run_that_was_dropped_is_read_and_said_to_be_interrupted() {
 }
 
 #[test]
+fn a_run_can_be_read_while_it_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    let layout = layout(2);
+    let frames: Vec<Frame> = (0..8).map(|number| frame(&layout, number)).collect();
+    let mut writer = write(&path, &layout, 5);
+    assert_holds(&writer.read().unwrap(), &layout, &frames[..5]);
+    frames[5..].iter().for_each(|frame| writer.append(frame).unwrap());
+    assert_holds(&writer.read().unwrap(), &layout, &frames);
+    writer.finish(1.0).unwrap();
+    let result = ResultFile::open(&path).unwrap();
+    assert_holds(&result, &layout, &frames);
+    assert_eq!(result.ending().resumed, 0);
+}
+
+#[test]
 fn series_have_units_and_wrong_names_a_suggestion() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.h5");
