@@ -1,5 +1,22 @@
 //! The shapes of cells as triangle surfaces: how they are made, read, checked and measured. No physics, no time.
 
+mod boxes;
+mod measure;
+mod sheet;
+mod spheres;
+mod topology;
+mod transform;
+
+pub use boxes::box_surface;
+pub use measure::{
+    area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,
+    mean_edge_length, smallest_angle, volume, volume_gradient,
+};
+pub use sheet::sheet;
+pub use spheres::{MAX_ICOSPHERE_LEVEL, icosphere, octasphere};
+pub use topology::{Flap, Ring, Topology};
+pub use transform::{rotate, scale, translate};
+
 use crate::Vec3;
 
 /// A triangle surface, closed or open. Facets are oriented: seen from outside, their atoms run counter-clockwise,
@@ -10,4 +27,14 @@ pub struct Surface {
     pub positions: Vec<Vec3>,
     /// The three atoms of each facet.
     pub facets: Vec<[u32; 3]>,
+}
+
+impl Surface {
+    /// The positions of the three corners of a facet, µm.
+    ///
+    /// # Panics
+    /// When the facet names an atom that the surface does not have.
+    pub fn corners(&self, facet: [u32; 3]) -> [Vec3; 3] {
+        facet.map(|atom| self.positions[atom as usize])
+    }
 }
