@@ -1,17 +1,23 @@
 //! The shapes of cells as triangle surfaces: how they are made, read, checked and measured. No physics, no time.
 
 mod boxes;
+mod curvature;
 mod measure;
+mod principal;
+mod red_cell;
 mod sheet;
 mod spheres;
 mod topology;
 mod transform;
 
 pub use boxes::box_surface;
+pub use curvature::{gaussian_curvature, mean_curvature, mixed_areas};
 pub use measure::{
     area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,
     mean_edge_length, smallest_angle, volume, volume_gradient,
 };
+pub use principal::{PrincipalAxes, principal_axes, principal_extents};
+pub use red_cell::{RED_CELL_DIAMETER, red_cell, red_cell_area, red_cell_half_thickness, red_cell_volume};
 pub use sheet::sheet;
 pub use spheres::{MAX_ICOSPHERE_LEVEL, icosphere, octasphere};
 pub use topology::{Flap, Ring, Topology};
