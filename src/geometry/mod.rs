@@ -1,6 +1,7 @@
 //! The shapes of cells as triangle surfaces: how they are made, read, checked and measured. No physics, no time.
 
 mod boxes;
+mod check;
 mod curvature;
 mod measure;
 mod principal;
@@ -9,8 +10,10 @@ mod sheet;
 mod spheres;
 mod topology;
 mod transform;
+mod weld;
 
 pub use boxes::box_surface;
+pub use check::{Boundary, LEAST_FACET_QUALITY, MeshFault, SurfaceRules, check_surface};
 pub use curvature::{gaussian_curvature, mean_curvature, mixed_areas};
 pub use measure::{
     area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,

@@ -128,7 +128,9 @@ impl Topology {
 /// Walks from facet to facet around one atom. `links` are its facets as (neighbour, next neighbour, facet).
 fn walk_around(links: &mut [(u32, u32, u32)]) -> (Ring, Vec<u32>) {
     links.sort_unstable();
-    let has_one_before = |atom: u32| links.iter().any(|&(_, to, _)| to == atom);
+    let mut entered: Vec<u32> = links.iter().map(|link| link.1).collect();
+    entered.sort_unstable();
+    let has_one_before = |atom: u32| entered.binary_search(&atom).is_ok();
     let Some(start) = links.iter().find(|link| !has_one_before(link.0)).or(links.first()) else {
         return (Ring::default(), Vec::new());
     };
