@@ -3,6 +3,13 @@
 //! Every force is one file: its parameters, `add_forces` (which returns the energy) written over
 //! [`lanes::Real`], and `add_stiffness`, its constant linear part for the implicit step.
 
+pub mod angles;
+pub mod barrier;
+pub mod bending;
+mod hinge;
 pub mod lanes;
+pub mod membrane;
 pub mod shape_memory;
+pub mod springs;
 pub mod stiffness;
+pub mod tension;

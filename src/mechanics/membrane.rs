@@ -1,0 +1,178 @@
+//! The skin of a cell as an elastic sheet: it resists shear and change of area, measured from its rest shape.
+//!
+//! Every facet is a constant-strain triangle. With the metric g of its current edges and the metric G of its rest
+//! edges, `I = tr(G⁻¹g) = λ₁² + λ₂²` and `D = det g / det G = (λ₁λ₂)²`, eq. (membrane.1), so that a law W(I, D) and its
+//! gradient need no principal directions and nothing is divided by zero at rest. The energy is the rest area times W;
+//! the force is its exact gradient, eq. (membrane.2). All laws have the same small-strain response: shear modulus µ
+//! and area modulus K. Sources: Skalak, Tözeren, Zarda & Chien 1973; Evans & Skalak 1980; Mills et al. 2004.
+
+use super::lanes::{Real, Vectors, VectorsMut};
+use super::stiffness::StiffnessMatrix;
+use crate::Vec3;
+
+/// How the energy of a membrane depends on its two principal stretches; moduli in pN/µm (= µN/m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MembraneLaw {
+    /// Skalak's law, eq. (membrane.3): `W = µ/4 (I₁² + 2 I₁ − 2 I₂) + B/4 I₂²` with `I₁ = I − 2`, `I₂ = D − 1` and
+    /// `B = (K − µ)/2`, which is `C µ` in Skalak's letters (K = µ(1 + 2C)). It stiffens with stretch. Needs K > µ.
+    Skalak {
+        /// Shear modulus µ, pN/µm.
+        shear: f64,
+        /// Area modulus K, pN/µm, above µ.
+        area: f64,
+    },
+    /// Two-dimensional neo-Hookean law, eq. (membrane.4): `W = µ/2 s + h µ s³ + K/2 (J − 1)²` with `J = √D` and
+    /// `s = I/J − 2`, the pure shear. On a membrane that keeps its area it is the law of Mills et al. 2004, whose
+    /// third-order term is `hardening` = 1/30 (`C = G₀/30`).
+    NeoHookean {
+        /// Shear modulus µ, pN/µm.
+        shear: f64,
+        /// Area modulus K, pN/µm.
+        area: f64,
+        /// Coefficient h of the third-order term, in units of µ; 0 for none.
+        hardening: f64,
+    },
+}
+
+impl MembraneLaw {
+    /// Small-strain shear modulus µ, pN/µm.
+    pub fn shear(&self) -> f64 {
+        match *self {
+            Self::Skalak { shear, .. } | Self::NeoHookean { shear, .. } => shear,
+        }
+    }
+
+    /// Small-strain area modulus K, pN/µm.
+    pub fn area(&self) -> f64 {
+        match *self {
+            Self::Skalak { area, .. } | Self::NeoHookean { area, .. } => area,
+        }
+    }
+
+    /// W and its derivatives by I and by D, pN/µm.
+    #[inline(always)]
+    fn energy_density<T: Real>(&self, token: T::Token, i: T, d: T) -> (T, T, T) {
+        match *self {
+            Self::Skalak { shear, area } => {
+                let dilation = 0.5 * (area - shear);
+                let (i1, i2) = (i + -2.0, d + -1.0);
+                let w = (i1 * i1 + (i1 - i2) * 2.0) * (0.25 * shear) + i2 * i2 * (0.25 * dilation);
+                (w, (i1 + 1.0) * (0.5 * shear), i2 * (0.5 * dilation) + -0.5 * shear)
+            }
+            Self::NeoHookean { shear, area, hardening } => {
+                let j = d.sqrt();
+                let per_j = T::constant(token, 1.0) / j;
+                let s = i * per_j + -2.0;
+                let stretch = j + -1.0;
+                let cubic = s * s * (hardening * shear);
+                let slope = cubic * 3.0 + 0.5 * shear;
+                let w = s * (cubic + 0.5 * shear) + stretch * stretch * (0.5 * area);
+                let by_j = stretch * area - slope * i * per_j * per_j;
+                (w, slope * per_j, by_j * per_j * 0.5)
+            }
+        }
+    }
+}
+
+/// A facet at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct RestFacet {
+    atoms: [u32; 3],
+    /// Inverse rest metric G⁻¹ (11, 12, 22), µm⁻².
+    inverse: [f64; 3],
+    /// 1 / det G, µm⁻⁴.
+    inverse_determinant: f64,
+    /// Rest area, µm².
+    area: f64,
+}
+
+/// The membrane of a mesh, ready for all cells that share it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Membrane {
+    law: MembraneLaw,
+    facets: Vec<RestFacet>,
+    /// Half the cotangents of the corners of each facet at rest.
+    cotangents: Vec<[f64; 3]>,
+}
+
+impl Membrane {
+    /// A membrane that is free of stress when its atoms stand at `rest_positions` (µm), which need not be where a
+    /// cell starts. Every facet must have an area at rest, as the checks of geometry assure.
+    pub fn new(rest_positions: &[Vec3], facets: &[[u32; 3]], law: MembraneLaw) -> Self {
+        let rest = |&atoms: &[u32; 3]| {
+            let [a, b, c] = atoms.map(|i| rest_positions[i as usize]);
+            let (u, v) = (b - a, c - a);
+            let (uu, uv, vv) = (u.dot(&u), u.dot(&v), v.dot(&v));
+            let determinant = u.cross(&v).norm_squared();
+            RestFacet {
+                atoms,
+                inverse: [vv / determinant, -uv / determinant, uu / determinant],
+                inverse_determinant: 1.0 / determinant,
+                area: 0.5 * determinant.sqrt(),
+            }
+        };
+        Self {
+            law,
+            facets: facets.iter().map(rest).collect(),
+            cotangents: facets.iter().map(|&facet| half_cotangents(rest_positions, facet)).collect(),
+        }
+    }
+
+    /// The law and its moduli.
+    pub fn law(&self) -> MembraneLaw {
+        self.law
+    }
+
+    /// Adds the elastic force on every atom, eq. (membrane.2), and returns the energy, pN·µm.
+    #[inline(always)]
+    pub fn add_forces<T: Real>(&self, x: &Vectors<T>, f: &mut VectorsMut<T>) -> T {
+        let mut energy = T::constant(x.token, 0.0);
+        for facet in &self.facets {
+            let [a, b, c] = facet.atoms.map(|atom| atom as usize);
+            let origin = x.get(a);
+            let (u, v) = (x.get(b) - origin, x.get(c) - origin);
+            let (uu, uv, vv) = (u.squared(), u.dot(v), v.squared());
+            let [g11, g12, g22] = facet.inverse;
+            let i = uu * g11 + uv * (2.0 * g12) + vv * g22;
+            let d = (uu * vv - uv * uv) * facet.inverse_determinant;
+            let (w, by_i, by_d) = self.law.energy_density(x.token, i, d);
+            energy += w * facet.area;
+            // ∂W/∂u = 2 W_I (g11 u + g12 v) + 2 W_D (vv u − uv v)/det G, and the same for v.
+            let by_i = by_i * (2.0 * facet.area);
+            let by_d = by_d * (2.0 * facet.area * facet.inverse_determinant);
+            let across = by_i * g12 - by_d * uv;
+            let on_b = u.times(by_i * g11 + by_d * vv) + v.times(across);
+            let on_c = v.times(by_i * g22 + by_d * uu) + u.times(across);
+            f.sub(b, on_b);
+            f.sub(c, on_c);
+            f.add(a, on_b + on_c);
+        }
+        energy
+    }
+
+    /// Adds (µ + K) times the cotangent Laplacian of the rest shape: the stiffness against a longitudinal wave in the
+    /// plane, and at least half of any facet's own small-strain stiffness. Strain hardening is not in it.
+    pub fn add_stiffness(&self, matrix: &mut StiffnessMatrix) {
+        let modulus = self.law.shear() + self.law.area();
+        for (facet, cotangents) in self.facets.iter().zip(&self.cotangents) {
+            add_cotangents(matrix, facet.atoms, *cotangents, modulus);
+        }
+    }
+}
+
+/// Half the cotangents of a facet's three corners.
+pub(super) fn half_cotangents(positions: &[Vec3], facet: [u32; 3]) -> [f64; 3] {
+    let corner = facet.map(|i| positions[i as usize]);
+    [0, 1, 2].map(|k| {
+        let (u, v) = (corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
+        0.5 * u.dot(&v) / u.cross(&v).norm()
+    })
+}
+
+/// Adds a facet's share of `modulus` (pN/µm) times the cotangent Laplacian.
+pub(super) fn add_cotangents(matrix: &mut StiffnessMatrix, facet: [u32; 3], cotangents: [f64; 3], modulus: f64) {
+    for k in 0..3 {
+        let (i, j) = (facet[(k + 1) % 3] as usize, facet[(k + 2) % 3] as usize);
+        matrix.add_spring(i, j, modulus * cotangents[k]);
+    }
+}
