@@ -6,10 +6,18 @@
 pub mod angles;
 pub mod barrier;
 pub mod bending;
+pub mod course;
+pub mod elasticity;
 mod hinge;
+pub mod implicit;
+pub mod integrator;
 pub mod lanes;
 pub mod membrane;
+pub mod rigid;
 pub mod shape_memory;
+pub mod shape_modulus;
 pub mod springs;
+pub mod stability;
 pub mod stiffness;
 pub mod tension;
+pub mod volume;
