@@ -6,7 +6,9 @@
 
 pub mod chart;
 pub mod colour;
+pub mod from_file;
 pub mod from_result;
+pub mod plots;
 pub mod image;
 pub mod movie;
 pub mod render;
@@ -15,11 +17,7 @@ pub mod ticks;
 
 pub use chart::{Axis, Chart, Series, save_chart};
 pub use colour::{Colour, ColourMap};
+pub use from_file::make_defaults;
 pub use image::Image;
 pub use movie::Movie;
 pub use render::{Camera, Overlay, Scene, draw};
-
-/// Makes the default picture and charts of a result.
-pub fn make_defaults(_result: &std::path::Path) -> crate::error::Result<Vec<std::path::PathBuf>> {
-    Ok(Vec::new())
-}

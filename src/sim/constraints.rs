@@ -45,10 +45,9 @@ pub fn enforce_constraints(model: &Model, state: &mut State, ws: &mut Workspace)
                     }
                 }
             });
-        if exact {
-            if let Some(cell) = (0..kind.cells).find(|&cell| left[cell].is_nan() || left[cell] > VOLUME_TOLERANCE) {
-                return Err(VolumeFailure { kind: number, cell, error: left[cell] });
-            }
+        let missed = |cell: &usize| exact && (left[*cell].is_nan() || left[*cell] > VOLUME_TOLERANCE);
+        if let Some(cell) = (0..kind.cells).find(missed) {
+            return Err(VolumeFailure { kind: number, cell, error: left[cell] });
         }
     }
     Ok(())

@@ -1,0 +1,158 @@
+//! Charts of a result file, as the experiment or the command line asks for them.
+
+use super::chart::{Aspect, Axis, Chart, Scale, Series};
+use crate::analysis::measure::curve;
+use crate::analysis::msd::{from_the_start, furth};
+use crate::analysis::recording::Recording;
+use crate::analysis::table::Table;
+use crate::error::Result;
+use crate::experiment::{Document, Over, Plot, PlotKind, PlotTable};
+use crate::output::ResultFile;
+
+/// Names of series as a reader would say them.
+const READABLE: [(&str, &str); 12] = [
+    ("size_x", "extent along x"),
+    ("size_y", "extent along y"),
+    ("size_z", "extent along z"),
+    ("principal_1", "longest extent"),
+    ("principal_2", "middle extent"),
+    ("principal_3", "shortest extent"),
+    ("position_x", "position x"),
+    ("position_y", "position y"),
+    ("position_z", "position z"),
+    ("volume_error", "volume error"),
+    ("smallest_facet", "smallest facet over rest"),
+    ("energy", "elastic energy"),
+];
+
+/// A series' name as a reader would say it, with its unit.
+pub fn label_of(result: &ResultFile, series: &str) -> String {
+    if series == "time" {
+        return "time (s)".into();
+    }
+    let unit = result.units(series).unwrap_or_default();
+    let name = readable(series);
+    if unit.is_empty() || unit == "1" { name } else { format!("{name} ({unit})") }
+}
+
+fn readable(series: &str) -> String {
+    let known = READABLE.iter().find(|(name, _)| *name == series);
+    known.map_or_else(|| series.replace("load.", "load "), |(_, text)| (*text).to_owned())
+}
+
+/// The chart that a plot asks for.
+///
+/// # Errors
+/// A series, table or column that is not there.
+pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result<Chart> {
+    let mut chart = match &plot.kind {
+        PlotKind::Series { y } => curves(result, plot, "time", y.as_slice())?,
+        PlotKind::Curve { x, y } => curves(result, plot, x, y.as_slice())?,
+        PlotKind::Tracks => tracks(result, plot)?,
+        PlotKind::Msd { speed, persistence } => {
+            let formula = speed.zip(*persistence).map(|(v, p)| (v.value(), p.value()));
+            displacement(result, plot, formula)?
+        }
+    };
+    let tables = plot.table.as_ref().map_or(&[][..], |tables| tables.as_slice());
+    for table in tables {
+        chart.series.extend(measured(document, table)?);
+    }
+    chart.title = plot.title.clone().unwrap_or_else(|| document.experiment.title.clone());
+    plot.x_label.iter().for_each(|label| chart.x.label.clone_from(label));
+    plot.y_label.iter().for_each(|label| chart.y.label.clone_from(label));
+    Ok(chart)
+}
+
+/// The types that a plot shows, each as a curve of its own.
+fn types_of(result: &ResultFile, plot: &Plot) -> Vec<String> {
+    plot.cells.as_ref().map_or_else(|| result.layout().types.clone(), |name| vec![name.clone()])
+}
+
+fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Result<Chart> {
+    let names: Vec<&str> = std::iter::once(x).chain(series.iter().map(String::as_str)).collect();
+    let recording = Recording::read(result, &names)?;
+    let types = types_of(result, plot);
+    let mut chart = Chart { x: Axis::linear(label_of(result, x)), ..Chart::default() };
+    for y in series {
+        for kind in &types {
+            let points: Vec<[f64; 2]> = if x == "time" {
+                let values = recording.series(y, Some(kind), Over::Mean)?;
+                recording.times.iter().zip(values).map(|(t, v)| [*t, v]).collect()
+            } else {
+                curve(&recording, x, y, Some(kind))?.points().collect()
+            };
+            let label = match (series.len(), types.len()) {
+                (1, 1) => String::new(),
+                (1, _) => kind.clone(),
+                (_, 1) => readable(y),
+                _ => format!("{kind}: {}", readable(y)),
+            };
+            chart.series.push(Series::line(label, points));
+        }
+    }
+    let unit = series.first().map_or(String::new(), |y| result.units(y).unwrap_or_default());
+    let label = if let [only] = series { label_of(result, only) } else { unit };
+    chart.y = Axis::linear(label);
+    Ok(chart)
+}
+
+fn tracks(result: &ResultFile, plot: &Plot) -> Result<Chart> {
+    let recording = Recording::read(result, &["position_x", "position_y", "position_z"])?;
+    let mut chart = Chart {
+        x: Axis::linear("x (µm)"),
+        y: Axis::linear("y (µm)"),
+        aspect: Aspect::Equal,
+        ..Chart::default()
+    };
+    for kind in types_of(result, plot) {
+        let positions = recording.positions(&recording.cells_of(Some(&kind))?)?;
+        let (frames, cells, _) = positions.dim();
+        let path = |cell: usize| (0..frames).map(|f| [positions[[f, cell, 0]], positions[[f, cell, 1]]]).collect();
+        chart.series.push(Series::tracks((0..cells).map(path).collect()));
+    }
+    Ok(chart)
+}
+
+fn displacement(result: &ResultFile, plot: &Plot, formula: Option<(f64, f64)>) -> Result<Chart> {
+    let recording = Recording::read(result, &["position_x", "position_y", "position_z"])?;
+    let mut chart = Chart {
+        x: Axis { scale: Scale::Log, ..Axis::linear("lag (s)") },
+        y: Axis { scale: Scale::Log, ..Axis::linear("mean squared displacement (µm²)") },
+        ..Chart::default()
+    };
+    let frames: Vec<usize> = (1..recording.times.len()).collect();
+    for kind in types_of(result, plot) {
+        let positions = recording.positions(&recording.cells_of(Some(&kind))?)?;
+        let found = from_the_start(positions.view(), &recording.times, &frames);
+        let points = found.iter().map(|d| [d.lag, d.msd]).collect();
+        let bars = found.iter().map(|d| [d.msd - d.error, d.msd + d.error]).collect();
+        chart.series.push(Series::measured(kind, points, bars));
+        if let Some((speed, persistence)) = formula {
+            let points = found.iter().map(|d| [d.lag, furth(d.lag, speed, persistence)]).collect();
+            chart.series.push(Series::line("Fürth's formula", points));
+        }
+    }
+    Ok(chart)
+}
+
+/// The points and bars of a measured table.
+fn measured(document: &Document, text: &PlotTable) -> Result<Vec<Series>> {
+    let table = Table::read(&document.resolve(&text.file))?;
+    let x = table.column(&text.x)?;
+    let ends = |columns: &Option<crate::experiment::OneOrMany<String>>, i: usize| -> Result<Option<Vec<f64>>> {
+        let name = columns.as_ref().and_then(|columns| columns.as_slice().get(i));
+        name.map(|name| Ok(table.column(name)?.to_vec())).transpose()
+    };
+    let mut series = Vec::new();
+    for (i, name) in text.y.as_slice().iter().enumerate() {
+        let y = table.column(name)?;
+        let points: Vec<[f64; 2]> = x.iter().zip(y).map(|(x, y)| [*x, *y]).collect();
+        let bars = match (ends(&text.low, i)?, ends(&text.high, i)?) {
+            (Some(low), Some(high)) => low.into_iter().zip(high).map(|(l, h)| [l, h]).collect(),
+            _ => Vec::new(),
+        };
+        series.push(Series::measured(text.label.clone().unwrap_or_else(|| name.clone()), points, bars));
+    }
+    Ok(series)
+}
