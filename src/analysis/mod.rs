@@ -1,4 +1,6 @@
 //! Numbers and series from a finished result file.
 
+pub mod curve;
 pub mod msd;
 pub mod statistics;
+pub mod table;
