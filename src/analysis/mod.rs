@@ -1,5 +1,6 @@
 //! Numbers and series from a finished result file.
 
+pub mod claims;
 pub mod curve;
 pub mod msd;
 pub mod statistics;
