@@ -2,6 +2,8 @@
 
 pub mod claims;
 pub mod curve;
+pub mod measure;
 pub mod msd;
+pub mod recording;
 pub mod statistics;
 pub mod table;
