@@ -10,21 +10,28 @@ pub struct Curve {
     y: Vec<f64>,
 }
 
+/// Two x are the same when they differ by at most this share of the range of x: the round-off of a held load.
+const SAME_X: f64 = 1e-9;
+
 impl Curve {
-    /// Orders points by x. Of several points at the same x the last counts: where a load is held, that is the end of
-    /// the hold, when the cell has settled. Points that are not finite are left out.
+    /// Orders points, given in the order of time, by x. Of points at the same x the last in time counts: where a load
+    /// is held, that is the end of the hold, when the cell has settled. Points that are not finite are left out.
     ///
     /// # Panics
     /// When x and y differ in number.
     pub fn new(x: &[f64], y: &[f64]) -> Self {
         assert_eq!(x.len(), y.len(), "each x needs its y");
-        let mut points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
-        points.retain(|(x, y)| x.is_finite() && y.is_finite());
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let last_at_its_x = |index: usize| points.get(index + 1).is_none_or(|next| next.0 != points[index].0);
-        let kept = (0..points.len()).filter(|&index| last_at_its_x(index)).map(|index| points[index]);
-        let (x, y) = kept.unzip();
+        let mut order: Vec<usize> = (0..x.len()).filter(|&i| x[i].is_finite() && y[i].is_finite()).collect();
+        order.sort_by(|&a, &b| x[a].total_cmp(&x[b]));
+        let same = SAME_X * order.first().zip(order.last()).map_or(0.0, |(&first, &last)| x[last] - x[first]);
+        let holds = order.chunk_by(|&a, &b| x[b] - x[a] <= same);
+        let (x, y) = holds.filter_map(|hold| hold.iter().max()).map(|&last| (x[last], y[last])).unzip();
         Self { x, y }
+    }
+
+    /// The points, x ascending.
+    pub fn points(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.x.iter().zip(&self.y).map(|(x, y)| [*x, *y])
     }
 
     /// The curve at each measured place that is not NaN, with the number of its row.
@@ -45,7 +52,7 @@ impl Curve {
     fn at(&self, place: f64) -> Result<f64> {
         let last = self.x.len().saturating_sub(1);
         // Rounded time courses may end short of the last measured place by a few units in the last digit.
-        let slack = 1e-9 * self.x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let slack = SAME_X * self.x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let near = match (self.x.first(), self.x.get(last)) {
             (Some(&first), Some(&end)) if first - slack <= place && place <= end + slack => place.clamp(first, end),
             _ => place,
@@ -95,8 +102,8 @@ mod tests {
 
     #[test]
     fn the_end_of_a_hold_counts() {
-        let curve = Curve::new(&[2.0, 0.0, 1.0, 1.0, f64::NAN], &[8.0, 0.0, 3.0, 4.0, 1.0]);
-        assert_eq!(curve, Curve { x: vec![0.0, 1.0, 2.0], y: vec![0.0, 4.0, 8.0] });
+        let curve = Curve::new(&[2.0, 0.0, 1.0 + 1e-12, 1.0, f64::NAN], &[8.0, 0.0, 3.0, 4.0, 1.0]);
+        assert_eq!(curve.points().collect::<Vec<_>>(), [[0.0, 0.0], [1.0, 4.0], [2.0, 8.0]]);
     }
 
     #[test]

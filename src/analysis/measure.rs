@@ -179,21 +179,26 @@ impl Reduction {
     }
 }
 
+/// The curve y(x) of a recording; each series a mean over the cells of a type, or over all cells.
+///
+/// # Errors
+/// When there is no such series, type or cell.
+pub fn curve(recording: &Recording, x: &str, y: &str, cells: Option<&str>) -> Result<Curve> {
+    Ok(Curve::new(&recording.series(x, cells, Over::Mean)?, &recording.series(y, cells, Over::Mean)?))
+}
+
 impl Stretch {
     fn line(&self, recording: &Recording) -> Result<Line> {
-        let cells = self.cells.as_deref();
-        let (x, y) = (recording.series(&self.x, cells, Over::Mean)?, recording.series(&self.y, cells, Over::Mean)?);
+        let curve = curve(recording, &self.x, &self.y, self.cells.as_deref())?;
         let within = |x: f64| self.x_from.is_none_or(|from| from <= x) && self.x_to.is_none_or(|to| x <= to);
-        let (x, y): (Vec<f64>, Vec<f64>) = x.into_iter().zip(y).filter(|(x, _)| within(*x)).unzip();
+        let (x, y): (Vec<f64>, Vec<f64>) = curve.points().filter(|[x, _]| within(*x)).map(|[x, y]| (x, y)).unzip();
         statistics::fit_line(&x, &y)
     }
 }
 
 impl Comparison {
     fn open(&self, recording: &Recording) -> Result<(Table, Curve)> {
-        let cells = self.cells.as_deref();
-        let (x, y) = (recording.series(&self.x, cells, Over::Mean)?, recording.series(&self.y, cells, Over::Mean)?);
-        Ok((Table::read(&self.table)?, Curve::new(&x, &y)))
+        Ok((Table::read(&self.table)?, curve(recording, &self.x, &self.y, self.cells.as_deref())?))
     }
 
     fn bars(&self, recording: &Recording) -> Result<usize> {

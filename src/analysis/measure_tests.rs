@@ -1,7 +1,7 @@
 //! What measures promise, on small recordings made by hand and on walks.
 
 use super::*;
-use crate::random::{Purpose, Stream};
+use crate::analysis::noise;
 use ndarray::Array2;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -97,11 +97,11 @@ fn walkers(number: u32) -> Recording {
     let (mut x, mut y, z) = (Array2::zeros(shape), Array2::zeros(shape), Array2::zeros(shape));
     let mut runs = Vec::new();
     for cell in 0..number {
-        let mut stream = Stream::new(3, Purpose::Analysis, u64::from(cell));
+        let mut uniform = noise::uniform(1 + u64::from(cell));
         let (mut begin, mut place, mut frame) = (0.0, [0.0, 0.0], 0);
         while frame < FRAMES {
-            let duration = -PERSISTENCE * (-stream.uniform_f64()).ln_1p();
-            let (sine, cosine) = (std::f64::consts::TAU * stream.uniform_f64()).sin_cos();
+            let duration = -PERSISTENCE * (-uniform()).ln_1p();
+            let (sine, cosine) = (std::f64::consts::TAU * uniform()).sin_cos();
             while frame < FRAMES && times[frame] <= begin + duration {
                 x[[frame, cell as usize]] = place[0] + cosine * (times[frame] - begin);
                 y[[frame, cell as usize]] = place[1] + sine * (times[frame] - begin);

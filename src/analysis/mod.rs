@@ -4,6 +4,8 @@ pub mod claims;
 pub mod curve;
 pub mod measure;
 pub mod msd;
+#[cfg(test)]
+mod noise;
 pub mod recording;
 pub mod statistics;
 pub mod table;

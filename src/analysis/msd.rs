@@ -67,7 +67,7 @@ fn squared_distance(positions: &ArrayView3<f64>, cell: usize, origin: usize, lag
         .sum()
 }
 
-/// Fürth's mean squared displacement of a persistent walk, µm², eq. (motility.6).
+/// Fürth's mean squared displacement of a persistent walk, µm², eq. (motility.2).
 ///
 /// * `lag` – s; `speed` – µm/s; `persistence` – s, positive.
 pub fn furth(lag: f64, speed: f64, persistence: f64) -> f64 {

@@ -1,8 +1,8 @@
 //! Brownian motility: a cell crawls straight ahead for a random while, turns anywhere, and crawls on.
 //!
 //! The straight runs last exponentially distributed times, eq. (motility.1), and the directions are uniform, eq.
-//! (motility.2) in the plane and eq. (motility.3) in the volume. A step may contain any number of turns: what
-//! [`advance`] returns is the mean velocity over the step, eq. (motility.4), so the places at the ends of the steps are
+//! (motility.3) in the plane and eq. (motility.4) in the volume. A step may contain any number of turns: what
+//! [`advance`] returns is the mean velocity over the step, eq. (motility.5), so the places at the ends of the steps are
 //! those of the continuous walk whatever the step.
 
 use crate::Vec3;
@@ -66,7 +66,7 @@ pub struct Walk {
 /// The walk of a cell at time zero, its first run just begun.
 ///
 /// Because exponential runs have no memory, a walk that begins with a fresh run is the stationary walk: its velocity
-/// is correlated as eq. (motility.5) from the very start.
+/// is correlated as eq. (motility.6) from the very start.
 ///
 /// * `cell` – the lasting number of the cell, which with `seed` names its random numbers.
 pub fn start(motility: &BrownianMotility, seed: u64, cell: u64) -> Walk {
@@ -75,7 +75,7 @@ pub fn start(motility: &BrownianMotility, seed: u64, cell: u64) -> Walk {
     walk
 }
 
-/// Moves a walk on by `dt` and returns the mean velocity over that time, µm/s, eq. (motility.4).
+/// Moves a walk on by `dt` and returns the mean velocity over that time, µm/s, eq. (motility.5).
 ///
 /// * `dt` – duration of the step, s; at zero the velocity of the moment is returned.
 /// * `walk` – read and moved on.
@@ -119,7 +119,7 @@ fn begin_run(motility: &BrownianMotility, seed: u64, cell: u64, walk: &mut Walk)
     walk.direction = direction(motility.space, random::uniform_pair(bits));
 }
 
-/// The direction that two numbers uniform in [0, 1) choose, eq. (motility.2) or eq. (motility.3).
+/// The direction that two numbers uniform in [0, 1) choose, eq. (motility.3) or eq. (motility.4).
 fn direction(space: Space, [first, second]: [f64; 2]) -> [f64; 3] {
     let (sine, cosine) = (TAU * first).sin_cos();
     match space {
