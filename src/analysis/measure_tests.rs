@@ -156,12 +156,23 @@ fn runs_cut_by_the_end_do_not_bias_their_law() {
 }
 
 #[test]
-fn displacements_need_even_frames_and_enough_of_them() {
-    let mut recording = walkers(3);
+fn displacements_need_two_cells_and_time_enough() {
     let measure = |lag_to| Measure::MsdDeviation { cells: None, speed: 1.0, persistence: 20.0, lag_from: 5.0, lag_to };
+    let recording = walkers(3);
     assert!(measure(400.0).evaluate(&recording).is_ok());
-    assert!(measure(401.0).evaluate(&recording).is_ok(), "the longest lag recorded is 400 s, one below 405 s");
-    assert!(measure(410.0).evaluate(&recording).unwrap_err().to_string().contains("81 frames"));
-    recording.times[3] += 1.0;
-    assert!(measure(400.0).evaluate(&recording).unwrap_err().to_string().contains("unequal intervals"));
+    assert!(measure(401.0).evaluate(&recording).unwrap_err().to_string().contains("81 frames of 400 s"));
+    assert!(measure(400.0).evaluate(&walkers(1)).unwrap_err().to_string().contains("of 1 cells"));
+}
+
+#[test]
+fn displacements_go_by_the_times_of_frames() {
+    // Frames as an adaptive step leaves them: every third only, then all but a few.
+    let mut recording = walkers(2_000);
+    let kept: Vec<usize> = (0..FRAMES).filter(|frame| frame % 3 == 0 || (*frame > 40 && frame % 5 != 0)).collect();
+    recording.times = kept.iter().map(|&frame| recording.times[frame]).collect();
+    for series in recording.cells.values_mut() {
+        *series = series.select(ndarray::Axis(0), &kept);
+    }
+    let measure = |lag_to| Measure::MsdDeviation { cells: None, speed: 1.0, persistence: 20.0, lag_from: 5.0, lag_to };
+    assert!(measure(200.0).evaluate(&recording).unwrap() < 3.0);
 }
