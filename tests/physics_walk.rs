@@ -42,7 +42,8 @@ fn walks(space: Space) -> (Array3<f64>, Vec<(f64, f64)>) {
 fn displacements_follow_furth_from_any_origin() {
     for space in [Space::Plane, Space::Volume] {
         let (positions, _) = walks(space);
-        let fixed = from_the_start(positions.view(), INTERVAL, &LAGS);
+        let times: Vec<f64> = (0..FRAMES).map(|frame| frame as f64 * INTERVAL).collect();
+        let fixed = from_the_start(positions.view(), &times, &LAGS);
         let averaged = over_origins(positions.view(), INTERVAL, &LAGS);
         for one in fixed.iter().chain(&averaged) {
             // Three standard errors of independent walkers.

@@ -116,8 +116,8 @@ fn bars(comparison: &Comparison, recording: &Recording, resolve: &dyn Fn(&Path) 
     curve.rows_within(table.column(&comparison.x_column)?, table.column(low)?, table.column(high)?)
 }
 
-/// Compares with Fürth's law, eq. (analysis.8), at [`LAGS`] lags, as frames allow, from the shortest to the longest in
-/// equal ratios.
+/// Compares with Fürth's law, eq. (analysis.8), at [`LAGS`] lags, or the frames nearest to them, from the shortest to the
+/// longest in equal ratios.
 fn msd_deviation(
     recording: &Recording,
     kind: Option<&str>,
@@ -125,22 +125,26 @@ fn msd_deviation(
     [lag_from, lag_to]: [f64; 2],
 ) -> Result<f64> {
     let cells = recording.cells_of(kind)?;
-    let interval = recording.interval()?;
-    // A millionth of a frame forgives round-off in lags that are multiples of the interval.
-    let first = (lag_from / interval - 1e-6).ceil().max(1.0);
-    let last = (lag_to / interval + 1e-6).floor();
-    if cells.len() < 2 || first > last || last > recording.times.len() as f64 - 1.0 {
+    let times = &recording.times;
+    // A millionth forgives the round-off of frames that are due at the very ends.
+    let within = |lag: f64| lag > 0.0 && lag_from * (1.0 - 1e-6) <= lag && lag <= lag_to * (1.0 + 1e-6);
+    let usable: Vec<usize> = (0..times.len()).filter(|&frame| within(times[frame] - times[0])).collect();
+    let reaches = times.last().is_some_and(|last| last - times[0] >= lag_to * (1.0 - 1e-6));
+    if cells.len() < 2 || usable.is_empty() || !reaches {
+        let recorded = times.last().map_or(0.0, |last| last - times[0]);
         let found = format!(
-            "displacements of {} cells over {lag_from} s to {lag_to} s cannot be measured from {} frames every {interval} s",
+            "displacements of {} cells over {lag_from} s to {lag_to} s cannot be measured from {} frames of {recorded} s",
             cells.len(),
-            recording.times.len()
+            times.len()
         );
         return Err(Error::input(Fault::new(found).help("give two cells or more, and lags within the recorded time")));
     }
-    let ratio = |index: usize| (last / first).powf(index as f64 / (LAGS - 1) as f64);
-    let mut lags: Vec<usize> = (0..LAGS).map(|index| (first * ratio(index)).round() as usize).collect();
-    lags.dedup();
-    let measured = msd::from_the_start(recording.positions(&cells)?.view(), interval, &lags);
+    let wanted = |index: usize| lag_from * (lag_to / lag_from).powf(index as f64 / (LAGS - 1) as f64);
+    let distance = |frame: usize, lag: f64| (times[frame] - times[0] - lag).abs();
+    let nearest = |lag: f64| usable.iter().copied().min_by(|&a, &b| distance(a, lag).total_cmp(&distance(b, lag)));
+    let mut frames: Vec<usize> = (0..LAGS).filter_map(|index| nearest(wanted(index))).collect();
+    frames.dedup();
+    let measured = msd::from_the_start(recording.positions(&cells)?.view(), times, &frames);
     let deviation = |one: &msd::Displacement| (one.msd - msd::furth(one.lag, speed, persistence)).abs() / one.error;
     // A maximum that NaN passes through: cells that stand still all alike agree with no law.
     Ok(measured.iter().map(deviation).fold(0.0, |most: f64, next| if next <= most { most } else { next }))

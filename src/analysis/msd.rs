@@ -19,19 +19,21 @@ pub struct Displacement {
 /// The mean over cells of the squared distance from the first frame, eq. (analysis.4).
 ///
 /// Cells that wander independently make independent squares, so the error is their standard deviation over √cells.
+/// Frames need not be at equal intervals.
 ///
-/// * `positions` – µm, [frame, cell, axis], frames at equal intervals.
-/// * `interval` – time between frames, s.
-/// * `lags` – in frames.
+/// * `positions` – µm, [frame, cell, axis].
+/// * `times` – of the frames, s.
+/// * `frames` – those to measure at.
 ///
 /// # Panics
-/// When a lag reaches beyond the last frame.
-pub fn from_the_start(positions: ArrayView3<f64>, interval: f64, lags: &[usize]) -> Vec<Displacement> {
-    lags.iter()
-        .map(|&lag| {
-            let squares: Vec<f64> =
-                (0..positions.dim().1).map(|cell| squared_distance(&positions, cell, 0, lag)).collect();
-            Displacement { lag: lag as f64 * interval, msd: mean(&squares), error: standard_error(&squares) }
+/// When one of `frames` lies beyond the last.
+pub fn from_the_start(positions: ArrayView3<f64>, times: &[f64], frames: &[usize]) -> Vec<Displacement> {
+    let cells = positions.dim().1;
+    frames
+        .iter()
+        .map(|&frame| {
+            let squares: Vec<f64> = (0..cells).map(|cell| squared_distance(&positions, cell, 0, frame)).collect();
+            Displacement { lag: times[frame] - times[0], msd: mean(&squares), error: standard_error(&squares) }
         })
         .collect()
 }
@@ -39,8 +41,11 @@ pub fn from_the_start(positions: ArrayView3<f64>, interval: f64, lags: &[usize])
 /// The mean over cells and over all origins in time, eq. (analysis.5).
 ///
 /// Displacements of one cell from neighbouring origins overlap, so each cell is first reduced to its own mean, and the
-/// error is the standard error of these over the cells. Narrower than [`from_the_start`] at short lags. The arguments
-/// are the same.
+/// error is the standard error of these over the cells. Narrower than [`from_the_start`] at short lags.
+///
+/// * `positions` – µm, [frame, cell, axis], frames at equal intervals.
+/// * `interval` – time between frames, s.
+/// * `lags` – in frames.
 ///
 /// # Panics
 /// When a lag reaches beyond the last frame.

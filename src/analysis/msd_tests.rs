@@ -14,9 +14,10 @@ fn straight() -> Array3<f64> {
 #[test]
 fn straight_walks_spread_with_the_square_of_time() {
     let positions = straight();
-    for displacements in
-        [from_the_start(positions.view(), 2.0, &[0, 1, 3]), over_origins(positions.view(), 2.0, &[0, 1, 3])]
-    {
+    for displacements in [
+        from_the_start(positions.view(), &[0.0, 2.0, 4.0, 6.0, 8.0], &[0, 1, 3]),
+        over_origins(positions.view(), 2.0, &[0, 1, 3]),
+    ] {
         for (displacement, frames) in displacements.iter().zip([0.0, 1.0, 3.0_f64]) {
             assert_eq!(displacement.lag, 2.0 * frames);
             // (1² + 3²)/2 and half the difference of the two squares.
@@ -31,7 +32,7 @@ fn origins_are_averaged() {
     // One cell that stands, jumps by 2 µm, and stands: squares 0, 4, 0 from three origins, 0 from the first.
     let jump = Array3::from_shape_vec((4, 1, 1), vec![0.0, 0.0, 2.0, 2.0]).unwrap();
     assert!((over_origins(jump.view(), 1.0, &[1])[0].msd - 4.0 / 3.0).abs() < 1e-15);
-    assert_eq!(from_the_start(jump.view(), 1.0, &[1])[0].msd, 0.0);
+    assert_eq!(from_the_start(jump.view(), &[0.0, 1.0, 2.0, 3.0], &[1])[0].msd, 0.0);
     assert!(over_origins(jump.view(), 1.0, &[1])[0].error.is_nan());
 }
 

@@ -112,23 +112,6 @@ impl Recording {
         Ok(Array3::from_shape_fn(shape, |(frame, cell, axis)| axes[axis][[frame, cells[cell]]]))
     }
 
-    /// The time between frames, s.
-    ///
-    /// # Errors
-    /// When there are fewer than two frames, or they do not follow each other at equal intervals.
-    pub fn interval(&self) -> Result<f64> {
-        let (Some(first), Some(last)) = (self.times.first(), self.times.last()) else {
-            return Err(uneven("has no frames"));
-        };
-        let interval = (last - first) / (self.times.len() as f64 - 1.0);
-        // Frames are due at multiples of the interval; a thousandth forgives the round-off of times in text.
-        let even = |index: usize| (self.times[index] - first - index as f64 * interval).abs() < 1e-3 * interval;
-        if self.times.len() < 2 || !(0..self.times.len()).all(even) {
-            return Err(uneven("has frames at unequal intervals"));
-        }
-        Ok(interval)
-    }
-
     fn cell_series(&self, name: &str) -> Result<&Array2<f64>> {
         self.cells.get(name).ok_or_else(|| {
             let known = ["time"].into_iter().chain(self.scene.keys().chain(self.cells.keys()).map(String::as_str));
@@ -136,11 +119,4 @@ impl Recording {
             Error::input(fault.help(format!("the series at hand are {}", known.collect::<Vec<_>>().join(", "))))
         })
     }
-}
-
-fn uneven(what: &str) -> Error {
-    let fault = Fault::new(format!("displacements cannot be measured: the run {what}"));
-    Error::input(
-        fault.help("record at least two frames at equal intervals, such as every = \"30 s\", until a multiple of it"),
-    )
 }
