@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 const LAGS: usize = 12;
 
 /// Names of the series that [`evaluate`] asks a recording for, besides `time`.
-pub fn series(kind: &MeasureKind) -> Vec<&str> {
+pub fn series_of(kind: &MeasureKind) -> Vec<&str> {
     let names: Vec<&str> = match kind {
         MeasureKind::Value { series, .. } => vec![series],
         MeasureKind::Slope { x, y, .. } | MeasureKind::RSquared { x, y, .. } => vec![x, y],
@@ -27,9 +27,9 @@ pub fn series(kind: &MeasureKind) -> Vec<&str> {
     names.into_iter().filter(|name| *name != "time").collect()
 }
 
-/// Computes one measure, in base units: µm, s, pN.
+/// Computes the number, in base units: µm, s, pN.
 ///
-/// * `resolve` – turns the path of a table, as the document writes it, into one that can be opened from here.
+/// * `resolve` – makes a path of the document one that the system can open.
 ///
 /// # Errors
 /// When a series, type, column or table is not there, or does not reach where it is asked for.
@@ -39,10 +39,10 @@ pub fn evaluate(kind: &MeasureKind, recording: &Recording, resolve: &dyn Fn(&Pat
             reduce(*time, &recording.times, &recording.series(series, cells.as_deref(), *over)?)
         }
         MeasureKind::Slope { x, y, cells, x_from, x_to } => {
-            Ok(line(&curve(recording, x, y, cells.as_deref())?, *x_from, *x_to)?.slope)
+            line(&curve(recording, x, y, cells.as_deref())?, *x_from, *x_to).map(|line| line.slope)
         }
         MeasureKind::RSquared { x, y, cells, x_from, x_to } => {
-            Ok(line(&curve(recording, x, y, cells.as_deref())?, *x_from, *x_to)?.r_squared)
+            line(&curve(recording, x, y, cells.as_deref())?, *x_from, *x_to).map(|line| line.r_squared)
         }
         MeasureKind::TableRms(comparison) => {
             let (table, curve) = open(comparison, recording, resolve)?;
@@ -54,8 +54,8 @@ pub fn evaluate(kind: &MeasureKind, recording: &Recording, resolve: &dyn Fn(&Pat
         }
         MeasureKind::TableBars(comparison) => bars(comparison, recording, resolve).map(|rows| rows as f64),
         MeasureKind::MsdDeviation { cells, speed, persistence, lag_from, lag_to } => {
-            let law = [speed.value(), persistence.value()];
-            msd_deviation(recording, cells.as_deref(), law, [lag_from.value(), lag_to.value()])
+            let (law, lags) = ([speed.value(), persistence.value()], [lag_from.value(), lag_to.value()]);
+            msd_deviation(recording, cells.as_deref(), law, lags)
         }
         MeasureKind::RunLengthP { cells, persistence } => {
             run_length_p(recording, cells.as_deref(), persistence.value())
@@ -63,15 +63,15 @@ pub fn evaluate(kind: &MeasureKind, recording: &Recording, resolve: &dyn Fn(&Pat
     }
 }
 
-/// Makes the values at several instants one.
-fn reduce(how: Reduction, times: &[f64], values: &[f64]) -> Result<f64> {
+/// Makes one of the values at several instants.
+fn reduce(reduction: Reduction, times: &[f64], values: &[f64]) -> Result<f64> {
     let (Some(first), Some(last)) = (values.first(), values.last()) else {
         let fault = Fault::new("the run has no frames to measure");
         return Err(Error::input(fault.help("let the run record at least one frame")));
     };
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    match how {
+    match reduction {
         Reduction::Last => Ok(*last),
         Reduction::First => Ok(*first),
         Reduction::Mean => Ok(statistics::mean(values)),
@@ -80,7 +80,7 @@ fn reduce(how: Reduction, times: &[f64], values: &[f64]) -> Result<f64> {
         Reduction::Range => Ok(most - least),
         Reduction::At(time) => statistics::interpolate(times, values, time.value()).ok_or_else(|| {
             let (from, to) = (times[0], times[times.len() - 1]);
-            let fault = Fault::new(format!("nothing was recorded at {} s", time.value()));
+            let fault = Fault::new(format!("nothing was recorded at {time}"));
             Error::input(fault.help(format!("give a time from {from} s to {to} s")))
         }),
     }
@@ -94,14 +94,13 @@ pub fn curve(recording: &Recording, x: &str, y: &str, cells: Option<&str>) -> Re
     Ok(Curve::new(&recording.series(x, cells, Over::Mean)?, &recording.series(y, cells, Over::Mean)?))
 }
 
-/// The line through the points of a curve between two x.
+/// Fits a line to the part of a curve between two x.
 fn line(curve: &Curve, x_from: Option<f64>, x_to: Option<f64>) -> Result<Line> {
     let within = |x: f64| x_from.is_none_or(|from| from <= x) && x_to.is_none_or(|to| x <= to);
     let (x, y): (Vec<f64>, Vec<f64>) = curve.points().filter(|[x, _]| within(*x)).map(|[x, y]| (x, y)).unzip();
     statistics::fit_line(&x, &y)
 }
 
-/// The table of a comparison and the curve beside it.
 fn open(comparison: &Comparison, recording: &Recording, resolve: &dyn Fn(&Path) -> PathBuf) -> Result<(Table, Curve)> {
     let curve = curve(recording, &comparison.x, &comparison.y, comparison.cells.as_deref())?;
     Ok((Table::read(&resolve(&comparison.table))?, curve))
@@ -116,8 +115,8 @@ fn bars(comparison: &Comparison, recording: &Recording, resolve: &dyn Fn(&Path) 
     curve.rows_within(table.column(&comparison.x_column)?, table.column(low)?, table.column(high)?)
 }
 
-/// Compares with Fürth's law, eq. (analysis.8), at [`LAGS`] lags, or the frames nearest to them, from the shortest to the
-/// longest in equal ratios.
+/// Largest distance, in standard errors, of the mean squared displacement from Fürth's law, eq. (analysis.8): at
+/// [`LAGS`] lags, or the frames nearest to them, from the shortest to the longest in equal ratios.
 fn msd_deviation(
     recording: &Recording,
     kind: Option<&str>,
@@ -150,9 +149,10 @@ fn msd_deviation(
     Ok(measured.iter().map(deviation).fold(0.0, |most: f64, next| if next <= most { most } else { next }))
 }
 
+/// Probability of durations of runs at least as unlike the exponential law as these, eq. (analysis.9).
+///
 /// Runs that begin near the end of a recording are seen only when they are short. So only those are taken that begin
-/// earlier than the longest duration kept before the end, and they are held against the law cut at that duration,
-/// eq. (analysis.9).
+/// earlier than the longest duration kept before the end, and they are held against the law cut at that duration.
 fn run_length_p(recording: &Recording, kind: Option<&str>, persistence: f64) -> Result<f64> {
     let cells = recording.cells_of(kind)?;
     let (first, last) = match (recording.times.first(), recording.times.last()) {

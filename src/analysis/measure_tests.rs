@@ -20,8 +20,9 @@ fn pulled() -> Recording {
     }
 }
 
-fn take(kind: &MeasureKind, recording: &Recording) -> Result<f64> {
-    evaluate(kind, recording, &Path::to_path_buf)
+/// Evaluates with paths that can be opened as they are.
+fn evaluate(kind: &MeasureKind, recording: &Recording) -> Result<f64> {
+    super::evaluate(kind, recording, &Path::to_path_buf)
 }
 
 fn value(cells: Option<&str>, over: Over, time: Reduction) -> MeasureKind {
@@ -31,7 +32,7 @@ fn value(cells: Option<&str>, over: Over, time: Reduction) -> MeasureKind {
 #[test]
 fn values_are_reduced_over_cells_and_time() {
     let recording = pulled();
-    let found = |cells, over, time| take(&value(cells, over, time), &recording).unwrap();
+    let found = |cells, over, time| evaluate(&value(cells, over, time), &recording).unwrap();
     assert_eq!(found(Some("white"), Over::Mean, Reduction::Last), 7.0);
     assert_eq!(found(None, Over::Min, Reduction::First), 4.0);
     assert_eq!(found(None, Over::Max, Reduction::Mean), 9.0);
@@ -44,26 +45,27 @@ fn values_are_reduced_over_cells_and_time() {
 #[test]
 fn what_is_not_there_is_named() {
     let recording = pulled();
-    let message = |measure: MeasureKind| take(&measure, &recording).unwrap_err().to_string();
+    let message = |measure: MeasureKind| evaluate(&measure, &recording).unwrap_err().to_string();
     let missing = value(Some("blue"), Over::Mean, Reduction::Last);
     assert_eq!(message(missing), "there is no cell type \"blue\" in this run");
     assert_eq!(message(value(None, Over::Mean, Reduction::At(Time::new(4.0)))), "nothing was recorded at 4 s");
     let measure = MeasureKind::Value { series: "volume".into(), cells: None, over: Over::Mean, time: Reduction::Last };
-    assert_eq!(series(&measure), ["volume"]);
+    assert_eq!(series_of(&measure), ["volume"]);
     assert_eq!(message(measure), "there is no series \"volume\" in this run");
 }
 
 #[test]
 fn lines_are_fitted_to_the_stretch_asked_for() {
-    let (x, y, cells) = ("load.pull".to_owned(), "size_x".to_owned(), Some("white".to_owned()));
-    let slope = |x_to| MeasureKind::Slope { x: x.clone(), y: y.clone(), cells: cells.clone(), x_from: None, x_to };
-    let recording = pulled();
+    let slope = |x_to| {
+        let (x, y, cells) = ("load.pull".into(), "size_x".into(), Some("white".into()));
+        evaluate(&MeasureKind::Slope { x, y, cells, x_from: None, x_to }, &pulled()).unwrap()
+    };
     // The white cells measure 5, 5.5 and 7 µm.
-    assert!((take(&slope(None), &recording).unwrap() - 0.1).abs() < 1e-14);
-    assert!((take(&slope(Some(10.0)), &recording).unwrap() - 0.05).abs() < 1e-14);
-    // Residuals −1/6, 1/3, −1/6 of values whose squares about the mean sum to 13/6.
-    let (x, y, cells) = (x.clone(), y.clone(), cells.clone());
-    let r_squared = take(&MeasureKind::RSquared { x, y, cells, x_from: None, x_to: None }, &recording).unwrap();
+    assert!((slope(None) - 0.1).abs() < 1e-14);
+    assert!((slope(Some(10.0)) - 0.05).abs() < 1e-14);
+    let (x, y, cells) = ("load.pull".into(), "size_x".into(), Some("white".into()));
+    let r_squared = evaluate(&MeasureKind::RSquared { x, y, cells, x_from: None, x_to: None }, &pulled()).unwrap();
+    // Residuals 1/6, −1/3, 1/6 of values whose squares about the mean sum to 13/6.
     assert!((r_squared - (1.0 - (1.0 / 6.0) / (13.0 / 6.0))).abs() < 1e-14);
 }
 
@@ -83,14 +85,14 @@ fn tables_are_compared_with_the_curve() {
     };
     let recording = pulled();
     // The red cell measures 8 and 9.5 µm at the two loads.
-    let rms = take(&MeasureKind::TableRms(comparison.clone()), &recording).unwrap();
+    let rms = evaluate(&MeasureKind::TableRms(comparison.clone()), &recording).unwrap();
     assert!((rms - 0.05 / 2.0_f64.sqrt()).abs() < 1e-14);
-    let ratio = take(&MeasureKind::TableRatio(comparison.clone()), &recording).unwrap();
+    let ratio = evaluate(&MeasureKind::TableRatio(comparison.clone()), &recording).unwrap();
     assert!((ratio - 0.975).abs() < 1e-14);
-    assert_eq!(take(&MeasureKind::TableBars(comparison.clone()), &recording).unwrap(), 1.0);
+    assert_eq!(evaluate(&MeasureKind::TableBars(comparison.clone()), &recording).unwrap(), 1.0);
     let without = Comparison { low_column: None, ..comparison };
     assert!(
-        take(&MeasureKind::TableBars(without), &recording).unwrap_err().to_string().contains("without the columns")
+        evaluate(&MeasureKind::TableBars(without), &recording).unwrap_err().to_string().contains("without the columns")
     );
 }
 
@@ -134,15 +136,17 @@ fn walkers(number: u32) -> Recording {
     }
 }
 
+fn msd_deviation(speed: f64, persistence: f64, lag_from: f64, lag_to: f64) -> MeasureKind {
+    let [persistence, lag_from, lag_to] = [persistence, lag_from, lag_to].map(Time::new);
+    MeasureKind::MsdDeviation { cells: None, speed: Speed::new(speed), persistence, lag_from, lag_to }
+}
+
 #[test]
 fn walkers_agree_with_fuerths_law_and_with_no_other() {
     let recording = walkers(2_000);
     let deviation = |speed: f64, persistence: f64| {
         let (lag_from, lag_to) = (PERSISTENCE / 4.0, 10.0 * PERSISTENCE);
-        let (lag_from, lag_to) = (Time::new(lag_from), Time::new(lag_to));
-        let (speed, persistence) = (Speed::new(speed), Time::new(persistence));
-        let measure = MeasureKind::MsdDeviation { cells: None, speed, persistence, lag_from, lag_to };
-        take(&measure, &recording).unwrap()
+        evaluate(&msd_deviation(speed, persistence, lag_from, lag_to), &recording).unwrap()
     };
     // Three standard errors, and far more where speed or persistence are a fifth off.
     assert!(deviation(1.0, PERSISTENCE) < 3.0);
@@ -159,7 +163,7 @@ fn runs_cut_by_the_end_do_not_bias_their_law() {
     recording.runs.retain(|(_, end, _)| *end <= last);
     let p = |persistence| {
         let persistence = Time::new(persistence);
-        take(&MeasureKind::RunLengthP { cells: None, persistence }, &recording).unwrap()
+        evaluate(&MeasureKind::RunLengthP { cells: None, persistence }, &recording).unwrap()
     };
     assert!(p(PERSISTENCE) > 0.01);
     assert!(p(1.2 * PERSISTENCE) < 1e-4);
@@ -170,10 +174,11 @@ fn runs_cut_by_the_end_do_not_bias_their_law() {
 
 #[test]
 fn displacements_need_two_cells_and_time_enough() {
+    let measure = |lag_to| msd_deviation(1.0, 20.0, 5.0, lag_to);
     let recording = walkers(3);
-    assert!(take(&deviation_up_to(400.0), &recording).is_ok());
-    assert!(take(&deviation_up_to(401.0), &recording).unwrap_err().to_string().contains("81 frames of 400 s"));
-    assert!(take(&deviation_up_to(400.0), &walkers(1)).unwrap_err().to_string().contains("of 1 cells"));
+    assert!(evaluate(&measure(400.0), &recording).is_ok());
+    assert!(evaluate(&measure(401.0), &recording).unwrap_err().to_string().contains("81 frames of 400 s"));
+    assert!(evaluate(&measure(400.0), &walkers(1)).unwrap_err().to_string().contains("of 1 cells"));
 }
 
 #[test]
@@ -185,16 +190,6 @@ fn displacements_go_by_the_times_of_frames() {
     for series in recording.cells.values_mut() {
         *series = series.select(ndarray::Axis(0), &kept);
     }
-    assert!(take(&deviation_up_to(200.0), &recording).unwrap() < 3.0);
-}
-
-/// The distance from the walkers' own law from 5 s to `lag_to`.
-fn deviation_up_to(lag_to: f64) -> MeasureKind {
-    MeasureKind::MsdDeviation {
-        cells: None,
-        speed: Speed::new(1.0),
-        persistence: Time::new(PERSISTENCE),
-        lag_from: Time::new(5.0),
-        lag_to: Time::new(lag_to),
-    }
+    let measure = |lag_to| msd_deviation(1.0, 20.0, 5.0, lag_to);
+    assert!(evaluate(&measure(200.0), &recording).unwrap() < 3.0);
 }

@@ -10,30 +10,41 @@ pub mod recording;
 pub mod statistics;
 pub mod table;
 
-use crate::error::Result;
+use crate::error::{Error, Fault, Result};
 use crate::experiment::Document;
 use crate::output::{Measure, ResultFile};
 use recording::Recording;
 
-/// Evaluates all measures that a document declares, in its order.
-///
-/// A measure that cannot be taken from this run, for instance because its table does not exist any more, is NaN and its
-/// description says why: the run that was made is worth more than the one number that it lacks.
+/// Evaluates all measures that a document declares, each multiplied by its scale. Those that cannot be computed come
+/// as faults with their places in the document beside the others, which are worth keeping all the same.
 ///
 /// # Errors
-/// A damaged result file.
-pub fn measure_result(file: &ResultFile, document: &Document) -> Result<Vec<Measure>> {
+/// A damaged file.
+pub fn measure_result(file: &ResultFile, document: &Document) -> Result<(Vec<Measure>, Vec<Fault>)> {
     let declared = &document.experiment.measure;
-    let recording = Recording::load(file, declared.values().flat_map(|one| measure::series(&one.kind)))?;
-    let measures = declared.iter().map(|(name, one)| {
-        let description = one.description.clone().unwrap_or_default();
-        let (value, description) = match measure::evaluate(&one.kind, &recording, &|path| document.resolve(path)) {
-            Ok(value) => (one.scale * value, description),
-            Err(error) => (f64::NAN, format!("{description} (not measured: {error})").trim_start().to_owned()),
-        };
-        Measure { name: name.clone(), value, unit: one.unit.clone(), description }
-    });
-    Ok(measures.collect())
+    let mut names: Vec<&str> = declared.values().flat_map(|measure| measure::series_of(&measure.kind)).collect();
+    names.sort_unstable();
+    names.dedup();
+    let recording = Recording::read(file, &names)?;
+    let (mut measures, mut faults) = (Vec::new(), Vec::new());
+    for (name, declared) in declared {
+        match measure::evaluate(&declared.kind, &recording, &|path| document.resolve(path)) {
+            Ok(value) => measures.push(Measure {
+                name: name.clone(),
+                value: value * declared.scale,
+                unit: if declared.unit.is_empty() { "1".to_owned() } else { declared.unit.clone() },
+                description: declared.description.clone().unwrap_or_default(),
+            }),
+            Err(Error::Input(found)) => faults.extend(found.into_iter().map(|mut fault| {
+                fault.message = format!("the measure `{name}` cannot be computed: {}", fault.message);
+                // A fault that points into a table keeps its place there.
+                fault.place = fault.place.or_else(|| document.key_place(&format!("measure.{name}"), "this measure"));
+                fault
+            })),
+            Err(other) => return Err(other),
+        }
+    }
+    Ok((measures, faults))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::output::ResultFile;
 use ndarray::{Array2, Array3};
 use std::collections::BTreeMap;
 
-/// Series of a finished run: those that the measures at hand need, see [`super::measure::series`].
+/// Series of a finished run: those that the measures at hand need, see [`super::measure::series_of`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Recording {
     /// Time of each frame, s; the series `time`.
@@ -23,7 +23,7 @@ pub struct Recording {
     pub runs: Vec<(u32, f64, f64)>,
 }
 
-/// Makes the values of several cells one.
+/// Makes one of the values of several cells.
 fn reduce(over: Over, values: &[f64]) -> f64 {
     match over {
         Over::Mean => super::statistics::mean(values),
@@ -35,12 +35,12 @@ fn reduce(over: Over, values: &[f64]) -> f64 {
 }
 
 impl Recording {
-    /// Reads from a result what the series of these names need. A name that the result does not have is passed over:
-    /// whoever asks for it later is told.
+    /// Reads the series that are asked for, and the rest, from a result file. Names that the file has no series of are
+    /// passed over; [`Recording::series`] says so when they are used.
     ///
     /// # Errors
     /// A damaged file.
-    pub fn load<'a>(file: &ResultFile, names: impl Iterator<Item = &'a str>) -> Result<Self> {
+    pub fn read(file: &ResultFile, names: &[&str]) -> Result<Self> {
         let layout = file.layout();
         let mut recording = Self {
             times: file.times()?,
@@ -50,11 +50,10 @@ impl Recording {
             ..Self::default()
         };
         let of_cells = file.series_names();
-        for name in names {
-            let read = recording.scene.contains_key(name) || recording.cells.contains_key(name);
-            if !read && layout.scene_series.iter().any(|(scene, _)| scene == name) {
+        for &name in names {
+            if layout.scene_series.iter().any(|(known, _)| known == name) {
                 recording.scene.insert(name.to_owned(), file.scene_series(name)?);
-            } else if !read && of_cells.iter().any(|known| known == name) {
+            } else if name == "speed" || of_cells.iter().any(|known| known == name) {
                 recording.cells.insert(name.to_owned(), file.cell_series(name)?);
             }
         }

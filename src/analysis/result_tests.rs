@@ -64,12 +64,12 @@ fn recorded(path: &Path) -> ResultFile {
 }
 
 #[test]
-fn measures_come_from_the_file_in_the_order_of_the_document() {
+fn measures_come_from_the_file_with_scale_and_unit() {
     let folder = tempfile::tempdir().unwrap();
     let file = recorded(&folder.path().join("pull.h5"));
     let document = Document::parse("pull.toml", EXPERIMENT, folder.path(), &[]).unwrap();
-    let measures = measure_result(&file, &document).unwrap();
-    assert_eq!(measures.iter().map(|one| one.name.as_str()).collect::<Vec<_>>(), ["stretch", "late"]);
+    let (measures, _) = measure_result(&file, &document).unwrap();
+    assert_eq!(measures[0].name, "stretch");
     // The mean extent grows by 0.75 µm a second and the load by 2 pN.
     assert!((measures[0].value - 375.0).abs() < 1e-9, "{:?}", measures[0]);
     assert_eq!(measures[0].unit, "nm/pN");
@@ -77,11 +77,13 @@ fn measures_come_from_the_file_in_the_order_of_the_document() {
 }
 
 #[test]
-fn a_measure_that_cannot_be_taken_is_no_number_and_says_why() {
+fn a_measure_that_cannot_be_taken_costs_no_other_and_says_where_it_stands() {
     let folder = tempfile::tempdir().unwrap();
     let file = recorded(&folder.path().join("pull.h5"));
     let document = Document::parse("pull.toml", EXPERIMENT, folder.path(), &[]).unwrap();
-    let late = &measure_result(&file, &document).unwrap()[1];
-    assert!(late.value.is_nan());
-    assert_eq!(late.description, "volume half-way (not measured: nothing was recorded at 5 s)");
+    let (measures, faults) = measure_result(&file, &document).unwrap();
+    assert_eq!((measures.len(), faults.len()), (1, 1));
+    assert_eq!(faults[0].message, "the measure `late` cannot be computed: nothing was recorded at 5 s");
+    let place = faults[0].place.as_ref().unwrap();
+    assert_eq!(&EXPERIMENT[place.start..place.start + place.length], "late");
 }

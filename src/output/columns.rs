@@ -12,6 +12,9 @@ use super::{CellRecord, Frame, Layout};
 /// From this many cells on, a frame of a per-cell series is a compressed piece of its own.
 const MANY_CELLS: usize = 1024;
 
+/// Frames after which HDF5 is made to forget where the pieces lie, a few MB.
+const REMEMBERED_FRAMES: usize = 5000;
+
 type FrameNumber = fn(&Frame) -> f64;
 type Counted = fn(&Instant) -> i64;
 type AtomVectors = fn(&Frame) -> &[[f64; 3]];
@@ -52,6 +55,8 @@ pub(super) struct Columns {
     run_numbers: Vec<(RunSource, Column)>,
     scene: Vec<Column>,
     forces: bool,
+    /// Frames at the last [`Columns::forget_history`].
+    forgotten: usize,
 }
 
 /// Whether datasets are made or opened and cut.
@@ -195,28 +200,27 @@ impl Columns {
 
     /// Hands all rows that are still in memory to the file.
     pub fn write(&mut self) -> hdf5::Result<()> {
-        self.small().try_for_each(|(column, _)| column.write())
-    }
-
-    /// Cuts all datasets; nothing can be appended after that.
-    pub fn take_back(&mut self, frames: usize, runs: usize) -> hdf5::Result<()> {
-        let large = self.atom_vectors.iter_mut().map(|(_, column)| column);
-        for column in large.chain(self.many_cells.iter_mut().map(|(_, column)| column)) {
-            column.resize(frames)?;
-        }
-        for (column, per_run) in self.small() {
-            column.resize(if per_run { runs } else { frames })?;
-        }
-        Ok(())
-    }
-
-    /// All small datasets, and whether they have a row per motility run instead of per frame.
-    fn small(&mut self) -> impl Iterator<Item = (&mut Column, bool)> {
         let frames = self.counters.iter_mut().map(|(_, _, column)| column);
         let frames = frames.chain(self.frame_numbers.iter_mut().map(|(_, column)| column));
         let frames = frames.chain(self.few_cells.iter_mut().map(|(_, column)| column)).chain(&mut self.scene);
-        let runs = self.run_numbers.iter_mut().map(|(_, column)| (column, true));
-        frames.map(|column| (column, false)).chain(runs)
+        let mut all = frames.chain(self.run_numbers.iter_mut().map(|(_, column)| column));
+        all.try_for_each(Column::write)
+    }
+
+    /// Lets go of what HDF5 keeps in memory about the frames so far, when it has become much. To be called right
+    /// after a flush.
+    pub fn forget_history(&mut self, file: &File) -> hdf5::Result<()> {
+        if self.frames < self.forgotten + REMEMBERED_FRAMES {
+            return Ok(());
+        }
+        self.forgotten = self.frames;
+        for (value, column) in std::mem::take(&mut self.atom_vectors) {
+            self.atom_vectors.push((value, column.renewed(file)?));
+        }
+        for (source, column) in std::mem::take(&mut self.many_cells) {
+            self.many_cells.push((source, column.renewed(file)?));
+        }
+        Ok(())
     }
 }
 

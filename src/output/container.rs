@@ -20,7 +20,7 @@ pub(super) const FORMAT_ATTRIBUTE: &str = "pseudopod_format";
 
 /// How a file is opened for writing. The oldest format has no mark that says "in use", so a file whose writer was
 /// killed opens like any other. Metadata stay in memory until a flush, so between two flushes the file on disk is
-/// the one of the last flush.
+/// the one of the last flush. A dataset that is closed takes its metadata with it.
 fn kill_safe() -> FileBuilder {
     let cache = MetadataCacheConfig {
         evictions_enabled: false,
@@ -30,7 +30,7 @@ fn kill_safe() -> FileBuilder {
         ..MetadataCacheConfig::default()
     };
     let mut builder = FileBuilder::new();
-    builder.with_fapl(|access| access.libver_earliest().mdc_config(&cache));
+    builder.with_fapl(|access| access.libver_earliest().mdc_config(&cache).evict_on_close(true));
     builder
 }
 
@@ -53,7 +53,8 @@ pub(super) enum Access {
 pub(super) fn open(path: &Path, access: Access) -> Result<File> {
     check_signature(path)?;
     let opened = match access {
-        Access::Read => FileBuilder::new().open(path),
+        // As for writing, or HDF5 would refuse a file that this process is writing.
+        Access::Read => FileBuilder::new().with_fapl(|access| access.evict_on_close(true)).open(path),
         Access::Append => kill_safe().open_rw(path),
     };
     let file = opened.map_err(|error| refused(path, access, &error))?;

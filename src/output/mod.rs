@@ -11,6 +11,7 @@ mod container;
 mod header;
 mod info;
 mod layout_io;
+mod packing;
 mod reader;
 mod writer;
 

@@ -10,15 +10,12 @@ use super::columns::Columns;
 use super::container::{self, Access, failed, machine_error, set_number, set_text};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout, write_header, write_layout};
-use super::reader::whole_frames;
+use super::reader::{ResultFile, whole_frames};
 use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
 
 /// A flush costs about a millisecond and is the only time at which a kill could tear the file, so it is rare.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
-
-/// The file may be longer than its contents, never shorter; this much is added ahead of a flush.
-const SLACK: u64 = 1 << 16;
 
 /// What to do with a result file that is already there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,8 +33,6 @@ pub struct ResultWriter {
     header: Header,
     columns: Columns,
     step_count: Attribute,
-    /// Frames and motility runs that the file held at the last flush.
-    flushed: (usize, usize),
     last_flush: Clock,
     flush_interval: Duration,
     /// Set when the disk refused a write: the file is left as it was at the last flush.
@@ -99,7 +94,6 @@ impl ResultWriter {
             path: path.to_path_buf(),
             file,
             header: header.clone(),
-            flushed: columns.counts(),
             columns,
             step_count,
             last_flush: Clock::now(),
@@ -145,7 +139,6 @@ impl ResultWriter {
         self.check_whole()?;
         let flushed = self.write_out();
         self.settle(flushed)?;
-        self.flushed = self.columns.counts();
         self.last_flush = Clock::now();
         Ok(())
     }
@@ -153,15 +146,9 @@ impl ResultWriter {
     fn write_out(&mut self) -> hdf5::Result<()> {
         self.columns.write()?;
         self.step_count.write_scalar(&(self.columns.counts().0 as i64))?;
-        // HDF5 writes the length it wants before it makes the file that long. A kill in between would leave a file
-        // that is too short to open, so it is made long enough first.
-        let size = self.file.size() + SLACK;
-        if let Ok(file) = std::fs::OpenOptions::new().write(true).open(&self.path)
-            && file.metadata().is_ok_and(|known| known.len() < size)
-        {
-            let _ = file.set_len(size);
-        }
-        self.file.flush()
+        reserve(&self.path, self.file.size())?;
+        self.file.flush()?;
+        self.columns.forget_history(&self.file)
     }
 
     /// Flushes, then saves the checkpoint of this instant beside the result, on the disk itself.
@@ -172,6 +159,15 @@ impl ResultWriter {
         self.flush()?;
         self.sync()?;
         save_checkpoint(&self.path, &CheckpointMeta::new(&self.header, step, time), payload)
+    }
+
+    /// Opens what is recorded so far for reading, to find the measures before the file is finished.
+    ///
+    /// # Errors
+    /// As [`append`](Self::append) and [`ResultFile::open`]: there must be a frame.
+    pub fn read(&mut self) -> Result<ResultFile> {
+        self.flush()?;
+        ResultFile::open(&self.path)
     }
 
     /// Writes the measures of the experiment under `/summary`; one of the same name is replaced.
@@ -244,27 +240,58 @@ impl ResultWriter {
         }
     }
 
-    /// Passes success on. After a failure the frames since the last flush are taken back, so that what the file says
-    /// of itself and what it holds stay in accord, and nothing more is written.
+    /// Passes success on. After a failure nothing more is written, so that the file stays as it was at the last flush.
     fn settle(&mut self, outcome: hdf5::Result<()>) -> Result<()> {
         let Err(error) = outcome else { return Ok(()) };
         let error = failed(&self.path, "could not be written", &error);
         self.broken = true;
-        let (frames, runs) = self.flushed;
-        let _ = self.columns.take_back(frames, runs);
-        let _ = self.step_count.write_scalar(&(frames as i64));
-        let _ = self.file.flush();
         Err(error)
     }
 }
 
 impl Drop for ResultWriter {
     fn drop(&mut self) {
-        if !self.broken {
-            // Nobody is left to hear of a failure; the file then keeps the frames of the last flush.
-            let _ = self.flush();
+        // Nobody is left to hear of a failure; the file then keeps the frames of the last flush.
+        if !self.broken && self.flush().is_ok() {
+            return;
         }
+        // Closing would make HDF5 write what it has in memory, of which the disk took only a part. What is never
+        // closed is never written: to the file this is a kill, which it survives.
+        std::mem::forget(self.file.clone());
+        std::mem::forget(self.step_count.clone());
+        std::mem::forget(std::mem::take(&mut self.columns));
     }
+}
+
+/// Makes the file as long as HDF5 is going to say it is, with room for all of it on the disk.
+///
+/// HDF5 writes the length before it makes the file that long, and a kill in between would leave a file that is too
+/// short to open. And a disk that becomes full while HDF5 writes out what it knows of the file would leave half of it.
+fn reserve(path: &Path, size: u64) -> hdf5::Result<()> {
+    let reserved = || -> std::io::Result<()> {
+        let file = std::fs::OpenOptions::new().write(true).open(path)?;
+        let size = size.max(file.metadata()?.len());
+        allocate(&file, size)?;
+        file.set_len(size)
+    };
+    reserved().map_err(|error| error.to_string().as_str().into())
+}
+
+/// Takes room for the whole file on the disk; what is in the file stays.
+#[cfg(target_os = "linux")]
+fn allocate(file: &std::fs::File, size: u64) -> std::io::Result<()> {
+    use rustix::io::Errno;
+    match rustix::fs::fallocate(file, rustix::fs::FallocateFlags::empty(), 0, size) {
+        // Some file systems cannot promise room.
+        Ok(()) | Err(Errno::OPNOTSUPP | Errno::INVAL | Errno::NOSYS) => Ok(()),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Other systems have no common way to ask for room.
+#[cfg(not(target_os = "linux"))]
+fn allocate(_: &std::fs::File, _: u64) -> std::io::Result<()> {
+    Ok(())
 }
 
 /// Makes sure that the path may be written, with errors that HDF5 does not tell apart.

@@ -12,8 +12,8 @@ use std::time::Instant;
 
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Compiled, Document, compile};
-use crate::output::{Header, Overwrite, ResultFile, ResultWriter, load_checkpoint};
-use crate::sim::{Model, State, Trouble, Workspace, step};
+use crate::output::{Header, Overwrite, ResultWriter, load_checkpoint};
+use crate::sim::{State, Trouble, Workspace, step};
 
 /// How a run is to be made.
 #[derive(Debug, Clone)]
@@ -166,7 +166,7 @@ fn drive(
     report.end();
     let wall_time = began.elapsed().as_secs_f64();
     let frames = writer.frames();
-    finish(&model, writer, result, wall_time)?;
+    finish(writer, result, wall_time)?;
     Ok(Outcome { steps: state.step, frames, wall_time })
 }
 
@@ -189,14 +189,13 @@ fn failed(trouble: Trouble, mut writer: ResultWriter, state: &State, result: &Pa
 }
 
 /// Evaluates the measures of the experiment on what was recorded and ends the file.
-fn finish(model: &Model, writer: ResultWriter, result: &Path, wall_time: f64) -> Result<()> {
-    drop(writer);
-    let file = ResultFile::open(result)?;
-    let header = file.header().clone();
-    let document = document_of(&header, result)?;
-    let measures = crate::analysis::measure_result(&file, &document)?;
+fn finish(mut writer: ResultWriter, result: &Path, wall_time: f64) -> Result<()> {
+    let file = writer.read()?;
+    let document = document_of(file.header(), result)?;
+    let (measures, faults) = crate::analysis::measure_result(&file, &document)?;
     drop(file);
-    let mut writer = ResultWriter::reopen(result, &header, &layout_of(model), u64::MAX)?;
     writer.write_summary(&measures)?;
-    writer.finish(wall_time)
+    writer.finish(wall_time)?;
+    // A measure that cannot be computed is told once the run and all other measures are safe.
+    if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
 }

@@ -52,7 +52,8 @@ pub fn compile(document: &Document) -> Result<Compiled> {
         if faults.len() > before {
             continue;
         }
-        let kind = kind.with_cells(first_cell, cell.count());
+        let mut kind = kind.with_cells(first_cell, cell.count());
+        kind.bound_stiffness();
         first_cell += cell.count();
         places.push(place::place(experiment, cell, &kind));
         kinds.push(kind);
