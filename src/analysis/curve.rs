@@ -13,19 +13,33 @@ pub struct Curve {
 /// Two x are the same when they differ by at most this share of the range of x: the round-off of a held load.
 const SAME_X: f64 = 1e-9;
 
+/// Number of held values of x that make a staircase.
+const STAIRS: usize = 3;
+
 impl Curve {
     /// Orders points, given in the order of time, by x. Of points at the same x the last in time counts: where a load
-    /// is held, that is the end of the hold, when the cell has settled. Points that are not finite are left out.
+    /// is held, that is the end of the hold, when the cell has settled. When x is a staircase, which holds three values
+    /// or more for two frames or longer, the frames on the way from one hold to the next do not count, for there the
+    /// cell lags behind its load; the first frame, before anything happened, does. Points that are not finite are left
+    /// out.
     ///
     /// # Panics
     /// When x and y differ in number.
     pub fn new(x: &[f64], y: &[f64]) -> Self {
         assert_eq!(x.len(), y.len(), "each x needs its y");
-        let mut order: Vec<usize> = (0..x.len()).filter(|&i| x[i].is_finite() && y[i].is_finite()).collect();
-        order.sort_by(|&a, &b| x[a].total_cmp(&x[b]));
-        let same = SAME_X * order.first().zip(order.last()).map_or(0.0, |(&first, &last)| x[last] - x[first]);
-        let holds = order.chunk_by(|&a, &b| x[b] - x[a] <= same);
-        let (x, y) = holds.filter_map(|hold| hold.iter().max()).map(|&last| (x[last], y[last])).unzip();
+        let finite: Vec<usize> = (0..x.len()).filter(|&i| x[i].is_finite() && y[i].is_finite()).collect();
+        let (least, most) = finite
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &i| (least.min(x[i]), most.max(x[i])));
+        let same = |a: f64, b: f64| (a - b).abs() <= SAME_X * (most - least);
+        let holds: Vec<&[usize]> = finite.chunk_by(|&a, &b| same(x[a], x[b])).collect();
+        let stairs = holds.iter().filter(|hold| hold.len() > 1).count() >= STAIRS;
+        let counts = |(index, hold): &(usize, &[usize])| !stairs || *index == 0 || hold.len() > 1;
+        let mut ends: Vec<usize> =
+            holds.iter().copied().enumerate().filter(counts).map(|(_, hold)| hold[hold.len() - 1]).collect();
+        ends.sort_by(|&a, &b| x[a].total_cmp(&x[b]));
+        let places = ends.chunk_by(|&a, &b| same(x[a], x[b]));
+        let (x, y) = places.filter_map(|place| place.iter().max()).map(|&last| (x[last], y[last])).unzip();
         Self { x, y }
     }
 
@@ -104,6 +118,23 @@ mod tests {
     fn the_end_of_a_hold_counts() {
         let curve = Curve::new(&[2.0, 0.0, 1.0 + 1e-12, 1.0, f64::NAN], &[8.0, 0.0, 3.0, 4.0, 1.0]);
         assert_eq!(curve.points().collect::<Vec<_>>(), [[0.0, 0.0], [1.0, 4.0], [2.0, 8.0]]);
+    }
+
+    #[test]
+    fn frames_on_the_way_up_a_staircase_do_not_count() {
+        let x = [0.0, 1.0, 2.0, 2.0, 3.0, 4.0, 4.0 + 1e-12, 5.0, 6.0, 6.0, 7.0];
+        let y = [0.0, 0.1, 1.0, 2.0, 2.1, 3.0, 4.0, 4.1, 5.0, 6.0, 6.1];
+        let curve = Curve::new(&x, &y);
+        assert_eq!(curve, Curve { x: vec![0.0, 2.0, 4.0 + 1e-12, 6.0], y: vec![0.0, 2.0, 4.0, 6.0] });
+        // A load that rests, rises steadily and rests again is no staircase: its rise is what was asked for.
+        let slow = Curve::new(&[0.0, 0.0, 1.0, 2.0, 3.0, 3.0], &[0.0, 0.0, 1.0, 2.0, 2.9, 3.0]);
+        assert_eq!(slow, Curve { x: vec![0.0, 1.0, 2.0, 3.0], y: vec![0.0, 1.0, 2.0, 3.0] });
+    }
+
+    #[test]
+    fn a_load_taken_off_again_counts_as_it_came_back() {
+        let curve = Curve::new(&[0.0, 1.0, 2.0, 1.0, 0.0], &[0.0, 1.0, 2.0, 1.5, 0.5]);
+        assert_eq!(curve, Curve { x: vec![0.0, 1.0, 2.0], y: vec![0.5, 1.5, 2.0] });
     }
 
     #[test]

@@ -10,16 +10,17 @@ pub mod recording;
 pub mod statistics;
 pub mod table;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Fault, Result};
 use crate::experiment::Document;
 use crate::output::{Measure, ResultFile};
 use recording::Recording;
 
-/// Evaluates all measures that a document declares, each multiplied by its scale.
+/// Evaluates all measures that a document declares, each multiplied by its scale. Those that cannot be computed come
+/// as faults with their places in the document beside the others, which are worth keeping all the same.
 ///
 /// # Errors
-/// All measures that cannot be computed, each with its place in the document, or a damaged file.
-pub fn measure_result(file: &ResultFile, document: &Document) -> Result<Vec<Measure>> {
+/// A damaged file.
+pub fn measure_result(file: &ResultFile, document: &Document) -> Result<(Vec<Measure>, Vec<Fault>)> {
     let declared = &document.experiment.measure;
     let mut names: Vec<&str> = declared.values().flat_map(|measure| measure::series_of(&measure.kind)).collect();
     names.sort_unstable();
@@ -43,5 +44,9 @@ pub fn measure_result(file: &ResultFile, document: &Document) -> Result<Vec<Meas
             Err(other) => return Err(other),
         }
     }
-    if faults.is_empty() { Ok(measures) } else { Err(Error::Input(faults)) }
+    Ok((measures, faults))
 }
+
+#[cfg(test)]
+#[path = "result_tests.rs"]
+mod tests;

@@ -1,6 +1,7 @@
 //! How far cells wander: the mean squared displacement, its errors, and Fürth's law for persistent walks.
 
 use super::statistics::{mean, standard_error};
+pub use crate::cell::motility::furth;
 use crate::error::{Error, Fault, Result};
 use ndarray::ArrayView3;
 
@@ -70,18 +71,6 @@ fn squared_distance(positions: &ArrayView3<f64>, cell: usize, origin: usize, lag
     (0..positions.dim().2)
         .map(|axis| (positions[[origin + lag, cell, axis]] - positions[[origin, cell, axis]]).powi(2))
         .sum()
-}
-
-/// Fürth's mean squared displacement of a persistent walk, µm², eq. (motility.2).
-///
-/// * `lag` – s; `speed` – µm/s; `persistence` – s, positive.
-pub fn furth(lag: f64, speed: f64, persistence: f64) -> f64 {
-    2.0 * (speed * persistence).powi(2) * furth_shape(lag / persistence)
-}
-
-/// x − (1 − e⁻ˣ), by its series where the terms would cancel.
-fn furth_shape(x: f64) -> f64 {
-    if x < 1e-3 { x * x * (0.5 - x / 6.0 * (1.0 - x / 4.0)) } else { x + (-x).exp_m1() }
 }
 
 /// Speed and persistence of a walk as its mean squared displacement tells them.

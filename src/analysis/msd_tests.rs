@@ -42,10 +42,10 @@ fn fuerths_law_is_straight_first_and_diffuses_later() {
     // v²t² with the relative correction −t/3p, and 2v²p(t − p).
     assert!((furth(1e-4, speed, persistence) / 1e-10 - 1.0).abs() < 1e-6);
     assert!((furth(1e5, speed, persistence) / (2.0 * 0.01 * 120.0 * (1e5 - 120.0)) - 1.0).abs() < 1e-12);
-    // Both forms of the shape agree where one takes over: the series leaves out x⁵/120.
-    let x: f64 = 1e-3;
-    let series = x * x * (0.5 - x / 6.0 * (1.0 - x / 4.0));
-    assert!((furth_shape(x) / series - 1.0).abs() < 1e-9);
+    // The series and the closed form meet at a thousandth of p without a jump: across 2e-9 of the lag the law itself
+    // changes by 4e-9, the closed form has lost 1e-10 and the series leaves out 2e-14.
+    let (below, above) = (1e-3 * (1.0 - 1e-9) * persistence, 1e-3 * (1.0 + 1e-9) * persistence);
+    assert!((furth(above, speed, persistence) / furth(below, speed, persistence) - 1.0 - 4e-9).abs() < 1e-9);
 }
 
 #[test]

@@ -192,8 +192,10 @@ fn failed(trouble: Trouble, mut writer: ResultWriter, state: &State, result: &Pa
 fn finish(mut writer: ResultWriter, result: &Path, wall_time: f64) -> Result<()> {
     let file = writer.read()?;
     let document = document_of(file.header(), result)?;
-    let measures = crate::analysis::measure_result(&file, &document)?;
+    let (measures, faults) = crate::analysis::measure_result(&file, &document)?;
     drop(file);
     writer.write_summary(&measures)?;
-    writer.finish(wall_time)
+    writer.finish(wall_time)?;
+    // A measure that cannot be computed is told once the run and all other measures are safe.
+    if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
 }
