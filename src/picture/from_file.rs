@@ -46,11 +46,7 @@ fn look_of(result: &ResultFile, document: &Document, picture: &Picture) -> Resul
         let given = document.experiment.cells.get(name).and_then(|cell| cell.colour);
         given.map_or_else(|| palette(i), |colour| Colour(colour.0))
     };
-    let label = if picture.colour_by == "type" {
-        String::new()
-    } else {
-        plots::label_of(result, &picture.colour_by)
-    };
+    let label = if picture.colour_by == "type" { String::new() } else { plots::label_of(result, &picture.colour_by) };
     Ok(Look {
         title: document.experiment.title.clone(),
         type_colours: types.iter().enumerate().map(colour).collect(),
@@ -75,7 +71,7 @@ pub fn still(result: &ResultFile, document: &Document, picture: &Picture) -> Res
     let shot = shot(result, picture, frame_at(result, picture.time)?)?;
     let mut framing = Framing::new(&look);
     framing.include(&snapshot(result, &shot));
-    Ok(picture_of(&snapshot(result, &shot), &look, &framing, picture.width, picture.height))
+    Ok(picture_of(&snapshot(result, &shot), &look, &framing, picture.width as usize, picture.height as usize))
 }
 
 /// Calls `keep` with the picture of every frame that `frames` names, all with the same camera and colours.
@@ -96,7 +92,7 @@ pub fn film(
     }
     for &frame in frames {
         let shot = shot(result, picture, frame)?;
-        keep(&picture_of(&snapshot(result, &shot), &look, &framing, picture.width, picture.height))?;
+        keep(&picture_of(&snapshot(result, &shot), &look, &framing, picture.width as usize, picture.height as usize))?;
     }
     Ok(())
 }

@@ -99,12 +99,8 @@ fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Resul
 
 fn tracks(result: &ResultFile, plot: &Plot) -> Result<Chart> {
     let recording = Recording::read(result, &["position_x", "position_y", "position_z"])?;
-    let mut chart = Chart {
-        x: Axis::linear("x (µm)"),
-        y: Axis::linear("y (µm)"),
-        aspect: Aspect::Equal,
-        ..Chart::default()
-    };
+    let mut chart =
+        Chart { x: Axis::linear("x (µm)"), y: Axis::linear("y (µm)"), aspect: Aspect::Equal, ..Chart::default() };
     for kind in types_of(result, plot) {
         let positions = recording.positions(&recording.cells_of(Some(&kind))?)?;
         let (frames, cells, _) = positions.dim();
