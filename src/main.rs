@@ -1,2 +1,8 @@
 //! The command `pseudopod`.
-fn main() {}
+
+use clap::Parser;
+use pseudopod::cli::{Arguments, main as act};
+
+fn main() {
+    std::process::exit(act(Arguments::parse()));
+}

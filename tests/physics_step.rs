@@ -11,7 +11,9 @@ fn sphere_kind(level: u32, stiffness: f64) -> Kind {
     let surface = icosphere(5.0, level);
     let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
     let memory = ShapeMemory::new(&surface.positions, &rings, stiffness, Reaction::Exact);
-    Kind::new("sphere", surface, Elasticity { shape_memory: vec![memory], ..Default::default() })
+    let mut kind = Kind::new("sphere", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    kind.bound_stiffness();
+    kind
 }
 
 fn model_of(kind: Kind, method: Method, size: StepSize, until: f64) -> Model {

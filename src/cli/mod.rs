@@ -1,4 +1,57 @@
-//! The command line: one file per command.
+//! The command line: one file per command. Names and exit codes are a contract.
 
 pub mod check;
+pub mod info;
+pub mod resume;
+pub mod run;
 pub mod schema;
+
+use crate::error::{Paint, Result, render};
+use clap::{Parser, Subcommand};
+use std::io::IsTerminal;
+
+/// Simulates populations of deformable cells.
+#[derive(Debug, Parser)]
+#[command(name = "pseudopod", version, about, max_term_width = 110)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Runs an experiment.
+    Run(run::RunArgs),
+    /// Goes on with a run that was stopped or killed.
+    Resume(resume::ResumeArgs),
+    /// Checks experiment documents.
+    Check(check::CheckArgs),
+    /// Describes a result file.
+    Info(info::InfoArgs),
+    /// Prints the JSON schema of experiment documents.
+    Schema(schema::SchemaArgs),
+}
+
+/// Does what the arguments say; returns the exit status.
+pub fn main(arguments: Arguments) -> i32 {
+    match act(arguments.command) {
+        Ok(()) => 0,
+        Err(error) => {
+            let paint = if std::io::stderr().is_terminal() { Paint::Coloured } else { Paint::Plain };
+            eprint!("{}", render(&error, paint));
+            error.exit_code()
+        }
+    }
+}
+
+fn act(command: Command) -> Result<()> {
+    match command {
+        Command::Run(args) => run::run(&args),
+        Command::Resume(args) => resume::run(&args),
+        Command::Check(args) => check::run(args),
+        Command::Info(args) => info::run(&args),
+        Command::Schema(args) => schema::run(args),
+    }
+}

@@ -32,6 +32,10 @@ impl StiffnessMatrix {
     pub fn diagonal(&self, i: usize) -> f64 {
         self.rows[i].get(&(i as u32)).copied().unwrap_or(0.0)
     }
+    /// Multiplies all entries.
+    pub fn scale(&mut self, factor: f64) {
+        self.rows.iter_mut().flat_map(BTreeMap::values_mut).for_each(|value| *value *= factor);
+    }
     /// The entries of a row, by column.
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.rows[i].iter().map(|(&j, &value)| (j as usize, value))

@@ -1,4 +1,25 @@
 //! The result file: one HDF5 file per run that ParaView, PyVista and h5py open directly.
+//!
+//! [`catalogue`] lists what is in it. [`ResultWriter`] writes it frame by frame, [`ResultFile`] reads it, and
+//! [`save_checkpoint`] keeps the state to resume from. This module is the only one that knows HDF5.
+
+pub mod catalogue;
+mod checkpoint;
+mod column;
+mod columns;
+mod container;
+mod header;
+mod info;
+mod layout_io;
+mod packing;
+mod reader;
+mod writer;
+
+pub use checkpoint::{Checkpoint, CheckpointMeta, checkpoint_path, load_checkpoint, save_checkpoint};
+pub use header::{Header, Measure};
+pub use info::{describe, to_json};
+pub use reader::{Ending, ResultFile};
+pub use writer::{Overwrite, ResultWriter};
 
 /// What does not change during a run and says how the arrays of a frame are to be read.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -15,6 +36,13 @@ pub struct Layout {
     pub scene_series: Vec<(String, String)>,
     /// Rigid planes: name, a point (µm), the unit normal that points to the free side.
     pub planes: Vec<(String, [f64; 3], [f64; 3])>,
+}
+
+impl Layout {
+    /// Number of atoms of all cells.
+    pub fn atoms(&self) -> usize {
+        self.cells.iter().map(|cell| (cell.first_atom + cell.atoms) as usize).max().unwrap_or(0)
+    }
 }
 
 /// Where one cell's atoms and facets stand in the arrays of a frame.

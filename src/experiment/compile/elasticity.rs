@@ -23,12 +23,13 @@ use crate::mechanics::tension::Tension;
 /// by an edge, so that the barrier is as stiff as the cell that it guards.
 const BARRIER_SHARE: f64 = 0.1;
 
-/// All elastic forces of a type; faults for what only the mesh can tell.
+/// All elastic forces of a type; the pairs of its links go to `drawn_links`, faults are what only the mesh can tell.
 pub fn elasticity(
     document: &Document,
     key: &str,
     cell: &CellType,
     built: &Built,
+    drawn_links: &mut Vec<[u32; 2]>,
     faults: &mut Vec<Fault>,
 ) -> Elasticity {
     let rest = &built.turned;
@@ -41,7 +42,7 @@ pub fn elasticity(
     if let Some(springs) = &cell.mechanics.springs {
         elasticity.springs.push(Springs::on_edges(&rest.positions, &topology.edges, springs.stiffness.value()));
     }
-    add_links(document, key, cell, built, &mut elasticity, faults);
+    drawn_links.extend(add_links(document, key, cell, built, &mut elasticity, faults));
     add_barrier(cell, rest, &topology, &mut elasticity);
     elasticity
 }
@@ -125,7 +126,8 @@ fn add_links(
     built: &Built,
     elasticity: &mut Elasticity,
     faults: &mut Vec<Fault>,
-) {
+) -> Vec<[u32; 2]> {
+    let mut drawn = Vec::new();
     let atoms = built.plain.positions.len();
     for (i, link) in cell.links.iter().enumerate() {
         let pairs = match &link.linked {
@@ -149,8 +151,10 @@ fn add_links(
             };
             springs.push(Spring { from, to, rest_length, stiffness: link.stiffness.value() });
         }
+        drawn.extend(springs.iter().map(|spring| [spring.from, spring.to]));
         elasticity.springs.push(Springs::between(springs));
     }
+    drawn
 }
 
 fn add_barrier(cell: &CellType, rest: &Surface, topology: &Topology, elasticity: &mut Elasticity) {

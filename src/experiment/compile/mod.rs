@@ -52,7 +52,8 @@ pub fn compile(document: &Document) -> Result<Compiled> {
         if faults.len() > before {
             continue;
         }
-        let kind = kind.with_cells(first_cell, cell.count());
+        let mut kind = kind.with_cells(first_cell, cell.count());
+        kind.bound_stiffness();
         first_cell += cell.count();
         places.push(place::place(experiment, cell, &kind));
         kinds.push(kind);
@@ -92,9 +93,11 @@ fn compile_kind(
     faults: &mut Vec<Fault>,
 ) -> Kind {
     let key = format!("cells.{name}");
-    let elasticity = elasticity::elasticity(document, &key, cell, &surface, faults);
+    let mut drawn_links = Vec::new();
+    let elasticity = elasticity::elasticity(document, &key, cell, &surface, &mut drawn_links, faults);
     let atoms = surface.turned.positions.len() as f64;
     let mut kind = Kind::new(name, surface.turned, elasticity);
+    kind.drawn_links = drawn_links;
     kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
     kind.held = held(document, &key, cell, &kind.rest, faults);

@@ -1,0 +1,74 @@
+//! Writing a frame: cells of 42 atoms with forces, positions as noisy as those of a simulation.
+
+use divan::Bencher;
+use divan::counter::BytesCount;
+use pseudopod::output::{CellLayout, CellRecord, Frame, Header, Layout, Overwrite, ResultWriter};
+
+const ATOMS: usize = 42;
+const FACETS: usize = 80;
+
+fn main() {
+    divan::main();
+}
+
+fn layout(cells: usize) -> Layout {
+    let facet = |facet: usize| [facet % ATOMS, (facet + 1) % ATOMS, (facet + 7) % ATOMS];
+    Layout {
+        types: vec!["cell".into()],
+        cells: (0..cells)
+            .map(|cell| CellLayout {
+                kind: 0,
+                first_atom: (ATOMS * cell) as u32,
+                atoms: ATOMS as u32,
+                first_facet: (FACETS * cell) as u32,
+                facets: FACETS as u32,
+            })
+            .collect(),
+        facets: (0..cells * FACETS)
+            .map(|i| facet(i % FACETS).map(|atom| (ATOMS * (i / FACETS) + atom) as u32))
+            .collect(),
+        ..Layout::default()
+    }
+}
+
+fn frame(cells: usize) -> Frame {
+    // Sines of large numbers are as hard to compress as the digits of a simulation.
+    let noise = |seed: usize| (seed as f64 * 12.9898).sin();
+    let vectors = |scale: f64| (0..cells * ATOMS).map(move |i| [3 * i, 3 * i + 1, 3 * i + 2].map(|j| scale * noise(j)));
+    let record = |i: usize| CellRecord {
+        position: [noise(i), noise(i + 1), noise(i + 2)],
+        velocity: [noise(i + 3), noise(i + 4), noise(i + 5)],
+        volume: 4.0 + 1e-10 * noise(i),
+        volume_error: 1e-12 * noise(i),
+        area: 12.0 + noise(i),
+        energy: noise(i),
+        size: [2.0, 2.0 + noise(i), 2.0],
+        principal: [2.0, 2.0 + noise(i), 2.0],
+        smallest_facet: 0.9,
+    };
+    Frame {
+        positions: vectors(10.0).collect(),
+        forces: vectors(0.1).collect(),
+        cells: (0..cells).map(record).collect(),
+        ..Frame::default()
+    }
+}
+
+#[divan::bench(args = [1, 1_000, 10_000], min_time = 1, max_time = 4)]
+fn append(bencher: Bencher, cells: usize) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.vtkhdf");
+    let header = Header::now("bench.toml", "Bench", "", &[], 1);
+    let mut writer = ResultWriter::create(&path, &header, &layout(cells), Overwrite::Refuse).unwrap();
+    let mut frame = frame(cells);
+    bencher.counter(BytesCount::new(cells * (2 * ATOMS * 24 + std::mem::size_of::<CellRecord>()))).bench_local(|| {
+        frame.step += 1;
+        frame.time += 0.5;
+        writer.append(&frame).unwrap();
+    });
+    writer.flush().unwrap();
+    let frames = writer.frames() as u64;
+    drop(writer);
+    let bytes = std::fs::metadata(&path).unwrap().len();
+    eprintln!("{cells} cells: {} bytes a frame on disk", bytes / frames);
+}

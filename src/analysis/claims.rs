@@ -1,0 +1,202 @@
+//! What an experiment claims to reproduce, as its `expected.toml` says it, and whether a run keeps the word.
+
+use crate::error::{Error, Fault, Place, Result, Source};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+use toml::Spanned;
+
+/// One claim about one measure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Claim {
+    /// Name of the measure, as the experiment declares it.
+    pub measure: String,
+    /// Where its value has to lie.
+    pub bound: Bound,
+    /// Where the expectation comes from.
+    pub source: String,
+    /// Why the tolerance is what it is.
+    pub reason: Option<String>,
+}
+
+/// Where a value has to lie, ends included, in the unit of the measure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bound {
+    /// At most this.
+    AtMost(f64),
+    /// At least this.
+    AtLeast(f64),
+    /// From the first to the second.
+    Between(f64, f64),
+    /// Within a share of a value: |found/value − 1| ≤ share.
+    NearRelative(f64, f64),
+    /// Within a distance of a value: |found − value| ≤ distance.
+    NearAbsolute(f64, f64),
+}
+
+impl Bound {
+    /// Whether a value lies where it has to; never for NaN.
+    pub fn holds(&self, found: f64) -> bool {
+        match *self {
+            Self::AtMost(most) => found <= most,
+            Self::AtLeast(least) => found >= least,
+            Self::Between(least, most) => least <= found && found <= most,
+            Self::NearRelative(value, share) => (found - value).abs() <= share * value.abs(),
+            Self::NearAbsolute(value, distance) => (found - value).abs() <= distance,
+        }
+    }
+}
+
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::AtMost(most) => write!(f, "at most {most}"),
+            Self::AtLeast(least) => write!(f, "at least {least}"),
+            Self::Between(least, most) => write!(f, "from {least} to {most}"),
+            Self::NearRelative(value, share) => write!(f, "{value} within {} %", rounded(100.0 * share)),
+            Self::NearAbsolute(value, distance) => write!(f, "{value} within ±{distance}"),
+        }
+    }
+}
+
+/// Six digits, without the zeros at the end.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// A claim as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    measure: String,
+    at_most: Option<f64>,
+    at_least: Option<f64>,
+    equals: Option<f64>,
+    within: Option<f64>,
+    within_absolute: Option<f64>,
+    source: String,
+    reason: Option<String>,
+}
+
+/// The whole document as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    #[serde(default, rename = "claim")]
+    claims: Vec<Spanned<Written>>,
+}
+
+/// Reads the claims of a file, see [`parse`].
+///
+/// # Errors
+/// When the file cannot be read, and as [`parse`].
+pub fn read(path: &Path) -> Result<Vec<Claim>> {
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        let found = format!("the claims {} cannot be read: {error}", path.display());
+        Error::input(Fault::new(found).help("give the path of a TOML file with [[claim]] tables"))
+    })?;
+    parse(&path.display().to_string(), &text)
+}
+
+/// Reads claims from TOML text: a `[[claim]]` table for each.
+///
+/// A claim names its `measure` and its `source`, and bounds the value by `at_most`, `at_least` or both, or by `equals`
+/// with `within` (a share) or `within_absolute` (in the unit of the measure). A tolerance says its `reason`.
+///
+/// # Errors
+/// When the text is not TOML, a key is unknown or missing, bounds contradict each other, or there is no claim at all.
+pub fn parse(name: &str, text: &str) -> Result<Vec<Claim>> {
+    let source = Arc::new(Source { name: name.to_owned(), text: text.to_owned() });
+    let document: Document = toml::from_str(text).map_err(|error| {
+        let fault = Fault::new(error.message().to_owned());
+        let fault = match error.span() {
+            Some(span) => fault.at(place(&source, span, "here")),
+            None => fault,
+        };
+        Error::input(fault.help("a [[claim]] has measure, source, and at_most, at_least or equals"))
+    })?;
+    if document.claims.is_empty() {
+        let fault = Fault::new(format!("{name} claims nothing")).at(place(&source, 0..0, "no [[claim]] here"));
+        return Err(Error::input(fault.help("add a [[claim]] with measure, source, and at_most, at_least or equals")));
+    }
+    let (mut claims, mut faults) = (Vec::new(), Vec::new());
+    for written in document.claims {
+        let span = written.span();
+        match understand(written.into_inner()) {
+            Ok(claim) => claims.push(claim),
+            Err(fault) => faults.push(fault.at(place(&source, span, "this claim"))),
+        }
+    }
+    if faults.is_empty() { Ok(claims) } else { Err(Error::Input(faults)) }
+}
+
+fn place(source: &Arc<Source>, span: Range<usize>, label: &str) -> Place {
+    Place { source: source.clone(), start: span.start, length: span.len(), label: label.to_owned() }
+}
+
+/// Makes one bound of the keys that were written.
+fn understand(written: Written) -> std::result::Result<Claim, Fault> {
+    let name = &written.measure;
+    let numbers = [written.at_most, written.at_least, written.equals, written.within, written.within_absolute];
+    if numbers.iter().flatten().any(|number| !number.is_finite()) {
+        return Err(Fault::new(format!("the claim about {name} has a bound that is not finite")).help("give a number"));
+    }
+    let bound = match numbers {
+        [Some(most), None, None, None, None] => Bound::AtMost(most),
+        [None, Some(least), None, None, None] => Bound::AtLeast(least),
+        [Some(most), Some(least), None, None, None] if least <= most => Bound::Between(least, most),
+        [None, None, Some(value), Some(share), None] if share >= 0.0 => Bound::NearRelative(value, share),
+        [None, None, Some(value), None, Some(distance)] if distance >= 0.0 => Bound::NearAbsolute(value, distance),
+        _ => {
+            let help = "give at_most, at_least or both in order, or equals with one tolerance that is not negative: \
+                        within (a share) or within_absolute";
+            return Err(Fault::new(format!("the claim about {name} has no single bound")).help(help));
+        }
+    };
+    if matches!(bound, Bound::NearRelative(..) | Bound::NearAbsolute(..)) && written.reason.is_none() {
+        let fault = Fault::new(format!("the claim about {name} has a tolerance without a reason"));
+        return Err(fault.help("add reason = \"why this tolerance\""));
+    }
+    Ok(Claim { measure: written.measure, bound, source: written.source, reason: written.reason })
+}
+
+/// Whether one claim holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClaimResult {
+    /// The claim.
+    pub claim: Claim,
+    /// What was measured; none when the run has no such measure.
+    pub found: Option<f64>,
+}
+
+impl ClaimResult {
+    /// Whether the claim holds. One about a measure that is not there does not.
+    pub fn holds(&self) -> bool {
+        self.found.is_some_and(|found| self.claim.bound.holds(found))
+    }
+}
+
+/// One line: `ok      axial_rms = 0.031 (at most 0.049; Mills et al. 2004)`.
+impl fmt::Display for ClaimResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Claim { measure, bound, source, .. } = &self.claim;
+        let verdict = if self.holds() { "ok    " } else { "FAILED" };
+        match self.found {
+            Some(found) => write!(f, "{verdict}  {measure} = {} ({bound}; {source})", rounded(found)),
+            None => write!(f, "{verdict}  {measure} is not measured by this experiment ({bound}; {source})"),
+        }
+    }
+}
+
+/// Holds claims against the measures of a run.
+pub fn check_claims(claims: &[Claim], measures: &BTreeMap<String, f64>) -> Vec<ClaimResult> {
+    let result = |claim: &Claim| ClaimResult { claim: claim.clone(), found: measures.get(&claim.measure).copied() };
+    claims.iter().map(result).collect()
+}
+
+#[cfg(test)]
+#[path = "claims_tests.rs"]
+mod tests;

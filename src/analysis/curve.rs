@@ -1,0 +1,135 @@
+//! A simulated curve beside measured points: how near it comes, and how many error bars it meets.
+
+use super::statistics::interpolate;
+use crate::error::{Error, Fault, Result};
+
+/// A curve y(x) with x ascending, made of the points of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+/// Two x are the same when they differ by at most this share of the range of x: the round-off of a held load.
+const SAME_X: f64 = 1e-9;
+
+impl Curve {
+    /// Orders points, given in the order of time, by x. Of points at the same x the last in time counts: where a load
+    /// is held, that is the end of the hold, when the cell has settled. Points that are not finite are left out.
+    ///
+    /// # Panics
+    /// When x and y differ in number.
+    pub fn new(x: &[f64], y: &[f64]) -> Self {
+        assert_eq!(x.len(), y.len(), "each x needs its y");
+        let mut order: Vec<usize> = (0..x.len()).filter(|&i| x[i].is_finite() && y[i].is_finite()).collect();
+        order.sort_by(|&a, &b| x[a].total_cmp(&x[b]));
+        let same = SAME_X * order.first().zip(order.last()).map_or(0.0, |(&first, &last)| x[last] - x[first]);
+        let holds = order.chunk_by(|&a, &b| x[b] - x[a] <= same);
+        let (x, y) = holds.filter_map(|hold| hold.iter().max()).map(|&last| (x[last], y[last])).unzip();
+        Self { x, y }
+    }
+
+    /// The points, x ascending.
+    pub fn points(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.x.iter().zip(&self.y).map(|(x, y)| [*x, *y])
+    }
+
+    /// The curve at each measured place that is not NaN, with the number of its row.
+    ///
+    /// # Errors
+    /// When a measured place lies outside of the curve, or none is left.
+    fn at_rows(&self, places: &[f64], values: &[f64]) -> Result<Vec<(usize, f64)>> {
+        let rows = (0..places.len()).filter(|&row| !places[row].is_nan() && !values[row].is_nan());
+        let found: Result<Vec<(usize, f64)>> = rows.map(|row| self.at(places[row]).map(|y| (row, y))).collect();
+        let found = found?;
+        if found.is_empty() {
+            let fault = Fault::new("the measured table has no row to compare with");
+            return Err(Error::input(fault.help("name columns that hold numbers")));
+        }
+        Ok(found)
+    }
+
+    fn at(&self, place: f64) -> Result<f64> {
+        let last = self.x.len().saturating_sub(1);
+        // Rounded time courses may end short of the last measured place by a few units in the last digit.
+        let slack = SAME_X * self.x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let near = match (self.x.first(), self.x.get(last)) {
+            (Some(&first), Some(&end)) if first - slack <= place && place <= end + slack => place.clamp(first, end),
+            _ => place,
+        };
+        interpolate(&self.x, &self.y, near).ok_or_else(|| {
+            let reach = match (self.x.first(), self.x.get(last)) {
+                (Some(first), Some(end)) => format!("runs from {first} to {end}"),
+                _ => "has no points".to_owned(),
+            };
+            let fault = Fault::new(format!("the simulated curve {reach} and does not reach the measured x = {place}"));
+            Error::input(fault.help("simulate as far as was measured, or give a table without that row"))
+        })
+    }
+
+    /// Root mean square of (curve − measured)/measured, eq. (analysis.7).
+    ///
+    /// # Errors
+    /// When a measured place lies outside of the curve or no row has numbers.
+    pub fn relative_rms(&self, places: &[f64], values: &[f64]) -> Result<f64> {
+        let found = self.at_rows(places, values)?;
+        let squares: f64 = found.iter().map(|&(row, y)| (y / values[row] - 1.0).powi(2)).sum();
+        Ok((squares / found.len() as f64).sqrt())
+    }
+
+    /// Mean of curve/measured.
+    ///
+    /// # Errors
+    /// As [`Curve::relative_rms`].
+    pub fn mean_ratio(&self, places: &[f64], values: &[f64]) -> Result<f64> {
+        let found = self.at_rows(places, values)?;
+        Ok(found.iter().map(|&(row, y)| y / values[row]).sum::<f64>() / found.len() as f64)
+    }
+
+    /// Number of rows whose bar from `low` to `high` holds the curve, ends included.
+    ///
+    /// # Errors
+    /// As [`Curve::relative_rms`].
+    pub fn rows_within(&self, places: &[f64], low: &[f64], high: &[f64]) -> Result<usize> {
+        let found = self.at_rows(places, low)?;
+        Ok(found.iter().filter(|&&(row, y)| low[row] <= y && y <= high[row]).count())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_end_of_a_hold_counts() {
+        let curve = Curve::new(&[2.0, 0.0, 1.0 + 1e-12, 1.0, f64::NAN], &[8.0, 0.0, 3.0, 4.0, 1.0]);
+        assert_eq!(curve.points().collect::<Vec<_>>(), [[0.0, 0.0], [1.0, 4.0], [2.0, 8.0]]);
+    }
+
+    #[test]
+    fn distances_are_relative_to_what_was_measured() {
+        let curve = Curve::new(&[0.0, 10.0], &[0.0, 20.0]);
+        // The curve has 10 and 20 there, a tenth less and a tenth more than measured.
+        let (places, values) = ([5.0, f64::NAN, 10.0], [10.0 / 0.9, 1.0, 20.0 / 1.1]);
+        assert!((curve.relative_rms(&places, &values).unwrap() - 0.1).abs() < 1e-14);
+        assert!((curve.mean_ratio(&places, &values).unwrap() - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn bars_hold_their_ends() {
+        let curve = Curve::new(&[0.0, 10.0], &[0.0, 20.0]);
+        let within = curve.rows_within(&[0.0, 5.0, 10.0], &[0.0, 10.5, 15.0], &[1.0, 12.0, 19.0]);
+        assert_eq!(within.unwrap(), 1);
+    }
+
+    #[test]
+    fn a_curve_that_ends_early_is_refused() {
+        let curve = Curve::new(&[0.0, 10.0], &[0.0, 20.0]);
+        let message = curve.relative_rms(&[11.0], &[20.0]).unwrap_err().to_string();
+        assert_eq!(message, "the simulated curve runs from 0 to 10 and does not reach the measured x = 11");
+        assert!(Curve::new(&[], &[]).relative_rms(&[11.0], &[20.0]).unwrap_err().to_string().contains("no points"));
+        assert!(curve.relative_rms(&[f64::NAN], &[1.0]).is_err());
+        // 2e-10 beyond the end is round-off of a time course.
+        assert!(curve.relative_rms(&[10.000_000_000_2], &[20.0]).unwrap() < 1e-9);
+    }
+}

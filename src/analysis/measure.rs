@@ -1,0 +1,184 @@
+//! The scalar measures that an experiment declares, computed from the series of its run.
+
+use super::curve::Curve;
+use super::msd;
+use super::recording::Recording;
+use super::statistics::{self, Line};
+use super::table::Table;
+use crate::error::{Error, Fault, Result};
+use crate::experiment::{Comparison, MeasureKind, Over, Reduction};
+use std::path::{Path, PathBuf};
+
+/// Number of lags at which displacements are held against Fürth's law. Neighbouring lags share most of their steps, so
+/// more of them would tell little more.
+const LAGS: usize = 12;
+
+/// Names of the series that [`evaluate`] asks a recording for, besides `time`.
+pub fn series_of(kind: &MeasureKind) -> Vec<&str> {
+    let names: Vec<&str> = match kind {
+        MeasureKind::Value { series, .. } => vec![series],
+        MeasureKind::Slope { x, y, .. } | MeasureKind::RSquared { x, y, .. } => vec![x, y],
+        MeasureKind::TableRms(table) | MeasureKind::TableBars(table) | MeasureKind::TableRatio(table) => {
+            vec![&table.x, &table.y]
+        }
+        MeasureKind::MsdDeviation { .. } => vec!["position_x", "position_y", "position_z"],
+        MeasureKind::RunLengthP { .. } => Vec::new(),
+    };
+    names.into_iter().filter(|name| *name != "time").collect()
+}
+
+/// Computes the number, in base units: µm, s, pN.
+///
+/// * `resolve` – makes a path of the document one that the system can open.
+///
+/// # Errors
+/// When a series, type, column or table is not there, or does not reach where it is asked for.
+pub fn evaluate(kind: &MeasureKind, recording: &Recording, resolve: &dyn Fn(&Path) -> PathBuf) -> Result<f64> {
+    match kind {
+        MeasureKind::Value { series, cells, over, time } => {
+            reduce(*time, &recording.times, &recording.series(series, cells.as_deref(), *over)?)
+        }
+        MeasureKind::Slope { x, y, cells, x_from, x_to } => {
+            line(&curve(recording, x, y, cells.as_deref())?, *x_from, *x_to).map(|line| line.slope)
+        }
+        MeasureKind::RSquared { x, y, cells, x_from, x_to } => {
+            line(&curve(recording, x, y, cells.as_deref())?, *x_from, *x_to).map(|line| line.r_squared)
+        }
+        MeasureKind::TableRms(comparison) => {
+            let (table, curve) = open(comparison, recording, resolve)?;
+            curve.relative_rms(table.column(&comparison.x_column)?, table.column(&comparison.y_column)?)
+        }
+        MeasureKind::TableRatio(comparison) => {
+            let (table, curve) = open(comparison, recording, resolve)?;
+            curve.mean_ratio(table.column(&comparison.x_column)?, table.column(&comparison.y_column)?)
+        }
+        MeasureKind::TableBars(comparison) => bars(comparison, recording, resolve).map(|rows| rows as f64),
+        MeasureKind::MsdDeviation { cells, speed, persistence, lag_from, lag_to } => {
+            let (law, lags) = ([speed.value(), persistence.value()], [lag_from.value(), lag_to.value()]);
+            msd_deviation(recording, cells.as_deref(), law, lags)
+        }
+        MeasureKind::RunLengthP { cells, persistence } => {
+            run_length_p(recording, cells.as_deref(), persistence.value())
+        }
+    }
+}
+
+/// Makes one of the values at several instants.
+fn reduce(reduction: Reduction, times: &[f64], values: &[f64]) -> Result<f64> {
+    let (Some(first), Some(last)) = (values.first(), values.last()) else {
+        let fault = Fault::new("the run has no frames to measure");
+        return Err(Error::input(fault.help("let the run record at least one frame")));
+    };
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    match reduction {
+        Reduction::Last => Ok(*last),
+        Reduction::First => Ok(*first),
+        Reduction::Mean => Ok(statistics::mean(values)),
+        Reduction::Min => Ok(least),
+        Reduction::Max => Ok(most),
+        Reduction::Range => Ok(most - least),
+        Reduction::At(time) => statistics::interpolate(times, values, time.value()).ok_or_else(|| {
+            let (from, to) = (times[0], times[times.len() - 1]);
+            let fault = Fault::new(format!("nothing was recorded at {time}"));
+            Error::input(fault.help(format!("give a time from {from} s to {to} s")))
+        }),
+    }
+}
+
+/// The curve y(x) of a recording; each series a mean over the cells of a type, or over all cells.
+///
+/// # Errors
+/// When there is no such series, type or cell.
+pub fn curve(recording: &Recording, x: &str, y: &str, cells: Option<&str>) -> Result<Curve> {
+    Ok(Curve::new(&recording.series(x, cells, Over::Mean)?, &recording.series(y, cells, Over::Mean)?))
+}
+
+/// Fits a line to the part of a curve between two x.
+fn line(curve: &Curve, x_from: Option<f64>, x_to: Option<f64>) -> Result<Line> {
+    let within = |x: f64| x_from.is_none_or(|from| from <= x) && x_to.is_none_or(|to| x <= to);
+    let (x, y): (Vec<f64>, Vec<f64>) = curve.points().filter(|[x, _]| within(*x)).map(|[x, y]| (x, y)).unzip();
+    statistics::fit_line(&x, &y)
+}
+
+fn open(comparison: &Comparison, recording: &Recording, resolve: &dyn Fn(&Path) -> PathBuf) -> Result<(Table, Curve)> {
+    let curve = curve(recording, &comparison.x, &comparison.y, comparison.cells.as_deref())?;
+    Ok((Table::read(&resolve(&comparison.table))?, curve))
+}
+
+fn bars(comparison: &Comparison, recording: &Recording, resolve: &dyn Fn(&Path) -> PathBuf) -> Result<usize> {
+    let (Some(low), Some(high)) = (&comparison.low_column, &comparison.high_column) else {
+        let fault = Fault::new("error bars cannot be counted without the columns of their ends");
+        return Err(Error::input(fault.help("give low_column and high_column")));
+    };
+    let (table, curve) = open(comparison, recording, resolve)?;
+    curve.rows_within(table.column(&comparison.x_column)?, table.column(low)?, table.column(high)?)
+}
+
+/// Largest distance, in standard errors, of the mean squared displacement from Fürth's law, eq. (analysis.8): at
+/// [`LAGS`] lags, or the frames nearest to them, from the shortest to the longest in equal ratios.
+fn msd_deviation(
+    recording: &Recording,
+    kind: Option<&str>,
+    [speed, persistence]: [f64; 2],
+    [lag_from, lag_to]: [f64; 2],
+) -> Result<f64> {
+    let cells = recording.cells_of(kind)?;
+    let times = &recording.times;
+    // A millionth forgives the round-off of frames that are due at the very ends.
+    let within = |lag: f64| lag > 0.0 && lag_from * (1.0 - 1e-6) <= lag && lag <= lag_to * (1.0 + 1e-6);
+    let usable: Vec<usize> = (0..times.len()).filter(|&frame| within(times[frame] - times[0])).collect();
+    let reaches = times.last().is_some_and(|last| last - times[0] >= lag_to * (1.0 - 1e-6));
+    if cells.len() < 2 || usable.is_empty() || !reaches {
+        let recorded = times.last().map_or(0.0, |last| last - times[0]);
+        let found = format!(
+            "displacements of {} cells over {lag_from} s to {lag_to} s cannot be measured from {} frames of {recorded} s",
+            cells.len(),
+            times.len()
+        );
+        return Err(Error::input(Fault::new(found).help("give two cells or more, and lags within the recorded time")));
+    }
+    let wanted = |index: usize| lag_from * (lag_to / lag_from).powf(index as f64 / (LAGS - 1) as f64);
+    let distance = |frame: usize, lag: f64| (times[frame] - times[0] - lag).abs();
+    let nearest = |lag: f64| usable.iter().copied().min_by(|&a, &b| distance(a, lag).total_cmp(&distance(b, lag)));
+    let mut frames: Vec<usize> = (0..LAGS).filter_map(|index| nearest(wanted(index))).collect();
+    frames.dedup();
+    let measured = msd::from_the_start(recording.positions(&cells)?.view(), times, &frames);
+    let deviation = |one: &msd::Displacement| (one.msd - msd::furth(one.lag, speed, persistence)).abs() / one.error;
+    // A maximum that NaN passes through: cells that stand still all alike agree with no law.
+    Ok(measured.iter().map(deviation).fold(0.0, |most: f64, next| if next <= most { most } else { next }))
+}
+
+/// Probability of durations of runs at least as unlike the exponential law as these, eq. (analysis.9).
+///
+/// Runs that begin near the end of a recording are seen only when they are short. So only those are taken that begin
+/// earlier than the longest duration kept before the end, and they are held against the law cut at that duration.
+fn run_length_p(recording: &Recording, kind: Option<&str>, persistence: f64) -> Result<f64> {
+    let cells = recording.cells_of(kind)?;
+    let (first, last) = match (recording.times.first(), recording.times.last()) {
+        (Some(first), Some(last)) => (*first, *last),
+        _ => (0.0, 0.0),
+    };
+    let longest = (10.0 * persistence).min(0.5 * (last - first));
+    let durations: Vec<f64> = recording
+        .runs
+        .iter()
+        .filter(|(cell, end, duration)| {
+            cells.binary_search(&(*cell as usize)).is_ok() && *duration <= longest && end - duration <= last - longest
+        })
+        .map(|(_, _, duration)| *duration)
+        .collect();
+    if durations.is_empty() {
+        let fault = Fault::new("no run of motility ended that could be compared with the exponential law");
+        return Err(Error::input(
+            fault.help("give the cells motility and let them wander for several persistence times"),
+        ));
+    }
+    let whole = -(-longest / persistence).exp_m1();
+    let law = |duration: f64| -(-duration / persistence).exp_m1() / whole;
+    Ok(statistics::kolmogorov_smirnov(&durations, law)?.p_value)
+}
+
+#[cfg(test)]
+#[path = "measure_tests.rs"]
+mod tests;

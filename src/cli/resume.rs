@@ -1,0 +1,25 @@
+//! `pseudopod resume`: goes on with a run from its last checkpoint.
+
+use super::run::{How, reporter, stop_on_signals, tell};
+use crate::error::Result;
+use std::path::PathBuf;
+
+/// Goes on with a run that was stopped or killed.
+#[derive(Debug, Clone, clap::Args)]
+pub struct ResumeArgs {
+    /// The result file of the run.
+    pub result: PathBuf,
+    /// How it is run.
+    #[command(flatten)]
+    pub how: How,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// As [`crate::run::resume`].
+pub fn run(args: &ResumeArgs) -> Result<()> {
+    stop_on_signals();
+    let outcome = crate::run::resume(&args.result, args.how.threads, &mut *reporter(&args.how))?;
+    tell(&args.result, &outcome, &args.how)
+}

@@ -1,0 +1,135 @@
+//! `pseudopod run`: runs an experiment and leaves its result, picture and charts.
+
+use crate::error::{Error, Result};
+use crate::experiment::Document;
+use crate::output::Overwrite;
+use crate::run::{self, Outcome, Progress, Quiet, Report, RunOptions, STOP};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+/// Runs an experiment.
+#[derive(Debug, Clone, clap::Args)]
+pub struct RunArgs {
+    /// The experiment document.
+    pub experiment: PathBuf,
+    /// The result file; by default results/<name of the document>.h5 in the working folder.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Changes a key of the document, as in --set run.until="10 s".
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub sets: Vec<String>,
+    /// Another seed.
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// Another end of the run, as in "10 s".
+    #[arg(long, value_name = "TIME")]
+    pub until: Option<String>,
+    /// Replaces a result that is there.
+    #[arg(long)]
+    pub force: bool,
+    /// How it is run.
+    #[command(flatten)]
+    pub how: How,
+}
+
+/// Options that `run` and `resume` share.
+#[derive(Debug, Clone, clap::Args)]
+pub struct How {
+    /// Threads; the result does not depend on it.
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Says nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Prints what was done as JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Makes no picture and no charts.
+    #[arg(long)]
+    pub no_pictures: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// As [`run::run`].
+pub fn run(args: &RunArgs) -> Result<()> {
+    let mut sets = args.sets.clone();
+    sets.extend(args.seed.map(|seed| format!("seed={seed}")));
+    sets.extend(args.until.as_ref().map(|until| format!("run.until={until}")));
+    let document = Document::read(&args.experiment, &sets)?;
+    let result = args.output.clone().unwrap_or_else(|| default_result(&args.experiment));
+    if args.output.is_none()
+        && let Some(folder) = result.parent()
+    {
+        make_folder(folder)?;
+    }
+    let overwrite = if args.force { Overwrite::Replace } else { Overwrite::Refuse };
+    stop_on_signals();
+    let options = RunOptions { result: result.clone(), overwrite, threads: args.how.threads };
+    let outcome = run::run(&document, &options, &mut *reporter(&args.how))?;
+    tell(&result, &outcome, &args.how)
+}
+
+/// results/<folder>-<document>.h5, or results/<folder>.h5 for a document named experiment.toml.
+fn default_result(experiment: &Path) -> PathBuf {
+    let stem = experiment.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let folder = experiment.parent().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+    let name = match folder {
+        Some(folder) if stem == "experiment" => folder,
+        Some(folder) => format!("{folder}-{stem}"),
+        None => stem,
+    };
+    Path::new("results").join(format!("{name}.h5"))
+}
+
+fn make_folder(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| Error::Machine {
+        message: format!("the folder {} could not be made: {error}", folder.display()),
+        help: "name a result file in a folder you may write to with -o".into(),
+    })
+}
+
+/// The first signal asks the run to stop after the step; a second one ends the program at once.
+pub fn stop_on_signals() {
+    let heard = ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        eprintln!("stopping after this step; once more to stop at once");
+    });
+    // A second handler in one program is refused; the first still works.
+    drop(heard);
+}
+
+/// The listener that the options ask for.
+pub fn reporter(how: &How) -> Box<dyn Report> {
+    if how.quiet { Box::new(Quiet) } else { Box::new(Progress::default()) }
+}
+
+/// Makes the pictures and says what was done.
+pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<()> {
+    let made = if how.no_pictures { Vec::new() } else { crate::picture::make_defaults(result)? };
+    if how.json {
+        let files: Vec<String> = made.iter().map(|path| path.display().to_string()).collect();
+        let report = serde_json::json!({
+            "result": result.display().to_string(), "steps": outcome.steps, "frames": outcome.frames,
+            "wall_time_s": outcome.wall_time, "pictures": files,
+        });
+        println!("{report}");
+    } else if !how.quiet {
+        println!(
+            "{}: {} steps, {} frames, {:.1} s",
+            result.display(),
+            outcome.steps,
+            outcome.frames,
+            outcome.wall_time
+        );
+        made.iter().for_each(|path| println!("{}", path.display()));
+        let file = crate::output::ResultFile::open(result)?;
+        for measure in file.summary()? {
+            println!("{} = {:.6} {}  {}", measure.name, measure.value, measure.unit, measure.description);
+        }
+    }
+    Ok(())
+}

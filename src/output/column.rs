@@ -1,0 +1,340 @@
+//! Datasets that grow with the run, in two kinds: small ones that gather many frames in a piece of the file, and
+//! large ones that take whole compressed pieces per frame.
+//!
+//! Neither ever gives space of the file back while it grows. A piece of a small dataset is rewritten where it lies,
+//! its old numbers unchanged; a piece of a large one is written once. So what is on disk after a flush stays true
+//! until the next flush, whenever the program is killed.
+
+use std::borrow::Cow;
+
+use hdf5::{Dataset, Extent, Group, SimpleExtents, SliceOrIndex};
+use hdf5_sys::h5d::H5Dwrite_chunk;
+use ndarray::IxDyn;
+use rayon::prelude::*;
+
+use super::container::set_text;
+use super::packing::{LEVEL, pack, packer};
+
+/// Numbers in a piece of a small dataset: 8 kB, rewritten at most once a second.
+const SMALL_PIECE: usize = 1024;
+/// Most numbers in a piece of a large dataset: 786 kB, less than the 1 MB that HDF5 readers keep unpacked.
+const LARGE_PIECE: usize = 98_304;
+/// Pieces that are packed together, to bound the memory they take.
+const PACKED_TOGETHER: usize = 64;
+/// What stands where nothing was written.
+const NO_INTEGER: i64 = -1;
+
+/// The type of the numbers of a dataset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Number {
+    Float,
+    Integer,
+}
+
+impl Number {
+    /// The bits that stand for "not written".
+    fn nothing(self) -> u64 {
+        match self {
+            Self::Float => f64::NAN.to_bits(),
+            Self::Integer => NO_INTEGER.cast_unsigned(),
+        }
+    }
+}
+
+/// What a new dataset is.
+pub(super) struct Plan<'a> {
+    pub path: &'a str,
+    pub number: Number,
+    pub unit: &'a str,
+    pub description: &'a str,
+}
+
+impl Plan<'_> {
+    /// Makes the dataset: rows that grow (`None`) or a fixed number, each of the shape `row`, in pieces of
+    /// `piece_rows`, plain or packed.
+    fn make(
+        &self,
+        file: &Group,
+        rows: Option<usize>,
+        row: &[usize],
+        piece_rows: usize,
+        packing: Packing,
+    ) -> hdf5::Result<Dataset> {
+        let first = rows.map_or(Extent::resizable(0), Extent::fixed);
+        let extents: Vec<Extent> = [first].into_iter().chain(row.iter().map(|n| Extent::fixed(*n))).collect();
+        let piece: Vec<usize> = [piece_rows].into_iter().chain(row.iter().copied()).collect();
+        let builder = file.new_dataset_builder();
+        let mut builder = match self.number {
+            Number::Float => builder.empty::<f64>().fill_value(f64::NAN),
+            Number::Integer => builder.empty::<i64>().fill_value(NO_INTEGER),
+        };
+        builder.lcpl().create_intermediate_group(true);
+        builder = builder.obj_track_times(false);
+        if piece.iter().all(|n| *n > 0) {
+            builder = builder.chunk(piece);
+        }
+        if packing == Packing::Packed {
+            builder = builder.shuffle().deflate(LEVEL as u8);
+        }
+        let dataset = builder.shape(SimpleExtents::from_vec(extents)).create(self.path)?;
+        set_text(&dataset, "unit", self.unit)?;
+        set_text(&dataset, "description", self.description)?;
+        Ok(dataset)
+    }
+}
+
+/// Whether pieces are compressed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Packing {
+    Plain,
+    Packed,
+}
+
+/// A small dataset that grows by a row at a time. The rows of its last piece are kept in memory and written when the
+/// piece is full or the file is flushed.
+pub(super) struct Column {
+    dataset: Dataset,
+    row: Vec<usize>,
+    number: Number,
+    rows: usize,
+    /// The last piece, whole; what has no row yet holds [`Number::nothing`].
+    tail: Vec<u64>,
+    tail_rows: usize,
+}
+
+impl Column {
+    /// Makes the dataset with rows of the shape `row`.
+    pub fn create(file: &Group, plan: &Plan, row: &[usize]) -> hdf5::Result<Self> {
+        let dataset = plan.make(file, None, row, Self::piece_rows(row), Packing::Plain)?;
+        Ok(Self::around(dataset, plan.number, row))
+    }
+
+    /// Opens the dataset and cuts it to its first rows.
+    pub fn reopen(file: &Group, path: &str, number: Number, row: &[usize], rows: usize) -> hdf5::Result<Self> {
+        let mut column = Self::around(file.dataset(path)?, number, row);
+        column.resize(rows)?;
+        column.tail_rows = rows % Self::piece_rows(row);
+        let selection: Vec<SliceOrIndex> =
+            std::iter::once((rows - column.tail_rows..rows).into()).chain(row.iter().map(|n| (0..*n).into())).collect();
+        let known: Vec<u64> = match number {
+            _ if column.tail_rows == 0 => Vec::new(),
+            Number::Float => column
+                .dataset
+                .read_slice::<f64, _, IxDyn>(selection_of(selection))?
+                .iter()
+                .map(|x| x.to_bits())
+                .collect(),
+            Number::Integer => column
+                .dataset
+                .read_slice::<i64, _, IxDyn>(selection_of(selection))?
+                .iter()
+                .map(|x| x.cast_unsigned())
+                .collect(),
+        };
+        column.tail[..known.len()].copy_from_slice(&known);
+        Ok(column)
+    }
+
+    fn around(dataset: Dataset, number: Number, row: &[usize]) -> Self {
+        let length = Self::piece_rows(row) * row.iter().product::<usize>();
+        Self { dataset, row: row.to_vec(), number, rows: 0, tail: vec![number.nothing(); length], tail_rows: 0 }
+    }
+
+    fn piece_rows(row: &[usize]) -> usize {
+        (SMALL_PIECE / row.iter().product::<usize>().max(1)).clamp(1, 256)
+    }
+
+    /// Appends a row, given as the bits of its numbers.
+    pub fn push(&mut self, values: impl IntoIterator<Item = u64>) -> hdf5::Result<()> {
+        let width: usize = self.row.iter().product();
+        let place = &mut self.tail[self.tail_rows * width..(self.tail_rows + 1) * width];
+        for (to, from) in place.iter_mut().zip(values) {
+            *to = from;
+        }
+        self.tail_rows += 1;
+        self.rows += 1;
+        if self.tail_rows == Self::piece_rows(&self.row) {
+            self.write()?;
+            self.tail.fill(self.number.nothing());
+            self.tail_rows = 0;
+        }
+        Ok(())
+    }
+
+    /// Hands the rows so far to the file.
+    pub fn write(&mut self) -> hdf5::Result<()> {
+        if self.tail_rows == 0 {
+            return Ok(());
+        }
+        self.resize(self.rows)?;
+        let bytes = std::mem::size_of_val(self.tail.as_slice());
+        // Plain pieces are the numbers themselves, in the byte order of the machine, which is the dataset's.
+        let pointer = self.tail.as_ptr().cast();
+        write_piece(&self.dataset, self.rows - self.tail_rows, self.row.len(), pointer, bytes)
+    }
+
+    /// Sets the number of rows in the file.
+    pub fn resize(&mut self, rows: usize) -> hdf5::Result<()> {
+        self.rows = rows;
+        self.dataset.resize([&[rows], self.row.as_slice()].concat())
+    }
+}
+
+/// A large dataset that grows by a frame at a time, in compressed pieces of which a frame has a whole number.
+pub(super) struct PackedColumn {
+    dataset: Dataset,
+    row: Vec<usize>,
+    frame_rows: usize,
+    piece_rows: usize,
+    frames: usize,
+}
+
+impl PackedColumn {
+    /// Makes the dataset; a frame has `frame_rows` rows of the shape `row`.
+    pub fn create(file: &Group, plan: &Plan, frame_rows: usize, row: &[usize]) -> hdf5::Result<Self> {
+        let piece_rows = piece_of_frame(frame_rows, row);
+        let dataset = plan.make(file, None, row, piece_rows, Packing::Packed)?;
+        Ok(Self { dataset, row: row.to_vec(), frame_rows, piece_rows, frames: 0 })
+    }
+
+    /// Opens the dataset and cuts it to its first frames.
+    pub fn reopen(file: &Group, path: &str, frame_rows: usize, row: &[usize], frames: usize) -> hdf5::Result<Self> {
+        let dataset = file.dataset(path)?;
+        let piece_rows = dataset.chunk().map_or(frame_rows, |piece| piece[0]);
+        let mut column = Self { dataset, row: row.to_vec(), frame_rows, piece_rows, frames };
+        column.resize(frames)?;
+        Ok(column)
+    }
+
+    /// Closes the dataset and opens it again, so that HDF5 forgets where all its pieces lie: it keeps some 300 bytes
+    /// for each. To be called right after a flush, when nothing of it waits to be written.
+    pub fn renewed(self, file: &Group) -> hdf5::Result<Self> {
+        let Self { dataset, row, frame_rows, piece_rows, frames } = self;
+        let path = dataset.name();
+        drop(dataset);
+        Ok(Self { dataset: file.dataset(&path)?, row, frame_rows, piece_rows, frames })
+    }
+
+    /// Sets the number of frames in the file.
+    pub fn resize(&mut self, frames: usize) -> hdf5::Result<()> {
+        self.frames = frames;
+        self.dataset.resize([&[frames * self.frame_rows], self.row.as_slice()].concat())
+    }
+}
+
+/// Appends one frame to several large datasets: packs the pieces on all cores, then hands them to the file.
+pub(super) fn push_frames(frames: &mut [(&mut PackedColumn, Cow<[f64]>)]) -> hdf5::Result<()> {
+    let mut pieces: Vec<(usize, usize, &[f64])> = Vec::new();
+    for (number, (column, values)) in frames.iter().enumerate() {
+        let length = column.piece_rows * column.row.iter().product::<usize>();
+        let first = column.frames * column.frame_rows;
+        let rows = (0..).map(|piece| first + piece * column.piece_rows);
+        pieces.extend(values.chunks(length).zip(rows).map(|(piece, row)| (number, row, piece)));
+    }
+    // The new size comes first: a piece outside the dataset is refused.
+    for (column, _) in frames.iter() {
+        let rows = (column.frames + 1) * column.frame_rows;
+        column.dataset.resize([&[rows], column.row.as_slice()].concat())?;
+    }
+    for together in pieces.chunks(PACKED_TOGETHER) {
+        let packed: Vec<Vec<u8>> = together
+            .par_iter()
+            .map_init(packer, |packer, (_, _, piece)| pack(packer, piece.iter().map(|value| value.to_bits())))
+            .collect();
+        for ((number, row, _), bytes) in together.iter().zip(&packed) {
+            let column = &frames[*number].0;
+            write_piece(&column.dataset, *row, column.row.len(), bytes.as_ptr().cast(), bytes.len())?;
+        }
+    }
+    frames.iter_mut().for_each(|(column, _)| column.frames += 1);
+    Ok(())
+}
+
+/// Writes a dataset of integers that never changes; `value` gives the number at a place.
+pub(super) fn write_integers(
+    file: &Group,
+    plan: &Plan,
+    count: usize,
+    value: impl Fn(usize) -> i64 + Sync,
+) -> hdf5::Result<Dataset> {
+    let piece = count.min(LARGE_PIECE);
+    let packing = if count > SMALL_PIECE { Packing::Packed } else { Packing::Plain };
+    let dataset = plan.make(file, Some(count), &[], piece, packing)?;
+    if packing == Packing::Plain {
+        if count > 0 {
+            dataset.write_raw(&(0..count).map(value).collect::<Vec<i64>>())?;
+        }
+        return Ok(dataset);
+    }
+    let starts: Vec<usize> = (0..count).step_by(piece).collect();
+    for together in starts.chunks(PACKED_TOGETHER) {
+        let number = |place: usize| if place < count { value(place) } else { NO_INTEGER };
+        let packed: Vec<Vec<u8>> = together
+            .par_iter()
+            .map_init(packer, |packer, start| {
+                pack(packer, (*start..start + piece).map(|place| number(place).cast_unsigned()))
+            })
+            .collect();
+        for (start, bytes) in together.iter().zip(&packed) {
+            write_piece(&dataset, *start, 0, bytes.as_ptr().cast(), bytes.len())?;
+        }
+    }
+    Ok(dataset)
+}
+
+/// Writes a dataset of vectors that never changes.
+pub(super) fn write_vectors(file: &Group, plan: &Plan, values: &[[f64; 3]]) -> hdf5::Result<Dataset> {
+    let dataset = plan.make(file, Some(values.len()), &[3], values.len(), Packing::Plain)?;
+    if !values.is_empty() {
+        dataset.write_raw(values.as_flattened())?;
+    }
+    Ok(dataset)
+}
+
+/// Rows in a piece, so that whole pieces make a frame: the largest divisor of the frame that is not too large, and
+/// the frame itself if its divisors are all small.
+fn piece_of_frame(frame_rows: usize, row: &[usize]) -> usize {
+    let most = (LARGE_PIECE / row.iter().product::<usize>().max(1)).max(1);
+    if frame_rows <= most {
+        return frame_rows;
+    }
+    (most / 16..=most).rev().find(|rows| *rows > 0 && frame_rows.is_multiple_of(*rows)).unwrap_or(frame_rows)
+}
+
+fn selection_of(dimensions: Vec<SliceOrIndex>) -> hdf5::Hyperslab {
+    dimensions.into()
+}
+
+/// Hands a finished piece to the file, past HDF5's own filters and caches.
+fn write_piece(
+    dataset: &Dataset,
+    first_row: usize,
+    more_dimensions: usize,
+    bytes: *const std::ffi::c_void,
+    length: usize,
+) -> hdf5::Result<()> {
+    let mut place = vec![0_u64; 1 + more_dimensions];
+    place[0] = first_row as u64;
+    let default = hdf5_sys::h5p::H5P_DEFAULT;
+    // SAFETY: `place` has one number per dimension of the dataset, `bytes` is valid for `length` bytes, and the
+    // call holds the lock of the library.
+    hdf5::sync::sync(|| unsafe {
+        hdf5::h5check(H5Dwrite_chunk(dataset.id(), default, 0, place.as_ptr(), length, bytes))
+    })?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_is_made_of_whole_pieces() {
+        for rows in [1, 42, 32_768, 42_000, 420_000, 42_000_000, 65_537] {
+            let piece = piece_of_frame(rows, &[3]);
+            assert_eq!(rows % piece, 0, "{rows} rows in pieces of {piece}");
+        }
+        assert_eq!(piece_of_frame(420_000, &[3]), 30_000);
+        assert_eq!(piece_of_frame(65_537, &[3]), 65_537, "a prime has one piece");
+    }
+}

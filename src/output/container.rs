@@ -1,0 +1,217 @@
+//! The few things that the result file needs of HDF5: files that survive a kill, texts, and errors people understand.
+
+use std::path::Path;
+
+use hdf5::file::{CacheDecreaseMode, CacheIncreaseMode, FileBuilder, FlashIncreaseMode, MetadataCacheConfig};
+use hdf5::types::VarLenUnicode;
+use hdf5::{File, Group, H5Type, Location};
+use ndarray::Array1;
+
+use crate::error::{Error, Fault, Result};
+
+/// The first bytes of every HDF5 file.
+const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
+
+/// Version of the arrangement of the file; grows when an old reader would misunderstand a new file.
+pub(super) const FORMAT: i64 = 1;
+
+/// Attribute of the root that says whose file it is.
+pub(super) const FORMAT_ATTRIBUTE: &str = "pseudopod_format";
+
+/// How a file is opened for writing. The oldest format has no mark that says "in use", so a file whose writer was
+/// killed opens like any other. Metadata stay in memory until a flush, so between two flushes the file on disk is
+/// the one of the last flush. A dataset that is closed takes its metadata with it.
+fn kill_safe() -> FileBuilder {
+    let cache = MetadataCacheConfig {
+        evictions_enabled: false,
+        incr_mode: CacheIncreaseMode::Off,
+        flash_incr_mode: FlashIncreaseMode::Off,
+        decr_mode: CacheDecreaseMode::Off,
+        ..MetadataCacheConfig::default()
+    };
+    let mut builder = FileBuilder::new();
+    builder.with_fapl(|access| access.libver_earliest().mdc_config(&cache).evict_on_close(true));
+    builder
+}
+
+/// Makes the file, or empties one that is there.
+pub(super) fn create(path: &Path) -> Result<File> {
+    kill_safe().create(path).map_err(|error| failed(path, "could not be made", &error))
+}
+
+/// What an open file is wanted for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Access {
+    Read,
+    Append,
+}
+
+/// Opens a result file of ours.
+///
+/// # Errors
+/// A missing file, one that is not HDF5, not ours, cut short, or still being written.
+pub(super) fn open(path: &Path, access: Access) -> Result<File> {
+    check_signature(path)?;
+    let opened = match access {
+        // As for writing, or HDF5 would refuse a file that this process is writing.
+        Access::Read => FileBuilder::new().with_fapl(|access| access.evict_on_close(true)).open(path),
+        Access::Append => kill_safe().open_rw(path),
+    };
+    let file = opened.map_err(|error| refused(path, access, &error))?;
+    let format = file.attr(FORMAT_ATTRIBUTE).and_then(|attribute| attribute.read_scalar::<i64>());
+    match format {
+        Ok(FORMAT) => Ok(file),
+        Ok(other) => Err(Error::input(
+            Fault::new(format!("{} has format {other}, this program knows format {FORMAT}", path.display()))
+                .help("open it with the version of pseudopod that wrote it, or a newer one"),
+        )),
+        Err(_) => Err(not_ours(path)),
+    }
+}
+
+/// The fault of an HDF5 file that another program wrote.
+fn not_ours(path: &Path) -> Error {
+    Error::input(
+        Fault::new(format!("{} is an HDF5 file, but not a result of pseudopod", path.display()))
+            .help("give the file that `pseudopod run` wrote"),
+    )
+}
+
+/// Looks at the first bytes before HDF5 does: its own words for these cases help nobody.
+fn check_signature(path: &Path) -> Result<()> {
+    use std::io::Read as _;
+    let name = path.display();
+    if path.is_dir() {
+        return Err(Error::input(Fault::new(format!("{name} is a folder")).help("give the result file inside it")));
+    }
+    let mut start = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(8).read_to_end(&mut start));
+    match read {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(Error::input(
+            Fault::new(format!("there is no file {name}")).help("check the path; `pseudopod run` says where it writes"),
+        )),
+        Err(error) => Err(Error::Machine {
+            message: format!("{name} could not be read: {error}"),
+            help: "check its permissions and the disk it lies on".into(),
+        }),
+        Ok(_) if start.iter().all(|byte| *byte == 0) => Err(Error::input(
+            Fault::new(format!("{name} is empty: its run ended before the first frame"))
+                .help("run the experiment again with --force"),
+        )),
+        Ok(_) if start != SIGNATURE => Err(Error::input(
+            Fault::new(format!("{name} is not an HDF5 file")).help("give the file that `pseudopod run` wrote"),
+        )),
+        Ok(_) => Ok(()),
+    }
+}
+
+/// Why HDF5 would not open a file that begins like one.
+fn refused(path: &Path, access: Access, error: &hdf5::Error) -> Error {
+    let (name, text) = (path.display(), whole_text(error));
+    if text.contains("unable to lock file") || text.contains("already open") {
+        let help = "wait until the run has ended, or stop it with Ctrl-C; it can be resumed";
+        return Error::input(Fault::new(format!("{name} is being written by a running simulation")).help(help));
+    }
+    if access == Access::Append && text.contains("Permission denied") {
+        return Error::input(
+            Fault::new(format!("{name} may not be written")).help("change its permissions, or copy it first"),
+        );
+    }
+    damaged(path, &text)
+}
+
+/// The fault of a file that is cut short or holds wrong bytes.
+pub(super) fn damaged(path: &Path, text: &str) -> Error {
+    let found = match text.contains("truncated file") {
+        true => format!("{} is truncated: its end is missing", path.display()),
+        false => format!("{} is damaged ({text})", path.display()),
+    };
+    let help = "copy it again if it was copied; otherwise resume from its checkpoint file, if there is one, \
+                or run the experiment again";
+    Error::input(Fault::new(found).help(help))
+}
+
+/// The words of all levels of an HDF5 error, outermost first.
+fn whole_text(error: &hdf5::Error) -> String {
+    match error.stack() {
+        Some(stack) => stack.iter().map(|frame| frame.desc().to_string()).collect::<Vec<_>>().join("; "),
+        None => error.to_string(),
+    }
+}
+
+/// A write that failed, with the words for a full disk when the disk is full.
+pub(super) fn failed(path: &Path, what: &str, error: &hdf5::Error) -> Error {
+    machine_error(path, what, &whole_text(error))
+}
+
+/// The machine's trouble with a file, from the text of the library or of the system.
+pub(super) fn machine_error(path: &Path, what: &str, text: &str) -> Error {
+    let cases = [
+        ("No space left on device", "no space left on device", "free some space, or write to another disk with -o"),
+        ("quota exceeded", "the disk quota is exceeded", "free some space, or write to another disk with -o"),
+        ("File too large", "the file would be larger than allowed here", "raise the limit, or record less often"),
+        ("Permission denied", "permission denied", "write to a folder that is yours with -o"),
+        ("Read-only file system", "the file system is read-only", "write to another folder with -o"),
+    ];
+    for (sign, words, help) in cases {
+        if text.to_lowercase().contains(&sign.to_lowercase()) {
+            return Error::Machine { message: format!("{} {what}: {words}", path.display()), help: help.into() };
+        }
+    }
+    Error::Machine {
+        message: format!("{} {what}: {text}", path.display()),
+        help: "check the disk and that nothing else changes the file".into(),
+    }
+}
+
+/// A text as HDF5 stores it. HDF5 ends texts at a zero byte, so that one is replaced.
+pub(super) fn stored(text: &str) -> VarLenUnicode {
+    text.replace('\0', "\u{fffd}").parse().unwrap_or_default()
+}
+
+/// Sets an attribute that is a text.
+pub(super) fn set_text(place: &Location, name: &str, text: &str) -> hdf5::Result<()> {
+    place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&stored(text))
+}
+
+/// Reads an attribute that is a text.
+pub(super) fn text(place: &Location, name: &str) -> hdf5::Result<String> {
+    Ok(place.attr(name)?.read_scalar::<VarLenUnicode>()?.as_str().to_string())
+}
+
+/// Sets an attribute that is a number, new or not.
+pub(super) fn set_number<T: H5Type>(place: &Location, name: &str, value: T) -> hdf5::Result<()> {
+    match place.attr(name) {
+        Ok(attribute) => attribute.write_scalar(&value),
+        Err(_) => place.new_attr::<T>().create(name)?.write_scalar(&value),
+    }
+}
+
+/// Writes a list of texts.
+pub(super) fn write_texts(file: &Group, path: &str, texts: &[&str]) -> hdf5::Result<hdf5::Dataset> {
+    let texts: Array1<VarLenUnicode> = texts.iter().map(|text| stored(text)).collect();
+    let mut builder = file.new_dataset_builder().with_data(&texts).obj_track_times(false);
+    builder.lcpl().create_intermediate_group(true);
+    builder.create(path)
+}
+
+/// Reads a list of texts.
+pub(super) fn read_texts(file: &Group, path: &str) -> hdf5::Result<Vec<String>> {
+    let texts = file.dataset(path)?.read_raw::<VarLenUnicode>()?;
+    Ok(texts.iter().map(|text| text.as_str().to_string()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_named_as_such() {
+        let text = "file write failed: errno = 28, error message = 'No space left on device', buf = 0x55";
+        let Error::Machine { message, help } = machine_error(Path::new("r.h5"), "could not be written", text) else {
+            panic!("a full disk is the machine's trouble")
+        };
+        assert_eq!(message, "r.h5 could not be written: no space left on device");
+        assert!(help.contains("free some space"), "{help}");
+    }
+}

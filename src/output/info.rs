@@ -1,0 +1,149 @@
+//! Says what a result file holds, for people and for programs.
+
+use std::fmt::Write as _;
+
+use hdf5::Group;
+use serde_json::{Map, Value, json};
+
+use super::container::text;
+use super::reader::ResultFile;
+use crate::error::Result;
+
+/// A page for people: what was simulated, how far it came, what was measured.
+///
+/// # Errors
+/// A damaged file.
+pub fn describe(result: &ResultFile) -> Result<String> {
+    let (header, layout, ending) = (result.header(), result.layout(), result.ending());
+    let (times, steps) = (result.times()?, result.steps()?);
+    let mut page = String::new();
+    let mut line = |name: &str, value: String| {
+        // Writing to a text cannot fail.
+        let _ = writeln!(page, "{name:<12}{value}");
+    };
+    line("title", header.title.clone());
+    line("experiment", format!("{} (seed {})", header.document, header.seed));
+    for set in &header.sets {
+        line("  --set", set.clone());
+    }
+    let types = count_types(result).into_iter().map(|(name, count)| format!("{count} {name}"));
+    line("cells", format!("{} ({})", layout.cells.len(), types.collect::<Vec<_>>().join(", ")));
+    line("mesh", format!("{} atoms, {} facets, {} links", layout.atoms(), layout.facets.len(), layout.links.len()));
+    line(
+        "frames",
+        format!(
+            "{}, from {} s to {} s (step {} to {})",
+            result.frames(),
+            times[0],
+            times[times.len() - 1],
+            steps[0],
+            steps[steps.len() - 1]
+        ),
+    );
+    let state = match (ending.finished, ending.wall_time) {
+        (true, Some(seconds)) => format!("finished in {seconds:.1} s"),
+        (true, None) => "finished".into(),
+        (false, _) => "interrupted; `pseudopod resume` goes on from its checkpoint".into(),
+    };
+    let resumed = if ending.resumed > 0 { format!(", resumed {} times", ending.resumed) } else { String::new() };
+    line("state", state + &resumed);
+    line("started", header.started.clone());
+    line("program", format!("pseudopod {} (commit {})", header.version, header.commit));
+    line("file size", readable_size(bytes(result)));
+    for measure in result.summary()? {
+        let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };
+        line("measure", format!("{} = {}{unit}  {}", measure.name, measure.value, measure.description));
+    }
+    Ok(page)
+}
+
+/// Everything in the file but the arrays.
+///
+/// # Errors
+/// A damaged file.
+pub fn to_json(result: &ResultFile) -> Result<Value> {
+    let (header, layout, ending) = (result.header(), result.layout(), result.ending());
+    let (times, steps) = (result.times()?, result.steps()?);
+    let summary: Map<String, Value> = result
+        .summary()?
+        .into_iter()
+        .map(|m| (m.name, json!({ "value": m.value, "unit": m.unit, "description": m.description })))
+        .collect();
+    let types: Vec<Value> =
+        count_types(result).into_iter().map(|(name, count)| json!({ "name": name, "cells": count })).collect();
+    let mut datasets = Vec::new();
+    list_datasets(result.file(), "", &mut datasets)
+        .map_err(|error| super::container::damaged(result.path(), &error.to_string()))?;
+    Ok(json!({
+        "path": result.path().display().to_string(),
+        "bytes": bytes(result),
+        "header": header,
+        "finished": ending.finished,
+        "wall_time": ending.wall_time,
+        "resumed": ending.resumed,
+        "cells": layout.cells.len(),
+        "types": types,
+        "atoms": layout.atoms(),
+        "facets": layout.facets.len(),
+        "links": layout.links.len(),
+        "planes": layout.planes.iter().map(|plane| &plane.0).collect::<Vec<_>>(),
+        "frames": result.frames(),
+        "time": { "first": times[0], "last": times[times.len() - 1], "unit": "s" },
+        "step": { "first": steps[0], "last": steps[steps.len() - 1] },
+        "summary": summary,
+        "datasets": datasets,
+    }))
+}
+
+/// Cells of every type.
+fn count_types(result: &ResultFile) -> Vec<(String, usize)> {
+    let layout = result.layout();
+    let count = |kind: usize| layout.cells.iter().filter(|cell| cell.kind as usize == kind).count();
+    layout.types.iter().enumerate().map(|(kind, name)| (name.clone(), count(kind))).collect()
+}
+
+/// Size of the file; 0 if the system does not say.
+fn bytes(result: &ResultFile) -> u64 {
+    std::fs::metadata(result.path()).map_or(0, |known| known.len())
+}
+
+fn readable_size(bytes: u64) -> String {
+    let (mut size, mut units) = (bytes as f64, ["B", "kB", "MB", "GB", "TB"].into_iter());
+    let mut unit = units.next().unwrap_or("B");
+    while size >= 1000.0
+        && let Some(next) = units.next()
+    {
+        (size, unit) = (size / 1000.0, next);
+    }
+    if unit == "B" { format!("{bytes} B") } else { format!("{size:.1} {unit}") }
+}
+
+/// All datasets below a group, by path.
+fn list_datasets(group: &Group, path: &str, into: &mut Vec<Value>) -> hdf5::Result<()> {
+    for name in group.member_names()? {
+        let path = format!("{path}/{name}");
+        let Ok(dataset) = group.dataset(&name) else {
+            list_datasets(&group.group(&name)?, &path, into)?;
+            continue;
+        };
+        into.push(json!({
+            "path": path,
+            "shape": dataset.get_shape()?,
+            "dtype": dataset.dtype()?.to_descriptor()?.to_string(),
+            "unit": text(&dataset, "unit").unwrap_or_default(),
+            "description": text(&dataset, "description").unwrap_or_default(),
+        }));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::readable_size;
+
+    #[test]
+    fn sizes_are_readable() {
+        assert_eq!(readable_size(999), "999 B");
+        assert_eq!(readable_size(1_250_000), "1.2 MB");
+    }
+}

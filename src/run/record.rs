@@ -1,0 +1,94 @@
+//! Looks at the state and writes down what the result file keeps. Observers never change the state.
+
+use crate::experiment::Schedule;
+use crate::output::{CellLayout, CellRecord, Frame, Layout};
+use crate::sim::observe::{mean_velocities, measure_cells};
+use crate::sim::state::vector;
+use crate::sim::{Model, State, Workspace, forces};
+
+/// Names, cells, facets and planes of a model, as the result file lists them.
+pub fn layout_of(model: &Model) -> Layout {
+    let mut layout = Layout::default();
+    let (mut first_atom, mut first_facet) = (0u32, 0u32);
+    for (number, kind) in model.kinds.iter().enumerate() {
+        layout.types.push(kind.name.clone());
+        for _ in 0..kind.cells {
+            let (atoms, facets) = (kind.atoms() as u32, kind.rest.facets.len() as u32);
+            layout.cells.push(CellLayout { kind: number as u32, first_atom, atoms, first_facet, facets });
+            layout.facets.extend(kind.rest.facets.iter().map(|facet| facet.map(|atom| atom + first_atom)));
+            for pair in &kind.drawn_links {
+                layout.links.push(pair.map(|atom| atom + first_atom));
+            }
+            first_atom += atoms;
+            first_facet += facets;
+        }
+    }
+    layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
+    let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
+    layout.planes = model.planes.iter().map(plane).collect();
+    layout
+}
+
+/// Series name, kind and load of every load; a name that several types share is the first type's.
+fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
+    let mut names: Vec<(String, usize, usize)> = Vec::new();
+    for (k, kind) in model.kinds.iter().enumerate() {
+        for (l, load) in kind.loads.iter().enumerate() {
+            let name = format!("load.{}", load.name);
+            if names.iter().all(|(known, _, _)| *known != name) {
+                names.push((name, k, l));
+            }
+        }
+    }
+    names
+}
+
+/// Makes frames; has scratch of its own, so that looking changes nothing.
+pub struct Recorder {
+    loads: Vec<(String, usize, usize)>,
+    force_scratch: Option<Workspace>,
+}
+
+impl Recorder {
+    /// A recorder for a run.
+    pub fn new(model: &Model, schedule: &Schedule) -> Self {
+        Self { loads: load_names(model), force_scratch: schedule.forces.then(|| Workspace::new(model)) }
+    }
+
+    /// The frame of this instant; takes the ended runs from the state, since they are recorded now.
+    pub fn record(&mut self, model: &Model, state: &mut State, ws: &Workspace, dt: f64) -> Frame {
+        let mut frame = frame_of(model, state, ws, dt);
+        frame.scene = self.loads.iter().map(|&(_, k, l)| model.kinds[k].loads[l].force.at(state.time)).collect();
+        if let Some(scratch) = &mut self.force_scratch {
+            forces::add_forces(model, state.time, state, scratch);
+            for (kind, w) in model.kinds.iter().zip(&scratch.kinds) {
+                for cell in 0..kind.cells {
+                    frame.forces.extend((0..kind.atoms()).map(|a| <[f64; 3]>::from(vector(kind, &w.force, cell, a))));
+                }
+            }
+        }
+        frame.runs = std::mem::take(&mut state.ended_runs);
+        frame
+    }
+}
+
+/// Positions and measures of all cells at this instant; `dt` is the size of the last step, s.
+pub fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
+    let velocities = mean_velocities(model, state, ws, dt);
+    let mut frame = Frame { time: state.time, step: state.step, ..Frame::default() };
+    for (cell, velocity) in measure_cells(model, state).into_iter().zip(velocities) {
+        frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));
+        frame.cells.push(CellRecord {
+            position: cell.centre.into(),
+            velocity: velocity.into(),
+            volume: cell.volume,
+            volume_error: cell.volume_error,
+            area: cell.area,
+            energy: cell.energy,
+            size: cell.size.into(),
+            principal: cell.principal,
+            smallest_facet: cell.smallest_facet,
+        });
+    }
+    frame
+}

@@ -1,0 +1,71 @@
+//! A small scene whose numbers are easy to foretell.
+
+use std::path::Path;
+
+use pseudopod::output::{CellLayout, CellRecord, Frame, Header, Layout, Overwrite, ResultWriter};
+
+/// Corners of an octahedron.
+const CORNERS: [[f64; 3]; 6] =
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
+const FACETS: [[u32; 3]; 8] = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+
+/// Octahedral cells of two types, each with one internal link.
+pub fn layout(cells: u32) -> Layout {
+    let facets = (0..cells).flat_map(|cell| FACETS.map(|facet| facet.map(|atom| atom + 6 * cell)));
+    Layout {
+        types: vec!["round".into(), "lone".into()],
+        cells: (0..cells)
+            .map(|cell| CellLayout { kind: cell % 2, first_atom: 6 * cell, atoms: 6, first_facet: 8 * cell, facets: 8 })
+            .collect(),
+        facets: facets.collect(),
+        links: (0..cells).map(|cell| [6 * cell, 6 * cell + 3]).collect(),
+        scene_series: vec![("wall.height".into(), "um".into()), ("load.pull".into(), "pN".into())],
+        planes: vec![("floor".into(), [0.0, 0.0, -2.0], [0.0, 0.0, 1.0])],
+    }
+}
+
+/// The frame of this number: the cells drift along x and a motility run ends in every frame but the first.
+pub fn frame(layout: &Layout, number: usize) -> Frame {
+    let time = 0.25 * number as f64;
+    let cells = layout.cells.len();
+    let centre = |cell: usize| [3.0 * cell as f64 + time, 0.1 * cell as f64, 0.0];
+    let positions = (0..cells).flat_map(|cell| CORNERS.map(|corner| add(corner, centre(cell))));
+    Frame {
+        time,
+        step: 10 * number as u64,
+        positions: positions.collect(),
+        forces: (0..6 * cells).map(|atom| [time, atom as f64, -1.5]).collect(),
+        cells: (0..cells)
+            .map(|cell| CellRecord {
+                position: centre(cell),
+                velocity: [3.0, 0.0, 4.0 * time],
+                volume: 4.0 / 3.0,
+                volume_error: 1e-12 * cell as f64,
+                area: 48.0_f64.sqrt() + time,
+                energy: number as f64,
+                size: [2.0, 2.0, 2.5],
+                principal: [2.5, 2.0, 1.0 + cell as f64],
+                smallest_facet: 0.9,
+            })
+            .collect(),
+        scene: vec![10.0 - time, 2.0 * time],
+        runs: if number == 0 { Vec::new() } else { vec![(number as u32 % cells as u32, time, 0.5 * time)] },
+    }
+}
+
+fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+pub fn header() -> Header {
+    Header::now("walk.toml", "A walk", "title = \"A walk\"\nseed = 7\n", &["cells.round.count=3".into()], 7)
+}
+
+/// Makes a file and appends frames `0..frames`.
+pub fn write(path: &Path, layout: &Layout, frames: usize) -> ResultWriter {
+    let mut writer = ResultWriter::create(path, &header(), layout, Overwrite::Refuse).unwrap();
+    for number in 0..frames {
+        writer.append(&frame(layout, number)).unwrap();
+    }
+    writer
+}

@@ -1,0 +1,6 @@
+//! What the result file promises: what was recorded is read back, whatever happened to the run.
+
+mod example;
+mod faults;
+mod resume;
+mod round_trip;

@@ -1,0 +1,86 @@
+//! A run that goes on leaves the file of a run that never stopped.
+
+use pseudopod::output::{Frame, Layout, Measure, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
+
+use crate::example::{frame, header, layout, write};
+use crate::round_trip::assert_holds;
+
+fn frames(layout: &Layout, count: usize) -> Vec<Frame> {
+    (0..count).map(|number| frame(layout, number)).collect()
+}
+
+#[test]
+fn a_resumed_file_equals_an_uninterrupted_one() {
+    let folder = tempfile::tempdir().unwrap();
+    // (cells, frames of the first part, frames kept, frames in all): within a piece of the file, across pieces, at
+    // the end of a piece, and with one compressed piece per frame.
+    for (cells, first, keep, all) in [(3, 10, 6, 12), (3, 600, 300, 700), (3, 600, 512, 520), (1500, 4, 2, 5)] {
+        let path = folder.path().join(format!("{cells}-{first}-{keep}.h5"));
+        let layout = layout(cells);
+        drop(write(&path, &layout, first));
+        let mut writer = ResultWriter::reopen(&path, &header(), &layout, 10 * (keep as u64 - 1)).unwrap();
+        assert_eq!(writer.frames(), keep);
+        (keep..all).for_each(|number| writer.append(&frame(&layout, number)).unwrap());
+        writer.finish(3.0).unwrap();
+        let result = ResultFile::open(&path).unwrap();
+        assert_holds(&result, &layout, &frames(&layout, all));
+        assert_eq!(result.ending().resumed, 1);
+    }
+}
+
+#[test]
+fn a_run_resumed_before_its_first_frame_begins_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    let layout = layout(2);
+    drop(write(&path, &layout, 0));
+    let mut writer = ResultWriter::reopen(&path, &header(), &layout, 0).unwrap();
+    (0..3).for_each(|number| writer.append(&frame(&layout, number)).unwrap());
+    drop(writer);
+    assert_holds(&ResultFile::open(&path).unwrap(), &layout, &frames(&layout, 3));
+}
+
+#[test]
+fn the_checkpoint_moves_into_the_finished_file_and_out_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    let layout = layout(2);
+    let mut writer = write(&path, &layout, 5);
+    writer.save_checkpoint(40, 1.0, b"state at 40").unwrap();
+    let measure = Measure { name: "m".into(), value: 1.0, unit: "1".into(), description: "Number.".into() };
+    writer.write_summary(&[measure]).unwrap();
+    assert!(checkpoint_path(&path).exists());
+    writer.finish(1.0).unwrap();
+    assert!(!checkpoint_path(&path).exists(), "the finished file stands alone");
+
+    let inside = load_checkpoint(&path).unwrap().unwrap();
+    assert_eq!((inside.meta.step, inside.payload.as_slice()), (40, b"state at 40".as_slice()));
+    assert_eq!(inside.meta.header.experiment, header().experiment);
+    assert_eq!(inside.meta.experiment_hash, header().experiment_hash());
+
+    let writer = ResultWriter::reopen(&path, &header(), &layout, 40).unwrap();
+    drop(writer);
+    assert!(checkpoint_path(&path).exists(), "a run that goes on always has a checkpoint");
+    assert_eq!(load_checkpoint(&path).unwrap().unwrap(), inside);
+    let result = ResultFile::open(&path).unwrap();
+    assert_eq!((result.summary().unwrap().len(), result.ending().finished), (0, false));
+}
+
+#[test]
+fn another_experiment_cannot_resume() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    drop(write(&path, &layout(2), 3));
+    let mut other = header();
+    other.seed += 1;
+    let refusal = |outcome: pseudopod::error::Result<ResultWriter>| outcome.err().unwrap().to_string();
+    let text = refusal(ResultWriter::reopen(&path, &other, &layout(2), 10));
+    assert!(text.contains("another seed"), "{text}");
+    other = header();
+    other.experiment.push('#');
+    let text = refusal(ResultWriter::reopen(&path, &other, &layout(2), 10));
+    assert!(text.contains("another experiment document"), "{text}");
+    let text = refusal(ResultWriter::reopen(&path, &header(), &layout(3), 10));
+    assert!(text.contains("other cells"), "{text}");
+    assert_eq!(ResultFile::open(&path).unwrap().frames(), 3, "a refusal loses nothing");
+}

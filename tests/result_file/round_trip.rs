@@ -1,0 +1,146 @@
+//! What was written is read.
+
+use pseudopod::output::{Frame, Layout, Measure, ResultFile, ResultWriter, describe, to_json};
+
+use crate::example::{frame, header, layout, write};
+
+/// Every number of every frame, exactly.
+pub fn assert_holds(result: &ResultFile, layout: &Layout, frames: &[Frame]) {
+    assert_eq!(result.frames(), frames.len());
+    assert_eq!(result.layout(), layout);
+    let number = |name: &str| result.cell_series(name).unwrap();
+    let (x, size, principal) = (number("position_x"), number("size_z"), number("principal_3"));
+    let (volume, energy, speed) = (number("volume"), number("energy"), number("speed"));
+    let (wall, pull) = (result.scene_series("wall.height").unwrap(), result.scene_series("load.pull").unwrap());
+    let (times, steps) = (result.times().unwrap(), result.steps().unwrap());
+    for (i, frame) in frames.iter().enumerate() {
+        assert_eq!((times[i], steps[i]), (frame.time, frame.step));
+        assert_eq!(result.positions(i).unwrap(), frame.positions, "positions of frame {i}");
+        assert_eq!(result.forces(i).unwrap().unwrap_or_default(), frame.forces, "forces of frame {i}");
+        assert_eq!([wall[i], pull[i]], frame.scene[..]);
+        for (c, cell) in frame.cells.iter().enumerate() {
+            assert_eq!((x[[i, c]], size[[i, c]]), (cell.position[0], cell.size[2]));
+            assert_eq!((volume[[i, c]], energy[[i, c]]), (cell.volume, cell.energy));
+            assert_eq!(principal[[i, c]], cell.principal[2]);
+            let [u, v, w] = cell.velocity;
+            assert_eq!(speed[[i, c]], (u * u + v * v + w * w).sqrt());
+        }
+    }
+    let runs: Vec<(u32, f64, f64)> = frames.iter().flat_map(|frame| frame.runs.clone()).collect();
+    assert_eq!(result.runs().unwrap(), runs);
+}
+
+#[test]
+fn a_finished_run_is_read_as_it_was_written() {
+    let folder = tempfile::tempdir().unwrap();
+    // 3 cells gather many frames in a piece; 1 500 cells take a compressed piece per frame. 600 frames fill several
+    // pieces of 256 rows.
+    for (cells, frames) in [(3, 600), (1500, 3)] {
+        let path = folder.path().join(format!("{cells}.h5"));
+        let layout = layout(cells);
+        let mut writer = write(&path, &layout, frames);
+        let measure =
+            |name: &str, value| Measure { name: name.into(), value, unit: "um".into(), description: "How far.".into() };
+        writer.write_summary(&[measure("reach", 1.0), measure("drift", 0.5)]).unwrap();
+        writer.write_summary(&[measure("reach", 2.5)]).unwrap();
+        writer.finish(12.5).unwrap();
+
+        let result = ResultFile::open(&path).unwrap();
+        let expected: Vec<Frame> = (0..frames).map(|number| frame(&layout, number)).collect();
+        assert_holds(&result, &layout, &expected);
+        assert_eq!(result.header().experiment, header().experiment);
+        assert_eq!((result.ending().finished, result.ending().wall_time), (true, Some(12.5)));
+        assert_eq!(result.summary().unwrap(), [measure("drift", 0.5), measure("reach", 2.5)]);
+    }
+}
+
+#[test]
+fn a_run_without_forces_has_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    let layout = layout(2);
+    let frames: Vec<Frame> = (0..4).map(|number| Frame { forces: Vec::new(), ..frame(&layout, number) }).collect();
+    let mut writer = write(&path, &layout, 0);
+    frames.iter().for_each(|frame| writer.append(frame).unwrap());
+    writer.finish(1.0).unwrap();
+    let result = ResultFile::open(&path).unwrap();
+    assert_holds(&result, &layout, &frames);
+    assert_eq!(result.forces(0).unwrap(), None);
+}
+
+#[test]
+fn a_run_that_was_dropped_is_read_and_said_to_be_interrupted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    let layout = layout(2);
+    drop(write(&path, &layout, 9));
+    let result = ResultFile::open(&path).unwrap();
+    assert_holds(&result, &layout, &(0..9).map(|number| frame(&layout, number)).collect::<Vec<_>>());
+    assert!(!result.ending().finished);
+    let page = describe(&result).unwrap();
+    for words in ["A walk", "2 (1 round, 1 lone)", "12 atoms, 16 facets, 2 links", "9, from 0 s to 2 s", "interrupted"]
+    {
+        assert!(page.contains(words), "`{words}` is missing from\n{page}");
+    }
+}
+
+#[test]
+fn a_run_can_be_read_while_it_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    let layout = layout(2);
+    let frames: Vec<Frame> = (0..8).map(|number| frame(&layout, number)).collect();
+    let mut writer = write(&path, &layout, 5);
+    assert_holds(&writer.read().unwrap(), &layout, &frames[..5]);
+    frames[5..].iter().for_each(|frame| writer.append(frame).unwrap());
+    assert_holds(&writer.read().unwrap(), &layout, &frames);
+    writer.finish(1.0).unwrap();
+    let result = ResultFile::open(&path).unwrap();
+    assert_holds(&result, &layout, &frames);
+    assert_eq!(result.ending().resumed, 0);
+}
+
+#[test]
+fn series_have_units_and_wrong_names_a_suggestion() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    write(&path, &layout(1), 1).finish(1.0).unwrap();
+    let result = ResultFile::open(&path).unwrap();
+    let unit = |name: &str| result.units(name).unwrap();
+    assert_eq!([unit("time"), unit("position_y"), unit("speed"), unit("volume")], ["s", "um", "um/s", "um^3"]);
+    assert_eq!([unit("energy"), unit("load.pull"), unit("volume_error")], ["pN um", "pN", "1"]);
+    for name in result.series_names() {
+        assert_eq!(result.cell_series(&name).unwrap().dim(), (1, 1), "{name}");
+    }
+    let pseudopod::error::Error::Input(faults) = result.cell_series("position_w").unwrap_err() else {
+        panic!("a wrong name is bad input")
+    };
+    assert!(faults[0].help.as_ref().unwrap().starts_with("did you mean `position_"), "{faults:?}");
+    assert!(result.scene_series("volume").is_err());
+}
+
+#[test]
+fn json_tells_all_but_the_arrays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    let mut writer: ResultWriter = write(&path, &layout(2), 5);
+    let measure = Measure { name: "reach".into(), value: 2.0, unit: "um".into(), description: "How far.".into() };
+    writer.write_summary(&[measure]).unwrap();
+    writer.save_checkpoint(40, 1.0, b"state").unwrap();
+    writer.finish(1.0).unwrap();
+    let json = to_json(&ResultFile::open(&path).unwrap()).unwrap();
+    assert_eq!(json["summary"]["reach"]["value"], 2.0);
+    assert_eq!(json["header"]["seed"], 7);
+    assert_eq!((&json["frames"], &json["time"]["last"], &json["atoms"]), (&5.into(), &1.0.into(), &12.into()));
+    let datasets = json["datasets"].as_array().unwrap();
+    let listed = |path: &str| datasets.iter().find(|dataset| dataset["path"] == path);
+    assert_eq!(listed("/cells/volume").unwrap()["unit"], "um^3");
+    assert_eq!(listed("/cells/position").unwrap()["shape"], serde_json::json!([5, 2, 3]));
+    // Every dataset of the file has a unit and a description, and every row of the catalogue is in the file.
+    for dataset in datasets {
+        assert!(dataset["unit"] != "" && dataset["description"] != "", "{dataset}");
+    }
+    for entry in pseudopod::output::catalogue::CATALOGUE.iter().filter(|entry| !entry.path.contains('<')) {
+        assert!(listed(entry.path).is_some(), "{} is missing from the file", entry.path);
+    }
+}
