@@ -144,8 +144,8 @@ mod tests {
         for level in 1..=4 {
             let cell = red_cell(RED_CELL_DIAMETER, level);
             let worst = facet_qualities(&cell).into_iter().fold(1.0, f64::min);
-            assert!(worst > 0.7, "level {level}: worst quality {worst}");
-            assert!(smallest_angle(&cell).to_degrees() > 30.0, "level {level}");
+            assert!(worst > 0.85, "level {level}: worst quality {worst}");
+            assert!(smallest_angle(&cell).to_degrees() > 45.0, "level {level}");
         }
     }
 

@@ -181,8 +181,6 @@ mod tests {
         assert!(volume(&sphere) > 0.9 * 4.0 / 3.0 * PI, "facets face outwards and fill the sphere");
         let equator = sphere.positions.iter().filter(|position| position.z == 0.0).count();
         assert_eq!(equator, 16);
-        let worst = facet_qualities(&sphere).into_iter().fold(1.0, f64::min);
-        assert!(worst > 0.75, "worst facet {worst}");
         assert_eq!(octasphere(1.0, 1).positions.len(), 6);
     }
 
@@ -191,6 +189,15 @@ mod tests {
         let (coarse, fine) = (icosphere(1.0, 1), icosphere(1.0, 2));
         for (old, new) in coarse.positions.iter().zip(&fine.positions) {
             assert!((old - new).norm() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn facets_of_spheres_are_well_shaped_at_any_resolution() {
+        let spheres = [1, 2, 4, 8, 32].map(|divisions| octasphere(1.0, divisions));
+        for sphere in spheres.into_iter().chain((0..5).map(|level| icosphere(1.0, level))) {
+            let worst = facet_qualities(&sphere).into_iter().fold(1.0, f64::min);
+            assert!(worst > 0.75, "worst facet {worst} of {}", sphere.facets.len());
         }
     }
 }

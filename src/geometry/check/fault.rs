@@ -180,14 +180,14 @@ impl MeshFault {
     pub fn help(&self) -> Option<&'static str> {
         Some(match self {
             Self::Empty => "give at least one triangle; a closed cell has at least 4",
-            Self::AtomOutOfRange { .. } => "atoms are counted from 0; check the facets against the list of positions",
+            Self::AtomOutOfRange { .. } => "check the facets against the list of positions",
             Self::NotFinite { .. } => "give finite coordinates",
             Self::RepeatedAtom { .. } => "the three corners must differ; remove the facet",
             Self::UnusedAtom { .. } => "remove atoms without facets: nothing would hold them",
             Self::DuplicateAtoms { .. } => "merge points that coincide (\"merge by distance\" in a mesh editor)",
             Self::CrowdedEdge { .. } => "at most 2 facets may share an edge; remove inner walls and doubled facets",
             Self::OpposedFacets { .. } => {
-                "orient all facets alike, counter-clockwise seen from outside (\"recalculate normals\" in a mesh editor)"
+                "orient all facets alike, counter-clockwise from outside (\"recalculate normals\" in a mesh editor)"
             }
             Self::BoundaryEdge { .. } => "a cell encloses a volume: close the hole, and merge points that coincide",
             Self::PinchedAtom { .. } => "facets around an atom must form one fan; give each fan an atom of its own",
@@ -202,9 +202,11 @@ impl MeshFault {
     /// The fault as bad input of the mesh `mesh`, named as the user knows it ("mesh `cell.obj`").
     pub fn into_fault(self, mesh: &str) -> Fault {
         let fault = Fault::new(format!("{mesh}: {self}"));
-        match self.help() {
-            Some(help) => fault.help(help),
-            None => fault,
+        match (&self, self.help()) {
+            (_, None) => fault,
+            (Self::Empty | Self::Inverted { .. } | Self::ZeroVolume { .. }, Some(help)) => fault.help(help),
+            // Mesh formats count from 1 or not at all.
+            (_, Some(help)) => fault.help(format!("{help}; atoms and facets are counted from 0")),
         }
     }
 }
