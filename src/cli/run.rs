@@ -128,8 +128,14 @@ pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<()> {
         made.iter().for_each(|path| println!("{}", path.display()));
         let file = crate::output::ResultFile::open(result)?;
         for measure in file.summary()? {
-            println!("{} = {:.6} {}  {}", measure.name, measure.value, measure.unit, measure.description);
+            println!("{} = {} {}  {}", measure.name, number(measure.value), measure.unit, measure.description);
         }
     }
     Ok(())
+}
+
+/// A number with six digits, whatever its size.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || (1e-3..1e6).contains(&size) { format!("{value:.6}") } else { format!("{value:.5e}") }
 }
