@@ -14,7 +14,7 @@ use crate::mechanics::stiffness::StiffnessMatrix;
 const POWER_ROUNDS: usize = 150;
 
 /// The largest ratio of the true stiffness at rest to the constant one of the implicit step.
-const LARGEST_RATIO: f64 = 1.5;
+const LARGEST_RATIO: f64 = 0.75;
 
 /// The compiled experiment.
 #[derive(Debug, Clone)]

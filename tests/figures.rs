@@ -1,0 +1,52 @@
+//! Every experiment that ships runs, and keeps what its `expected.toml` claims.
+
+use pseudopod::analysis::claims;
+use pseudopod::experiment::Document;
+use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::run::{Quiet, RunOptions, run};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Runs a document and checks the claims beside it; prints each with what was found.
+fn experiment_keeps_its_word(folder: &str, document: &str) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments").join(folder);
+    let document = Document::read(&folder.join(document), &[]).unwrap();
+    let scratch = tempfile::tempdir().unwrap();
+    let result = scratch.path().join("result.h5");
+    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: None };
+    run(&document, &options, &mut Quiet).unwrap();
+    let measures: BTreeMap<String, f64> = ResultFile::open(&result)
+        .unwrap()
+        .summary()
+        .unwrap()
+        .into_iter()
+        .map(|measure| (measure.name, measure.value))
+        .collect();
+    let claims = claims::read(&folder.join("expected.toml")).unwrap();
+    assert!(!claims.is_empty());
+    let results = claims::check_claims(&claims, &measures);
+    results.iter().for_each(|result| println!("{result}"));
+    assert!(results.iter().all(claims::ClaimResult::holds), "a claim does not hold; see above");
+    let made = pseudopod::picture::make_defaults(&result).unwrap();
+    assert!(made.iter().all(|path| path.metadata().is_ok_and(|file| file.len() > 1000)), "{made:?}");
+}
+
+#[test]
+fn a_red_cell_stretches_as_mills_measured() {
+    experiment_keeps_its_word("optical_tweezers", "red_cell.toml");
+}
+
+#[test]
+fn two_thousand_cells_wander_as_furth_says() {
+    experiment_keeps_its_word("random_walk", "experiment.toml");
+}
+
+#[test]
+fn links_stiffen_a_compressed_cell() {
+    experiment_keeps_its_word("compression", "experiment.toml");
+}
+
+#[test]
+fn softer_spheres_lie_flatter() {
+    experiment_keeps_its_word("sphere_under_gravity", "experiment.toml");
+}
