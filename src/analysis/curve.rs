@@ -1,6 +1,6 @@
 //! A simulated curve beside measured points: how near it comes, and how many error bars it meets.
 
-use super::statistics::interpolate;
+use super::statistics::{interpolate, mean};
 use crate::error::{Error, Fault, Result};
 
 /// A curve y(x) with x ascending, made of the points of a recording.
@@ -48,6 +48,18 @@ impl Curve {
         self.x.iter().zip(&self.y).map(|(x, y)| [*x, *y])
     }
 
+    /// The points with x between two ends, which count themselves even when round-off has moved them a little outside.
+    pub fn between(&self, from: Option<f64>, to: Option<f64>) -> impl Iterator<Item = [f64; 2]> {
+        let slack = self.slack();
+        let within = move |x: f64| from.is_none_or(|from| from - slack <= x) && to.is_none_or(|to| x <= to + slack);
+        self.points().filter(move |[x, _]| within(*x))
+    }
+
+    /// How far from an end of the curve an x may lie and still be meant to be that end.
+    fn slack(&self) -> f64 {
+        SAME_X * self.x.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+    }
+
     /// The curve at each measured place that is not NaN, with the number of its row.
     ///
     /// # Errors
@@ -66,7 +78,7 @@ impl Curve {
     fn at(&self, place: f64) -> Result<f64> {
         let last = self.x.len().saturating_sub(1);
         // Rounded time courses may end short of the last measured place by a few units in the last digit.
-        let slack = SAME_X * self.x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let slack = self.slack();
         let near = match (self.x.first(), self.x.get(last)) {
             (Some(&first), Some(&end)) if first - slack <= place && place <= end + slack => place.clamp(first, end),
             _ => place,
@@ -81,14 +93,23 @@ impl Curve {
         })
     }
 
+    /// The curve over what was measured, for each row.
+    fn ratios(&self, places: &[f64], values: &[f64]) -> Result<Vec<f64>> {
+        let found = self.at_rows(places, values)?;
+        if let Some((row, _)) = found.iter().find(|(row, _)| values[*row] == 0.0) {
+            let fault = Fault::new(format!("nothing can be told relative to the measured 0 at x = {}", places[*row]));
+            return Err(Error::input(fault.help("give a table without that row, or compare with its bars")));
+        }
+        Ok(found.into_iter().map(|(row, y)| y / values[row]).collect())
+    }
+
     /// Root mean square of (curve − measured)/measured, eq. (analysis.7).
     ///
     /// # Errors
-    /// When a measured place lies outside of the curve or no row has numbers.
+    /// When a measured place lies outside of the curve, a measured value is 0 or no row has numbers.
     pub fn relative_rms(&self, places: &[f64], values: &[f64]) -> Result<f64> {
-        let found = self.at_rows(places, values)?;
-        let squares: f64 = found.iter().map(|&(row, y)| (y / values[row] - 1.0).powi(2)).sum();
-        Ok((squares / found.len() as f64).sqrt())
+        let squares: Vec<f64> = self.ratios(places, values)?.iter().map(|ratio| (ratio - 1.0).powi(2)).collect();
+        Ok(mean(&squares).sqrt())
     }
 
     /// Mean of curve/measured.
@@ -96,14 +117,13 @@ impl Curve {
     /// # Errors
     /// As [`Curve::relative_rms`].
     pub fn mean_ratio(&self, places: &[f64], values: &[f64]) -> Result<f64> {
-        let found = self.at_rows(places, values)?;
-        Ok(found.iter().map(|&(row, y)| y / values[row]).sum::<f64>() / found.len() as f64)
+        Ok(mean(&self.ratios(places, values)?))
     }
 
     /// Number of rows whose bar from `low` to `high` holds the curve, ends included.
     ///
     /// # Errors
-    /// As [`Curve::relative_rms`].
+    /// When a measured place lies outside of the curve or no row has numbers.
     pub fn rows_within(&self, places: &[f64], low: &[f64], high: &[f64]) -> Result<usize> {
         let found = self.at_rows(places, low)?;
         Ok(found.iter().filter(|&&(row, y)| low[row] <= y && y <= high[row]).count())
@@ -144,6 +164,26 @@ mod tests {
         let (places, values) = ([5.0, f64::NAN, 10.0], [10.0 / 0.9, 1.0, 20.0 / 1.1]);
         assert!((curve.relative_rms(&places, &values).unwrap() - 0.1).abs() < 1e-14);
         assert!((curve.mean_ratio(&places, &values).unwrap() - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_measured_zero_has_no_relative_distance() {
+        let curve = Curve::new(&[0.0, 10.0], &[0.0, 20.0]);
+        let message = curve.relative_rms(&[0.0, 10.0], &[0.0, 20.0]).unwrap_err().to_string();
+        assert_eq!(message, "nothing can be told relative to the measured 0 at x = 0");
+        assert!(curve.mean_ratio(&[0.0, 10.0], &[0.0, 20.0]).is_err());
+        assert_eq!(curve.rows_within(&[0.0], &[-1.0], &[1.0]).unwrap(), 1);
+    }
+
+    #[test]
+    fn a_stretch_holds_its_ends_in_spite_of_round_off() {
+        // 0.1 + 0.2 is not 0.3, but a load of 0.3 is what was meant.
+        let curve = Curve::new(&[0.1, 0.2, 0.1 + 0.2, 0.4], &[1.0, 2.0, 3.0, 4.0]);
+        let held = |from, to| curve.between(from, to).map(|[_, y]| y).collect::<Vec<_>>();
+        assert_eq!(held(None, Some(0.3)), [1.0, 2.0, 3.0]);
+        assert_eq!(held(Some(0.2), Some(0.3)), [2.0, 3.0]);
+        assert_eq!(held(Some(0.3), None), [3.0, 4.0]);
+        assert_eq!(held(Some(0.301), None), [4.0]);
     }
 
     #[test]

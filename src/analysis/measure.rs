@@ -7,11 +7,15 @@ use super::statistics::{self, Line};
 use super::table::Table;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Comparison, MeasureKind, Over, Reduction};
+use crate::units::Time;
 use std::path::{Path, PathBuf};
 
 /// Number of lags at which displacements are held against Fürth's law. Neighbouring lags share most of their steps, so
 /// more of them would tell little more.
 const LAGS: usize = 12;
+
+/// Two times are the same when they differ by at most this share: the round-off of millions of steps.
+const ROUND_OFF: f64 = 1e-9;
 
 /// Names of the series that [`evaluate`] asks a recording for, besides `time`.
 pub fn series_of(kind: &MeasureKind) -> Vec<&str> {
@@ -78,12 +82,21 @@ fn reduce(reduction: Reduction, times: &[f64], values: &[f64]) -> Result<f64> {
         Reduction::Min => Ok(least),
         Reduction::Max => Ok(most),
         Reduction::Range => Ok(most - least),
-        Reduction::At(time) => statistics::interpolate(times, values, time.value()).ok_or_else(|| {
-            let (from, to) = (times[0], times[times.len() - 1]);
-            let fault = Fault::new(format!("nothing was recorded at {time}"));
-            Error::input(fault.help(format!("give a time from {from} s to {to} s")))
-        }),
+        Reduction::At(time) => at(time, times, values),
     }
+}
+
+/// The value at a time, between frames on a straight line.
+fn at(time: Time, times: &[f64], values: &[f64]) -> Result<f64> {
+    let (from, to) = (times[0], times[times.len() - 1]);
+    // Steps add up to a duration only to some digits: a time that is meant to be that of the last frame is.
+    let slack = ROUND_OFF * from.abs().max(to.abs());
+    let wanted = time.value();
+    let near = if from - slack <= wanted && wanted <= to + slack { wanted.clamp(from, to) } else { wanted };
+    statistics::interpolate(times, values, near).ok_or_else(|| {
+        let fault = Fault::new(format!("nothing was recorded at {time}"));
+        Error::input(fault.help(format!("give a time from {from} s to {to} s")))
+    })
 }
 
 /// The curve y(x) of a recording; each series a mean over the cells of a type, or over all cells.
@@ -96,8 +109,7 @@ pub fn curve(recording: &Recording, x: &str, y: &str, cells: Option<&str>) -> Re
 
 /// Fits a line to the part of a curve between two x.
 fn line(curve: &Curve, x_from: Option<f64>, x_to: Option<f64>) -> Result<Line> {
-    let within = |x: f64| x_from.is_none_or(|from| from <= x) && x_to.is_none_or(|to| x <= to);
-    let (x, y): (Vec<f64>, Vec<f64>) = curve.points().filter(|[x, _]| within(*x)).map(|[x, y]| (x, y)).unzip();
+    let (x, y): (Vec<f64>, Vec<f64>) = curve.between(x_from, x_to).map(|[x, y]| (x, y)).unzip();
     statistics::fit_line(&x, &y)
 }
 

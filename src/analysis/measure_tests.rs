@@ -43,6 +43,15 @@ fn values_are_reduced_over_cells_and_time() {
 }
 
 #[test]
+fn a_time_meant_to_be_the_last_is_the_last() {
+    let mut recording = pulled();
+    recording.times[2] = 3.0 - 1e-12;
+    let at = |time| evaluate(&value(Some("red"), Over::Mean, Reduction::At(Time::new(time))), &recording);
+    assert_eq!(at(3.0).unwrap(), 10.0);
+    assert!(at(3.001).is_err());
+}
+
+#[test]
 fn what_is_not_there_is_named() {
     let recording = pulled();
     let message = |measure: MeasureKind| evaluate(&measure, &recording).unwrap_err().to_string();
@@ -94,6 +103,46 @@ fn tables_are_compared_with_the_curve() {
     assert!(
         evaluate(&MeasureKind::TableBars(without), &recording).unwrap_err().to_string().contains("without the columns")
     );
+}
+
+#[test]
+fn a_curve_through_the_cells_of_mills_meets_all_their_bars() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/optical_tweezers/data/mills2004_b.csv");
+    let table = Table::read(&file).unwrap();
+    let (force, axial) = (table.column("F_pN").unwrap(), table.column("A_um").unwrap());
+    // A staircase: each load is held for two frames, and the cell has settled in the second.
+    let twice = |values: &[f64], first: f64| values.iter().flat_map(|y| [first * y, *y]).collect::<Vec<f64>>();
+    let recording = |stretch: f64| {
+        let load = twice(force, 1.0);
+        let sizes = twice(axial, 0.9).into_iter().map(|size| stretch * size).collect();
+        Recording {
+            times: (0..load.len()).map(|frame| frame as f64).collect(),
+            types: vec!["red".to_owned()],
+            cell_types: vec![0],
+            cells: BTreeMap::from([("size_x".to_owned(), Array2::from_shape_vec((load.len(), 1), sizes).unwrap())]),
+            scene: BTreeMap::from([("load.pull".to_owned(), load)]),
+            runs: Vec::new(),
+        }
+    };
+    let comparison = Comparison {
+        table: file.clone(),
+        x_column: "F_pN".into(),
+        y_column: "A_um".into(),
+        low_column: Some("Amin".into()),
+        high_column: Some("Amax".into()),
+        x: "load.pull".into(),
+        y: "size_x".into(),
+        cells: None,
+    };
+    let [rms, ratio, bars] = [MeasureKind::TableRms, MeasureKind::TableRatio, MeasureKind::TableBars]
+        .map(|kind| move |recording: &Recording, of: &Comparison| evaluate(&kind(of.clone()), recording).unwrap());
+    // Interpolation at the points themselves is exact; a twentieth more is a twentieth off in each row.
+    assert_eq!(rms(&recording(1.0), &comparison), 0.0);
+    assert_eq!(bars(&recording(1.0), &comparison), table.rows() as f64);
+    assert!((rms(&recording(1.05), &comparison) - 0.05).abs() < 1e-14);
+    assert!((ratio(&recording(1.05), &comparison) - 1.05).abs() < 1e-14);
+    // No bar reaches a quarter beyond its mean.
+    assert_eq!(bars(&recording(1.25), &comparison), 0.0);
 }
 
 /// Persistence of the walkers below, s, and the number of frames, four of which fill it.

@@ -13,6 +13,7 @@ pub mod table;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::Document;
 use crate::output::{Measure, ResultFile};
+use claims::{Claim, ClaimResult};
 use recording::Recording;
 
 /// Evaluates all measures that a document declares, each multiplied by its scale. Those that cannot be computed come
@@ -45,6 +46,16 @@ pub fn measure_result(file: &ResultFile, document: &Document) -> Result<(Vec<Mea
         }
     }
     Ok((measures, faults))
+}
+
+/// Holds claims against the measures that a finished run stored in its file. A claim about a measure that could not be
+/// computed fails, as does one about a measure that was never declared.
+///
+/// # Errors
+/// A damaged file.
+pub fn check_result(file: &ResultFile, claims: &[Claim]) -> Result<Vec<ClaimResult>> {
+    let measures = file.summary()?.into_iter().map(|measure| (measure.name, measure.value)).collect();
+    Ok(claims::check_claims(claims, &measures))
 }
 
 #[cfg(test)]

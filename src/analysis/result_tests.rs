@@ -1,8 +1,8 @@
 //! What the way from a result file to its measures promises.
 
-use super::measure_result;
+use super::{check_result, claims, measure_result};
 use crate::experiment::Document;
-use crate::output::{CellLayout, CellRecord, Frame, Header, Layout, Overwrite, ResultFile, ResultWriter};
+use crate::output::{CellLayout, CellRecord, Frame, Header, Layout, Measure, Overwrite, ResultFile, ResultWriter};
 use std::path::Path;
 
 const EXPERIMENT: &str = r#"
@@ -58,6 +58,8 @@ fn recorded(path: &Path) -> ResultFile {
         };
         writer.append(&frame).unwrap();
     }
+    let stretch = Measure { name: "stretch".into(), value: 375.0, unit: "nm/pN".into(), description: String::new() };
+    writer.write_summary(&[stretch]).unwrap();
     writer.flush().unwrap();
     drop(writer);
     ResultFile::open(path).unwrap()
@@ -86,4 +88,17 @@ fn a_measure_that_cannot_be_taken_costs_no_other_and_says_where_it_stands() {
     assert_eq!(faults[0].message, "the measure `late` cannot be computed: nothing was recorded at 5 s");
     let place = faults[0].place.as_ref().unwrap();
     assert_eq!(&EXPERIMENT[place.start..place.start + place.length], "late");
+}
+
+#[test]
+fn claims_are_held_against_what_the_file_stores() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = recorded(&folder.path().join("pull.h5"));
+    let text = "[[claim]]\nmeasure = \"stretch\"\nat_least = 370\nat_most = 380\nsource = \"by hand\"\n\
+                [[claim]]\nmeasure = \"late\"\nat_most = 1\nsource = \"by hand\"\n";
+    let results = check_result(&file, &claims::parse("expected.toml", text).unwrap()).unwrap();
+    let lines: Vec<String> = results.iter().map(ToString::to_string).collect();
+    assert_eq!(lines[0], "ok      stretch = 375 (from 370 to 380; by hand)");
+    assert_eq!(lines[1], "FAILED  late is not measured by this experiment (at most 1; by hand)");
+    assert_eq!(results.iter().map(claims::ClaimResult::holds).collect::<Vec<_>>(), [true, false]);
 }
