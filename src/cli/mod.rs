@@ -1,7 +1,10 @@
 //! The command line: one file per command. Names and exit codes are a contract.
 
 pub mod check;
+pub mod export;
 pub mod info;
+pub mod plot;
+pub mod render;
 pub mod resume;
 pub mod run;
 pub mod schema;
@@ -30,6 +33,12 @@ pub enum Command {
     Check(check::CheckArgs),
     /// Describes a result file.
     Info(info::InfoArgs),
+    /// Makes pictures and movies of a result file.
+    Render(render::RenderArgs),
+    /// Makes charts of a result file.
+    Plot(plot::PlotArgs),
+    /// Writes a frame of a result file as a mesh.
+    Export(export::ExportArgs),
     /// Prints the JSON schema of experiment documents.
     Schema(schema::SchemaArgs),
 }
@@ -52,6 +61,9 @@ fn act(command: Command) -> Result<()> {
         Command::Resume(args) => resume::run(&args),
         Command::Check(args) => check::run(args),
         Command::Info(args) => info::run(&args),
+        Command::Render(args) => render::run(&args),
+        Command::Plot(args) => plot::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Schema(args) => schema::run(args),
     }
 }

@@ -1,6 +1,7 @@
 //! Charts of a result file, as the experiment or the command line asks for them.
 
 use super::chart::{Aspect, Axis, Chart, Scale, Series};
+use super::colour::Colour;
 use crate::analysis::measure::curve;
 use crate::analysis::msd::{from_the_start, furth};
 use crate::analysis::recording::Recording;
@@ -8,6 +9,9 @@ use crate::analysis::table::Table;
 use crate::error::Result;
 use crate::experiment::{Document, Over, Plot, PlotKind, PlotTable};
 use crate::output::ResultFile;
+
+/// Colour of measured points.
+const MEASURED: Colour = Colour([0x33, 0x33, 0x33]);
 
 /// Names of series as a reader would say them.
 const READABLE: [(&str, &str); 12] = [
@@ -148,7 +152,12 @@ fn measured(document: &Document, text: &PlotTable) -> Result<Vec<Series>> {
             (Some(low), Some(high)) => low.into_iter().zip(high).map(|(l, h)| [l, h]).collect(),
             _ => Vec::new(),
         };
-        series.push(Series::measured(text.label.clone().unwrap_or_else(|| name.clone()), points, bars));
+        let label = match (&text.label, i) {
+            (Some(label), 0) => label.clone(),
+            (Some(_), _) => String::new(),
+            (None, _) => name.clone(),
+        };
+        series.push(Series::measured(label, points, bars).coloured(MEASURED));
     }
     Ok(series)
 }
