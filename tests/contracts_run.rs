@@ -39,13 +39,20 @@ fn run_to(folder: &Path, name: &str, threads: usize, sets: &[&str]) -> PathBuf {
 }
 
 /// Everything recorded that the physics decides.
-fn contents(path: &Path) -> (Vec<f64>, Vec<Vec<[f64; 3]>>, Vec<Vec<f64>>) {
+#[derive(Debug, PartialEq)]
+struct Contents {
+    times: Vec<f64>,
+    positions: Vec<Vec<[f64; 3]>>,
+    series: Vec<Vec<f64>>,
+}
+
+fn contents(path: &Path) -> Contents {
     let file = ResultFile::open(path).unwrap();
     let positions = (0..file.frames()).map(|frame| file.positions(frame).unwrap()).collect();
     let series = ["energy", "volume", "velocity_x", "size_z"]
         .map(|name| file.cell_series(name).unwrap().iter().copied().collect())
         .to_vec();
-    (file.times().unwrap(), positions, series)
+    Contents { times: file.times().unwrap(), positions, series }
 }
 
 #[test]

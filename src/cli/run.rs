@@ -12,7 +12,7 @@ use std::sync::atomic::Ordering;
 pub struct RunArgs {
     /// The experiment document.
     pub experiment: PathBuf,
-    /// The result file; by default results/<name of the document>.h5 in the working folder.
+    /// The result file; by default results/<name of the document>.vtkhdf in the working folder.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Changes a key of the document, as in --set run.until="10 s".
@@ -71,7 +71,7 @@ pub fn run(args: &RunArgs) -> Result<()> {
     tell(&result, &outcome, &args.how)
 }
 
-/// results/<folder>-<document>.h5, or results/<folder>.h5 for a document named experiment.toml.
+/// results/<folder>-<document>.vtkhdf, or results/<folder>.vtkhdf for a document named experiment.toml.
 fn default_result(experiment: &Path) -> PathBuf {
     let stem = experiment.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let folder = experiment.parent().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
@@ -80,7 +80,7 @@ fn default_result(experiment: &Path) -> PathBuf {
         Some(folder) => format!("{folder}-{stem}"),
         None => stem,
     };
-    Path::new("results").join(format!("{name}.h5"))
+    Path::new("results").join(format!("{name}.vtkhdf"))
 }
 
 fn make_folder(folder: &Path) -> Result<()> {
