@@ -5,6 +5,7 @@ use pseudopod::output::{Overwrite, ResultFile};
 use pseudopod::run::{Quiet, RunOptions, resume, run};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 const TEXT: &str = r#"
 title = "Cells that wander and are pulled"
@@ -25,6 +26,13 @@ checkpoint = "2 s"
 kind = "value"
 series = "size_z"
 "#;
+
+/// Held by every test: a program started by one would inherit, and keep locked, a result that another is writing.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+fn alone() -> MutexGuard<'static, ()> {
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 fn document(sets: &[&str]) -> Document {
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
@@ -57,6 +65,7 @@ fn contents(path: &Path) -> Contents {
 
 #[test]
 fn one_thread_and_two_give_the_same_bits() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let one = run_to(folder.path(), "one.h5", 1, &["run.until=10 s"]);
     let two = run_to(folder.path(), "two.h5", 2, &["run.until=10 s"]);
@@ -65,6 +74,7 @@ fn one_thread_and_two_give_the_same_bits() {
 
 #[test]
 fn output_does_not_disturb_the_run() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let often = run_to(folder.path(), "often.h5", 2, &["run.until=10 s", "output.every=0.1 s", "output.forces=true"]);
     let rare = run_to(folder.path(), "rare.h5", 2, &["run.until=10 s", "output.every=5 s"]);
@@ -78,6 +88,7 @@ fn output_does_not_disturb_the_run() {
 /// Starts the program on the document, kills it after a while, resumes, and compares with a run left alone.
 #[test]
 fn a_killed_run_resumes_to_the_same_bits() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("test.toml");
     std::fs::write(&path, TEXT).unwrap();
@@ -116,6 +127,7 @@ fn program(arguments: &[&str], folder: &Path) -> (Option<i32>, String) {
 
 #[test]
 fn exit_codes_are_as_promised() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("good.toml"), TEXT).unwrap();
     std::fs::write(folder.path().join("bad.toml"), TEXT.replace("drag", "darg")).unwrap();
