@@ -148,7 +148,7 @@ pub fn enforce_block(
 /// The real root of least magnitude of c₀ + c₁λ + c₂λ² + c₃λ³, in closed form: the oracle of the Newton iteration, and
 /// its rescue when a cell is far from its target.
 pub fn least_root_exact(c0: f64, c1: f64, c2: f64, c3: f64) -> Option<f64> {
-    let mut roots: Vec<f64> = Vec::new();
+    let mut roots = [f64::NAN; 3];
     let size = c1.abs().max(c2.abs()).max(c3.abs());
     if c3.abs() > 1e-14 * size {
         let (a, b, c) = (c2 / c3, c1 / c3, c0 / c3);
@@ -156,25 +156,24 @@ pub fn least_root_exact(c0: f64, c1: f64, c2: f64, c3: f64) -> Option<f64> {
         let r = (2.0 * a * a * a - 9.0 * a * b + 27.0 * c) / 54.0;
         if r * r < q * q * q {
             let angle = (r / (q * q * q).sqrt()).clamp(-1.0, 1.0).acos();
-            for turn in [0.0, 1.0, -1.0] {
-                roots.push(-2.0 * q.sqrt() * ((angle + turn * std::f64::consts::TAU) / 3.0).cos() - a / 3.0);
-            }
+            roots = [0.0, 1.0, -1.0]
+                .map(|turn| -2.0 * q.sqrt() * ((angle + turn * std::f64::consts::TAU) / 3.0).cos() - a / 3.0);
         } else {
             let big = -r.signum() * (r.abs() + (r * r - q * q * q).sqrt()).cbrt();
             let small = if big == 0.0 { 0.0 } else { q / big };
-            roots.push(big + small - a / 3.0);
+            roots[0] = big + small - a / 3.0;
         }
     } else if c2.abs() > 1e-14 * size {
         let discriminant = c1 * c1 - 4.0 * c2 * c0;
         if discriminant >= 0.0 {
             let half = -0.5 * (c1 + c1.signum() * discriminant.sqrt());
-            roots.push(half / c2);
+            roots[0] = half / c2;
             if half != 0.0 {
-                roots.push(c0 / half);
+                roots[1] = c0 / half;
             }
         }
     } else if c1 != 0.0 {
-        roots.push(-c0 / c1);
+        roots[0] = -c0 / c1;
     }
     roots.into_iter().filter(|r| r.is_finite()).min_by(|a, b| a.abs().total_cmp(&b.abs()))
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::model::{Model, VolumeRule};
-use super::planes::project_cell;
+use super::projection::{ProjectScratch, project_cell};
 use super::state::State;
 use super::workspace::{KindScratch, Workspace};
 use crate::mechanics::volume;
@@ -30,18 +30,18 @@ pub fn enforce_constraints(model: &Model, state: &mut State, ws: &mut Workspace)
             continue;
         }
         let (length, lanes) = (kind.block_len(), kind.lanes);
-        let KindScratch { spare, spare2, target, left, .. } = w;
+        let KindScratch { spare, spare2, target, left, project, .. } = w;
         (now.positions.par_chunks_exact_mut(length))
             .zip(spare.par_chunks_exact_mut(length).zip(spare2.par_chunks_exact_mut(length)))
-            .zip(target.par_chunks_exact(lanes).zip(left.par_chunks_exact_mut(lanes)))
-            .for_each(|((x, (spare, spare2)), (target, left))| {
+            .zip(target.par_chunks_exact(lanes).zip(left.par_chunks_exact_mut(lanes)).zip(project))
+            .for_each(|((x, (spare, spare2)), ((target, left), scratch))| {
                 if !model.planes.is_empty() {
-                    project_block(model, kind, exact, x, target, left);
+                    project_block(model, kind, exact, x, target, left, scratch);
                 } else {
                     volume::enforce_block(&kind.rest.facets, x, &kind.held, target, spare, spare2, left);
                     left.iter_mut().zip(target).for_each(|(left, target)| *left /= target);
                     if left.iter().any(|error| error.is_nan() || *error > VOLUME_TOLERANCE) {
-                        project_block(model, kind, exact, x, target, left);
+                        project_block(model, kind, exact, x, target, left, scratch);
                     }
                 }
             });
@@ -61,13 +61,17 @@ fn project_block(
     x: &mut [f64],
     target: &[f64],
     left: &mut [f64],
+    scratch: &mut ProjectScratch,
 ) {
     let lanes = kind.lanes;
+    let mut alone = std::mem::take(&mut scratch.alone);
     for lane in 0..lanes {
-        let mut alone: Vec<f64> = x.chunks_exact(lanes).map(|row| row[lane]).collect();
-        left[lane] = project_cell(model, kind, &mut alone, exact.then_some(target[lane]));
-        for (row, value) in x.chunks_exact_mut(lanes).zip(alone) {
-            row[lane] = value;
+        alone.clear();
+        alone.extend(x.chunks_exact(lanes).map(|row| row[lane]));
+        left[lane] = project_cell(model, kind, &mut alone, exact.then_some(target[lane]), scratch);
+        for (row, value) in x.chunks_exact_mut(lanes).zip(&alone) {
+            row[lane] = *value;
         }
     }
+    scratch.alone = alone;
 }

@@ -79,29 +79,33 @@ pub fn solve_increments(model: &Model, dt: f64, order: Order, stage: Stage, stat
         if stage == Stage::Second {
             carry_pressure(kind, &state.kinds[number].positions, w);
         }
-        let KindScratch { force, first, start, gradient, swell, spare, spare2, volume, target, pressure, .. } = w;
+        let KindScratch {
+            force, first, start, gradient, swell, spare, spare2, volume, target, pressure, touch, ..
+        } = w;
         (force.par_chunks_exact_mut(length))
             .zip(first.par_chunks_exact(length))
             .zip(start.par_chunks_exact(length))
             .zip(gradient.par_chunks_exact(length).zip(swell.par_chunks_exact(length)))
             .zip(spare.par_chunks_exact_mut(length).zip(spare2.par_chunks_exact_mut(length)))
             .zip(volume.par_chunks_exact(lanes).zip(target.par_chunks_exact(lanes)))
-            .zip(pressure.par_chunks_exact_mut(lanes))
-            .for_each(|((((((y, first), x), (gradient, swell)), (spare, spare2)), (volume, target)), pressure)| {
-                if stage == Stage::Second {
-                    let back = 2.0 / solver.mobility;
-                    y.iter_mut().zip(first).for_each(|(y, k)| *y -= back * k);
-                }
-                solve_block(kind, kind.lanes, &solver, x, y, spare, spare2);
-                let mut wanted = [0.0; LANES];
-                for lane in 0..lanes {
-                    let missing = target[lane] - volume[lane];
-                    wanted[lane] = if stage == Stage::First { missing } else { -missing };
-                }
-                constrain(kind, gamma(order), gradient, swell, &wanted[..lanes], target, y, pressure);
-                let scene = planes::Scene { model, kind, solver: &solver, stage, gamma: gamma(order) };
-                planes::correct_block(&scene, x, first, gradient, swell, target, y, pressure);
-            });
+            .zip(pressure.par_chunks_exact_mut(lanes).zip(touch))
+            .for_each(
+                |((((((y, first), x), (gradient, swell)), (spare, spare2)), (volume, target)), (pressure, touch))| {
+                    if stage == Stage::Second {
+                        let back = 2.0 / solver.mobility;
+                        y.iter_mut().zip(first).for_each(|(y, k)| *y -= back * k);
+                    }
+                    solve_block(kind, kind.lanes, &solver, x, y, spare, spare2);
+                    let mut wanted = [0.0; LANES];
+                    for lane in 0..lanes {
+                        let missing = target[lane] - volume[lane];
+                        wanted[lane] = if stage == Stage::First { missing } else { -missing };
+                    }
+                    constrain(kind, gamma(order), gradient, swell, &wanted[..lanes], target, y, pressure);
+                    let scene = planes::Scene { model, kind, solver: &solver, stage, gamma: gamma(order) };
+                    planes::correct_block(&scene, x, first, gradient, swell, target, y, pressure, touch);
+                },
+            );
     }
 }
 

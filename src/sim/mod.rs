@@ -8,6 +8,7 @@ pub mod model;
 mod motility;
 pub mod observe;
 pub mod planes;
+pub mod projection;
 pub mod state;
 mod step;
 pub mod trouble;

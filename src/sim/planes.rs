@@ -4,13 +4,10 @@
 //! mobility of the cell (eq. step.4, step.5) and C the normals of the touching atoms, the reactions r ≥ 0 solve
 //! `C M Cᵀ r = −gap − C Y`. So a cell that rests on a plane is in exact balance, however large the step.
 
-use nalgebra::{DMatrix, DVector};
-
 use super::implicit::{Stage, pressure, solve_block};
 use super::model::{Kind, Model, VolumeRule};
 use super::workspace::Solver;
 use crate::Vec3;
-use crate::mechanics::volume;
 
 /// What a correction needs to know.
 pub struct Scene<'a> {
@@ -27,10 +24,58 @@ pub struct Scene<'a> {
 }
 
 /// An atom closer to a plane than this part of an edge touches it: far below any deformation, far above round-off.
-const TOUCH: f64 = 1e-9;
+pub const TOUCH: f64 = 1e-9;
 
 /// Rounds of the active-set method; it ends in two or three, a cycle is cut here and the projection does the rest.
 const ROUNDS: usize = 12;
+
+/// Scratch of a block: empty until a cell of the block touches a plane, then kept.
+#[derive(Debug, Clone, Default)]
+pub struct TouchScratch {
+    /// Pairs (atom, plane) that press now.
+    active: Vec<Pair>,
+    /// Pairs that a look at the gaps found.
+    found: Vec<Pair>,
+    /// Pairs whose column is known.
+    known: Vec<Pair>,
+    /// How the cell answers a unit reaction of each known pair: increments of all atoms, µm/pN.
+    columns: Vec<f64>,
+    /// Pressure that holds the volume meanwhile, 1/µm², of each known pair.
+    pressures: Vec<f64>,
+    /// The matrix of the reactions and the right side beside it, row by row.
+    system: Vec<f64>,
+    /// One cell's arrays, gathered from the block.
+    cell: CellArrays,
+}
+
+/// Arrays `[atom][axis]` of one cell.
+#[derive(Debug, Clone, Default)]
+struct CellArrays {
+    x: Vec<f64>,
+    first: Vec<f64>,
+    gradient: Vec<f64>,
+    swell: Vec<f64>,
+    free: Vec<f64>,
+    moved: Vec<f64>,
+    spare: Vec<f64>,
+    spare2: Vec<f64>,
+}
+
+/// An atom and a plane, by their numbers.
+type Pair = (usize, usize);
+
+impl TouchScratch {
+    /// Writes NaN over all scratch numbers.
+    pub fn poison(&mut self) {
+        let c = &mut self.cell;
+        for array in [&mut self.columns, &mut self.pressures, &mut self.system, &mut c.x, &mut c.first] {
+            array.fill(f64::NAN);
+        }
+        for array in [&mut c.gradient, &mut c.swell, &mut c.free, &mut c.moved, &mut c.spare, &mut c.spare2] {
+            array.fill(f64::NAN);
+        }
+    }
+}
 
 /// Corrects the increments of the cells of a block that touch planes.
 pub fn correct_block(
@@ -42,17 +87,32 @@ pub fn correct_block(
     target: &[f64],
     y: &mut [f64],
     pressure: &mut [f64],
+    scratch: &mut TouchScratch,
 ) {
     if scene.model.planes.is_empty() {
         return;
     }
     let lanes = scene.kind.lanes;
     for lane in 0..lanes {
-        let touching = touching_pairs(scene, lanes, lane, x, first, y);
-        if !touching.is_empty() {
-            pressure[lane] += correct_cell(scene, lane, x, first, gradient, swell, target[lane], y, touching);
+        find_touching(scene, lanes, lane, x, first, y, &mut scratch.active);
+        if scratch.active.is_empty() {
+            continue;
+        }
+        let c = &mut scratch.cell;
+        for (to, from) in [(&mut c.x, x), (&mut c.first, first), (&mut c.gradient, gradient), (&mut c.swell, swell)] {
+            take_lane(from, lanes, lane, to);
+        }
+        take_lane(y, lanes, lane, &mut c.free);
+        pressure[lane] += correct_cell(scene, target[lane], scratch);
+        for (row, value) in y.chunks_exact_mut(lanes).zip(&scratch.cell.moved) {
+            row[lane] = *value;
         }
     }
+}
+
+fn take_lane(from: &[f64], lanes: usize, lane: usize, to: &mut Vec<f64>) {
+    to.clear();
+    to.extend(from.chunks_exact(lanes).map(|row| row[lane]));
 }
 
 /// Vector of an atom in a block.
@@ -60,174 +120,158 @@ fn at(values: &[f64], lanes: usize, lane: usize, atom: usize) -> Vec3 {
     Vec3::from_fn(|axis, _| values[(3 * atom + axis) * lanes + lane])
 }
 
-/// Pairs (atom, plane) that touch at the start of the step or would pass at its end.
-fn touching_pairs(
-    scene: &Scene,
-    lanes: usize,
-    lane: usize,
-    x: &[f64],
-    first: &[f64],
-    y: &[f64],
-) -> Vec<(usize, usize)> {
+/// Vector of an atom in one cell's array.
+fn place(values: &[f64], atom: usize) -> Vec3 {
+    Vec3::from_column_slice(&values[3 * atom..3 * atom + 3])
+}
+
+/// Where an atom ends the step relative to its start.
+fn end_of(stage: Stage, first: Vec3, y: Vec3) -> Vec3 {
+    match stage {
+        Stage::First => y,
+        Stage::Second => 1.5 * first + 0.5 * y,
+    }
+}
+
+/// Finds the pairs that touch at the start of the step or would pass at its end.
+fn find_touching(scene: &Scene, lanes: usize, lane: usize, x: &[f64], first: &[f64], y: &[f64], pairs: &mut Vec<Pair>) {
     let kind = scene.kind;
-    let mut pairs = Vec::new();
+    pairs.clear();
     for (p, plane) in scene.model.planes.iter().enumerate() {
         for atom in 0..kind.atoms() {
-            let place = at(x, lanes, lane, atom);
-            let gap = (place - plane.point).dot(&plane.normal);
-            let end = match scene.stage {
-                Stage::First => at(y, lanes, lane, atom),
-                Stage::Second => 1.5 * at(first, lanes, lane, atom) + 0.5 * at(y, lanes, lane, atom),
-            };
+            let gap = (at(x, lanes, lane, atom) - plane.point).dot(&plane.normal);
+            let end = end_of(scene.stage, at(first, lanes, lane, atom), at(y, lanes, lane, atom));
             if gap <= TOUCH * kind.edge || gap + end.dot(&plane.normal) < 0.0 {
                 pairs.push((atom, p));
             }
         }
     }
-    pairs
 }
 
-fn correct_cell(
-    scene: &Scene,
-    lane: usize,
-    x: &[f64],
-    first: &[f64],
-    gradient: &[f64],
-    swell: &[f64],
-    target: f64,
-    y: &mut [f64],
-    mut active: Vec<(usize, usize)>,
-) -> f64 {
-    let (kind, lanes) = (scene.kind, scene.kind.lanes);
-    let mut columns: Vec<((usize, usize), Reach)> = Vec::new();
+/// Finds the reactions of one cell; its increments are left in `moved`. Returns their part of the pressure.
+fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
+    let size = s.cell.x.len();
     let mut pressure = 0.0;
-    let take = |values: &[f64]| -> Vec<f64> { values.chunks_exact(lanes).map(|row| row[lane]).collect() };
-    let (x, first, gradient, swell, free) = (take(x), take(first), take(gradient), take(swell), take(y));
-    let place = |values: &[f64], atom: usize| Vec3::from_column_slice(&values[3 * atom..3 * atom + 3]);
-    let mut moved = free.clone();
+    s.known.clear();
+    s.columns.clear();
+    s.pressures.clear();
+    s.cell.moved.clone_from(&s.cell.free);
     for _ in 0..ROUNDS {
-        for &pair in &active {
-            if !columns.iter().any(|(known, _)| *known == pair) {
-                let column = reach(scene, &x, &gradient, &swell, target, pair);
-                columns.push((pair, column));
+        for number in 0..s.active.len() {
+            let pair = s.active[number];
+            if !s.known.contains(&pair) {
+                reach(scene, target, pair, s);
             }
         }
-        let column = |pair: &(usize, usize)| &columns.iter().find(|(known, _)| known == pair).expect("made above").1;
-        let normal = |pair: &(usize, usize)| scene.model.planes[pair.1].normal;
-        let size = active.len();
-        let matrix =
-            DMatrix::from_fn(size, size, |i, j| normal(&active[i]).dot(&place(&column(&active[j]).moved, active[i].0)));
-        let missing = DVector::from_fn(size, |i, _| {
-            let (atom, plane) = (active[i].0, &scene.model.planes[active[i].1]);
-            let gap = (place(&x, atom) - plane.point).dot(&plane.normal);
-            let already = match scene.stage {
-                Stage::First => -gap,
-                // 3/2 Y₁ + 1/2 Y₂ closes the gap.
-                Stage::Second => -2.0 * gap - 3.0 * place(&first, atom).dot(&plane.normal),
-            };
-            already - place(&free, atom).dot(&plane.normal)
-        });
-        let Some(reaction) = matrix.lu().solve(&missing) else { break };
-        moved.copy_from_slice(&free);
-        pressure = 0.0;
-        for (pair, r) in active.iter().zip(reaction.iter()) {
-            moved.iter_mut().zip(&column(pair).moved).for_each(|(to, c)| *to += r * c);
-            pressure += r * column(pair).pressure;
-        }
-        let before = active.len();
-        let mut keep = reaction.iter().map(|&r| r >= 0.0);
-        active.retain(|_| keep.next().unwrap_or(true));
-        let released = active.len() < before;
-        let all = touching_pairs(scene, 1, 0, &x, &first, &moved);
-        let mut grown = false;
-        for pair in all {
-            let plane = &scene.model.planes[pair.1];
-            let end = match scene.stage {
-                Stage::First => place(&moved, pair.0),
-                Stage::Second => 1.5 * place(&first, pair.0) + 0.5 * place(&moved, pair.0),
-            };
-            let gap = (place(&x, pair.0) + end - plane.point).dot(&plane.normal);
-            if gap < -TOUCH * kind.edge && !active.contains(&pair) {
-                active.push(pair);
-                grown = true;
-            }
-        }
-        if !released && !grown {
+        if !solve_reactions(scene, s) {
             break;
         }
-    }
-    for (row, value) in y.chunks_exact_mut(lanes).zip(moved) {
-        row[lane] = value;
+        s.cell.moved.copy_from_slice(&s.cell.free);
+        pressure = 0.0;
+        let width = s.active.len() + 1;
+        for (number, pair) in s.active.iter().enumerate() {
+            let r = s.system[number * width + width - 1];
+            let column = column_of(&s.known, pair);
+            let answer = &s.columns[column * size..(column + 1) * size];
+            s.cell.moved.iter_mut().zip(answer).for_each(|(to, c)| *to += r * c);
+            pressure += r * s.pressures[column];
+        }
+        if !change_active(scene, s) {
+            break;
+        }
     }
     pressure
 }
 
-/// How a cell answers a unit reaction.
-struct Reach {
-    /// Increments of all atoms, µm/pN.
-    moved: Vec<f64>,
-    /// Pressure that holds the volume meanwhile, 1/µm².
-    pressure: f64,
+fn column_of(known: &[Pair], pair: &Pair) -> usize {
+    known.iter().position(|other| other == pair).expect("every active pair has its column")
+}
+
+/// Solves `C M Cᵀ r = −gap − C Y` for the active pairs, eq. (planes.1); r stands in the last column of the system.
+fn solve_reactions(scene: &Scene, s: &mut TouchScratch) -> bool {
+    let (rows, size) = (s.active.len(), s.cell.x.len());
+    let width = rows + 1;
+    s.system.clear();
+    s.system.resize(rows * width, 0.0);
+    for (i, &(atom, p)) in s.active.iter().enumerate() {
+        let plane = &scene.model.planes[p];
+        for (j, pair) in s.active.iter().enumerate() {
+            let answer = &s.columns[column_of(&s.known, pair) * size..];
+            s.system[i * width + j] = plane.normal.dot(&place(answer, atom));
+        }
+        let gap = (place(&s.cell.x, atom) - plane.point).dot(&plane.normal);
+        let already = match scene.stage {
+            Stage::First => -gap,
+            // 3/2 Y₁ + 1/2 Y₂ closes the gap.
+            Stage::Second => -2.0 * gap - 3.0 * place(&s.cell.first, atom).dot(&plane.normal),
+        };
+        s.system[i * width + rows] = already - place(&s.cell.free, atom).dot(&plane.normal);
+    }
+    eliminate(rows, &mut s.system)
+}
+
+/// Gauss's elimination with row exchange in `rows × (rows + 1)` numbers; false when the matrix is singular.
+fn eliminate(rows: usize, system: &mut [f64]) -> bool {
+    let width = rows + 1;
+    for column in 0..rows {
+        let size = |row: &usize| system[row * width + column].abs();
+        let Some(pivot) = (column..rows).max_by(|a, b| size(a).total_cmp(&size(b))) else { return false };
+        if system[pivot * width + column] == 0.0 || !system[pivot * width + column].is_finite() {
+            return false;
+        }
+        for k in 0..width {
+            system.swap(column * width + k, pivot * width + k);
+        }
+        for row in (0..rows).filter(|&row| row != column) {
+            let part = system[row * width + column] / system[column * width + column];
+            for k in column..width {
+                system[row * width + k] -= part * system[column * width + k];
+            }
+        }
+    }
+    for row in 0..rows {
+        system[row * width + rows] /= system[row * width + row];
+    }
+    true
+}
+
+/// Releases pairs that pull, takes up pairs that pass; tells whether the set changed.
+fn change_active(scene: &Scene, s: &mut TouchScratch) -> bool {
+    let (before, width) = (s.active.len(), s.active.len() + 1);
+    let mut rows = 0..before;
+    s.active.retain(|_| rows.next().is_none_or(|row| s.system[row * width + width - 1] >= 0.0));
+    let released = s.active.len() < before;
+    find_touching(scene, 1, 0, &s.cell.x, &s.cell.first, &s.cell.moved, &mut s.found);
+    let mut grown = false;
+    for &pair in &s.found {
+        let plane = &scene.model.planes[pair.1];
+        let end = end_of(scene.stage, place(&s.cell.first, pair.0), place(&s.cell.moved, pair.0));
+        let gap = (place(&s.cell.x, pair.0) + end - plane.point).dot(&plane.normal);
+        if gap < -TOUCH * scene.kind.edge && !s.active.contains(&pair) {
+            s.active.push(pair);
+            grown = true;
+        }
+    }
+    released || grown
 }
 
 /// M n for an atom and a plane: how the whole cell moves under a unit reaction, its volume constraint included.
-fn reach(scene: &Scene, x: &[f64], gradient: &[f64], swell: &[f64], target: f64, pair: (usize, usize)) -> Reach {
-    let kind = scene.kind;
-    let mut column = vec![0.0; x.len()];
+fn reach(scene: &Scene, target: f64, pair: Pair, s: &mut TouchScratch) {
+    let (kind, size, begin) = (scene.kind, s.cell.x.len(), s.columns.len());
+    s.columns.resize(begin + size, 0.0);
+    s.cell.spare.resize(size, 0.0);
+    s.cell.spare2.resize(size, 0.0);
+    let column = &mut s.columns[begin..];
+    column.fill(0.0);
     column[3 * pair.0..3 * pair.0 + 3].copy_from_slice(scene.model.planes[pair.1].normal.as_slice());
-    let (mut spare, mut spare2) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    solve_block(kind, 1, scene.solver, x, &mut column, &mut spare, &mut spare2);
+    let c = &mut s.cell;
+    solve_block(kind, 1, scene.solver, &c.x, column, &mut c.spare, &mut c.spare2);
     let mut held = 0.0;
     if kind.volume != VolumeRule::Free {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        held = pressure(kind, scene.gamma, dot(gradient, &column), dot(gradient, swell), 0.0, target);
-        column.iter_mut().zip(swell).for_each(|(to, s)| *to += held * s);
+        held = pressure(kind, scene.gamma, dot(&c.gradient, column), dot(&c.gradient, &c.swell), 0.0, target);
+        column.iter_mut().zip(&c.swell).for_each(|(to, s)| *to += held * s);
     }
-    Reach { moved: column, pressure: held }
-}
-
-/// Puts atoms that passed a plane back on it and restores the volume by the others, in turns, until both hold; used
-/// for one cell whose positions are `x[atom][axis]`. Returns the volume error left, relative to `target`.
-pub fn project_cell(model: &Model, kind: &Kind, x: &mut [f64], target: Option<f64>) -> f64 {
-    let atoms = kind.atoms();
-    let (mut g, mut h, mut v) = (vec![0.0; x.len()], vec![0.0; x.len()], [0.0]);
-    let mut error: f64 = 0.0;
-    for _ in 0..30 {
-        let mut moved: f64 = 0.0;
-        let mut touching = vec![Vec::new(); atoms];
-        for plane in &model.planes {
-            for atom in 0..atoms {
-                let place = Vec3::from_column_slice(&x[3 * atom..3 * atom + 3]);
-                let gap = (place - plane.point).dot(&plane.normal);
-                if gap < 0.0 && !(0..3).any(|axis| kind.is_held() && kind.held[3 * atom + axis] == 0.0) {
-                    let back = place - gap * plane.normal;
-                    x[3 * atom..3 * atom + 3].copy_from_slice(back.as_slice());
-                    moved = moved.max(-gap);
-                }
-                if gap <= TOUCH * kind.edge {
-                    touching[atom].push(plane.normal);
-                }
-            }
-        }
-        let Some(target) = target else { return 0.0 };
-        volume::measure_block(&kind.rest.facets, x, &kind.held, &mut g, &mut v);
-        error = ((v[0] - target) / target).abs();
-        if error < 1e-13 && moved <= 1e-12 * kind.edge {
-            return error;
-        }
-        for (atom, normals) in touching.iter().enumerate() {
-            for normal in normals {
-                let free = Vec3::from_column_slice(&g[3 * atom..3 * atom + 3]);
-                let free = free - free.dot(normal) * normal;
-                g[3 * atom..3 * atom + 3].copy_from_slice(free.as_slice());
-            }
-        }
-        let c0 = v[0] - target;
-        volume::measure_block(&kind.rest.facets, &g, &[], &mut h, &mut v);
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let relative: Vec<f64> = x.iter().enumerate().map(|(i, value)| value - x[i % 3]).collect();
-        let Some(root) = volume::least_root_exact(c0, dot(&g, &g), dot(&relative, &h), v[0]) else { return error };
-        x.iter_mut().zip(&g).for_each(|(x, g)| *x += root * g);
-    }
-    error
+    s.known.push(pair);
+    s.pressures.push(held);
 }

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use super::model::{Kind, Model};
+use super::planes::TouchScratch;
+use super::projection::ProjectScratch;
 use crate::cell::motility::Walk;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::stiffness::StiffnessMatrix;
@@ -49,6 +51,10 @@ pub struct KindScratch {
     pub pressure: Vec<f64>,
     /// Target volume of each cell, padded, µm³.
     pub target: Vec<f64>,
+    /// One entry a block: contact with planes.
+    pub touch: Vec<TouchScratch>,
+    /// One entry a block: the thorough projection.
+    pub project: Vec<ProjectScratch>,
     /// Factors of the steps used last, most recent first.
     factors: Vec<(u64, Arc<Solver>)>,
 }
@@ -115,6 +121,8 @@ impl KindScratch {
             left: vec![0.0; padded],
             pressure: vec![0.0; padded],
             target: vec![0.0; padded],
+            touch: vec![TouchScratch::default(); kind.blocks()],
+            project: vec![ProjectScratch::default(); kind.blocks()],
             factors: Vec::new(),
         }
     }
@@ -151,6 +159,8 @@ impl KindScratch {
         ] {
             array.fill(f64::NAN);
         }
+        self.touch.iter_mut().for_each(TouchScratch::poison);
+        self.project.iter_mut().for_each(ProjectScratch::poison);
         self.factors.clear();
     }
 }

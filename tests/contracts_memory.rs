@@ -1,0 +1,144 @@
+//! Memory is part of the design: nothing is allocated in a step after the first, and an atom at rest costs few bytes.
+//! A file of its own, because the allocator of a test program counts for all its tests; one test after the other.
+
+use pseudopod::Vec3;
+use pseudopod::cell::motility::{BrownianMotility, Space};
+use pseudopod::geometry::{Topology, icosphere};
+use pseudopod::mechanics::course::Course;
+use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
+use pseudopod::sim::{Kind, Load, Model, Plane, State, Workspace, step};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The system's allocator, counted.
+struct Counting;
+
+static CALLS: AtomicUsize = AtomicUsize::new(0);
+thread_local! {
+    /// Whether this thread works on steps: threads of a pool that start or end, or of the test, do not count.
+    static WORKS: Cell<bool> = const { Cell::new(false) };
+}
+static BYTES: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call is handed to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if WORKS.try_with(Cell::get).unwrap_or(false) {
+            CALLS.fetch_add(1, Ordering::Relaxed);
+        }
+        BYTES.fetch_add(layout.size(), Ordering::Relaxed);
+        // SAFETY: the caller keeps the allocator's contract.
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        BYTES.fetch_sub(layout.size(), Ordering::Relaxed);
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// What acts on the cells of a scene.
+#[derive(Clone, Copy, PartialEq)]
+enum Acting {
+    Elastic,
+    Loads,
+    Planes,
+    Motility,
+}
+
+fn scene(method: Method, acting: Acting, cells: usize) -> Model {
+    let surface = icosphere(5.0, 1);
+    let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
+    let memory = ShapeMemory::new(&surface.positions, &rings, 10.0, Reaction::Exact);
+    let mut kind = Kind::new("cell", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    kind.bound_stiffness();
+    let mut planes = Vec::new();
+    match acting {
+        Acting::Elastic => {}
+        Acting::Loads => kind.loads = vec![pull(Vec3::z(), 0), pull(-Vec3::z(), 7)],
+        Acting::Planes => {
+            let plane = |name: &str, side: f64| Plane {
+                name: name.to_owned(),
+                point: Vec3::new(0.0, 0.0, side * 4.9),
+                normal: Vec3::new(0.0, 0.0, -side),
+            };
+            planes = vec![plane("floor", -1.0), plane("roof", 1.0)];
+        }
+        Acting::Motility => {
+            // Runs so long that none ends: each that does is kept for the result, which is no scratch.
+            kind.brownian = Some(BrownianMotility { speed: 0.1, persistence: 1e9, space: Space::Plane });
+        }
+    }
+    Model {
+        seed: 1,
+        kinds: vec![kind.with_cells(0, cells)],
+        planes,
+        gravity: Vec3::zeros(),
+        integrator: Integrator { method, size: StepSize::Fixed(0.01) },
+        until: 1e9,
+        kinks: vec![],
+    }
+}
+
+fn pull(direction: Vec3, atom: u32) -> Load {
+    Load { name: "pull".to_owned(), atoms: vec![(atom, 1.0)], direction, force: Course::constant(1.0) }
+}
+
+/// Allocations of twenty steps, after a few that may size scratch for what they meet.
+fn allocations(method: Method, acting: Acting, threads: usize) -> usize {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .start_handler(|_| WORKS.set(true))
+        .exit_handler(|_| WORKS.set(false))
+        .build()
+        .unwrap();
+    let model = scene(method, acting, 20);
+    let places = vec![model.kinds[0].rest.positions.clone(); 20];
+    let (mut state, mut ws) = (State::new(&model, &[places]), Workspace::new(&model));
+    pool.install(|| {
+        let mut run = |steps: usize| {
+            for _ in 0..steps {
+                step(&model, &mut state, &mut ws).unwrap();
+            }
+        };
+        run(3);
+        let before = CALLS.load(Ordering::Relaxed);
+        run(20);
+        CALLS.load(Ordering::Relaxed) - before
+    })
+}
+
+#[test]
+fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
+    let methods = [
+        Method::Implicit { order: Order::First },
+        Method::Implicit { order: Order::Second },
+        Method::Explicit,
+        Method::Euler,
+        Method::SemiImplicitEuler,
+        Method::Verlet,
+        Method::RungeKutta4,
+    ];
+    for method in methods {
+        for acting in [Acting::Elastic, Acting::Loads, Acting::Planes, Acting::Motility] {
+            assert_eq!(allocations(method, acting, 1), 0, "{method:?} with scene {}", acting as usize);
+        }
+        // Idle threads of the pool now and then allocate for their own queues; ours would come in every step.
+        let shared = allocations(method, Acting::Loads, 2);
+        assert!(shared < 20, "{method:?} on two threads: {shared}");
+    }
+    let before = BYTES.load(Ordering::Relaxed);
+    let model = scene(Method::Implicit { order: Order::Second }, Acting::Elastic, 100_000);
+    let places = vec![model.kinds[0].rest.positions.clone(); 100_000];
+    let (mut state, mut ws) = (State::new(&model, &[places]), Workspace::new(&model));
+    step(&model, &mut state, &mut ws).unwrap();
+    let bytes = (BYTES.load(Ordering::Relaxed) - before) as f64 / model.atoms() as f64;
+    println!("{bytes:.0} bytes an atom on {} cells of {} atoms", model.cells(), model.kinds[0].atoms());
+    assert!(bytes < 250.0, "{bytes}");
+}
