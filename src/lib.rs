@@ -8,6 +8,7 @@
 
 pub mod analysis;
 pub mod cell;
+pub mod chemistry;
 pub mod cli;
 pub mod error;
 pub mod experiment;

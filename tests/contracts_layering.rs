@@ -11,16 +11,17 @@ const TABLE: &[(&str, &[&str])] = &[
     ("random", &[]),
     ("geometry", &[]),
     ("mechanics", &["geometry"]),
-    ("cell", &["mechanics", "geometry"]),
-    ("sim", &["cell", "mechanics", "geometry"]),
-    ("experiment", &["sim", "cell", "mechanics", "geometry"]),
+    ("chemistry", &[]),
+    ("cell", &["mechanics", "chemistry", "geometry"]),
+    ("sim", &["cell", "mechanics", "chemistry", "geometry"]),
+    ("experiment", &["sim", "cell", "mechanics", "chemistry", "geometry"]),
     // The result file knows no simulator: it is given frames.
     ("output", &[]),
     // Numbers and plots come from a finished file; the kinds of measures are words of the document.
     ("analysis", &["output", "experiment", "cell", "geometry"]),
     ("picture", &["output", "experiment", "analysis", "cell", "geometry", "run"]),
     ("run", &["experiment", "sim", "output", "analysis", "cell", "mechanics", "geometry"]),
-    ("cli", &["run", "experiment", "sim", "output", "analysis", "picture", "geometry"]),
+    ("cli", &["run", "experiment", "chemistry", "sim", "output", "analysis", "picture", "geometry"]),
 ];
 
 /// What every room may use.

@@ -1,0 +1,315 @@
+//! The equations of a system as a tree: what EML and SBML are read into and what every solver is fed from.
+
+use serde::{Deserialize, Serialize};
+
+/// Number of a quantity within its [`System`].
+pub type QuantityId = u32;
+
+/// An expression. Truth is a number: 1 true, 0 false; every number but 0 counts as true.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Expr {
+    /// A number.
+    Number(f64),
+    /// The time of the system, in its unit of time.
+    Time,
+    /// The value of a quantity.
+    Quantity(QuantityId),
+    /// A function of one argument.
+    Unary(Unary, Box<Expr>),
+    /// An operator or function of two arguments.
+    Binary(Binary, Box<Expr>, Box<Expr>),
+    /// The value beside the first condition that holds, or else the last one.
+    Piecewise {
+        /// (condition, value) in order.
+        branches: Vec<(Expr, Expr)>,
+        /// The value when no condition holds.
+        otherwise: Box<Expr>,
+    },
+}
+
+/// Functions of one argument.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[allow(missing_docs)] // the names are the functions' usual ones
+pub enum Unary {
+    Neg,
+    Not,
+    Abs,
+    Sign,
+    Floor,
+    Ceil,
+    Exp,
+    Ln,
+    Log10,
+    Sqrt,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Asinh,
+    Acosh,
+    Atanh,
+    /// 0 below zero, 1 at zero and above.
+    Heaviside,
+    Factorial,
+}
+
+/// Operators and functions of two arguments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[allow(missing_docs)] // as above
+pub enum Binary {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Pow,
+    Min,
+    Max,
+    /// The remainder with the sign of the dividend.
+    Rem,
+    /// The floor of the quotient.
+    Quotient,
+    Lt,
+    Le,
+    Gt,
+    Ge,
+    Eq,
+    Ne,
+    And,
+    Or,
+    Xor,
+}
+
+/// What a quantity is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Role {
+    /// Fixed for the whole run at its initial value.
+    Parameter,
+    /// Changes at this rate (a plain 0 for what only events change).
+    Variable {
+        /// Rate of change.
+        rate: Expr,
+    },
+    /// Equal to an expression of others at all times.
+    Defined {
+        /// The expression.
+        rule: Expr,
+    },
+    /// Given from outside: by a link, or by the caller; the initial value stands until then.
+    Input,
+}
+
+/// A named number of a system.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Quantity {
+    /// Its identifier, unique in the system.
+    pub id: String,
+    /// A name for people, or empty.
+    pub name: String,
+    /// What it is.
+    pub role: Role,
+    /// Its value at the start; may use the initial values of others and, in SBML, time. Ignored for [`Role::Defined`].
+    pub initial: Expr,
+    /// The unit it is given in, as the document writes it; empty when there is none.
+    pub unit: String,
+}
+
+/// What happens when a condition becomes true.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// Its identifier, or a made one.
+    pub id: String,
+    /// The event fires when this turns from false to true.
+    pub trigger: Expr,
+    /// What the trigger counts as before the start; an event whose trigger is true at the start and counts as false
+    /// before fires at the start.
+    pub true_before_start: bool,
+    /// Time from firing to execution.
+    pub delay: Option<Expr>,
+    /// Of events at the same time the one with the larger priority is executed first.
+    pub priority: Option<Expr>,
+    /// Whether the new values are those of the firing (or else of the execution).
+    pub values_from_firing: bool,
+    /// Whether a delayed event is executed even when its trigger has become false again.
+    pub persistent: bool,
+    /// Quantities and their new values, all computed before any is set.
+    pub assignments: Vec<(QuantityId, Expr)>,
+}
+
+/// A system of differential equations, free of any document format. Functions are expanded, local parameters renamed;
+/// the rules of defined quantities form no circle.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct System {
+    /// A name for messages.
+    pub name: String,
+    /// All quantities.
+    pub quantities: Vec<Quantity>,
+    /// All events.
+    pub events: Vec<Event>,
+}
+
+impl System {
+    /// The number of the quantity with an identifier.
+    pub fn find(&self, id: &str) -> Option<QuantityId> {
+        self.quantities.iter().position(|quantity| quantity.id == id).map(|number| number as QuantityId)
+    }
+
+    /// Numbers of the variables, in order: the state vector.
+    pub fn variables(&self) -> Vec<QuantityId> {
+        let is_variable = |number: &QuantityId| matches!(self.quantities[*number as usize].role, Role::Variable { .. });
+        (0..self.quantities.len() as QuantityId).filter(is_variable).collect()
+    }
+
+    /// Numbers of the defined quantities in an order in which each uses only those before it.
+    ///
+    /// # Errors
+    /// The identifiers along a circle of definitions.
+    pub fn definition_order(&self) -> Result<Vec<QuantityId>, Vec<String>> {
+        let mut order = Vec::new();
+        let mut mark = vec![Mark::New; self.quantities.len()];
+        for number in 0..self.quantities.len() as QuantityId {
+            self.visit(number, &mut mark, &mut order, &mut Vec::new())?;
+        }
+        Ok(order)
+    }
+
+    fn visit(
+        &self,
+        number: QuantityId,
+        mark: &mut [Mark],
+        order: &mut Vec<QuantityId>,
+        path: &mut Vec<QuantityId>,
+    ) -> Result<(), Vec<String>> {
+        let quantity = &self.quantities[number as usize];
+        let Role::Defined { rule } = &quantity.role else { return Ok(()) };
+        match mark[number as usize] {
+            Mark::Done => return Ok(()),
+            Mark::Open => {
+                let begin = path.iter().position(|&other| other == number).unwrap_or(0);
+                return Err(path[begin..].iter().map(|&q| self.quantities[q as usize].id.clone()).collect());
+            }
+            Mark::New => {}
+        }
+        mark[number as usize] = Mark::Open;
+        path.push(number);
+        let mut used = Vec::new();
+        rule.each_quantity(&mut |other| used.push(other));
+        for other in used {
+            self.visit(other, mark, order, path)?;
+        }
+        path.pop();
+        mark[number as usize] = Mark::Done;
+        order.push(number);
+        Ok(())
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Mark {
+    New,
+    Open,
+    Done,
+}
+
+impl Expr {
+    /// Visits the number of every quantity used, as often as it is used.
+    pub fn each_quantity(&self, visit: &mut impl FnMut(QuantityId)) {
+        match self {
+            Self::Number(_) | Self::Time => {}
+            Self::Quantity(number) => visit(*number),
+            Self::Unary(_, a) => a.each_quantity(visit),
+            Self::Binary(_, a, b) => {
+                a.each_quantity(visit);
+                b.each_quantity(visit);
+            }
+            Self::Piecewise { branches, otherwise } => {
+                for (condition, value) in branches {
+                    condition.each_quantity(visit);
+                    value.each_quantity(visit);
+                }
+                otherwise.each_quantity(visit);
+            }
+        }
+    }
+
+    /// The value, the plain way: the oracle of the compiled programs. `value` gives the value of a quantity.
+    pub fn evaluate(&self, time: f64, value: &impl Fn(QuantityId) -> f64) -> f64 {
+        match self {
+            Self::Number(number) => *number,
+            Self::Time => time,
+            Self::Quantity(number) => value(*number),
+            Self::Unary(function, a) => function.apply(a.evaluate(time, value)),
+            Self::Binary(function, a, b) => function.apply(a.evaluate(time, value), b.evaluate(time, value)),
+            Self::Piecewise { branches, otherwise } => {
+                let chosen = branches.iter().find(|(condition, _)| condition.evaluate(time, value) != 0.0);
+                chosen.map_or(otherwise.as_ref(), |(_, value)| value).evaluate(time, value)
+            }
+        }
+    }
+}
+
+fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+impl Unary {
+    /// The function's value.
+    pub fn apply(self, a: f64) -> f64 {
+        match self {
+            Self::Neg => -a,
+            Self::Not => truth(a == 0.0),
+            Self::Abs => a.abs(),
+            Self::Sign => truth(a > 0.0) - truth(a < 0.0),
+            Self::Floor => a.floor(),
+            Self::Ceil => a.ceil(),
+            Self::Exp => a.exp(),
+            Self::Ln => a.ln(),
+            Self::Log10 => a.log10(),
+            Self::Sqrt => a.sqrt(),
+            Self::Sin => a.sin(),
+            Self::Cos => a.cos(),
+            Self::Tan => a.tan(),
+            Self::Asin => a.asin(),
+            Self::Acos => a.acos(),
+            Self::Atan => a.atan(),
+            Self::Sinh => a.sinh(),
+            Self::Cosh => a.cosh(),
+            Self::Tanh => a.tanh(),
+            Self::Asinh => a.asinh(),
+            Self::Acosh => a.acosh(),
+            Self::Atanh => a.atanh(),
+            Self::Heaviside => truth(a >= 0.0),
+            Self::Factorial => (2..=a.round().max(0.0) as u64).map(|k| k as f64).product(),
+        }
+    }
+}
+
+impl Binary {
+    /// The function's value.
+    pub fn apply(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Add => a + b,
+            Self::Sub => a - b,
+            Self::Mul => a * b,
+            Self::Div => a / b,
+            Self::Pow => a.powf(b),
+            Self::Min => a.min(b),
+            Self::Max => a.max(b),
+            Self::Rem => a % b,
+            Self::Quotient => (a / b).floor(),
+            Self::Lt => truth(a < b),
+            Self::Le => truth(a <= b),
+            Self::Gt => truth(a > b),
+            Self::Ge => truth(a >= b),
+            Self::Eq => truth(a == b),
+            Self::Ne => truth(a != b),
+            Self::And => truth(a != 0.0 && b != 0.0),
+            Self::Or => truth(a != 0.0 || b != 0.0),
+            Self::Xor => truth((a != 0.0) != (b != 0.0)),
+        }
+    }
+}
