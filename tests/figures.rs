@@ -50,3 +50,8 @@ fn links_stiffen_a_compressed_cell() {
 fn softer_spheres_lie_flatter() {
     experiment_keeps_its_word("sphere_under_gravity", "experiment.toml");
 }
+
+#[test]
+fn shape_memory_bears_a_step_that_springs_do_not() {
+    experiment_keeps_its_word("stability_limits", "experiment.toml");
+}

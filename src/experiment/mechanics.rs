@@ -1,5 +1,6 @@
 //! What cells are made of: drag, mass, elasticity, the rule for their volume.
 
+use super::loads::Selection;
 use super::values::Course;
 use crate::units::{Angle, Drag, Energy, LineStiffness, Mass, Stress, Volume};
 use schemars::JsonSchema;
@@ -45,13 +46,16 @@ pub struct ShapeMemory {
     /// How the remembered place is found.
     #[serde(default)]
     pub form: Form,
+    /// The atoms that remember; all when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub only: Option<Selection>,
 }
 
 impl ShapeMemory {
     /// Shape memory of this modulus, with the exact reaction and in the triplet form.
     pub fn of_modulus(modulus: LineStiffness) -> Self {
         let strength = ShapeStrength::ShapeModulus(modulus);
-        Self { strength, reaction: Reaction::Exact, form: Form::Triplets }
+        Self { strength, reaction: Reaction::Exact, form: Form::Triplets, only: None }
     }
 }
 

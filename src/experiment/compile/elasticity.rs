@@ -5,7 +5,7 @@ use super::super::{
     Reaction as ReactionText, Rest, ShapeStrength,
 };
 use super::mesh::Built;
-use super::select::mirrored;
+use super::select::{self, mirrored};
 use crate::Vec3;
 use crate::error::Fault;
 use crate::geometry::{self, Surface, Topology};
@@ -57,7 +57,7 @@ fn add_shape_memory(
     faults: &mut Vec<Fault>,
 ) {
     let Some(memory) = &cell.mechanics.shape_memory else { return };
-    let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
+    let mut rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
     let stiffness = match memory.strength {
         ShapeStrength::Stiffness(stiffness) => stiffness.value(),
         ShapeStrength::ShapeModulus(modulus) => match stiffness_of_modulus(rest, &rings, modulus.value()) {
@@ -71,6 +71,11 @@ fn add_shape_memory(
             }
         },
     };
+    if let Some(only) = &memory.only {
+        let chosen = select::atoms(document, &format!("{key}.mechanics.shape_memory.only"), only, rest, faults);
+        // An atom without neighbours remembers nothing.
+        (0..rings.len()).filter(|atom| !chosen.contains(&(*atom as u32))).for_each(|atom| rings[atom].clear());
+    }
     let reaction = match memory.reaction {
         ReactionText::Exact => Reaction::Exact,
         ReactionText::Spread => Reaction::Spread,
