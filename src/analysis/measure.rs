@@ -6,7 +6,7 @@ use super::recording::Recording;
 use super::statistics::{self, Line};
 use super::table::Table;
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Comparison, MeasureKind, Over, Reduction};
+use crate::experiment::{Comparison, Fit, MeasureKind, OneOrMany, Over, Reduction, SphereFit};
 use crate::units::Time;
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,8 @@ const ROUND_OFF: f64 = 1e-9;
 pub fn series_of(kind: &MeasureKind) -> Vec<&str> {
     let names: Vec<&str> = match kind {
         MeasureKind::Value { series, .. } => vec![series],
-        MeasureKind::Slope { x, y, .. } | MeasureKind::RSquared { x, y, .. } => vec![x, y],
+        MeasureKind::Slope(fit) | MeasureKind::RSquared(fit) => with_x(&fit.x, &fit.y),
+        MeasureKind::SphereShear(fit) => with_x(&fit.x, &fit.y),
         MeasureKind::TableRms(table) | MeasureKind::TableBars(table) | MeasureKind::TableRatio(table) => {
             vec![&table.x, &table.y]
         }
@@ -29,6 +30,10 @@ pub fn series_of(kind: &MeasureKind) -> Vec<&str> {
         MeasureKind::RunLengthP { .. } => Vec::new(),
     };
     names.into_iter().filter(|name| *name != "time").collect()
+}
+
+fn with_x<'a>(x: &'a String, y: &'a OneOrMany<String>) -> Vec<&'a str> {
+    std::iter::once(x).chain(y.as_slice()).map(String::as_str).collect()
 }
 
 /// Computes the number, in base units: µm, s, pN.
@@ -42,11 +47,11 @@ pub fn evaluate(kind: &MeasureKind, recording: &Recording, resolve: &dyn Fn(&Pat
         MeasureKind::Value { series, cells, over, time } => {
             reduce(*time, &recording.times, &recording.series(series, cells.as_deref(), *over)?)
         }
-        MeasureKind::Slope { x, y, cells, x_from, x_to } => {
-            line(&curve(recording, x, y, cells.as_deref())?, *x_from, *x_to).map(|line| line.slope)
-        }
-        MeasureKind::RSquared { x, y, cells, x_from, x_to } => {
-            line(&curve(recording, x, y, cells.as_deref())?, *x_from, *x_to).map(|line| line.r_squared)
+        MeasureKind::Slope(fit) => fitted(recording, fit).map(|line| line.slope),
+        MeasureKind::RSquared(fit) => fitted(recording, fit).map(|line| line.r_squared),
+        MeasureKind::SphereShear(SphereFit { x, y, cells, x_to, area }) => {
+            let fit = Fit { x: x.clone(), y: y.clone(), cells: cells.clone(), x_from: None, x_to: *x_to };
+            fitted(recording, &fit).map(|line| sphere_shear(line.slope, area.value()))
         }
         MeasureKind::TableRms(comparison) => {
             let (table, curve) = open(comparison, recording, resolve)?;
@@ -107,10 +112,23 @@ pub fn curve(recording: &Recording, x: &str, y: &str, cells: Option<&str>) -> Re
     Ok(Curve::new(&recording.series(x, cells, Over::Mean)?, &recording.series(y, cells, Over::Mean)?))
 }
 
-/// Fits a line to the part of a curve between two x.
-fn line(curve: &Curve, x_from: Option<f64>, x_to: Option<f64>) -> Result<Line> {
-    let (x, y): (Vec<f64>, Vec<f64>) = curve.between(x_from, x_to).map(|[x, y]| (x, y)).unzip();
+/// Fits a line to a part of the mean of some curves.
+fn fitted(recording: &Recording, fit: &Fit) -> Result<Line> {
+    let x = recording.series(&fit.x, fit.cells.as_deref(), Over::Mean)?;
+    let mut mean = vec![0.0; x.len()];
+    for name in fit.y.as_slice() {
+        let y = recording.series(name, fit.cells.as_deref(), Over::Mean)?;
+        mean.iter_mut().zip(y).for_each(|(mean, y)| *mean += y / fit.y.as_slice().len() as f64);
+    }
+    let curve = Curve::new(&x, &mean);
+    let (x, y): (Vec<f64>, Vec<f64>) = curve.between(fit.x_from, fit.x_to).map(|[x, y]| (x, y)).unzip();
     statistics::fit_line(&x, &y)
+}
+
+/// The shear modulus µ of a spherical membrane of area modulus K whose equatorial diameter changes with the force at
+/// its poles by `slope` (µm/pN), from eq. (membrane.5) for forces at points.
+fn sphere_shear(slope: f64, area: f64) -> f64 {
+    1.0 / (-std::f64::consts::TAU * slope - 0.5 / area)
 }
 
 fn open(comparison: &Comparison, recording: &Recording, resolve: &dyn Fn(&Path) -> PathBuf) -> Result<(Table, Curve)> {

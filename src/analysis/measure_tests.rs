@@ -67,13 +67,15 @@ fn what_is_not_there_is_named() {
 fn lines_are_fitted_to_the_stretch_asked_for() {
     let slope = |x_to| {
         let (x, y, cells) = ("load.pull".into(), "size_x".into(), Some("white".into()));
-        evaluate(&MeasureKind::Slope { x, y, cells, x_from: None, x_to }, &pulled()).unwrap()
+        evaluate(&MeasureKind::Slope(Fit { x, y: OneOrMany::One(y), cells, x_from: None, x_to }), &pulled()).unwrap()
     };
     // The white cells measure 5, 5.5 and 7 µm.
     assert!((slope(None) - 0.1).abs() < 1e-14);
     assert!((slope(Some(10.0)) - 0.05).abs() < 1e-14);
     let (x, y, cells) = ("load.pull".into(), "size_x".into(), Some("white".into()));
-    let r_squared = evaluate(&MeasureKind::RSquared { x, y, cells, x_from: None, x_to: None }, &pulled()).unwrap();
+    let r_squared =
+        evaluate(&MeasureKind::RSquared(Fit { x, y: OneOrMany::One(y), cells, x_from: None, x_to: None }), &pulled())
+            .unwrap();
     // Residuals 1/6, −1/3, 1/6 of values whose squares about the mean sum to 13/6.
     assert!((r_squared - (1.0 - (1.0 / 6.0) / (13.0 / 6.0))).abs() < 1e-14);
 }

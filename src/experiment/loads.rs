@@ -91,8 +91,11 @@ pub enum Spread {
     /// The same on every atom.
     #[default]
     Equal,
-    /// In proportion to the area around every atom at rest.
+    /// In proportion to the area around every atom at rest: a constant traction.
     Area,
+    /// As `area`, but fading with the height of the atom in its cap, from full at the top to nothing at the rim: no
+    /// jump of traction at the rim, so that coarse meshes feel the same load as fine ones.
+    Tapered,
 }
 
 /// Springs between atoms of the same cell.

@@ -1,7 +1,7 @@
 //! Numbers that are computed from a finished run and stored with it.
 
-use super::values::words_or_time;
-use crate::units::{Speed, Time, UnitError};
+use super::values::{OneOrMany, words_or_time};
+use crate::units::{LineStiffness, Speed, Time, UnitError};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -59,43 +59,12 @@ pub enum MeasureKind {
         time: Reduction,
     },
     /// The slope of the straight line fitted to y against x.
-    Slope {
-        /// The series along x.
-        #[schemars(extend("x-text" = "series"))]
-        x: String,
-        /// The series along y.
-        #[schemars(extend("x-text" = "series"))]
-        y: String,
-        /// The type of cells; all when absent.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        #[schemars(extend("x-text" = "cell type"))]
-        cells: Option<String>,
-        /// Only points with x from here on.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        x_from: Option<f64>,
-        /// Only points with x up to here.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        x_to: Option<f64>,
-    },
+    Slope(Fit),
     /// R² of the straight line fitted to y against x.
-    RSquared {
-        /// The series along x.
-        #[schemars(extend("x-text" = "series"))]
-        x: String,
-        /// The series along y.
-        #[schemars(extend("x-text" = "series"))]
-        y: String,
-        /// The type of cells; all when absent.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        #[schemars(extend("x-text" = "cell type"))]
-        cells: Option<String>,
-        /// Only points with x from here on.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        x_from: Option<f64>,
-        /// Only points with x up to here.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        x_to: Option<f64>,
-    },
+    RSquared(Fit),
+    /// The shear modulus of a spherical membrane, read from the slope of its equatorial diameter against the force at
+    /// its poles (Hénon et al. 1999).
+    SphereShear(SphereFit),
     /// Root mean square of the relative distance between a measured table and the curve y(x).
     TableRms(Comparison),
     /// The number of rows of a measured table whose bars hold the curve y(x).
@@ -131,6 +100,50 @@ pub enum MeasureKind {
         #[schemars(extend("x-exclusive-minimum" = 0))]
         persistence: Time,
     },
+}
+
+/// A part of a curve to which a straight line is fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(inline)]
+pub struct Fit {
+    /// The series along x.
+    #[schemars(extend("x-text" = "series"))]
+    pub x: String,
+    /// The series along y; of several the mean is taken.
+    #[schemars(extend("x-text" = "series"))]
+    pub y: OneOrMany<String>,
+    /// The type of cells; all when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-text" = "cell type"))]
+    pub cells: Option<String>,
+    /// Only points with x from here on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x_from: Option<f64>,
+    /// Only points with x up to here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x_to: Option<f64>,
+}
+
+/// A part of a curve of a sphere's equatorial diameter against the force at its poles.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(inline)]
+pub struct SphereFit {
+    /// The force.
+    #[schemars(extend("x-text" = "series"))]
+    pub x: String,
+    /// The diameter; of several the mean is taken.
+    #[schemars(extend("x-text" = "series"))]
+    pub y: OneOrMany<String>,
+    /// The type of cells; all when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-text" = "cell type"))]
+    pub cells: Option<String>,
+    /// Only forces up to here, pN.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x_to: Option<f64>,
+    /// The area modulus K of the membrane.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub area: LineStiffness,
 }
 
 /// A simulated curve beside a measured table (CSV with a line of column names).

@@ -141,9 +141,11 @@ fn loads(document: &Document, key: &str, cell: &CellType, rest: &Surface, faults
     let mut loads = Vec::new();
     for (i, load) in cell.loads.iter().enumerate() {
         let atoms = select::atoms(document, &format!("{key}.loads[{i}]"), &load.selection, rest, faults);
+        let heights = select::heights(&load.selection, unit(load.direction), rest);
         let weight = |atom: u32| match load.spread {
             Spread::Equal => 1.0,
             Spread::Area => areas[atom as usize],
+            Spread::Tapered => areas[atom as usize] * heights[atom as usize],
         };
         let total: f64 = atoms.iter().map(|&atom| weight(atom)).sum();
         loads.push(Load {

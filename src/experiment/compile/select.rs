@@ -4,7 +4,7 @@ use super::super::{Cap, CapExtent, Document, Selection};
 use super::unit;
 use crate::Vec3;
 use crate::error::Fault;
-use crate::geometry::Surface;
+use crate::geometry::{self, Surface};
 
 /// The atoms of a selection, each once, rising; faults for those that do not exist.
 pub fn atoms(
@@ -54,6 +54,27 @@ fn cap_atoms(cap: &Cap, rest: &Surface) -> Vec<u32> {
         }),
     }
     order
+}
+
+/// The height of every atom in its cap, 1 at the top of the cell and 0 at the rim or below, eq. (loads.1). The top is the
+/// furthest atom along the cap's direction (or the load's, where no cap is selected); the rim of a cap that an angle
+/// bounds is where a sphere has it, that of any other selection one mean edge below its lowest atom.
+pub fn heights(selection: &Selection, direction: Vec3, rest: &Surface) -> Vec<f64> {
+    let up = if let Selection::Cap(cap) = selection { unit(cap.direction) } else { direction };
+    let centre = rest.positions.iter().sum::<Vec3>() / rest.positions.len() as f64;
+    let along: Vec<f64> = rest.positions.iter().map(|p| (p - centre).dot(&up)).collect();
+    let top = along.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let rim = match selection {
+        Selection::Cap(Cap { extent: CapExtent::Angle(angle), .. }) => top * angle.value().cos(),
+        Selection::Cap(cap) => lowest(&along, &cap_atoms(cap, rest)) - geometry::mean_edge_length(rest),
+        Selection::Atoms(list) => lowest(&along, list) - geometry::mean_edge_length(rest),
+        Selection::All(_) => along.iter().copied().fold(f64::INFINITY, f64::min),
+    };
+    along.iter().map(|along| ((along - rim) / (top - rim)).max(0.0)).collect()
+}
+
+fn lowest(along: &[f64], atoms: &[u32]) -> f64 {
+    atoms.iter().filter_map(|&atom| along.get(atom as usize)).copied().fold(f64::INFINITY, f64::min)
 }
 
 /// Pairs of atoms that are each other's image under a symmetry of the plain mesh, each pair once.

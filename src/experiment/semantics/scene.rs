@@ -1,7 +1,7 @@
 //! What must hold between planes, pictures, plots, measures and the run.
 
 use super::Check;
-use crate::experiment::{MeasureKind, Reduction, When};
+use crate::experiment::{Fit, MeasureKind, Reduction, When};
 use crate::units::{Dimension, pretty};
 
 impl Check<'_> {
@@ -57,8 +57,8 @@ impl Check<'_> {
                 MeasureKind::Value { time: Reduction::At(time), .. } => {
                     self.instant(&format!("{path}.time"), time.value());
                 }
-                MeasureKind::Slope { x_from: Some(from), x_to: Some(to), .. }
-                | MeasureKind::RSquared { x_from: Some(from), x_to: Some(to), .. }
+                MeasureKind::Slope(Fit { x_from: Some(from), x_to: Some(to), .. })
+                | MeasureKind::RSquared(Fit { x_from: Some(from), x_to: Some(to), .. })
                     if from >= to =>
                 {
                     let message = format!("`{path}.x_to` is not above `x_from`");
