@@ -2,10 +2,12 @@
 
 use pseudopod::Vec3;
 use pseudopod::geometry::{self, Topology, icosphere};
+use pseudopod::mechanics::course::Course;
 use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
-use pseudopod::sim::{Kind, Model, Plane, State, VolumeRule, Workspace, step};
+use pseudopod::sim::{Kind, Load, Model, Plane, State, VolumeRule, Workspace, step};
 
 fn sphere_kind(level: u32, stiffness: f64) -> Kind {
     let surface = icosphere(5.0, level);
@@ -108,6 +110,43 @@ fn a_constant_force_moves_a_cell_rigidly_at_force_over_drag() {
     assert!(distance(&state.kinds[0].cell(&model.kinds[0], 0), &moved) < 1e-11);
 }
 
+/// Steps that a sphere of a hardening membrane needs while it is drawn out to more than twice its length.
+fn steps_of_a_long_pull(cells: usize) -> (u32, f64) {
+    let surface = icosphere(3.0, 2);
+    let law = MembraneLaw::Skalak { shear: 3.0, area: 60.0 };
+    let membrane = Membrane::new(&surface.positions, &surface.facets, law);
+    let poles = |side: f64| -> Vec<(u32, f64)> {
+        let near: Vec<u32> =
+            (0..surface.positions.len()).filter(|&i| side * surface.positions[i].z > 2.6).map(|i| i as u32).collect();
+        near.iter().map(|&atom| (atom, 1.0 / near.len() as f64)).collect()
+    };
+    let force = Course::through(vec![(0.0, 0.0), (1.0, 300.0)]).unwrap();
+    let pull =
+        |side: f64| Load { name: String::new(), atoms: poles(side), direction: side * Vec3::z(), force: force.clone() };
+    let (up, down) = (pull(1.0), pull(-1.0));
+    let elasticity = Elasticity { membrane: vec![membrane], ..Default::default() };
+    let mut kind = Kind::new("sphere", surface, elasticity).with_cells(0, cells);
+    kind.bound_stiffness();
+    kind.drag = 0.01;
+    kind.loads = vec![up, down];
+    let model = model_of(kind, SECOND, ADAPTIVE, 2.0);
+    let places = model.kinds[0].rest.positions.clone();
+    let (mut state, mut ws) = start(&model, vec![places; cells]);
+    let steps = run_until_end(&model, &mut state, &mut ws);
+    let end = state.kinds[0].cell(&model.kinds[0], 0);
+    (steps, end.iter().map(|p| p.z).fold(0.0, f64::max))
+}
+
+#[test]
+fn a_stiffness_made_for_the_shape_saves_steps_and_changes_no_result() {
+    let ((fresh, long), (stale, same)) = (steps_of_a_long_pull(1), steps_of_a_long_pull(2));
+    println!("half length {long:.4} and {same:.4} um in {fresh} and {stale} steps");
+    assert!(long > 4.5, "the sphere is drawn out far: {long}");
+    // Both rest at the end of the pull: what is left is the tolerance of single steps.
+    assert!((long - same).abs() < 1e-3 * long, "{long} {same}");
+    assert!(2 * fresh < stale, "{fresh} {stale}");
+}
+
 #[test]
 fn eight_lanes_give_what_one_lane_gives() {
     let kind = sphere_kind(1, 10.0).with_cells(0, 11);
@@ -117,8 +156,10 @@ fn eight_lanes_give_what_one_lane_gives() {
     let (mut state, mut ws) = start(&model, shapes.clone());
     run_until_end(&model, &mut state, &mut ws);
     for cell in 0..11 {
-        let alone = model_of(sphere_kind(1, 10.0), SECOND, StepSize::Fixed(0.3), 3.0);
-        let (mut one, mut ws) = start(&alone, vec![shapes[cell].clone()]);
+        // Two cells run alone, each on one lane; a kind of one cell would make its stiffness again as it deforms.
+        let alone = model_of(sphere_kind(1, 10.0).with_cells(0, 2), SECOND, StepSize::Fixed(0.3), 3.0);
+        assert_eq!(alone.kinds[0].lanes, 1);
+        let (mut one, mut ws) = start(&alone, vec![shapes[cell].clone(), shapes[0].clone()]);
         run_until_end(&alone, &mut one, &mut ws);
         let apart = distance(&state.kinds[0].cell(&model.kinds[0], cell), &one.kinds[0].cell(&alone.kinds[0], 0));
         assert!(apart < 1e-12, "{cell}: {apart}"); // sums in the dense product may be taken in another order

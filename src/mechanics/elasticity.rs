@@ -9,6 +9,7 @@ use super::shape_memory::ShapeMemory;
 use super::springs::Springs;
 use super::stiffness::StiffnessMatrix;
 use super::tension::Tension;
+use crate::Vec3;
 
 /// The elastic forces of a mesh, shared by all cells that have it.
 #[derive(Debug, Clone, Default)]
@@ -35,12 +36,13 @@ impl Elasticity {
         dispatch(lanes, Work { elasticity: self, x, f, energy });
     }
 
-    /// The constant linear part of all forces, for the implicit step.
-    pub fn stiffness(&self, atoms: usize) -> StiffnessMatrix {
-        let mut matrix = StiffnessMatrix::new(atoms);
-        self.shape_memory.iter().for_each(|force| force.add_stiffness(&mut matrix));
+    /// The linear part of all forces for the implicit step, as it is fit for the shape `x` of a cell with this rest
+    /// shape.
+    pub fn stiffness(&self, rest: &[Vec3], x: &[Vec3]) -> StiffnessMatrix {
+        let mut matrix = StiffnessMatrix::new(rest.len());
+        self.shape_memory.iter().for_each(|force| force.add_stiffness(rest, x, &mut matrix));
         self.angles.iter().for_each(|force| force.add_stiffness(&mut matrix));
-        self.membrane.iter().for_each(|force| force.add_stiffness(&mut matrix));
+        self.membrane.iter().for_each(|force| force.add_stiffness(x, &mut matrix));
         self.tension.iter().for_each(|force| force.add_stiffness(&mut matrix));
         self.bending.iter().for_each(|force| force.add_stiffness(&mut matrix));
         self.springs.iter().for_each(|force| force.add_stiffness(&mut matrix));

@@ -49,6 +49,25 @@ impl MembraneLaw {
         }
     }
 
+    /// A bound of the second derivatives of W by the deformation gradient at these principal stretches, pN/µm: in the
+    /// plane, and across it (tension over stretch). Differences of the density stand in for its second derivatives.
+    fn stiffness_at(&self, long: f64, short: f64) -> f64 {
+        // A collapsed facet is the barrier's matter.
+        let (long, short) = (long.max(0.1), short.max(0.1));
+        let density = |a: f64, b: f64| self.energy_density((), a * a + b * b, (a * b).powi(2)).0;
+        let h = 1e-3;
+        let (here, twice) = (density(long, short), h * h);
+        let along = [(h, 0.0), (0.0, h)].map(|(a, b)| {
+            let (more, less) = (density(long + a, short + b), density(long - a, short - b));
+            ((more - 2.0 * here + less) / twice, (more - less) / (2.0 * h))
+        });
+        let both = density(long + h, short + h) - density(long + h, short - h) - density(long - h, short + h)
+            + density(long - h, short - h);
+        let mixed = (both / (4.0 * twice)).abs();
+        let across = (along[0].1 / long).max(along[1].1 / short);
+        (along[0].0.abs().max(along[1].0.abs()) + mixed).max(across)
+    }
+
     /// W and its derivatives by I and by D, pN/µm.
     #[inline(always)]
     fn energy_density<T: Real>(&self, token: T::Token, i: T, d: T) -> (T, T, T) {
@@ -151,12 +170,29 @@ impl Membrane {
     }
 
     /// Adds (µ + K) times the cotangent Laplacian of the rest shape: the stiffness against a longitudinal wave in the
-    /// plane, and at least half of any facet's own small-strain stiffness. Strain hardening is not in it.
-    pub fn add_stiffness(&self, matrix: &mut StiffnessMatrix) {
+    /// plane, and at least half of any facet's own small-strain stiffness. A facet that is stretched in the shape
+    /// `x` counts as many times more as its law is stiffer there.
+    pub fn add_stiffness(&self, x: &[Vec3], matrix: &mut StiffnessMatrix) {
         let modulus = self.law.shear() + self.law.area();
+        let at_rest = self.law.stiffness_at(1.0, 1.0);
         for (facet, cotangents) in self.facets.iter().zip(&self.cotangents) {
-            add_cotangents(matrix, facet.atoms, *cotangents, modulus);
+            let [long, short] = facet.stretches(x);
+            let stiffer = (self.law.stiffness_at(long, short) / at_rest).max(1.0);
+            add_cotangents(matrix, facet.atoms, *cotangents, stiffer * modulus);
         }
+    }
+}
+
+impl RestFacet {
+    /// Principal stretches of the facet in the shape `x`.
+    fn stretches(&self, x: &[Vec3]) -> [f64; 2] {
+        let [a, b, c] = self.atoms.map(|atom| x[atom as usize]);
+        let (u, v) = (b - a, c - a);
+        let [g11, g12, g22] = self.inverse;
+        let half = 0.5 * (u.dot(&u) * g11 + 2.0 * u.dot(&v) * g12 + v.dot(&v) * g22);
+        let d = u.cross(&v).norm_squared() * self.inverse_determinant;
+        let apart = (half * half - d).max(0.0).sqrt();
+        [(half + apart).sqrt(), (half - apart).max(0.0).sqrt()]
     }
 }
 

@@ -163,18 +163,32 @@ impl ShapeMemory {
         energy
     }
 
-    /// Adds k LᵀL, L = I − W, the constant linear part that the implicit step uses.
-    pub fn add_stiffness(&self, matrix: &mut StiffnessMatrix) {
+    /// How far the place of an atom moves at most when a corner of one of its triplets moves by one: the tilt of the
+    /// normals, eq. (shape.3).
+    fn tilt(&self, atom: usize, x: &[Vec3]) -> f64 {
+        let triplets = &self.triplets[self.first_triplet[atom] as usize..self.first_triplet[atom + 1] as usize];
+        let part = |t: &Triplet| {
+            let [a, b, c] = [t.a, t.b, t.c].map(|i| x[i as usize]);
+            let (u, v) = (b - a, c - a);
+            t.height.abs() * (u.norm() + v.norm()) / u.cross(&v).norm().max(f64::MIN_POSITIVE)
+        };
+        triplets.iter().map(part).sum()
+    }
+
+    /// Adds k LᵀL, L = I − W, the constant linear part that the implicit step uses. Where triplets are smaller in the
+    /// shape `x` than at `rest`, so that their normals tilt more easily, the atom counts more.
+    pub fn add_stiffness(&self, rest: &[Vec3], x: &[Vec3], matrix: &mut StiffnessMatrix) {
         for atom in 0..self.first_weight.len() - 1 {
             let weights = &self.weights[self.first_weight[atom] as usize..self.first_weight[atom + 1] as usize];
             if weights.is_empty() {
                 continue;
             }
+            let stiffer = ((1.0 + self.tilt(atom, x)) / (1.0 + self.tilt(atom, rest))).max(1.0).powi(2);
             let row: Vec<(usize, f64)> =
                 std::iter::once((atom, 1.0)).chain(weights.iter().map(|&(j, w)| (j as usize, -w))).collect();
             for &(i, a) in &row {
                 for &(j, b) in &row {
-                    matrix.add(i, j, self.stiffness * a * b);
+                    matrix.add(i, j, stiffer * self.stiffness * a * b);
                 }
             }
         }

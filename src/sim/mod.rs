@@ -9,6 +9,7 @@ mod motility;
 pub mod observe;
 pub mod planes;
 pub mod projection;
+mod refresh;
 pub mod state;
 mod step;
 pub mod trouble;

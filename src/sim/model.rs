@@ -130,7 +130,7 @@ impl Kind {
     /// where the mesh is closed.
     pub fn new(name: &str, rest: Surface, elasticity: Elasticity) -> Self {
         let closed = !rest.facets.is_empty() && Topology::of(&rest).is_closed();
-        let stiffness = elasticity.stiffness(rest.positions.len());
+        let stiffness = elasticity.stiffness(&rest.positions, &rest.positions);
         Self {
             name: name.to_owned(),
             closed,
@@ -163,25 +163,37 @@ impl Kind {
     /// of the force; what explicit schemes need to know.
     pub fn measure_largest_stiffness(&self) -> f64 {
         // Power iteration approaches from below; two percent cover what is left after the last round.
-        1.02 * self.power_iteration(|_| ()) + self.attraction.map_or(0.0, |attraction| attraction.stiffness)
+        let largest = self.power_iteration(&self.rest.positions, |_| ());
+        1.02 * largest + self.attraction.map_or(0.0, |attraction| attraction.stiffness)
     }
 
-    /// Raises the constant stiffness K of the implicit step until the true stiffness J at rest is nowhere more than
-    /// [`LARGEST_RATIO`] times as large: the scheme bears a K that is too small by two, and cells stiffen as they deform.
+    /// Sets the stiffness K of the implicit step to the one that fits the rest shape; see [`Kind::stiffness_at`].
     pub fn bound_stiffness(&mut self) {
+        self.stiffness = self.stiffness_at(&self.rest.positions);
+    }
+
+    /// The stiffness K of the implicit step for a cell in the shape `x` (µm): the linear part of its forces there,
+    /// raised until the true stiffness J there is nowhere more than [`LARGEST_RATIO`] times as large, since the scheme
+    /// bears a K that is too small by two and cells go on deforming.
+    pub fn stiffness_at(&self, x: &[Vec3]) -> StiffnessMatrix {
+        let mut stiffness = self.elasticity.stiffness(&self.rest.positions, x);
         let free = vec![false; self.atoms()];
         // A whiff of the identity makes K invertible; J does not resist what K does not resist.
-        let inverse = Factor::new(&self.stiffness, 1e-5 * self.stiffness.largest().max(f64::MIN_POSITIVE), 1.0, &free);
+        let inverse = Factor::new(&stiffness, 1e-5 * stiffness.largest().max(f64::MIN_POSITIVE), 1.0, &free);
         let mut scratch = vec![0.0; 3 * self.atoms()];
-        let ratio = self.power_iteration(|v| inverse.solve(3, v, &mut scratch));
+        let ratio = self.power_iteration(x, |v| inverse.solve(3, v, &mut scratch));
         if ratio > LARGEST_RATIO {
-            self.stiffness.scale(ratio / LARGEST_RATIO);
+            stiffness.scale(ratio / LARGEST_RATIO);
         }
+        if let Some(attraction) = self.attraction {
+            (0..self.atoms()).for_each(|atom| stiffness.add(atom, atom, attraction.stiffness));
+        }
+        stiffness
     }
 
-    /// The largest eigenvalue of P J, J the stiffness at rest and P the change that `precondition` makes in place.
-    fn power_iteration(&self, mut precondition: impl FnMut(&mut [f64])) -> f64 {
-        let x: Vec<f64> = self.rest.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+    /// The largest eigenvalue of P J, J the stiffness in the shape `x` and P the change that `precondition` makes in place.
+    fn power_iteration(&self, x: &[Vec3], mut precondition: impl FnMut(&mut [f64])) -> f64 {
+        let x: Vec<f64> = x.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
         let epsilon = 1e-6 * self.edge;
         // Any vector will do that is not an eigenvector of a smaller value; this one has no symmetry.
         let mut v: Vec<f64> = (0..x.len()).map(|i| ((i * 7919 + 13) % 101) as f64 / 50.5 - 1.0).collect();

@@ -32,6 +32,9 @@ pub struct KindState {
     pub velocities: Vec<f64>,
     /// Rest volume of every cell, µm³, padded to whole blocks.
     pub rest_volumes: Vec<f64>,
+    /// Positions of the cell when the stiffness of the implicit step was last made, µm; empty where it is that of the
+    /// rest shape.
+    pub stiffness_shape: Vec<f64>,
 }
 
 /// Index of a number in a block array.
@@ -62,7 +65,12 @@ impl KindState {
             Inertia::OverDamped => Vec::new(),
         };
         let volume = if kind.closed { crate::geometry::volume(&kind.rest) } else { 0.0 };
-        Self { positions, velocities, rest_volumes: vec![volume; kind.blocks() * kind.lanes] }
+        Self {
+            positions,
+            velocities,
+            rest_volumes: vec![volume; kind.blocks() * kind.lanes],
+            stiffness_shape: Vec::new(),
+        }
     }
 
     /// Positions of the atoms of a cell, µm.

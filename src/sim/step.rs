@@ -6,6 +6,7 @@ use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_inc
 use super::inertial::{advance_freely, correct_velocities};
 use super::model::Model;
 use super::motility::advance_motility;
+use super::refresh::refresh_stiffness;
 use super::state::State;
 use super::trouble::{Trouble, check_finite};
 use super::workspace::Workspace;
@@ -27,6 +28,9 @@ const TRIES: u32 = 60;
 
 /// Moves the state by one step. After an error the state is the one before the step.
 pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<StepReport, Trouble> {
+    if let Method::Implicit { .. } = model.integrator.method {
+        refresh_stiffness(model, state, ws);
+    }
     remember(state, ws);
     let mut dt = plan_step(model, state);
     for refused in 0..TRIES {

@@ -55,6 +55,10 @@ pub struct KindScratch {
     pub touch: Vec<TouchScratch>,
     /// One entry a block: the thorough projection.
     pub project: Vec<ProjectScratch>,
+    /// The shape that `stiffness` was made for, as in the state.
+    pub stiffness_shape: Vec<f64>,
+    /// The stiffness K of the implicit step where it is not that of the rest shape.
+    stiffness: Option<StiffnessMatrix>,
     /// Factors of the steps used last, most recent first.
     factors: Vec<(u64, Arc<Solver>)>,
 }
@@ -123,6 +127,8 @@ impl KindScratch {
             target: vec![0.0; padded],
             touch: vec![TouchScratch::default(); kind.blocks()],
             project: vec![ProjectScratch::default(); kind.blocks()],
+            stiffness_shape: Vec::new(),
+            stiffness: None,
             factors: Vec::new(),
         }
     }
@@ -133,15 +139,24 @@ impl KindScratch {
         if let Some(at) = self.factors.iter().position(|(known, _)| *known == key) {
             self.factors[..=at].rotate_right(1);
         } else {
-            let solver = Arc::new(Solver::new(kind, &kind.stiffness, dt, gamma));
+            let stiffness = self.stiffness.as_ref().unwrap_or(&kind.stiffness);
+            let solver = Arc::new(Solver::new(kind, stiffness, dt, gamma));
             self.factors.truncate(FACTORS_KEPT - 1);
             self.factors.insert(0, (key, solver));
         }
         self.factors[0].1.clone()
     }
 
+    /// Takes another stiffness for the implicit step, made for `shape`; none is that of the rest shape.
+    pub fn set_stiffness(&mut self, stiffness: Option<StiffnessMatrix>, shape: &[f64]) {
+        self.stiffness = stiffness;
+        self.stiffness_shape = shape.to_vec();
+        self.factors.clear();
+    }
+
     /// Writes NaN over all scratch numbers: a step must not notice.
     pub fn poison(&mut self) {
+        self.set_stiffness(None, &[]);
         for array in [
             &mut self.start,
             &mut self.start_velocity,
@@ -161,7 +176,6 @@ impl KindScratch {
         }
         self.touch.iter_mut().for_each(TouchScratch::poison);
         self.project.iter_mut().for_each(ProjectScratch::poison);
-        self.factors.clear();
     }
 }
 

@@ -168,7 +168,7 @@ fn add_barrier(cell: &CellType, rest: &Surface, topology: &Topology, elasticity:
     let stiffness = match text.stiffness {
         Some(stiffness) => stiffness.value(),
         None => {
-            let matrix = elasticity.stiffness(rest.positions.len());
+            let matrix = elasticity.stiffness(&rest.positions, &rest.positions);
             BARRIER_SHARE * (0..rest.positions.len()).map(|i| matrix.diagonal(i)).fold(0.0, f64::max)
         }
     };

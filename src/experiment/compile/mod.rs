@@ -115,9 +115,6 @@ fn compile_kind(
         to: vector(attraction.to.map(|x| x.value())),
         stiffness: attraction.stiffness.value(),
     });
-    if let Some(attraction) = kind.attraction {
-        (0..kind.atoms()).for_each(|atom| kind.stiffness.add(atom, atom, attraction.stiffness));
-    }
     kind
 }
 

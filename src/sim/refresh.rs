@@ -1,0 +1,49 @@
+//! The stage that keeps the stiffness K of the implicit step fit for cells that deform strongly.
+//!
+//! K is made for the rest shape and shared by all cells of a kind. A cell that is stretched or squeezed far may grow
+//! several times stiffer than K, eq. (step.8), and then only tiny steps are stable. A kind of one cell therefore makes K
+//! again for the shape that the cell has now, whenever an edge has changed enough since K was last made.
+
+use super::model::{Kind, Model};
+use super::state::State;
+use super::workspace::Workspace;
+use crate::Vec3;
+
+/// K is made again when the square of some edge's length has changed by this factor: by then a cell that hardens with
+/// the fourth power of its stretch is two times stiffer than K takes it to be, which the scheme still bears.
+const CHANGE: f64 = 1.4;
+
+/// Makes K again where a cell has changed its shape; which shape K belongs to is part of the state.
+pub fn refresh_stiffness(model: &Model, state: &mut State, ws: &mut Workspace) {
+    for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds) {
+        if kind.cells != 1 {
+            continue;
+        }
+        if has_changed(kind, &now.stiffness_shape, &now.positions) {
+            now.stiffness_shape.clone_from(&now.positions);
+        }
+        if w.stiffness_shape != now.stiffness_shape {
+            let shape: Vec<Vec3> = now.stiffness_shape.chunks_exact(3).map(Vec3::from_column_slice).collect();
+            w.set_stiffness((!shape.is_empty()).then(|| kind.stiffness_at(&shape)), &now.stiffness_shape);
+        }
+    }
+}
+
+/// Whether an edge of a single cell has another length than in the shape that K was made for (the rest shape, if none).
+fn has_changed(kind: &Kind, shape: &[f64], x: &[f64]) -> bool {
+    let squared = |x: &[f64], i: u32, j: u32| {
+        let (i, j) = (3 * i as usize, 3 * j as usize);
+        (0..3).map(|axis| (x[i + axis] - x[j + axis]).powi(2)).sum::<f64>()
+    };
+    kind.rest.facets.iter().any(|&[a, b, c]| {
+        [(a, b), (b, c), (c, a)].into_iter().any(|(i, j)| {
+            let then = if shape.is_empty() {
+                (kind.rest.positions[i as usize] - kind.rest.positions[j as usize]).norm_squared()
+            } else {
+                squared(shape, i, j)
+            };
+            let ratio = squared(x, i, j) / then;
+            ratio > CHANGE || ratio < 1.0 / CHANGE
+        })
+    })
+}
