@@ -12,6 +12,8 @@ use toml::Spanned;
 /// One claim about one measure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
+    /// The experiment document of the folder that it is about; all of them when absent.
+    pub document: Option<String>,
     /// Name of the measure, as the experiment declares it.
     pub measure: String,
     /// Where its value has to lie.
@@ -35,6 +37,13 @@ pub enum Bound {
     NearRelative(f64, f64),
     /// Within a distance of a value: |found − value| ≤ distance.
     NearAbsolute(f64, f64),
+}
+
+impl Claim {
+    /// Whether the claim is about the document with this file name.
+    pub fn is_about(&self, document: &str) -> bool {
+        self.document.as_deref().is_none_or(|own| own == document)
+    }
 }
 
 impl Bound {
@@ -71,6 +80,7 @@ fn rounded(value: f64) -> f64 {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
+    document: Option<String>,
     measure: String,
     at_most: Option<f64>,
     at_least: Option<f64>,
@@ -104,7 +114,7 @@ pub fn read(path: &Path) -> Result<Vec<Claim>> {
 /// Reads claims from TOML text: a `[[claim]]` table for each.
 ///
 /// A claim names its `measure` and its `source`, and bounds the value by `at_most`, `at_least` or both, or by `equals`
-/// with `within` (a share) or `within_absolute` (in the unit of the measure). A tolerance says its `reason`.
+/// with `within` (a share) or `within_absolute` (in the unit of the measure). `document` names the document of the folder that it is about, where there are several. A tolerance says its `reason`.
 ///
 /// # Errors
 /// When the text is not TOML, a key is unknown or missing, bounds contradict each other, or there is no claim at all.
@@ -160,7 +170,13 @@ fn understand(written: Written) -> std::result::Result<Claim, Fault> {
         let fault = Fault::new(format!("the claim about {name} has a tolerance without a reason"));
         return Err(fault.help("add reason = \"why this tolerance\""));
     }
-    Ok(Claim { measure: written.measure, bound, source: written.source, reason: written.reason })
+    Ok(Claim {
+        document: written.document,
+        measure: written.measure,
+        bound,
+        source: written.source,
+        reason: written.reason,
+    })
 }
 
 /// Whether one claim holds.
