@@ -1,0 +1,175 @@
+//! The schemes with inertia and explicit Euler: trajectories that are known, orders of convergence, momentum, energy,
+//! exact volume, and that scratch is scratch.
+
+use pseudopod::Vec3;
+use pseudopod::geometry::{self, Surface, Topology, icosphere};
+use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::integrator::{Integrator, Method, StepSize};
+use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
+use pseudopod::mechanics::springs::{Spring, Springs};
+use pseudopod::sim::{Kind, Model, State, VolumeRule, Workspace, step};
+
+const INERTIAL: [Method; 4] = [Method::Euler, Method::SemiImplicitEuler, Method::Verlet, Method::RungeKutta4];
+
+fn model(kind: Kind, method: Method, dt: f64, until: f64) -> Model {
+    let integrator = Integrator { method, size: StepSize::Fixed(dt) };
+    Model { seed: 1, kinds: vec![kind], planes: vec![], gravity: Vec3::zeros(), integrator, until, kinks: vec![] }
+}
+
+/// Two atoms on a spring of 3 pN/µm and 1 µm at rest, a facet of no matter; mass 0.5 mg each.
+fn pair(drag: f64) -> Kind {
+    let surface = Surface { positions: vec![Vec3::zeros(), Vec3::x(), Vec3::y()], facets: vec![[0, 1, 2]] };
+    let spring = Spring { from: 0, to: 1, rest_length: 1.0, stiffness: 3.0 };
+    let elasticity = Elasticity { springs: vec![Springs::between(vec![spring])], ..Default::default() };
+    let mut kind = Kind::new("pair", surface, elasticity);
+    (kind.drag, kind.mass, kind.volume) = (drag, 0.5, VolumeRule::Free);
+    kind
+}
+
+/// Half the change of the spring's length after it was drawn out by 0.4 µm and let go, at the end of the run.
+fn elongation(method: Method, drag: f64, dt: f64, until: f64) -> f64 {
+    let model = model(pair(drag), method, dt, until);
+    let mut state = State::new(&model, &[vec![vec![-0.2 * Vec3::x(), 1.2 * Vec3::x(), Vec3::y()]]]);
+    let mut ws = Workspace::new(&model);
+    while state.time < until {
+        step(&model, &mut state, &mut ws).unwrap();
+    }
+    let x = &state.kinds[0].positions;
+    0.5 * (x[3] - x[0] - 1.0)
+}
+
+/// The same in closed form: each atom swings about the middle with twice the spring's stiffness.
+fn exact(drag: f64, time: f64) -> f64 {
+    let (rate, squared) = (0.5 * drag / 0.5, 2.0 * 3.0 / 0.5);
+    let swing = (squared - rate * rate).sqrt();
+    0.2 * (-rate * time).exp() * ((swing * time).cos() + rate / swing * (swing * time).sin())
+}
+
+#[test]
+fn each_inertial_scheme_follows_a_damped_swing_with_its_order() {
+    // The largest error at a few times: at a single one the leading term may be near zero.
+    let error = |method: Method, dt: f64| {
+        let at = |until: f64| (elongation(method, 0.7, dt, until) - exact(0.7, until)).abs();
+        [0.8, 1.0, 1.2, 1.6, 2.0].map(at).into_iter().fold(0.0, f64::max)
+    };
+    for (method, order) in INERTIAL.into_iter().zip([1.0, 1.0, 2.0, 4.0]) {
+        let errors = [0.02, 0.01, 0.005].map(|dt| error(method, dt));
+        let found = (errors[1] / errors[2]).log2();
+        println!("{method:?}: errors {errors:?}, order {found:.2}");
+        // The next order's term at these steps.
+        assert!((found - order).abs() < 0.15, "{method:?}: order {found}");
+        assert!(errors[2] < 0.01, "{method:?}: {errors:?}");
+    }
+}
+
+#[test]
+fn verlet_and_semi_implicit_euler_keep_the_energy_of_a_free_swing() {
+    for method in [Method::SemiImplicitEuler, Method::Verlet] {
+        let dt = 0.05;
+        let model = model(pair(0.0), method, dt, 1e9);
+        let mut state = State::new(&model, &[vec![vec![-0.2 * Vec3::x(), 1.2 * Vec3::x(), Vec3::y()]]]);
+        let mut ws = Workspace::new(&model);
+        let energy = |state: &State| {
+            let (x, v) = (&state.kinds[0].positions, &state.kinds[0].velocities);
+            0.25 * v.iter().map(|v| v * v).sum::<f64>() + 1.5 * (x[3] - x[0] - 1.0).powi(2)
+        };
+        let start = energy(&state);
+        let mut worst: f64 = 0.0;
+        // A thousand periods of 1.8 s.
+        for _ in 0..36_000 {
+            step(&model, &mut state, &mut ws).unwrap();
+            worst = worst.max((energy(&state) / start - 1.0).abs());
+        }
+        println!("{method:?}: energy within {worst:.3} of its start over a thousand periods");
+        // The energy of a symplectic scheme swings by about ω dt (first order) and (ω dt)²/4 (second), and does not drift.
+        let bound = if method == Method::Verlet { 0.01 } else { 0.12 };
+        assert!(worst < bound, "{method:?}: {worst}");
+    }
+}
+
+#[test]
+fn a_body_falls_as_gravity_and_drag_say() {
+    let surface = icosphere(2.0, 1);
+    for method in INERTIAL {
+        let mut kind = Kind::new("stone", surface.clone(), Elasticity::default());
+        (kind.drag, kind.mass) = (0.3, 0.6);
+        let mut model = model(kind, method, 1e-3, 2.0);
+        model.gravity = Vec3::new(0.0, 0.0, -5.0);
+        let mut state = State::new(&model, &[vec![surface.positions.clone()]]);
+        let mut ws = Workspace::new(&model);
+        while state.time < 2.0 {
+            step(&model, &mut state, &mut ws).unwrap();
+        }
+        let rate: f64 = 0.3 / 0.6;
+        let terminal = -5.0 / rate;
+        let exact = terminal * (2.0 - (1.0 - (-rate * 2.0f64).exp()) / rate);
+        let cell = state.kinds[0].cell(&model.kinds[0], 0);
+        for (now, then) in cell.iter().zip(&surface.positions) {
+            let fallen = now - then;
+            // First order schemes are off by about g t dt/2 = 5e-3.
+            assert!((fallen.z - exact).abs() < 6e-3 && fallen.xy().norm() < 1e-9, "{method:?}: {fallen:?} {exact}");
+        }
+    }
+}
+
+/// A cell with shape memory, drawn out and let go; exact volume.
+fn cell(cells: usize) -> Kind {
+    let surface = icosphere(5.0, 1);
+    let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
+    let memory = ShapeMemory::new(&surface.positions, &rings, 10.0, Reaction::Exact);
+    let mut kind = Kind::new("cell", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    (kind.drag, kind.mass) = (1.0, 0.3);
+    kind.bound_stiffness();
+    kind.with_cells(0, cells)
+}
+
+fn stretched(kind: &Kind) -> Vec<Vec3> {
+    kind.rest.positions.iter().map(|p| Vec3::new(p.x / 1.1, p.y / 1.1, p.z * 1.21)).collect()
+}
+
+#[test]
+fn a_free_cell_keeps_its_volume_its_momentum_and_its_spin_at_rest() {
+    for method in INERTIAL.into_iter().chain([Method::Explicit]) {
+        let mut kind = cell(1);
+        let shape = stretched(&kind);
+        if method != Method::Euler {
+            kind.drag = 0.2;
+        }
+        let model = model(kind, method, 2e-3, 1e9);
+        let mut state = State::new(&model, &[vec![shape.clone()]]);
+        let mut ws = Workspace::new(&model);
+        let target = geometry::volume(&model.kinds[0].rest);
+        for _ in 0..2000 {
+            step(&model, &mut state, &mut ws).unwrap();
+            let now = Surface { positions: state.kinds[0].cell(&model.kinds[0], 0), ..model.kinds[0].rest.clone() };
+            assert!((geometry::volume(&now) / target - 1.0).abs() < 1e-10, "{method:?}");
+        }
+        let middle = |places: &[Vec3]| places.iter().sum::<Vec3>() / places.len() as f64;
+        let drift = (middle(&state.kinds[0].cell(&model.kinds[0], 0)) - middle(&shape)).norm();
+        // Round-off of two thousand steps of a few micrometres.
+        assert!(drift < 1e-11, "{method:?}: {drift}");
+        if method.is_inertial() {
+            let x = state.kinds[0].cell(&model.kinds[0], 0);
+            let v: Vec<Vec3> = state.kinds[0].velocities.chunks_exact(3).map(Vec3::from_column_slice).collect();
+            let momentum: Vec3 = v.iter().sum();
+            let spin: Vec3 = x.iter().zip(&v).map(|(x, v)| x.cross(v)).sum();
+            assert!(momentum.norm() < 1e-9 && spin.norm() < 1e-8, "{method:?}: {momentum:?} {spin:?}");
+        }
+    }
+}
+
+#[test]
+fn scratch_is_scratch_for_every_scheme() {
+    for method in INERTIAL.into_iter().chain([Method::Explicit]) {
+        let model = model(cell(11), method, 2e-3, 1e9);
+        let shape = stretched(&model.kinds[0]);
+        let (mut clean, mut ws) = (State::new(&model, &[vec![shape.clone(); 11]]), Workspace::new(&model));
+        let (mut poisoned, mut bad) = (clean.clone(), Workspace::new(&model));
+        for _ in 0..20 {
+            bad.poison();
+            step(&model, &mut clean, &mut ws).unwrap();
+            step(&model, &mut poisoned, &mut bad).unwrap();
+            assert_eq!(clean, poisoned, "{method:?}");
+        }
+    }
+}
