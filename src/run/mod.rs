@@ -47,6 +47,7 @@ pub static STOP: AtomicBool = AtomicBool::new(false);
 /// step fails (the last good state is in the checkpoint), [`Error::Interrupted`] after [`STOP`], [`Error::Machine`] when
 /// the disk refuses.
 pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
+    let pool = pool_of(options.threads)?;
     let compiled = compile(document)?;
     let header = Header::now(
         &document.source.name,
@@ -57,7 +58,7 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
     );
     let layout = layout_of(&compiled.model);
     let writer = ResultWriter::create(&options.result, &header, &layout, options.overwrite)?;
-    with_threads(options.threads, || drive(compiled, writer, &options.result, report, Start::Fresh))
+    within(pool, || drive(compiled, writer, &options.result, report, Start::Fresh))
 }
 
 /// Goes on with a run that was stopped, killed or asked to run longer, from its last checkpoint.
@@ -65,6 +66,7 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
 /// # Errors
 /// As [`run`], and [`Error::Input`] when there is no checkpoint or it belongs to another experiment.
 pub fn resume(result: &Path, threads: Option<usize>, report: &mut dyn Report) -> Result<Outcome> {
+    let pool = pool_of(threads)?;
     let Some(checkpoint) = load_checkpoint(result)? else {
         let fault = Fault::new(format!("{} has no checkpoint to resume from", result.display()))
             .help("it was stopped before its first checkpoint: run the experiment again");
@@ -82,7 +84,7 @@ pub fn resume(result: &Path, threads: Option<usize>, report: &mut dyn Report) ->
     compiled.state = state;
     let layout = layout_of(&compiled.model);
     let writer = ResultWriter::reopen(result, &header, &layout, checkpoint.meta.step)?;
-    with_threads(threads, || drive(compiled, writer, result, report, Start::Resumed))
+    within(pool, || drive(compiled, writer, result, report, Start::Resumed))
 }
 
 /// The document that a result was made from; paths start from the folder of the document if it is still there.
@@ -109,13 +111,26 @@ fn check_fits(fresh: &State, state: &State, result: &Path) -> Result<()> {
     Err(Error::input(fault))
 }
 
-fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
-    let Some(threads) = threads else { return work() };
+/// The threads that were asked for; `None` stands for all cores.
+fn pool_of(threads: Option<usize>) -> Result<Option<rayon::ThreadPool>> {
+    let Some(threads) = threads else { return Ok(None) };
+    if threads == 0 {
+        let fault =
+            Fault::new("a run cannot be made by 0 threads").help("ask for 1 or more; leave it out for all cores");
+        return Err(Error::input(fault));
+    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| Error::Machine {
         message: format!("{threads} threads could not be started: {error}"),
         help: "ask for fewer with --threads".into(),
     })?;
-    pool.install(work)
+    Ok(Some(pool))
+}
+
+fn within<T: Send>(pool: Option<rayon::ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
+    match pool {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
