@@ -1,6 +1,6 @@
 //! Which frame of a result `render` and `export` mean: by its number, or by an instant.
 
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Result, short};
 use crate::experiment::When;
 use crate::output::ResultFile;
 
@@ -28,7 +28,9 @@ impl FrameArgs {
         }
         let when = match &self.time {
             Some(text) => {
-                text.parse::<When>().map_err(|fault| Error::input(Fault::new(fault.message).help(fault.help)))?
+                let found = |fault: crate::units::UnitError| format!("--time {text}: {}", fault.message);
+                let help = "write first, last, or a time with its unit, such as \"12 s\"";
+                text.parse::<When>().map_err(|fault| Error::input(Fault::new(found(fault)).help(help)))?
             }
             None => absent,
         };
@@ -40,7 +42,7 @@ impl FrameArgs {
         // Half a frame of room: a time near the end means the last frame.
         let room = 0.5 * (times[last] - times[0]) / last.max(1) as f64;
         if self.time.is_some() && (time < times[0] - room || time > times[last] + room) {
-            return Err(missing(result, &times, &format!("frame at t = {time} s")));
+            return Err(missing(result, &times, &format!("frame at t = {} s", short(time))));
         }
         let away = |frame: &usize| (times[*frame] - time).abs();
         Ok((0..=last).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(last))
@@ -49,7 +51,10 @@ impl FrameArgs {
 
 fn missing(result: &ResultFile, times: &[f64], wanted: &str) -> Error {
     let last = times.len() - 1;
-    let fault = Fault::new(format!("{} has no {wanted}", result.path().display()))
-        .help(format!("its frames are 0 to {last}, from t = {} s to t = {} s", times[0], times[last]));
+    let fault = Fault::new(format!("{} has no {wanted}", result.path().display())).help(format!(
+        "its frames are 0 to {last}, from t = {} s to t = {} s",
+        short(times[0]),
+        short(times[last])
+    ));
     Error::input(fault)
 }

@@ -87,11 +87,22 @@ pub enum Named {
     ByItself,
 }
 
-/// Nothing is overwritten unless asked for.
+/// Nothing is overwritten unless asked for, and nothing is computed for a folder that is not there.
 ///
 /// # Errors
-/// [`Error::Input`] if the file exists and `force` is not set.
+/// [`Error::Input`] if the file exists and `force` is not set, or if its folder does not exist.
 pub fn refuse_existing(path: &Path, force: bool, named: Named) -> Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        let fault =
+            Fault::new(format!("{} cannot be written: there is no folder {}", path.display(), folder.display()))
+                .help("make the folder first, or name another file with -o");
+        return Err(Error::input(fault));
+    }
+    if path.is_dir() && path.extension().is_some() {
+        let fault = Fault::new(format!("{} is a folder", path.display())).help("name a file in it with -o");
+        return Err(Error::input(fault));
+    }
     if force || !path.exists() {
         return Ok(());
     }

@@ -61,15 +61,15 @@ pub fn run(args: &RunArgs) -> Result<Report> {
     sets.extend(args.until.as_ref().map(|until| format!("run.until={until}")));
     let document = Document::read(&args.experiment, &sets)?;
     let result = args.output.clone().unwrap_or_else(|| default_result(&args.experiment));
-    if args.output.is_none()
-        && let Some(folder) = result.parent()
-    {
-        make_folder(folder)?;
-    }
+    let folder = result.parent().filter(|folder| args.output.is_none() && !folder.exists());
+    folder.map_or(Ok(()), make_folder)?;
     let overwrite = if args.force { Overwrite::Replace } else { Overwrite::Refuse };
     stop_on_signals();
     let options = RunOptions { result: result.clone(), overwrite, threads: args.how.threads };
-    let outcome = run::run(&document, &options, &mut *reporter(&args.how))?;
+    let outcome = run::run(&document, &options, &mut *reporter(&args.how)).inspect_err(|_| {
+        // A run that did not begin leaves no folder behind; one that holds something is not removed.
+        folder.map(std::fs::remove_dir);
+    })?;
     tell(&result, &outcome, &args.how)
 }
 
