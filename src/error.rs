@@ -77,7 +77,7 @@ pub enum Error {
         kept: Option<PathBuf>,
     },
     /// The user or the system asked the run to stop; the result file can be resumed.
-    #[error("interrupted at t = {time} s")]
+    #[error("interrupted at t = {} s", crate::error::short(*.time))]
     Interrupted {
         /// Simulated time reached, s.
         time: f64,
@@ -109,6 +109,11 @@ impl Error {
             Self::Machine { .. } => 1,
         }
     }
+}
+
+/// A number as messages show it: at most six digits, without zeros at the end.
+pub fn short(value: f64) -> String {
+    format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
 /// One line that names the faults, for logs and `Display`.

@@ -1,7 +1,10 @@
 //! `pseudopod check`: finds all faults of experiment documents without running them.
 
+use super::report::{Report, path_text};
 use crate::error::{Error, Result};
-use crate::experiment::Document;
+use crate::experiment::{Document, compile};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
 /// Checks experiment documents and reports all their faults.
@@ -13,24 +16,45 @@ pub struct CheckArgs {
     /// Changes a key before checking, as in --set run.until="10 s".
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub sets: Vec<String>,
+    /// Prints what was found as JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
-/// Runs the command: a line for every good document, then the faults of all others.
+/// Runs the command: reads every document and builds its cells. A line for every good document; the faults of all
+/// others together.
 ///
 /// # Errors
 /// [`Error::Input`] with the faults of all documents.
-pub fn run(args: CheckArgs) -> Result<()> {
-    let mut faults = Vec::new();
+pub fn run(args: &CheckArgs) -> Result<Report> {
+    let (mut words, mut good, mut faults) = (String::new(), Vec::<Value>::new(), Vec::new());
     for path in &args.documents {
-        match Document::read(path, &args.sets) {
+        // Faults of meshes and steps show only once the cells are built.
+        let checked = Document::read(path, &args.sets).and_then(|document| compile(&document).map(|_| document));
+        match checked {
             Ok(document) => {
                 let cells: usize = document.experiment.cells.values().map(|cell| cell.count()).sum();
                 let (types, title) = (document.experiment.cells.len(), &document.experiment.title);
-                println!("{}: good: \"{title}\", {cells} cells of {types} types", path.display());
+                // Writing to a text cannot fail.
+                let _ = writeln!(words, "{}: good: \"{title}\", {}", path.display(), counted(cells, types));
+                good.push(json!({ "path": path_text(path), "title": title, "cells": cells, "types": types }));
             }
             Err(Error::Input(found)) => faults.extend(found),
             Err(other) => return Err(other),
         }
     }
-    if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
+    let report = Report { words, ..Report::default() }.fact("documents", good);
+    if faults.is_empty() {
+        return Ok(report);
+    }
+    if !args.json {
+        report.print("check", super::report::Form::Words)?;
+    }
+    Err(Error::Input(faults))
+}
+
+/// "1 cell", "12 cells of 2 types".
+fn counted(cells: usize, types: usize) -> String {
+    let cells = if cells == 1 { "1 cell".to_owned() } else { format!("{cells} cells") };
+    if types == 1 { cells } else { format!("{cells} of {types} types") }
 }

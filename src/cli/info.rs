@@ -1,7 +1,9 @@
 //! `pseudopod info`: describes a result file.
 
+use super::report::Report;
 use crate::error::Result;
 use crate::output::{ResultFile, describe, to_json};
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// Describes a result file.
@@ -18,12 +20,11 @@ pub struct InfoArgs {
 ///
 /// # Errors
 /// As [`ResultFile::open`].
-pub fn run(args: &InfoArgs) -> Result<()> {
+pub fn run(args: &InfoArgs) -> Result<Report> {
     let file = ResultFile::open(&args.result)?;
-    if args.json {
-        println!("{:#}", to_json(&file)?);
-    } else {
-        print!("{}", describe(&file)?);
+    if !args.json {
+        return Ok(Report { words: describe(&file)?, ..Report::default() });
     }
-    Ok(())
+    let Value::Object(facts) = to_json(&file)? else { return Ok(Report::default()) };
+    Ok(Report { facts, ..Report::default() })
 }

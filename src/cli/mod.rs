@@ -2,15 +2,18 @@
 
 pub mod check;
 pub mod export;
+pub mod frames;
 pub mod info;
 pub mod plot;
 pub mod render;
+pub mod report;
 pub mod resume;
 pub mod run;
 pub mod schema;
 
 use crate::error::{Paint, Result, render};
 use clap::{Parser, Subcommand};
+use report::{Form, Report};
 use std::io::IsTerminal;
 
 /// Simulates populations of deformable cells.
@@ -37,33 +40,52 @@ pub enum Command {
     Render(render::RenderArgs),
     /// Makes charts of a result file.
     Plot(plot::PlotArgs),
-    /// Writes a frame of a result file as a mesh.
+    /// Writes a frame of a result file as a mesh, or its numbers as a table.
     Export(export::ExportArgs),
     /// Prints the JSON schema of experiment documents.
     Schema(schema::SchemaArgs),
 }
 
-/// Does what the arguments say; returns the exit status.
-pub fn main(arguments: Arguments) -> i32 {
-    match act(arguments.command) {
-        Ok(()) => 0,
-        Err(error) => {
-            let paint = if std::io::stderr().is_terminal() { Paint::Coloured } else { Paint::Plain };
-            eprint!("{}", render(&error, paint));
-            error.exit_code()
-        }
+impl Command {
+    /// Its name on the command line, and how it tells what it did.
+    fn manner(&self) -> (&'static str, Form) {
+        let (name, json) = match self {
+            Self::Run(args) => ("run", args.how.json),
+            Self::Resume(args) => ("resume", args.how.json),
+            Self::Check(args) => ("check", args.json),
+            Self::Info(args) => ("info", args.json),
+            Self::Render(args) => ("render", args.json),
+            Self::Plot(args) => ("plot", args.json),
+            Self::Export(args) => ("export", args.json),
+            Self::Schema(_) => ("schema", false),
+        };
+        (name, if json { Form::Json } else { Form::Words })
     }
 }
 
-fn act(command: Command) -> Result<()> {
+/// Does what the arguments say; returns the exit status.
+pub fn main(arguments: Arguments) -> i32 {
+    let (name, form) = arguments.command.manner();
+    let outcome = act(arguments.command).and_then(|report| report.print(name, form));
+    let Err(error) = outcome else { return 0 };
+    let paint = if std::io::stderr().is_terminal() { Paint::Coloured } else { Paint::Plain };
+    eprint!("{}", render(&error, paint));
+    if form == Form::Json {
+        // Standard error has told everything already.
+        let _ = report::print_failure(name, &error);
+    }
+    error.exit_code()
+}
+
+fn act(command: Command) -> Result<Report> {
     match command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => resume::run(&args),
-        Command::Check(args) => check::run(args),
+        Command::Check(args) => check::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Plot(args) => plot::run(&args),
         Command::Export(args) => export::run(&args),
-        Command::Schema(args) => schema::run(args),
+        Command::Schema(args) => schema::run(&args),
     }
 }

@@ -1,6 +1,7 @@
 //! `pseudopod plot`: charts of a result file.
 
-use super::render::refuse_existing;
+use super::render::{Named, refuse_existing};
+use super::report::Report;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{OneOrMany, Plot, PlotKind};
 use crate::output::ResultFile;
@@ -31,25 +32,27 @@ pub struct PlotArgs {
     /// Replaces files that are there.
     #[arg(long)]
     pub force: bool,
+    /// Prints what was made as JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Runs the command.
 ///
 /// # Errors
 /// A result, chart or series that is not there; files that exist or cannot be written.
-pub fn run(args: &PlotArgs) -> Result<()> {
+pub fn run(args: &PlotArgs) -> Result<Report> {
     let result = ResultFile::open(&args.result)?;
     let document = crate::run::document_of(result.header(), &args.result)?;
-    for plot in wanted(args, &document.experiment.plot)? {
-        let path = beside(&args.result, &plot.name);
-        for ending in ["svg", "png"] {
-            refuse_existing(&beside(&args.result, &format!("{}.{ending}", plot.name)), args.force)?;
-        }
-        for made in save_chart(&chart_of(&result, &document, &plot)?, &path)? {
-            println!("{}", made.display());
-        }
+    let plots = wanted(args, &document.experiment.plot)?;
+    for ending in plots.iter().flat_map(|plot| ["svg", "png"].map(|ending| format!("{}.{ending}", plot.name))) {
+        refuse_existing(&beside(&args.result, &ending), args.force, Named::ByItself)?;
     }
-    Ok(())
+    let mut made = Vec::new();
+    for plot in plots {
+        made.extend(save_chart(&chart_of(&result, &document, &plot)?, &beside(&args.result, &plot.name))?);
+    }
+    Ok(Report::of_files(&args.result, &made))
 }
 
 /// The charts that the arguments ask for.
@@ -81,8 +84,11 @@ fn wanted(args: &PlotArgs, known: &[Plot]) -> Result<Vec<Plot>> {
     let found: Vec<Plot> = known.iter().filter(|plot| plot.name == *name).cloned().collect();
     if found.is_empty() {
         let names: Vec<&str> = known.iter().map(|plot| plot.name.as_str()).collect();
-        let fault = Fault::new(format!("the experiment has no chart \"{name}\""))
-            .help(format!("its charts are: {}; or name series with --y", names.join(", ")));
+        let help = match names.is_empty() {
+            true => "it declares no [[plot]]; name series with --y, or use --tracks or --msd".to_owned(),
+            false => format!("its charts are: {}; or name series with --y", names.join(", ")),
+        };
+        let fault = Fault::new(format!("the experiment has no chart \"{name}\"")).help(help);
         return Err(Error::input(fault));
     }
     Ok(found)

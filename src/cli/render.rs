@@ -1,11 +1,17 @@
 //! `pseudopod render`: pictures and movies of a result file.
 
+use super::frames::FrameArgs;
+use super::report::Report;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::When;
 use crate::output::ResultFile;
 use crate::picture::Movie;
 use crate::picture::from_file::{beside, film, still};
+use crate::units::Time;
 use std::path::{Path, PathBuf};
+
+/// What a picture may measure along a side: from an icon to the largest that fits in memory with ease.
+const PIXELS: std::ops::RangeInclusive<i64> = 16..=16_384;
 
 /// Makes a picture, or a movie of all frames.
 #[derive(Debug, Clone, clap::Args)]
@@ -15,17 +21,17 @@ pub struct RenderArgs {
     /// A .png for one instant; .gif, .mp4, .webm or a folder for all frames. By default a .png beside the result.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// The instant: first, last, or a time such as "12 s".
-    #[arg(long, value_name = "TIME")]
-    pub time: Option<String>,
+    /// Which frame.
+    #[command(flatten)]
+    pub frame: FrameArgs,
     /// What colours show: type, or a series of the cells such as volume.
     #[arg(long, value_name = "SERIES")]
     pub colour_by: Option<String>,
     /// Width in pixels.
-    #[arg(long)]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(PIXELS))]
     pub width: Option<u32>,
     /// Height in pixels.
-    #[arg(long)]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(PIXELS))]
     pub height: Option<u32>,
     /// Frames a second in a movie.
     #[arg(long, default_value_t = 20.0)]
@@ -33,44 +39,76 @@ pub struct RenderArgs {
     /// Replaces a file that is there.
     #[arg(long)]
     pub force: bool,
+    /// Prints what was made as JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Runs the command.
 ///
 /// # Errors
 /// A result or series that is not there, a file that exists or cannot be written.
-pub fn run(args: &RenderArgs) -> Result<()> {
+pub fn run(args: &RenderArgs) -> Result<Report> {
     let result = ResultFile::open(&args.result)?;
     let document = crate::run::document_of(result.header(), &args.result)?;
     let mut picture = document.experiment.picture.clone();
-    if let Some(time) = &args.time {
-        picture.time =
-            time.parse::<When>().map_err(|fault| Error::input(Fault::new(fault.message).help(fault.help)))?;
-    }
     args.colour_by.iter().for_each(|series| picture.colour_by.clone_from(series));
     picture.width = args.width.unwrap_or(picture.width);
     picture.height = args.height.unwrap_or(picture.height);
+    let frame = args.frame.of(&result, picture.time)?;
+    picture.time = When::At(Time::new(result.times()?[frame]));
+    let named = if args.output.is_some() { Named::ByUser } else { Named::ByItself };
     let output = args.output.clone().unwrap_or_else(|| beside(&args.result, "png"));
-    refuse_existing(&output, args.force)?;
+    refuse_existing(&output, args.force, named)?;
     if output.extension().is_some_and(|ending| ending == "png") {
         still(&result, &document, &picture)?.save_png(&output)?;
-        println!("{}", output.display());
-        return Ok(());
+        return Ok(Report::of_files(&args.result, &[output]).fact("frames", 1));
+    }
+    if picture.colour_by != "type" {
+        // A series that is not there is told before the movie's file is made.
+        result.units(&picture.colour_by)?;
     }
     let mut movie = Movie::create(&output, args.fps)?;
     let frames: Vec<usize> = (0..result.frames()).collect();
     film(&result, &document, &picture, &frames, |image| movie.add(image))?;
     let written = movie.finish()?;
     written.notice.iter().for_each(|notice| eprintln!("{notice}"));
-    println!("{}: {} frames", written.path.display(), written.frames);
-    Ok(())
+    let mut report = Report::of_files(&args.result, &[written.path]).fact("frames", written.frames);
+    report.words = format!("{}: {} frames\n", report.words.trim_end(), written.frames);
+    Ok(report)
 }
 
-/// Nothing is overwritten unless asked for.
-pub fn refuse_existing(path: &Path, force: bool) -> Result<()> {
+/// Who named a file that is about to be written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Named {
+    /// The user, with -o.
+    ByUser,
+    /// The program, after the result.
+    ByItself,
+}
+
+/// Nothing is overwritten unless asked for, and nothing is computed for a folder that is not there.
+///
+/// # Errors
+/// [`Error::Input`] if the file exists and `force` is not set, or if its folder does not exist.
+pub fn refuse_existing(path: &Path, force: bool, named: Named) -> Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        let fault =
+            Fault::new(format!("{} cannot be written: there is no folder {}", path.display(), folder.display()))
+                .help("make the folder first, or name another file with -o");
+        return Err(Error::input(fault));
+    }
+    if path.is_dir() && path.extension().is_some() {
+        let fault = Fault::new(format!("{} is a folder", path.display())).help("name a file in it with -o");
+        return Err(Error::input(fault));
+    }
     if force || !path.exists() {
         return Ok(());
     }
-    let fault = Fault::new(format!("{} exists", path.display())).help("name another file with -o, or use --force");
-    Err(Error::input(fault))
+    let help = match named {
+        Named::ByUser => "name another file with -o, or use --force to replace it",
+        Named::ByItself => "use --force to replace it, or move it away",
+    };
+    Err(Error::input(Fault::new(format!("{} exists", path.display())).help(help)))
 }

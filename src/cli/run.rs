@@ -1,9 +1,11 @@
 //! `pseudopod run`: runs an experiment and leaves its result, picture and charts.
 
+use super::report::{Report, path_text, paths};
 use crate::error::{Error, Result};
 use crate::experiment::Document;
 use crate::output::Overwrite;
-use crate::run::{self, Outcome, Progress, Quiet, Report, RunOptions, STOP};
+use crate::run::{self, Outcome, Progress, Quiet, RunOptions, STOP};
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -53,21 +55,21 @@ pub struct How {
 ///
 /// # Errors
 /// As [`run::run`].
-pub fn run(args: &RunArgs) -> Result<()> {
+pub fn run(args: &RunArgs) -> Result<Report> {
     let mut sets = args.sets.clone();
     sets.extend(args.seed.map(|seed| format!("seed={seed}")));
     sets.extend(args.until.as_ref().map(|until| format!("run.until={until}")));
     let document = Document::read(&args.experiment, &sets)?;
     let result = args.output.clone().unwrap_or_else(|| default_result(&args.experiment));
-    if args.output.is_none()
-        && let Some(folder) = result.parent()
-    {
-        make_folder(folder)?;
-    }
+    let folder = result.parent().filter(|folder| args.output.is_none() && !folder.exists());
+    folder.map_or(Ok(()), make_folder)?;
     let overwrite = if args.force { Overwrite::Replace } else { Overwrite::Refuse };
     stop_on_signals();
     let options = RunOptions { result: result.clone(), overwrite, threads: args.how.threads };
-    let outcome = run::run(&document, &options, &mut *reporter(&args.how))?;
+    let outcome = run::run(&document, &options, &mut *reporter(&args.how)).inspect_err(|_| {
+        // A run that did not begin leaves no folder behind; one that holds something is not removed.
+        folder.map(std::fs::remove_dir);
+    })?;
     tell(&result, &outcome, &args.how)
 }
 
@@ -103,35 +105,38 @@ pub fn stop_on_signals() {
 }
 
 /// The listener that the options ask for.
-pub fn reporter(how: &How) -> Box<dyn Report> {
+pub fn reporter(how: &How) -> Box<dyn run::Report> {
     if how.quiet { Box::new(Quiet) } else { Box::new(Progress::default()) }
 }
 
 /// Makes the pictures and says what was done.
-pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<()> {
+///
+/// # Errors
+/// As [`crate::picture::make_defaults`].
+pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<Report> {
     let made = if how.no_pictures { Vec::new() } else { crate::picture::make_defaults(result)? };
-    if how.json {
-        let files: Vec<String> = made.iter().map(|path| path.display().to_string()).collect();
-        let report = serde_json::json!({
-            "result": result.display().to_string(), "steps": outcome.steps, "frames": outcome.frames,
-            "wall_time_s": outcome.wall_time, "pictures": files,
-        });
-        println!("{report}");
-    } else if !how.quiet {
-        println!(
-            "{}: {} steps, {} frames, {:.1} s",
-            result.display(),
-            outcome.steps,
-            outcome.frames,
-            outcome.wall_time
-        );
-        made.iter().for_each(|path| println!("{}", path.display()));
-        let file = crate::output::ResultFile::open(result)?;
-        for measure in file.summary()? {
-            println!("{} = {} {}  {}", measure.name, number(measure.value), measure.unit, measure.description);
+    let summary = crate::output::ResultFile::open(result)?.summary()?;
+    let mut words = String::new();
+    // Writing to a text cannot fail.
+    if !how.quiet {
+        let (name, Outcome { steps, frames, wall_time }) = (result.display(), outcome);
+        let _ = writeln!(words, "{name}: {steps} steps, {frames} frames, {wall_time:.1} s");
+        for path in &made {
+            let _ = writeln!(words, "{}", path.display());
+        }
+        for measure in &summary {
+            let (value, unit) = (number(measure.value), if measure.unit == "1" { "" } else { &measure.unit });
+            let line = format!("{} = {value} {unit}  {}", measure.name, measure.description);
+            let _ = writeln!(words, "{}", line.trim_end());
         }
     }
-    Ok(())
+    let measures = summary.into_iter().map(|m| (m.name, serde_json::json!({ "value": m.value, "unit": m.unit })));
+    let report = Report { words, ..Report::default() }.fact("result", path_text(result)).fact("files", paths(&made));
+    Ok(report
+        .fact("steps", outcome.steps)
+        .fact("frames", outcome.frames)
+        .fact("wall_time_s", outcome.wall_time)
+        .fact("summary", measures.collect::<serde_json::Map<_, _>>()))
 }
 
 /// A number with six digits, whatever its size.

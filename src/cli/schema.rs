@@ -1,7 +1,7 @@
 //! `pseudopod schema`: prints the JSON schema of the experiment document.
 
+use super::report::Report;
 use crate::error::{Error, Result};
-use std::io::Write;
 use std::path::PathBuf;
 
 /// Prints the JSON schema of the experiment document, for editors.
@@ -20,15 +20,12 @@ pub fn text() -> String {
 /// Runs the command.
 ///
 /// # Errors
-/// The file or the terminal cannot be written.
-pub fn run(args: SchemaArgs) -> Result<()> {
-    let written = match &args.output {
-        Some(path) => std::fs::write(path, text()),
-        None => std::io::stdout().write_all(text().as_bytes()),
-    };
-    let name = args.output.map_or("standard output".to_owned(), |path| path.display().to_string());
-    written.map_err(|error| Error::Machine {
-        message: format!("{name} cannot be written: {error}"),
-        help: "choose another file with -o".into(),
-    })
+/// The file cannot be written.
+pub fn run(args: &SchemaArgs) -> Result<Report> {
+    let Some(path) = &args.output else { return Ok(Report { words: text(), ..Report::default() }) };
+    std::fs::write(path, text()).map_err(|error| Error::Machine {
+        message: format!("{} cannot be written: {error}", path.display()),
+        help: "name a file in a folder that exists and that you may write to with -o".into(),
+    })?;
+    Ok(Report::default())
 }

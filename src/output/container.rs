@@ -126,8 +126,7 @@ pub(super) fn damaged(path: &Path, text: &str) -> Error {
         true => format!("{} is truncated: its end is missing", path.display()),
         false => format!("{} is damaged ({text})", path.display()),
     };
-    let help = "copy it again if it was copied; otherwise resume from its checkpoint file, if there is one, \
-                or run the experiment again";
+    let help = "copy it again if it was copied; otherwise run the experiment again with --force";
     Error::input(Fault::new(found).help(help))
 }
 
@@ -147,6 +146,7 @@ pub(super) fn failed(path: &Path, what: &str, error: &hdf5::Error) -> Error {
 /// The machine's trouble with a file, from the text of the library or of the system.
 pub(super) fn machine_error(path: &Path, what: &str, text: &str) -> Error {
     let cases = [
+        ("No such file or directory", "its folder does not exist", "make the folder first, or use another -o"),
         ("No space left on device", "no space left on device", "free some space, or write to another disk with -o"),
         ("quota exceeded", "the disk quota is exceeded", "free some space, or write to another disk with -o"),
         ("File too large", "the file would be larger than allowed here", "raise the limit, or record less often"),

@@ -13,12 +13,14 @@ mod info;
 mod layout_io;
 mod packing;
 mod reader;
+mod tables;
 mod writer;
 
 pub use checkpoint::{Checkpoint, CheckpointMeta, checkpoint_path, load_checkpoint, save_checkpoint};
 pub use header::{Header, Measure};
 pub use info::{describe, to_json};
 pub use reader::{Ending, ResultFile};
+pub use tables::{Table, table_text, write_table};
 pub use writer::{Overwrite, ResultWriter};
 
 /// What does not change during a run and says how the arrays of a frame are to be read.

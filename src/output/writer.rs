@@ -51,6 +51,11 @@ impl ResultWriter {
             return Err(Error::input(fault));
         }
         claim(path, overwrite)?;
+        // A file that could not be begun is of no use, and would stand in the way of the next try.
+        Self::begin(path, header, layout).inspect_err(|_| drop(std::fs::remove_file(path)))
+    }
+
+    fn begin(path: &Path, header: &Header, layout: &Layout) -> Result<Self> {
         let file = container::create(path)?;
         let made = write_header(&file, header)
             .and_then(|()| write_layout(&file, layout))
@@ -65,15 +70,19 @@ impl ResultWriter {
     /// [`Error::Input`] if the file cannot be opened or belongs to another experiment; [`Error::Machine`] if the disk
     /// refuses.
     pub fn reopen(path: &Path, header: &Header, layout: &Layout, keep_until_step: u64) -> Result<Self> {
-        let file = container::open(path, Access::Append)?;
         let damaged = |error: hdf5::Error| container::damaged(path, &error.to_string());
-        check_same_run(path, &read_header(&file).map_err(damaged)?, header)?;
-        if read_layout(&file).map_err(damaged)? != *layout {
+        // Opened for reading first: a refusal changes nothing, not even the length of the file.
+        let seen = container::open(path, Access::Read)?;
+        let (found, cells) = (read_header(&seen).map_err(damaged)?, read_layout(&seen).map_err(damaged)?);
+        drop(seen);
+        check_same_run(path, &found, header)?;
+        if cells != *layout {
             return Err(Error::input(
                 Fault::new(format!("{} holds other cells than this experiment makes", path.display()))
                     .help("resume with the version of pseudopod that began the run"),
             ));
         }
+        let file = container::open(path, Access::Append)?;
         let whole = whole_frames(&file).map_err(damaged)?;
         let steps = file.dataset("/step").and_then(|steps| steps.read_raw::<i64>()).map_err(damaged)?;
         let last = i64::try_from(keep_until_step).unwrap_or(i64::MAX);
@@ -301,6 +310,9 @@ fn claim(path: &Path, overwrite: Overwrite) -> Result<()> {
     let side = checkpoint_path(path);
     let fault = |found: String, help: &str| Err(Error::input(Fault::new(found).help(help)));
     let force = "use --force to replace it, or another -o";
+    if path.is_dir() {
+        return fault(format!("{name} is a folder"), "name a file in it with -o");
+    }
     if overwrite == Overwrite::Refuse && path.exists() {
         return fault(format!("{name} exists"), force);
     }
@@ -327,7 +339,12 @@ fn claim(path: &Path, overwrite: Overwrite) -> Result<()> {
                 "write to a folder that is yours with -o",
             );
         }
-        Err(_) if path.is_dir() => return fault(format!("{name} is a folder"), "name a file in it with -o"),
+        Err(error) if error.kind() == ErrorKind::NotADirectory => {
+            return fault(
+                format!("{name} could not be made: a part of its path is a file, not a folder"),
+                "use another -o",
+            );
+        }
         Err(error) => return Err(machine_error(path, "could not be made", &error.to_string())),
     }
     match std::fs::remove_file(&side) {
@@ -346,9 +363,11 @@ fn check_same_run(path: &Path, found: &Header, wanted: &Header) -> Result<()> {
         () if found.seed != wanted.seed => "another seed",
         () => return Ok(()),
     };
+    let (name, side) = (path.display(), checkpoint_path(path));
+    let (document, seed) = (&found.document, found.seed);
     Err(Error::input(
-        Fault::new(format!("{} was made with {differs} ({}, seed {})", path.display(), found.document, found.seed))
-            .help("resume it without changes, or start a new run with another -o"),
+        Fault::new(format!("{name} ({document}, seed {seed}) was made with {differs} than what is to be resumed"))
+            .help(format!("if {} came from another run, put the right one back or move it away", side.display())),
     ))
 }
 

@@ -75,6 +75,8 @@ fn types_of(result: &ResultFile, plot: &Plot) -> Vec<String> {
 
 fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Result<Chart> {
     let names: Vec<&str> = std::iter::once(x).chain(series.iter().map(String::as_str)).collect();
+    // A name that the file does not know is told beside those that it does.
+    names.iter().try_for_each(|name| result.units(name).map(drop))?;
     let recording = Recording::read(result, &names)?;
     let types = types_of(result, plot);
     let mut chart = Chart { x: Axis::linear(label_of(result, x)), ..Chart::default() };

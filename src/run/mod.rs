@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Compiled, Document, compile};
-use crate::output::{Header, Overwrite, ResultWriter, load_checkpoint};
+use crate::output::{Frame, Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
 use crate::sim::{State, Trouble, Workspace, step};
 
 /// How a run is to be made.
@@ -47,6 +47,7 @@ pub static STOP: AtomicBool = AtomicBool::new(false);
 /// step fails (the last good state is in the checkpoint), [`Error::Interrupted`] after [`STOP`], [`Error::Machine`] when
 /// the disk refuses.
 pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
+    let pool = pool_of(options.threads)?;
     let compiled = compile(document)?;
     let header = Header::now(
         &document.source.name,
@@ -57,17 +58,37 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
     );
     let layout = layout_of(&compiled.model);
     let writer = ResultWriter::create(&options.result, &header, &layout, options.overwrite)?;
-    with_threads(options.threads, || drive(compiled, writer, &options.result, report, Start::Fresh))
+    within(pool, || drive(compiled, writer, &options.result, report, Start::Fresh))
+        .map_err(|error| can_go_on(error, &options.result))
 }
 
-/// Goes on with a run that was stopped, killed or asked to run longer, from its last checkpoint.
+/// What the run of a result did, if it came to its end; then there is nothing to resume.
+///
+/// # Errors
+/// As [`ResultFile::open`].
+pub fn finished_already(result: &Path) -> Result<Option<Outcome>> {
+    // While there is a checkpoint beside it, the run was not yet done with the file, or had not begun to record.
+    if checkpoint_path(result).exists() {
+        return Ok(None);
+    }
+    let file = ResultFile::open(result)?;
+    let steps = file.steps()?.last().copied().unwrap_or(0);
+    Ok(file.ending().finished.then_some(Outcome { steps, frames: file.frames(), wall_time: 0.0 }))
+}
+
+/// Goes on with a run that was stopped or killed, from its last checkpoint. A finished run stays as it is.
 ///
 /// # Errors
 /// As [`run`], and [`Error::Input`] when there is no checkpoint or it belongs to another experiment.
 pub fn resume(result: &Path, threads: Option<usize>, report: &mut dyn Report) -> Result<Outcome> {
+    let pool = pool_of(threads)?;
+    if let Some(outcome) = finished_already(result)? {
+        return Ok(outcome);
+    }
     let Some(checkpoint) = load_checkpoint(result)? else {
-        let fault = Fault::new(format!("{} has no checkpoint to resume from", result.display()))
-            .help("it was stopped before its first checkpoint: run the experiment again");
+        let (name, side) = (result.display(), checkpoint_path(result));
+        let fault = Fault::new(format!("{name} is not finished, and its checkpoint {} is not there", side.display()))
+            .help("put the checkpoint back beside the result, or run the experiment again");
         return Err(Error::input(fault));
     };
     let header = checkpoint.meta.header.clone();
@@ -82,7 +103,17 @@ pub fn resume(result: &Path, threads: Option<usize>, report: &mut dyn Report) ->
     compiled.state = state;
     let layout = layout_of(&compiled.model);
     let writer = ResultWriter::reopen(result, &header, &layout, checkpoint.meta.step)?;
-    with_threads(threads, || drive(compiled, writer, result, report, Start::Resumed))
+    within(pool, || drive(compiled, writer, result, report, Start::Resumed)).map_err(|error| can_go_on(error, result))
+}
+
+/// When the machine failed in the middle of a run: what is recorded is safe, and how to go on from there.
+fn can_go_on(error: Error, result: &Path) -> Error {
+    match error {
+        Error::Machine { message, help } if checkpoint_path(result).exists() => {
+            Error::Machine { message, help: format!("{help}; then go on with: pseudopod resume {}", result.display()) }
+        }
+        other => other,
+    }
 }
 
 /// The document that a result was made from; paths start from the folder of the document if it is still there.
@@ -109,13 +140,26 @@ fn check_fits(fresh: &State, state: &State, result: &Path) -> Result<()> {
     Err(Error::input(fault))
 }
 
-fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
-    let Some(threads) = threads else { return work() };
+/// The threads that were asked for; `None` stands for all cores.
+fn pool_of(threads: Option<usize>) -> Result<Option<rayon::ThreadPool>> {
+    let Some(threads) = threads else { return Ok(None) };
+    if threads == 0 {
+        let fault =
+            Fault::new("a run cannot be made by 0 threads").help("ask for 1 or more; leave it out for all cores");
+        return Err(Error::input(fault));
+    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| Error::Machine {
         message: format!("{threads} threads could not be started: {error}"),
         help: "ask for fewer with --threads".into(),
     })?;
-    pool.install(work)
+    Ok(Some(pool))
+}
+
+fn within<T: Send>(pool: Option<rayon::ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
+    match pool {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -136,6 +180,7 @@ fn drive(
     let began = Instant::now();
     let mut ws = Workspace::new(&model);
     let mut recorder = record::Recorder::new(&model, &schedule);
+    let mut recorded = state.step;
     if start == Start::Fresh {
         writer.append(&recorder.record(&model, &mut state, &ws, 0.0))?;
         save(&mut writer, &state)?;
@@ -148,12 +193,18 @@ fn drive(
                 let last = state.time >= model.until;
                 if last || passed(before, state.time, schedule.every) {
                     writer.append(&recorder.record(&model, &mut state, &ws, done.dt))?;
+                    recorded = state.step;
                 }
                 if passed(before, state.time, schedule.checkpoint) && !last {
                     save(&mut writer, &state)?;
                 }
             }
-            Err(trouble) => return Err(failed(trouble, writer, &state, result)),
+            Err(trouble) => {
+                // The last good state is what the user wants to look at.
+                let unseen = (state.step > recorded).then(|| recorder.record(&model, &mut state, &ws, 0.0));
+                report.end();
+                return Err(failed(trouble, writer, &state, unseen, result));
+            }
         }
         report.step(state.time, state.step);
         if STOP.load(Ordering::Relaxed) {
@@ -182,9 +233,10 @@ fn save(writer: &mut ResultWriter, state: &State) -> Result<()> {
     writer.save_checkpoint(state.step, state.time, &payload)
 }
 
-/// Keeps the last good state and says what happened.
-fn failed(trouble: Trouble, mut writer: ResultWriter, state: &State, result: &Path) -> Error {
-    let kept = save(&mut writer, state).is_ok().then(|| result.to_path_buf());
+/// Keeps the last good state, as a frame and as a checkpoint, and says what happened.
+fn failed(trouble: Trouble, mut writer: ResultWriter, state: &State, unseen: Option<Frame>, result: &Path) -> Error {
+    let kept = unseen.map_or(Ok(()), |frame| writer.append(&frame)).and_then(|()| save(&mut writer, state));
+    let kept = kept.is_ok().then(|| result.to_path_buf());
     Error::Numbers { message: trouble.to_string(), help: trouble.help().to_owned(), kept }
 }
 

@@ -52,8 +52,8 @@ impl Trouble {
                  or leave it out so that a stable step is chosen"
             }
             Self::Volume { .. } => {
-                "the free atoms of the cell cannot hold its volume: fix fewer atoms, load it more slowly, or use \
-                 volume = { rule = \"compressible\", … }"
+                "the free atoms of the cell cannot hold its volume: fix fewer atoms, load it more slowly, shorten \
+                 run.integrator.step if you set one, or use volume = { rule = \"compressible\", … }"
             }
             Self::StepTooSmall { .. } => {
                 "the cell changes shape faster than any step can follow: look at its last state for folded or \

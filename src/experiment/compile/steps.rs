@@ -2,7 +2,7 @@
 
 use super::super::{Document, Method as Text};
 use super::Schedule;
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Result, short};
 use crate::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use crate::mechanics::stability::{Body, largest_stable_step};
 use crate::sim::{Kind, Model};
@@ -54,12 +54,16 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
         return Ok(Integrator { method, size: StepSize::Fixed(step) });
     };
     if step > limit.0 && !text.allow_unstable {
-        let fault = Fault::new(format!("the step is not stable: {step:.3e} s is above the limit of {:.3e} s", limit.0))
-            .help(format!(
-                "the limit comes from the stiffness of type `{}`; leave the step out and a stable one is chosen, use \
+        let fault = Fault::new(format!(
+            "the step is not stable: {} s is above the limit of {} s",
+            short(step),
+            short(limit.0)
+        ))
+        .help(format!(
+            "the limit comes from the stiffness of type `{}`; leave the step out and a stable one is chosen, use \
                  method = \"implicit\", or set allow_unstable = true to see it fail",
-                limit.1
-            ));
+            limit.1
+        ));
         let place = document.place("run.integrator.step", "too large");
         return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
     }
@@ -75,9 +79,12 @@ pub fn schedule(document: &Document, model: &Model) -> Result<Schedule> {
         StepSize::Adaptive { largest, .. } => largest,
     };
     if every < longest * (1.0 - 1e-9) {
-        let fault =
-            Fault::new(format!("frames are asked for every {every:.3e} s, but a step may take {longest:.3e} s"))
-                .help("output never shortens a step: set run.integrator.max_step (or step) to at most output.every");
+        let fault = Fault::new(format!(
+            "frames are asked for every {} s, but a step may take {} s",
+            short(every),
+            short(longest)
+        ))
+        .help("output never shortens a step: set run.integrator.max_step (or step) to at most output.every");
         let place = document.place("output.every", "shorter than a step");
         return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
     }

@@ -1,0 +1,136 @@
+//! Tables of a result for spreadsheets and scripts: comma-separated text, a line of names with units first.
+
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use super::ResultFile;
+use super::container::machine_error;
+use crate::error::Result;
+
+/// What a table holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Table {
+    /// A row per frame and cell: these series of the cells, or of the scene. All of them if none is named.
+    Series(Vec<String>),
+    /// A row per frame and cell: where its centre is, µm.
+    Tracks,
+    /// A row per motility run that ended: cell, end (s), duration (s).
+    Runs,
+    /// A row per measure of the experiment.
+    Summary,
+}
+
+/// Writes a table to a file; an existing file is replaced.
+///
+/// # Errors
+/// [`crate::error::Error::Input`] for a series that the result does not have, or a damaged result;
+/// [`crate::error::Error::Machine`] when the file cannot be written.
+pub fn write_table(result: &ResultFile, table: &Table, path: &Path) -> Result<()> {
+    let text = table_text(result, table)?;
+    let written = std::fs::File::create(path).and_then(|file| {
+        let mut out = BufWriter::new(file);
+        out.write_all(text.as_bytes())?;
+        out.flush()
+    });
+    written.map_err(|error: io::Error| machine_error(path, "cannot be written", &error.to_string()))
+}
+
+/// A table as text. Numbers keep every digit.
+///
+/// # Errors
+/// A series that the result does not have, or a damaged result.
+pub fn table_text(result: &ResultFile, table: &Table) -> Result<String> {
+    match table {
+        Table::Series(names) if names.is_empty() => {
+            let scene = result.layout().scene_series.iter().map(|(name, _)| name.clone());
+            series(result, &result.series_names().into_iter().chain(scene).collect::<Vec<_>>())
+        }
+        Table::Series(names) => series(result, names),
+        Table::Tracks => series(result, &["position_x", "position_y", "position_z"].map(str::to_owned)),
+        Table::Runs => runs(result),
+        Table::Summary => summary(result),
+    }
+}
+
+/// Values of a series: one per frame and cell, or one per frame that all cells share.
+enum Column {
+    Cells(ndarray::Array2<f64>),
+    Scene(Vec<f64>),
+}
+
+fn series(result: &ResultFile, names: &[String]) -> Result<String> {
+    let layout = result.layout();
+    let mut text = String::from("frame,time (s),cell,type");
+    let mut columns = Vec::new();
+    for name in names {
+        text.push_str(&format!(",{}", field(&titled(name, &result.units(name)?))));
+        let of_scene = layout.scene_series.iter().any(|(known, _)| known == name);
+        columns.push(match of_scene {
+            true => Column::Scene(result.scene_series(name)?),
+            false => Column::Cells(result.cell_series(name)?),
+        });
+    }
+    text.push('\n');
+    for (frame, time) in result.times()?.into_iter().enumerate() {
+        for (cell, known) in layout.cells.iter().enumerate() {
+            let kind = layout.types.get(known.kind as usize).map_or("", String::as_str);
+            text.push_str(&format!("{frame},{time},{cell},{}", field(kind)));
+            for column in &columns {
+                let value = match column {
+                    Column::Cells(values) => values[[frame, cell]],
+                    Column::Scene(values) => values[frame],
+                };
+                text.push_str(&format!(",{value}"));
+            }
+            text.push('\n');
+        }
+    }
+    Ok(text)
+}
+
+fn runs(result: &ResultFile) -> Result<String> {
+    let mut text = String::from("cell,end time (s),duration (s)\n");
+    for (cell, end, duration) in result.runs()? {
+        text.push_str(&format!("{cell},{end},{duration}\n"));
+    }
+    Ok(text)
+}
+
+fn summary(result: &ResultFile) -> Result<String> {
+    let mut text = String::from("measure,value,unit,description\n");
+    for measure in result.summary()? {
+        let (name, unit) = (field(&measure.name), field(&measure.unit));
+        text.push_str(&format!("{name},{},{unit},{}\n", measure.value, field(&measure.description)));
+    }
+    Ok(text)
+}
+
+/// A name with its unit, if it has one.
+fn titled(name: &str, unit: &str) -> String {
+    if unit == "1" { name.to_owned() } else { format!("{name} ({unit})") }
+}
+
+/// A text as one field (RFC 4180): in quotes where it holds a comma, a quote or an end of line.
+fn field(text: &str) -> String {
+    match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{field, titled};
+
+    #[test]
+    fn a_field_with_commas_and_quotes_stays_one_field() {
+        assert_eq!(field("plain"), "plain");
+        assert_eq!(field("height, \"axial\""), "\"height, \"\"axial\"\"\"");
+    }
+
+    #[test]
+    fn pure_numbers_have_no_unit_in_their_title() {
+        assert_eq!(titled("volume", "um^3"), "volume (um^3)");
+        assert_eq!(titled("volume_error", "1"), "volume_error");
+    }
+}

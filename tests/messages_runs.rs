@@ -1,0 +1,102 @@
+//! What the program says on the terminal when something goes wrong: transcripts of commands beside their inputs.
+//!
+//! Every `.txt` file of `tests/messages/runs` is a transcript. It begins with a comment (`# …`) that says what must hold;
+//! each line `$ …` is a command of the shell, run in a folder of its own that holds the documents (`*.toml`) of
+//! `tests/messages/runs` and the meshes of `tests/messages/meshes`; below it stand what the command printed on standard
+//! output, then on standard error, and its exit status if that is not 0.
+//!
+//! `PSEUDOPOD_BLESS=1 cargo test --test messages_runs` writes the transcripts anew; read the difference before committing it.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const FOLDER: &str = "tests/messages/runs";
+
+/// Files of a folder that end in `ending`, in order.
+fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| Path::new(folder).join(entry.unwrap().file_name()));
+    let mut paths: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|end| end == ending)).collect();
+    paths.sort();
+    paths
+}
+
+/// A new folder with everything that transcripts name.
+fn stage() -> tempfile::TempDir {
+    let stage = tempfile::tempdir().unwrap();
+    let meshes = ["obj", "stl", "ply"].into_iter().flat_map(|ending| files("tests/messages/meshes", ending));
+    for path in files(FOLDER, "toml").into_iter().chain(meshes) {
+        std::fs::copy(&path, stage.path().join(path.file_name().unwrap())).unwrap();
+    }
+    stage
+}
+
+/// Runs one command of the shell with the program on its path; what it printed and how it ended.
+fn shell(command: &str, folder: &Path) -> String {
+    let program = Path::new(env!("CARGO_BIN_EXE_pseudopod"));
+    let path = std::env::join_paths(
+        [program.parent().unwrap().to_path_buf()]
+            .into_iter()
+            .chain(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())),
+    );
+    let out = Command::new("bash")
+        .args(["-c", command])
+        .current_dir(folder)
+        .env("PATH", path.unwrap())
+        .env("LC_ALL", "C.UTF-8")
+        .output()
+        .unwrap();
+    let mut text = String::from_utf8_lossy(&out.stdout).into_owned();
+    text.push_str(&String::from_utf8_lossy(&out.stderr));
+    if !out.status.success() {
+        text.push_str(&match out.status.code() {
+            Some(code) => format!("exit {code}\n"),
+            None => format!("ended by {}\n", out.status),
+        });
+    }
+    // The folder is another one every time.
+    text.replace(&folder.display().to_string(), "FOLDER")
+}
+
+/// The transcript as it comes out now.
+fn play(transcript: &str) -> String {
+    let stage = stage();
+    let comment = transcript.lines().take_while(|line| !line.starts_with("$ "));
+    let mut text: String = comment.map(|line| format!("{line}\n")).collect();
+    for command in transcript.lines().filter_map(|line| line.strip_prefix("$ ")) {
+        text.push_str(&format!("$ {command}\n{}", shell(command, stage.path())));
+    }
+    text
+}
+
+#[test]
+fn every_transcript_comes_out_as_it_is_kept() {
+    let transcripts = files(FOLDER, "txt");
+    assert!(transcripts.len() >= 9, "transcripts are missing: {transcripts:?}");
+    let mut differences = Vec::new();
+    // One after the other: a program started while another one is would inherit its files and their locks.
+    for path in transcripts {
+        let kept = std::fs::read_to_string(&path).unwrap();
+        let said = play(&kept);
+        if std::env::var_os("PSEUDOPOD_BLESS").is_some() {
+            std::fs::write(&path, &said).unwrap();
+        } else if said != kept {
+            let unlike = said.lines().zip(kept.lines()).position(|(a, b)| a != b).unwrap_or(0) + 1;
+            differences.push(format!("{}, from line {unlike}:\n{said}", path.display()));
+        }
+    }
+    assert!(differences.is_empty(), "transcripts that changed:\n\n{}", differences.join("\n\n"));
+}
+
+#[test]
+fn every_refusal_says_what_to_do_and_ends_as_promised() {
+    for path in files(FOLDER, "txt") {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for part in text.split("\n$ ").skip(1).filter(|part| part.starts_with("pseudopod ")) {
+            let Some((_, code)) = part.trim_end().rsplit_once("exit ") else { continue };
+            let place = format!("{}: {part}", path.display());
+            assert!(["1", "2", "3", "130"].contains(&code), "{place}");
+            assert!(part.contains("help: ") || part.contains("\"help\": ") || part.contains("--help"), "{place}");
+            assert!(!part.contains("panicked") && !part.contains("RUST_BACKTRACE"), "{place}");
+        }
+    }
+}
