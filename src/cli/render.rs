@@ -6,7 +6,7 @@ use crate::error::{Error, Fault, Result};
 use crate::experiment::When;
 use crate::output::ResultFile;
 use crate::picture::Movie;
-use crate::picture::from_file::{beside, film, still};
+use crate::picture::from_file::{beside, check_colour, film, still};
 use crate::units::Time;
 use std::path::{Path, PathBuf};
 
@@ -24,9 +24,16 @@ pub struct RenderArgs {
     /// Which frame.
     #[command(flatten)]
     pub frame: FrameArgs,
-    /// What colours show: type, or a series of the cells such as volume.
-    #[arg(long, value_name = "SERIES")]
+    /// What colours show: type, a series of the cells such as volume, or height, displacement, curvature or force of the
+    /// atoms.
+    #[arg(long, value_name = "QUANTITY")]
     pub colour_by: Option<String>,
+    /// The numbers at the ends of the colour bar, in the units that it shows; those of the frames when absent.
+    #[arg(long, value_name = "LOW,HIGH", value_parser = ends, allow_hyphen_values = true)]
+    pub range: Option<[f64; 2]>,
+    /// Shows the loads as arrows.
+    #[arg(long)]
+    pub loads: bool,
     /// Width in pixels.
     #[arg(long, value_parser = clap::value_parser!(u32).range(PIXELS))]
     pub width: Option<u32>,
@@ -53,6 +60,8 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     let document = crate::run::document_of(result.header(), &args.result)?;
     let mut picture = document.experiment.picture.clone();
     args.colour_by.iter().for_each(|series| picture.colour_by.clone_from(series));
+    picture.colour_range = args.range.or(picture.colour_range);
+    picture.loads |= args.loads;
     picture.width = args.width.unwrap_or(picture.width);
     picture.height = args.height.unwrap_or(picture.height);
     let frame = args.frame.of(&result, picture.time)?;
@@ -64,10 +73,8 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
         still(&result, &document, &picture)?.save_png(&output)?;
         return Ok(Report::of_files(&args.result, &[output]).fact("frames", 1));
     }
-    if picture.colour_by != "type" {
-        // A series that is not there is told before the movie's file is made.
-        result.units(&picture.colour_by)?;
-    }
+    // What is not there is told before the movie's file is made.
+    check_colour(&result, &picture.colour_by)?;
     let mut movie = Movie::create(&output, args.fps)?;
     let frames: Vec<usize> = (0..result.frames()).collect();
     film(&result, &document, &picture, &frames, |image| movie.add(image))?;
@@ -76,6 +83,15 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     let mut report = Report::of_files(&args.result, &[written.path]).fact("frames", written.frames);
     report.words = format!("{}: {} frames\n", report.words.trim_end(), written.frames);
     Ok(report)
+}
+
+/// Two numbers, the second larger.
+fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    match numbers[..] {
+        [low, high] if low < high && low.is_finite() && high.is_finite() => Ok([low, high]),
+        _ => Err("give two numbers, the smaller first, as in 0,2.5".to_owned()),
+    }
 }
 
 /// Who named a file that is about to be written.

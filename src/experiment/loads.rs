@@ -68,7 +68,7 @@ fn all_axes() -> Vec<Axis> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("unevaluatedProperties" = false))]
 pub struct Load {
-    /// Names the series `load.NAME` in the result.
+    /// Names the series `load.NAME` in the result; `load.TYPE.NAME` where several types have loads of this name.
     #[schemars(extend("x-text" = "name"))]
     pub name: String,
     /// The atoms that are pulled.

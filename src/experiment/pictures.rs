@@ -12,11 +12,14 @@ use std::path::PathBuf;
 pub struct Picture {
     /// The instant that is shown.
     pub time: When,
-    /// What the colours show: "type", or the name of a series of the cells such as "volume".
+    /// What the colours show: "type", a series of the cells such as "volume", or a quantity of the atoms: "height",
+    /// "displacement" (since the first frame), "curvature", "force" (needs `output.forces`).
     pub colour_by: String,
     /// The ends of the scale of colours, in base units; chosen when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub colour_range: Option<[f64; 2]>,
+    /// Shows the loads as arrows, the longest for the strongest.
+    pub loads: bool,
     /// Where the picture is taken from.
     pub view: View,
     /// Width in pixels.
@@ -30,7 +33,8 @@ pub struct Picture {
 impl Default for Picture {
     fn default() -> Self {
         let (width, height) = (1280, 720);
-        Self { time: When::Last, colour_by: "type".into(), colour_range: None, view: View::default(), width, height }
+        let (time, view) = (When::Last, View::default());
+        Self { time, colour_by: "type".into(), colour_range: None, loads: false, view, width, height }
     }
 }
 

@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use super::arrows::LoadArrows;
 use super::colour::Colour;
 use super::from_result::{Framing, Look, Snapshot, Values, picture_of};
+use super::quantities::AtomQuantity;
 use super::{Image, plots};
-use crate::error::Result;
+use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Picture, When};
 use crate::output::ResultFile;
 
@@ -13,7 +15,63 @@ use crate::output::ResultFile;
 struct Shot {
     positions: Vec<[f64; 3]>,
     values: Vec<f64>,
+    arrows: Vec<[[f64; 3]; 2]>,
     time: f64,
+}
+
+/// What colours show.
+#[derive(Debug, Clone, PartialEq)]
+enum Shown {
+    Type,
+    Atoms(AtomQuantity),
+    Cells(String),
+}
+
+/// A result and all that its pictures share.
+struct Stage<'a> {
+    result: &'a ResultFile,
+    look: Look,
+    shown: Shown,
+    arrows: LoadArrows,
+    times: Vec<f64>,
+}
+
+/// Finds what `name` means for this result: the type, a quantity of atoms or a series of cells.
+fn shown_of(result: &ResultFile, name: &str) -> Result<Shown> {
+    if name == "type" {
+        return Ok(Shown::Type);
+    }
+    if result.series_names().iter().any(|known| known == name) {
+        return Ok(Shown::Cells(name.to_owned()));
+    }
+    match AtomQuantity::named(name) {
+        Some(quantity) if quantity.is_in(result)? => Ok(Shown::Atoms(quantity)),
+        Some(_) => {
+            let fault = Fault::new(format!("{} holds no forces on atoms", result.path().display()));
+            Err(Error::input(fault.help("run the experiment with output.forces = true, or colour by something else")))
+        }
+        None => {
+            let mut names: Vec<String> = ["type".to_owned()].into();
+            for quantity in AtomQuantity::names() {
+                if AtomQuantity::named(quantity).is_some_and(|known| known.is_in(result).unwrap_or(false)) {
+                    names.push(quantity.to_owned());
+                }
+            }
+            names.extend(result.series_names());
+            let fault = Fault::new(format!("nothing in {} is called `{name}`", result.path().display()));
+            let near = names.iter().map(|other| (strsim::damerau_levenshtein(name, other), other)).min();
+            let meant = near.filter(|(apart, _)| *apart <= 2).map(|(_, other)| format!("did you mean `{other}`? "));
+            Err(Error::input(fault.help(format!("{}there are: {}", meant.unwrap_or_default(), names.join(", ")))))
+        }
+    }
+}
+
+/// Makes sure that a result has what its pictures are to be coloured by.
+///
+/// # Errors
+/// [`Error::Input`] that lists what there is.
+pub fn check_colour(result: &ResultFile, name: &str) -> Result<()> {
+    shown_of(result, name).map(drop)
 }
 
 /// The frame that an instant means.
@@ -30,36 +88,60 @@ fn frame_at(result: &ResultFile, when: When) -> Result<usize> {
     })
 }
 
-fn shot(result: &ResultFile, picture: &Picture, frame: usize) -> Result<Shot> {
-    let values = if picture.colour_by == "type" {
-        Vec::new()
-    } else {
-        result.cell_series(&picture.colour_by)?.row(frame).to_vec()
-    };
-    Ok(Shot { positions: result.positions(frame)?, values, time: result.times()?[frame] })
+impl<'a> Stage<'a> {
+    fn new(result: &'a ResultFile, document: &Document, picture: &Picture) -> Result<Self> {
+        let shown = shown_of(result, &picture.colour_by)?;
+        let look = look_of(result, document, picture, &shown);
+        let arrows = if picture.loads { LoadArrows::of(document, result.layout())? } else { LoadArrows::default() };
+        Ok(Self { result, look, shown, arrows, times: result.times()? })
+    }
+
+    fn shot(&self, frame: usize) -> Result<Shot> {
+        let positions = self.result.positions(frame)?;
+        let values = match &self.shown {
+            Shown::Type => Vec::new(),
+            Shown::Atoms(quantity) => quantity.of_frame(self.result, frame, &positions)?,
+            Shown::Cells(name) => self.result.cell_series(name)?.row(frame).to_vec(),
+        };
+        let time = self.times[frame];
+        Ok(Shot { arrows: self.arrows.at(time, &positions), positions, values, time })
+    }
+
+    fn snapshot<'b>(&'b self, shot: &'b Shot) -> Snapshot<'b> {
+        let values = match self.shown {
+            Shown::Type => Values::Type,
+            Shown::Atoms(_) => Values::Atoms(&shot.values),
+            Shown::Cells(_) => Values::Cells(&shot.values),
+        };
+        let layout = self.result.layout();
+        Snapshot { layout, positions: &shot.positions, time: shot.time, values, arrows: &shot.arrows }
+    }
+
+    fn draw(&self, shot: &Shot, framing: &Framing, picture: &Picture) -> Image {
+        picture_of(&self.snapshot(shot), &self.look, framing, picture.width as usize, picture.height as usize)
+    }
 }
 
-fn look_of(result: &ResultFile, document: &Document, picture: &Picture) -> Result<Look> {
+fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &Shown) -> Look {
     let types = &result.layout().types;
     let palette = |i: usize| super::colour::PALETTE[i % super::colour::PALETTE.len()];
     let colour = |(i, name): (usize, &String)| {
         let given = document.experiment.cells.get(name).and_then(|cell| cell.colour);
         given.map_or_else(|| palette(i), |colour| Colour(colour.0))
     };
-    let label = if picture.colour_by == "type" { String::new() } else { plots::label_of(result, &picture.colour_by) };
-    Ok(Look {
+    let label = match shown {
+        Shown::Type => String::new(),
+        Shown::Atoms(quantity) => quantity.label().to_owned(),
+        Shown::Cells(name) => plots::label_of(result, name),
+    };
+    Look {
         title: document.experiment.title.clone(),
         type_colours: types.iter().enumerate().map(colour).collect(),
         range: picture.colour_range,
         label,
         direction: picture.view.from,
         ..Look::default()
-    })
-}
-
-fn snapshot<'a>(result: &'a ResultFile, shot: &'a Shot) -> Snapshot<'a> {
-    let values = if shot.values.is_empty() { Values::Type } else { Values::Cells(&shot.values) };
-    Snapshot { layout: result.layout(), positions: &shot.positions, time: shot.time, values, arrows: &[] }
+    }
 }
 
 /// The picture of one instant.
@@ -67,11 +149,11 @@ fn snapshot<'a>(result: &'a ResultFile, shot: &'a Shot) -> Snapshot<'a> {
 /// # Errors
 /// A damaged file, or a series to colour by that it does not have.
 pub fn still(result: &ResultFile, document: &Document, picture: &Picture) -> Result<Image> {
-    let look = look_of(result, document, picture)?;
-    let shot = shot(result, picture, frame_at(result, picture.time)?)?;
-    let mut framing = Framing::new(&look);
-    framing.include(&snapshot(result, &shot));
-    Ok(picture_of(&snapshot(result, &shot), &look, &framing, picture.width as usize, picture.height as usize))
+    let stage = Stage::new(result, document, picture)?;
+    let shot = stage.shot(frame_at(result, picture.time)?)?;
+    let mut framing = Framing::new(&stage.look);
+    framing.include(&stage.snapshot(&shot));
+    Ok(stage.draw(&shot, &framing, picture))
 }
 
 /// Calls `keep` with the picture of every frame that `frames` names, all with the same camera and colours.
@@ -85,14 +167,13 @@ pub fn film(
     frames: &[usize],
     mut keep: impl FnMut(&Image) -> Result<()>,
 ) -> Result<()> {
-    let look = look_of(result, document, picture)?;
-    let mut framing = Framing::new(&look);
+    let stage = Stage::new(result, document, picture)?;
+    let mut framing = Framing::new(&stage.look);
     for &frame in frames {
-        framing.include(&snapshot(result, &shot(result, picture, frame)?));
+        framing.include(&stage.snapshot(&stage.shot(frame)?));
     }
     for &frame in frames {
-        let shot = shot(result, picture, frame)?;
-        keep(&picture_of(&snapshot(result, &shot), &look, &framing, picture.width as usize, picture.height as usize))?;
+        keep(&stage.draw(&stage.shot(frame)?, &framing, picture))?;
     }
     Ok(())
 }

@@ -4,6 +4,7 @@
 //! [`movie::Movie`] strings images together; [`from_result`] makes a scene out of the arrays that a run records.
 //! Everything here takes plain data, so it serves the program's commands and any Rust user alike.
 
+pub mod arrows;
 pub mod chart;
 pub mod colour;
 pub mod from_file;
@@ -11,6 +12,7 @@ pub mod from_result;
 pub mod image;
 pub mod movie;
 pub mod plots;
+pub mod quantities;
 pub mod render;
 pub(crate) mod text;
 pub mod ticks;

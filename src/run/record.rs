@@ -29,15 +29,14 @@ pub fn layout_of(model: &Model) -> Layout {
     layout
 }
 
-/// Series name, kind and load of every load; a name that several types share is the first type's.
+/// Series name, kind and load of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
 fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
+    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads.iter().any(|load| load.name == name)).count();
     let mut names: Vec<(String, usize, usize)> = Vec::new();
     for (k, kind) in model.kinds.iter().enumerate() {
         for (l, load) in kind.loads.iter().enumerate() {
-            let name = format!("load.{}", load.name);
-            if names.iter().all(|(known, _, _)| *known != name) {
-                names.push((name, k, l));
-            }
+            let owner = if owners(&load.name) > 1 { format!("{}.", kind.name) } else { String::new() };
+            names.push((format!("load.{owner}{}", load.name), k, l));
         }
     }
     names
