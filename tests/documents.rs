@@ -76,6 +76,18 @@ fn the_schema_in_the_documents_is_the_one_of_the_types() {
     assert!(kept == now, "{path} is not current; run: pseudopod schema -o {path}");
 }
 
+#[test]
+fn every_method_that_the_book_names_is_understood() {
+    let book = std::fs::read_to_string("docs/src/documents.md").expect("the page of documents");
+    let list = book.split_once("`method`: ").and_then(|(_, rest)| rest.split_once(';')).expect("the list of methods").0;
+    let names: Vec<&str> = list.split(", ").filter_map(|name| name.split_whitespace().next()).collect();
+    assert_eq!(names.len(), 6, "{names:?}");
+    for name in names {
+        let text = format!("method = \"{name}\"");
+        assert!(toml::from_str::<pseudopod::experiment::Integrator>(&text).is_ok(), "{name}");
+    }
+}
+
 proptest! {
     /// Whatever is cut out of a document, or written over it, is answered by faults and never by a panic.
     #[test]

@@ -165,6 +165,7 @@ fn the_largest_steps_of_over_damped_modes_tend_to_two_masses_over_drag() {
                 );
             }
         }
+        check("step, critically damped, memory", 4.0, largest_step(Cell::Memory, Free::Both, 0.25, 4.0));
         let soft = largest_step(Cell::Memory, Free::Both, 1e-3, 2.0);
         check("step, softest mode against 2m/k_a", 2.0, soft);
     });

@@ -34,6 +34,7 @@ pub(super) fn check(document: &Document, references: &[Reference]) -> Vec<Fault>
         check.places(&path, cell);
         check.volume(&path, cell);
         check.links(&path, cell);
+        check.remembering_atoms(&path, cell);
         check.loads(&path, cell);
         if let Some(turn) = &cell.orientation {
             check.direction(&format!("{path}.orientation.axis"), turn.axis);

@@ -43,7 +43,7 @@ fn has_changed(kind: &Kind, shape: &[f64], x: &[f64]) -> bool {
                 squared(shape, i, j)
             };
             let ratio = squared(x, i, j) / then;
-            ratio > CHANGE || ratio < 1.0 / CHANGE
+            !(1.0 / CHANGE..=CHANGE).contains(&ratio)
         })
     })
 }

@@ -82,7 +82,14 @@ fn add_shape_memory(
     };
     match memory.form {
         Form::Triplets => {
-            elasticity.shape_memory.push(ShapeMemory::new(&rest.positions, &rings, stiffness, reaction));
+            let triplets = ShapeMemory::new(&rest.positions, &rings, stiffness, reaction);
+            if triplets.triplet_count() == 0 {
+                let found = "no atom remembers anything: triplets take three neighbours that are not in line";
+                let fault = Fault::new(found).help("use form = \"angles\", which takes two neighbours, or other atoms");
+                let place = document.place(&format!("{key}.mechanics.shape_memory"), "acts on no atom of this mesh");
+                faults.push(place.into_iter().fold(fault, Fault::at));
+            }
+            elasticity.shape_memory.push(triplets);
         }
         Form::Angles => elasticity.angles.push(Angles::new(&rest.positions, &rings, stiffness)),
     }

@@ -120,6 +120,12 @@ impl Check<'_> {
         }
     }
 
+    pub(super) fn remembering_atoms(&mut self, path: &str, cell: &CellType) {
+        if let Some(only) = cell.mechanics.shape_memory.as_ref().and_then(|memory| memory.only.as_ref()) {
+            self.selection(&format!("{path}.mechanics.shape_memory.only"), only);
+        }
+    }
+
     pub(super) fn loads(&mut self, path: &str, cell: &CellType) {
         for (index, fixed) in cell.fixed.iter().enumerate() {
             self.selection(&format!("{path}.fixed[{index}]"), &fixed.selection);
