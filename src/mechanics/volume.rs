@@ -111,7 +111,11 @@ impl BlockWork for Enforce<'_> {
                 x.add(atom, direction.get(atom).times(root));
             }
             let left = ((c3 * root + c2) * root + c1) * root + c0;
-            worst[part] = left.max(-left).raw();
+            // A root far from the linear one is another branch, on which the cell would be thrown about and its volume
+            // lose digits: it counts as an error, so that the caller looks closer.
+            let (linear, moved) = (c1 * root, c0 * 3.0);
+            let astray = (linear.max(-linear) - moved.max(-moved)).max(T::constant(token, 0.0));
+            worst[part] = (left.max(-left) + astray).raw();
         }
     }
 }
@@ -132,7 +136,7 @@ fn least_root<T: Real>(token: T::Token, c0: T, c1: T, c2: T, c3: T) -> T {
 
 /// Brings every cell of a block to its target volume (µm³) along its volume gradient, eq. (volume.3). `held` as in
 /// [`measure_block`]; `gradient` and `second` are scratch of the size of `x`. Writes |V − target| left by the cubic
-/// to `worst`, µm³.
+/// to `worst`, µm³; more where the root found is not the near one.
 pub fn enforce_block(
     facets: &[[u32; 3]],
     x: &mut [f64],
@@ -146,9 +150,10 @@ pub fn enforce_block(
 }
 
 /// The real root of least magnitude of c₀ + c₁λ + c₂λ² + c₃λ³, in closed form: the oracle of the Newton iteration, and
-/// its rescue when a cell is far from its target.
+/// its rescue when a cell is far from its target. The closed form loses its digits where c₃ is small, so that each of its
+/// roots is polished by Newton's method, as is the root of the linear part; `None` if there is no real root.
 pub fn least_root_exact(c0: f64, c1: f64, c2: f64, c3: f64) -> Option<f64> {
-    let mut roots = [f64::NAN; 3];
+    let mut roots = [f64::NAN; 4];
     let size = c1.abs().max(c2.abs()).max(c3.abs());
     if c3.abs() > 1e-14 * size {
         let (a, b, c) = (c2 / c3, c1 / c3, c0 / c3);
@@ -156,8 +161,9 @@ pub fn least_root_exact(c0: f64, c1: f64, c2: f64, c3: f64) -> Option<f64> {
         let r = (2.0 * a * a * a - 9.0 * a * b + 27.0 * c) / 54.0;
         if r * r < q * q * q {
             let angle = (r / (q * q * q).sqrt()).clamp(-1.0, 1.0).acos();
-            roots = [0.0, 1.0, -1.0]
-                .map(|turn| -2.0 * q.sqrt() * ((angle + turn * std::f64::consts::TAU) / 3.0).cos() - a / 3.0);
+            for (root, turn) in roots.iter_mut().zip([0.0, 1.0, -1.0]) {
+                *root = -2.0 * q.sqrt() * ((angle + turn * std::f64::consts::TAU) / 3.0).cos() - a / 3.0;
+            }
         } else {
             let big = -r.signum() * (r.abs() + (r * r - q * q * q).sqrt()).cbrt();
             let small = if big == 0.0 { 0.0 } else { q / big };
@@ -175,5 +181,43 @@ pub fn least_root_exact(c0: f64, c1: f64, c2: f64, c3: f64) -> Option<f64> {
     } else if c1 != 0.0 {
         roots[0] = -c0 / c1;
     }
-    roots.into_iter().filter(|r| r.is_finite()).min_by(|a, b| a.abs().total_cmp(&b.abs()))
+    roots[3] = -c0 / c1;
+    let polished = roots.into_iter().filter_map(|root| polish(root, c0, c1, c2, c3));
+    polished.min_by(|a, b| a.abs().total_cmp(&b.abs()))
+}
+
+/// A root near a guess by Newton's method; `None` where it finds none.
+fn polish(guess: f64, c0: f64, c1: f64, c2: f64, c3: f64) -> Option<f64> {
+    let mut root = guess;
+    // Quadratic convergence: from the digits that the closed form keeps to all of them, and from the linear root of
+    // every cell that is not far from its target.
+    for _ in 0..12 {
+        let value = ((c3 * root + c2) * root + c1) * root + c0;
+        let slope = (3.0 * c3 * root + 2.0 * c2) * root + c1;
+        if value == 0.0 || slope == 0.0 {
+            break;
+        }
+        root -= value / slope;
+    }
+    let value = ((c3 * root + c2) * root + c1) * root + c0;
+    // What round-off leaves of a sum of these terms.
+    let size = c0.abs() + (c1 * root).abs() + (c2 * root * root).abs() + (c3 * root * root * root).abs();
+    (root.is_finite() && value.abs() <= 1e-14 * size).then_some(root)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::least_root_exact;
+
+    #[test]
+    fn the_least_root_keeps_its_digits_where_the_cubic_term_is_small() {
+        // (λ - 1e-3)(1 + λ)(1 + s λ) for steep and vanishing s: the least root is 1e-3.
+        for s in [1.0, 0.1, 1e-4, 1e-8, 1e-13, 0.0, -1e-8] {
+            let (a, b, c, d) = (-1e-3, 1.0 - 1e-3 * (1.0 + s), 1.0 + s - 1e-3 * s, s);
+            let root = least_root_exact(a, b, c, d).unwrap();
+            // A few units in the last place of the coefficients, which are of size 1.
+            assert!((root - 1e-3).abs() < 1e-15, "{s}: {root}");
+        }
+        assert_eq!(least_root_exact(1.0, 0.0, 1.0, 0.0), None, "1 + λ² has no real root");
+    }
 }

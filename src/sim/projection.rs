@@ -23,6 +23,9 @@ impl ProjectScratch {
     }
 }
 
+/// Turns after which a projection is given up. Each newly touching atom may take one; a few more reach round-off.
+const ROUNDS: usize = 40;
+
 /// Puts atoms that passed a plane back on it and restores the volume by the others, in turns, until both hold; used
 /// for one cell whose positions are `x[atom][axis]`. Returns the volume error left, relative to `target`.
 pub fn project_cell(
@@ -37,9 +40,10 @@ pub fn project_cell(
     g.resize(x.len(), 0.0);
     h.resize(x.len(), 0.0);
     let mut error: f64 = 0.0;
-    for _ in 0..30 {
+    // An atom that touched once goes on sliding on its plane: else planes and volume would push it to and fro.
+    touching.clear();
+    for _ in 0..ROUNDS {
         let mut moved: f64 = 0.0;
-        touching.clear();
         for (p, plane) in model.planes.iter().enumerate() {
             for atom in 0..atoms {
                 let place = Vec3::from_column_slice(&x[3 * atom..3 * atom + 3]);
@@ -49,7 +53,7 @@ pub fn project_cell(
                     x[3 * atom..3 * atom + 3].copy_from_slice(back.as_slice());
                     moved = moved.max(-gap);
                 }
-                if gap <= TOUCH * kind.edge {
+                if gap <= TOUCH * kind.edge && !touching.contains(&(atom, p)) {
                     touching.push((atom, p));
                 }
             }
