@@ -107,13 +107,13 @@ impl<'p, 'a> Reader<'p, 'a> {
         None
     }
 
-    fn too_large<T>(&self, node: Node<'a>) -> Option<T> {
+    pub(super) fn too_large<T>(&self, node: Node<'a>) -> Option<T> {
         let help = "write long sums with one <plus/> for all terms, and fewer functions within functions";
         self.fault(node, "the formulas are too large or nested too deeply when functions are expanded", help)
     }
 
     /// Takes from the nodes that may be made.
-    fn take(&self, count: usize) -> bool {
+    pub(super) fn take(&self, count: usize) -> bool {
         self.size.set(self.size.get().saturating_add(count));
         self.size.get() <= SIZE_LIMIT
     }

@@ -1,7 +1,7 @@
 //! The operators and elementary functions of MathML that SBML takes.
 
 use super::math::{Reader, chain, minus};
-use super::pieces::{binary, join, number, quotient, unary};
+use super::pieces::{binary, extent, join, number, quotient, unary};
 use super::xml::Node;
 use crate::chemistry::tree::{Binary, Expr, Unary};
 
@@ -24,6 +24,11 @@ pub fn apply<'a>(reader: &Reader<'_, 'a>, head: Node<'a>, operands: Vec<Expr>, q
     }
     if qualifier.is_some() && !matches!(name, "log" | "root") {
         return reader.fault(head, format!("<{name}> has no base and no degree"), "only <log/> and <root/> have");
+    }
+    // These use an operand twice: nested in each other they would grow without bound.
+    let twice = matches!(name, "quotient" | "root") || (arity(name) == Some((1, usize::MAX)) && operands.len() > 2);
+    if twice && !reader.take(operands.iter().map(|operand| extent(operand).1).sum()) {
+        return reader.too_large(head);
     }
     Some(value(name, operands, qualifier))
 }
