@@ -134,7 +134,8 @@ pub fn read<'a>(page: &Page<'a>, root: Node<'a>) -> Document<'a> {
             "listOfSpecies" => document.species = items(page, list, "species", species),
             "listOfParameters" => document.parameters = items(page, list, "parameter", parameter),
             "listOfInitialAssignments" => {
-                document.initial = items(page, list, "initialAssignment", |page, node| assignment(page, node, "symbol"));
+                document.initial =
+                    items(page, list, "initialAssignment", |page, node| assignment(page, node, "symbol"));
             }
             "listOfRules" => document.rules = page.children(list).filter_map(|node| rule(page, node)).collect(),
             "listOfReactions" => document.reactions = items(page, list, "reaction", reaction),
@@ -180,7 +181,9 @@ fn packages<'a>(page: &Page<'a>, root: Node<'a>) {
             let found = format!("the model needs the package `{name}`, which is not read");
             page.fault(root, found, "flatten or convert the model to core SBML with the tool that wrote it");
         } else {
-            page.notice(format!("the package `{name}` is not read; the model says that it does not change the equations"));
+            page.notice(format!(
+                "the package `{name}` is not read; the model says that it does not change the equations"
+            ));
         }
     }
 }
@@ -188,7 +191,10 @@ fn packages<'a>(page: &Page<'a>, root: Node<'a>) {
 /// Units anywhere in the model are told of once.
 fn units<'a>(page: &Page<'a>, root: Node<'a>) {
     let has_units = |node: Node<'_>| {
-        node.tag_name().name() == "unitDefinition" || node.attributes().any(|a| a.name().to_lowercase().ends_with("units") && a.name() != "hasOnlySubstanceUnits")
+        node.tag_name().name() == "unitDefinition"
+            || node
+                .attributes()
+                .any(|a| a.name().to_lowercase().ends_with("units") && a.name() != "hasOnlySubstanceUnits")
     };
     if root.descendants().any(|node| node.is_element() && has_units(node)) {
         page.notice("units are neither checked nor converted: all numbers are taken as they stand");
@@ -273,8 +279,12 @@ fn reaction<'a>(page: &Page<'a>, node: Node<'a>) -> Reaction<'a> {
     }
     for child in page.children(node) {
         match child.tag_name().name() {
-            "listOfReactants" => read.participants.extend(items(page, child, "speciesReference", |p, n| participant(p, n, -1.0))),
-            "listOfProducts" => read.participants.extend(items(page, child, "speciesReference", |p, n| participant(p, n, 1.0))),
+            "listOfReactants" => {
+                read.participants.extend(items(page, child, "speciesReference", |p, n| participant(p, n, -1.0)))
+            }
+            "listOfProducts" => {
+                read.participants.extend(items(page, child, "speciesReference", |p, n| participant(p, n, 1.0)))
+            }
             "kineticLaw" => read.law = Some(law(page, child)),
             "listOfModifiers" | "notes" | "annotation" => {}
             _ => unknown(page, child),
@@ -335,7 +345,8 @@ fn event<'a>(page: &Page<'a>, node: Node<'a>) -> Event<'a> {
             "delay" => read.delay = page.math(child),
             "priority" => read.priority = page.math(child),
             "listOfEventAssignments" => {
-                read.assignments = items(page, child, "eventAssignment", |page, node| assignment(page, node, "variable"));
+                read.assignments =
+                    items(page, child, "eventAssignment", |page, node| assignment(page, node, "variable"));
             }
             "notes" | "annotation" => {}
             _ => unknown(page, child),

@@ -47,11 +47,7 @@ impl<'a> Plan<'_, 'a> {
 
     /// What an event sets; and, when that takes the size of a compartment at the execution and values of the firing,
     /// a second event that follows at once.
-    fn assignments(
-        &self,
-        event: &document::Event<'a>,
-        id: &str,
-    ) -> (Vec<(QuantityId, Expr)>, Option<Event>) {
+    fn assignments(&self, event: &document::Event<'a>, id: &str) -> (Vec<(QuantityId, Expr)>, Option<Event>) {
         let mut values = Values::new();
         let mut order = Vec::new();
         for assignment in &event.assignments {
@@ -138,7 +134,8 @@ impl<'a> Plan<'_, 'a> {
         let Some(Kind::Species(number)) = self.kinds.get(symbol).copied() else { return false };
         let species = &self.document.species[number];
         let is_amount = species.only_amount || self.keeps_concentration(species);
-        let sets_size = event.assignments.iter().any(|other| other.symbol == species.compartment && other.math.is_some());
+        let sets_size =
+            event.assignments.iter().any(|other| other.symbol == species.compartment && other.math.is_some());
         let steady = sets_size || self.change(species.compartment) == Change::Never;
         event.trigger.is_some() && event.delay.is_some() && event.values_from_trigger && !is_amount && !steady
     }

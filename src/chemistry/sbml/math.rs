@@ -96,7 +96,9 @@ impl<'p, 'a> Reader<'p, 'a> {
             "exponentiale" => Some(number(std::f64::consts::E)),
             "infinity" => Some(number(f64::INFINITY)),
             "notanumber" => Some(number(f64::NAN)),
-            "lambda" => self.fault(node, "a function is defined within a formula", "put it into a <functionDefinition>"),
+            "lambda" => {
+                self.fault(node, "a function is defined within a formula", "put it into a <functionDefinition>")
+            }
             name => self.fault(node, format!("<{name}> is not a value"), "write a number, a symbol or an <apply>"),
         }
     }
@@ -119,7 +121,8 @@ impl<'p, 'a> Reader<'p, 'a> {
     }
 
     fn number(&self, node: Node<'a>) -> Option<Expr> {
-        let texts: Vec<&str> = node.children().filter(|child| child.is_text()).filter_map(|child| child.text()).collect();
+        let texts: Vec<&str> =
+            node.children().filter(|child| child.is_text()).filter_map(|child| child.text()).collect();
         let kind = node.attribute("type").map_or("real", str::trim);
         let value = match (kind, texts.as_slice()) {
             ("real" | "integer" | "double", [text]) => xml::number(text),
@@ -158,7 +161,9 @@ impl<'p, 'a> Reader<'p, 'a> {
         }
         let known = self.symbols.keys().chain(scope.names.keys());
         let near = known.map(|id| (strsim::damerau_levenshtein(id, name), id)).min().filter(|(far, _)| *far <= 2);
-        let help = near.map_or("declare it as a compartment, species or parameter".to_owned(), |(_, id)| format!("did you mean `{id}`?"));
+        let help = near.map_or("declare it as a compartment, species or parameter".to_owned(), |(_, id)| {
+            format!("did you mean `{id}`?")
+        });
         self.fault(node, format!("`{name}` is not known"), help)
     }
 
@@ -194,7 +199,9 @@ impl<'p, 'a> Reader<'p, 'a> {
                 let qualifier = match qualifiers.first() {
                     Some(found) => match found.first_element_child() {
                         Some(value) => Some(self.expr(value, scope, level + 1)?),
-                        None => return self.fault(*found, "there is no value in it", "put a number or a formula into it"),
+                        None => {
+                            return self.fault(*found, "there is no value in it", "put a number or a formula into it");
+                        }
                     },
                     None => None,
                 };
@@ -239,7 +246,11 @@ impl<'p, 'a> Reader<'p, 'a> {
         match definition(head) {
             "rateOf" => {
                 let [operand] = operands else {
-                    return self.fault(head, format!("rateOf is given {} values", operands.len()), "it takes one symbol");
+                    return self.fault(
+                        head,
+                        format!("rateOf is given {} values", operands.len()),
+                        "it takes one symbol",
+                    );
                 };
                 match self.expr(*operand, scope, level + 1)? {
                     Expr::Quantity(id) => Some(quantity(self.rate_of(id, head))),
@@ -250,7 +261,9 @@ impl<'p, 'a> Reader<'p, 'a> {
                 let help = "write the model with stages in between (a chain of species) in place of the delay";
                 self.fault(head, "delay() is not supported: this is a delay differential equation", help)
             }
-            "time" | "avogadro" => self.fault(head, "this is a value, not a function", "use it outside of an operator's place"),
+            "time" | "avogadro" => {
+                self.fault(head, "this is a value, not a function", "use it outside of an operator's place")
+            }
             _ => self.unknown_symbol(head),
         }
     }
@@ -282,7 +295,11 @@ impl<'p, 'a> Reader<'p, 'a> {
                 }
             }
         }
-        if branches.is_empty() { Some(otherwise) } else { Some(Expr::Piecewise { branches, otherwise: Box::new(otherwise) }) }
+        if branches.is_empty() {
+            Some(otherwise)
+        } else {
+            Some(Expr::Piecewise { branches, otherwise: Box::new(otherwise) })
+        }
     }
 }
 

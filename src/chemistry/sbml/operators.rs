@@ -6,7 +6,12 @@ use super::xml::Node;
 use crate::chemistry::tree::{Binary, Expr, Unary};
 
 /// The value of an operator for its operands; `qualifier` is the base of a logarithm or the degree of a root.
-pub fn apply<'a>(reader: &Reader<'_, 'a>, head: Node<'a>, operands: Vec<Expr>, qualifier: Option<Expr>) -> Option<Expr> {
+pub fn apply<'a>(
+    reader: &Reader<'_, 'a>,
+    head: Node<'a>,
+    operands: Vec<Expr>,
+    qualifier: Option<Expr>,
+) -> Option<Expr> {
     let name = head.tag_name().name();
     let Some((least, most)) = arity(name) else {
         let found = format!("<{name}> is not an operator of SBML");
@@ -43,7 +48,9 @@ fn arity(name: &str) -> Option<(usize, usize)> {
         "minus" => (1, 2),
         "neq" | "divide" | "power" | "quotient" | "rem" | "implies" => (2, 2),
         "not" | "log" | "root" => (1, 1),
-        name if elementary(name).is_some() || reciprocal(name).is_some() || inverse_reciprocal(name).is_some() => (1, 1),
+        name if elementary(name).is_some() || reciprocal(name).is_some() || inverse_reciprocal(name).is_some() => {
+            (1, 1)
+        }
         _ => return None,
     })
 }

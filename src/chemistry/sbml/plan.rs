@@ -228,7 +228,8 @@ impl<'p, 'a> Plan<'p, 'a> {
     /// Whether a symbol has a value that can be set.
     fn is_settable(&self, node: Node<'a>, attribute: &str, symbol: &str) -> bool {
         let kind = self.kinds.get(symbol);
-        let settable = matches!(kind, Some(Kind::Compartment(_) | Kind::Species(_) | Kind::Parameter(_) | Kind::Reference(..)));
+        let settable =
+            matches!(kind, Some(Kind::Compartment(_) | Kind::Species(_) | Kind::Parameter(_) | Kind::Reference(..)));
         if !settable && !symbol.is_empty() {
             let found = match kind {
                 None => format!("`{symbol}` is not known"),

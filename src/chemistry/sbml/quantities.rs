@@ -28,7 +28,9 @@ impl<'a> Plan<'_, 'a> {
                 self.page.notice(format!("species reference `{id}` has no stoichiometry: it is taken as 1"));
             }
             self.plain(id, Some(participant.stoichiometry.unwrap_or(1.0)));
-            if let (Some(math), Some(&place), false) = (participant.math, self.reader.symbols.get(id), self.is_defined(id)) {
+            if let (Some(math), Some(&place), false) =
+                (participant.math, self.reader.symbols.get(id), self.is_defined(id))
+            {
                 self.quantities[place as usize].role = Role::Defined { rule: self.reader.formula(math) };
             }
         }
@@ -97,7 +99,8 @@ impl<'a> Plan<'_, 'a> {
         let participant = &self.document.reactions[reaction].participants[place];
         let named = participant.id.and_then(|id| self.reader.symbols.get(id).map(|&quantity| (id, quantity)));
         if let Some((id, place)) = named {
-            let fixed = matches!(self.quantities[place as usize].role, Role::Parameter) && !self.initial.contains_key(id);
+            let fixed =
+                matches!(self.quantities[place as usize].role, Role::Parameter) && !self.initial.contains_key(id);
             if !fixed {
                 return quantity(place);
             }

@@ -135,7 +135,8 @@ impl<'a> Plan<'_, 'a> {
                     continue;
                 }
                 if self.rules.contains_key(species.id) {
-                    let found = format!("species `{}` has a rule and is changed by reaction `{}`", species.id, reaction.id);
+                    let found =
+                        format!("species `{}` has a rule and is changed by reaction `{}`", species.id, reaction.id);
                     let help = "set boundaryCondition=\"true\" if the rule alone changes it, or delete the rule";
                     self.page.fault_in(participant.node, "species", found, help);
                     continue;
@@ -169,7 +170,11 @@ impl<'a> Plan<'_, 'a> {
             Role::Variable { rate } => Some(rate.clone()),
             Role::Defined { .. } => {
                 let index = self.amounts.iter().position(|amount| amount + 1 == place)?;
-                if self.rules.get(self.document.species[index].id).is_some_and(|(kind, _)| *kind == RuleKind::Assignment) {
+                if self
+                    .rules
+                    .get(self.document.species[index].id)
+                    .is_some_and(|(kind, _)| *kind == RuleKind::Assignment)
+                {
                     return None;
                 }
                 let places = self.species_places(index);
@@ -196,7 +201,10 @@ impl<'a> Plan<'_, 'a> {
     }
 
     fn no_rate(&self, place: QuantityId, node: Node<'a>) -> Expr {
-        let found = format!("rateOf is asked for `{}`, which follows from an assignment rule", self.quantities[place as usize].id);
+        let found = format!(
+            "rateOf is asked for `{}`, which follows from an assignment rule",
+            self.quantities[place as usize].id
+        );
         self.page.fault(node, found, "only what a rate rule or reactions change has a rate in SBML");
         number(f64::NAN)
     }

@@ -164,7 +164,8 @@ impl<'a> Page<'a> {
         if !matches!((page.level, page.version), (2, 1..=5) | (3, 1..=2)) {
             let given = |name| root.attribute(name).unwrap_or("?");
             let found = format!("this is SBML Level {} Version {}", given("level"), given("version"));
-            let help = "Level 2 Versions 1 to 5 and Level 3 Versions 1 and 2 are read; convert the model, with libSBML say";
+            let help =
+                "Level 2 Versions 1 to 5 and Level 3 Versions 1 and 2 are read; convert the model, with libSBML say";
             page.fault(root, found, help);
             return Err(page.finish().expect_err("a fault was noted"));
         }
@@ -219,11 +220,6 @@ impl<'a> Page<'a> {
         Err(Error::Input(faults))
     }
 
-    /// Whether nothing was wrong so far.
-    pub fn is_good(&self) -> bool {
-        self.faults.borrow().is_empty()
-    }
-
     /// The children of an element that belong to the SBML core.
     pub fn children(&self, node: Node<'a>) -> impl Iterator<Item = Node<'a>> + use<'a> {
         let namespace = self.namespace;
@@ -237,7 +233,8 @@ impl<'a> Page<'a> {
 
     /// The first element of the formula in an element's `<math>`, if there is one.
     pub fn math(&self, node: Node<'a>) -> Option<Node<'a>> {
-        let is_math = |child: &Node<'a>| child.tag_name().name() == "math" && child.tag_name().namespace() == Some(MATHML);
+        let is_math =
+            |child: &Node<'a>| child.tag_name().name() == "math" && child.tag_name().namespace() == Some(MATHML);
         node.children().find(is_math)?.first_element_child()
     }
 
@@ -268,7 +265,12 @@ impl<'a> Page<'a> {
             Some("true" | "1") => true,
             Some("false" | "0") => false,
             Some(text) => {
-                self.fault_in(node, attribute, format!("`{text}` is neither true nor false"), "write `true` or `false`");
+                self.fault_in(
+                    node,
+                    attribute,
+                    format!("`{text}` is neither true nor false"),
+                    "write `true` or `false`",
+                );
                 otherwise
             }
         }
