@@ -70,7 +70,8 @@ fn case(folder: &Path, file: &Path) -> Result<(), String> {
         for (place, column) in columns.iter().enumerate() {
             let (expected, got) = (row[place + 1], values[*column as usize]);
             let same = expected == got || (expected.is_nan() && got.is_nan());
-            if !same && !((expected - got).abs() <= absolute + relative * expected.abs()) {
+            let near = (expected - got).abs() <= absolute + relative * expected.abs();
+            if !same && !near {
                 return Err(format!("{} at {}: {got} instead of {expected}", names[place + 1], row[0]));
             }
         }

@@ -223,6 +223,14 @@ fn initial_assignments_use_each_other_rules_and_reactions() {
 }
 
 #[test]
+fn the_size_of_a_compartment_may_start_from_a_concentration_in_it() {
+    let size = format!(r#"<initialAssignment symbol="V">{}</initialAssignment>"#, math("<ci><!-- c --> S </ci>"));
+    let body = cell(CHANGING, r#"initialConcentration="3""#)
+        + &format!("<listOfInitialAssignments>{size}</listOfInitialAssignments>");
+    close(&at(&read(3, 2, &body), 1.0, &["V", "[S]", "S"]), &[3.0, 3.0, 9.0]);
+}
+
+#[test]
 fn units_are_told_of_once() {
     let body =
         cell(r#"size="1" units="litre""#, r#"initialAmount="1" substanceUnits="mole" hasOnlySubstanceUnits="true""#);

@@ -121,8 +121,14 @@ impl<'p, 'a> Reader<'p, 'a> {
     }
 
     fn number(&self, node: Node<'a>) -> Option<Expr> {
-        let texts: Vec<&str> =
-            node.children().filter(|child| child.is_text()).filter_map(|child| child.text()).collect();
+        let mut texts = vec![String::new()];
+        for child in node.children() {
+            match child.text().filter(|_| child.is_text()) {
+                Some(text) => texts.last_mut().expect("one text at least").push_str(text),
+                None if child.tag_name().name() == "sep" => texts.push(String::new()),
+                None => {}
+            }
+        }
         let kind = node.attribute("type").map_or("real", str::trim);
         let value = match (kind, texts.as_slice()) {
             ("real" | "integer" | "double", [text]) => xml::number(text),
@@ -141,7 +147,7 @@ impl<'p, 'a> Reader<'p, 'a> {
     }
 
     fn symbol(&self, node: Node<'a>, scope: &Scope<'a>, level: usize) -> Option<Expr> {
-        let name = node.text().unwrap_or_default().trim();
+        let name = name(node);
         if let Some(value) = scope.names.get(name) {
             let (depth, size) = extent(value);
             if level + depth > DEPTH_LIMIT || !self.take(size) {
@@ -219,7 +225,7 @@ impl<'p, 'a> Reader<'p, 'a> {
 
     /// A call of a function of the model: its formula with the operands in place of the arguments.
     fn call(&self, head: Node<'a>, operands: &[Node<'a>], scope: &Scope<'a>, level: usize) -> Option<Expr> {
-        let name = head.text().unwrap_or_default().trim();
+        let name = name(head);
         let Some((&name, function)) = self.functions.get_key_value(name) else {
             return self.fault(head, format!("there is no function `{name}`"), "add a <functionDefinition> for it");
         };
@@ -301,6 +307,12 @@ impl<'p, 'a> Reader<'p, 'a> {
             Some(Expr::Piecewise { branches, otherwise: Box::new(otherwise) })
         }
     }
+}
+
+/// The name in a `<ci>`, around which there may be comments.
+pub fn name(node: Node<'_>) -> &str {
+    let texts = node.children().filter(|child| child.is_text()).filter_map(|child| child.text());
+    texts.map(str::trim).find(|text| !text.is_empty()).unwrap_or_default()
 }
 
 /// The last part of a csymbol's definition.

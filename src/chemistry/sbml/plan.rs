@@ -161,7 +161,7 @@ impl<'p, 'a> Plan<'p, 'a> {
         }
         for child in node.children().filter(|child| child.is_element()) {
             if child.tag_name().name() == "bvar" {
-                let name = child.first_element_child().and_then(|ci| ci.text()).unwrap_or_default().trim();
+                let name = child.first_element_child().map(super::math::name).unwrap_or_default();
                 if name.is_empty() || read.arguments.contains(&name) {
                     let help = "each <bvar> holds one <ci> with a name of its own";
                     self.page.fault(child, "an argument has no name, or one that is taken", help);

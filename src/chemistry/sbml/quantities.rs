@@ -2,8 +2,9 @@
 
 use super::document::{Parameter, RuleKind};
 use super::math::Scope;
-use super::pieces::{number, quantity};
+use super::pieces::{number, quantity, replaced};
 use super::plan::Plan;
+use super::xml::Node;
 use crate::chemistry::tree::{Expr, QuantityId, Role};
 
 impl<'a> Plan<'_, 'a> {
@@ -36,11 +37,23 @@ impl<'a> Plan<'_, 'a> {
         }
     }
 
+    /// The formula of an initial assignment. A concentration that the model gives stands for its number, so that the size
+    /// of its compartment may depend on it.
+    pub fn start_formula(&self, math: Node<'a>) -> Expr {
+        replaced(&self.reader.formula(math), &|place| {
+            let index = self.amounts.binary_search(&place.checked_sub(1)?).ok()?;
+            let species = &self.document.species[index];
+            let by_other =
+                species.amount.is_some() || self.initial.contains_key(species.id) || self.is_defined(species.id);
+            species.concentration.filter(|_| !by_other).map(number)
+        })
+    }
+
     /// Role and start of what is its own quantity: by its rule, its initial assignment, the events, its value.
     fn plain(&mut self, id: &'a str, value: Option<f64>) {
         let Some(&place) = self.reader.symbols.get(id) else { return };
         let initial = match self.initial.get(id) {
-            Some(math) => self.reader.formula(*math),
+            Some(math) => self.start_formula(*math),
             None => {
                 if value.is_none() && !self.is_defined(id) {
                     self.unset.push(place);

@@ -69,7 +69,7 @@ impl<'a> Plan<'_, 'a> {
     /// The amount at the start.
     fn start(&mut self, species: &Species<'a>, places: Places) -> Expr {
         if let Some(math) = self.initial.get(species.id) {
-            let value = self.reader.formula(*math);
+            let value = self.start_formula(*math);
             return if species.only_amount { value } else { product(value, places.size()) };
         }
         match (species.amount, species.concentration) {
