@@ -175,8 +175,8 @@ fn unknown(page: &Page<'_>, node: Node<'_>) {
 fn packages<'a>(page: &Page<'a>, root: Node<'a>) {
     for attribute in root.attributes().filter(|attribute| attribute.name() == "required") {
         let Some(space) = attribute.namespace() else { continue };
-        let name = space.split("level3/version1/").nth(1).or(space.split("level3/version2/").nth(1)).unwrap_or(space);
-        let name = name.split('/').next().unwrap_or(name);
+        let core = ["level3/version1/", "level3/version2/"].iter().find_map(|mark| space.split(mark).nth(1));
+        let name = core.map_or(space, |rest| rest.split('/').next().unwrap_or(rest));
         if matches!(attribute.value().trim(), "true" | "1") {
             let found = format!("the model needs the package `{name}`, which is not read");
             page.fault(root, found, "flatten or convert the model to core SBML with the tool that wrote it");
