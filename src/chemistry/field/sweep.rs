@@ -47,6 +47,17 @@ struct Thirds<'a, T> {
     row: usize,
 }
 
+/// The registers of a row that are worked on together.
+#[inline(always)]
+fn part_of<T, const K: usize>(row: &[T], part: usize) -> &[T; K] {
+    row[part..].first_chunk().expect("K divides the registers of a row")
+}
+
+#[inline(always)]
+fn part_of_mut<T, const K: usize>(row: &mut [T], part: usize) -> &mut [T; K] {
+    row[part..].first_chunk_mut().expect("K divides the registers of a row")
+}
+
 #[inline(always)]
 fn all_lines<S: Simd, const K: usize>(simd: S, work: Sweep) -> f64 {
     let n = work.line.complex.len();
@@ -57,10 +68,11 @@ fn all_lines<S: Simd, const K: usize>(simd: S, work: Sweep) -> f64 {
     let mut least = simd.splat_f64s(f64::INFINITY);
     for part in (0..row).step_by(K) {
         forward::<S, K>(simd, work.line, &mut thirds, part);
-        let low = match &work.line.ring {
-            None => backward::<S, K>(simd, work.line, work.factor, &mut thirds, part),
-            Some(ring) => backward_ring::<S, K>(simd, work.line, ring, work.factor, &mut thirds, part),
-        };
+        let ends = backward::<S, K>(simd, work.line, &mut thirds, part);
+        if let Some(ring) = &work.line.ring {
+            close::<S, K>(simd, ring, &mut thirds, part, ends);
+        }
+        let low = flow::<S, K>(simd, work.line, work.factor, &mut thirds, part);
         least = simd.min_f64s(least, low);
     }
     simd.reduce_min_f64s(least)
@@ -73,119 +85,116 @@ fn forward<S: Simd, const K: usize>(simd: S, line: &Line, t: &mut Thirds<S::f64s
     let (mut gr, mut gi) = ([zero; K], [zero; K]);
     let rows = t.values.chunks_exact(t.row).zip(t.re.chunks_exact_mut(t.row).zip(t.im.chunks_exact_mut(t.row)));
     for (c, (b, (re, im))) in line.complex.iter().zip(rows) {
-        let (b, re, im) = (&b[part..part + K], &mut re[part..part + K], &mut im[part..part + K]);
+        let b = part_of::<_, K>(b, part);
+        let (re, im) = (part_of_mut::<_, K>(re, part), part_of_mut::<_, K>(im, part));
         let (cr, ci) = (simd.splat_f64s(c[0]), simd.splat_f64s(c[1]));
         for k in 0..K {
             let sum = simd.add_f64s(b[k], gr[k]);
             let next = simd.sub_f64s(simd.mul_f64s(sum, cr), simd.mul_f64s(gi[k], ci));
             gi[k] = simd.add_f64s(simd.mul_f64s(sum, ci), simd.mul_f64s(gi[k], cr));
             gr[k] = next;
-            re[k] = gr[k];
-            im[k] = gi[k];
         }
+        (*re, *im) = (gr, gi);
     }
 }
 
-/// X ← G + c X for one box.
-#[inline(always)]
-fn back<S: Simd>(simd: S, c: [f64; 2], g: (S::f64s, S::f64s), x: (S::f64s, S::f64s)) -> (S::f64s, S::f64s) {
-    let (cr, ci) = (simd.splat_f64s(c[0]), simd.splat_f64s(c[1]));
-    let re = simd.add_f64s(g.0, simd.sub_f64s(simd.mul_f64s(x.0, cr), simd.mul_f64s(x.1, ci)));
-    let im = simd.add_f64s(g.1, simd.add_f64s(simd.mul_f64s(x.0, ci), simd.mul_f64s(x.1, cr)));
-    (re, im)
-}
-
-/// From the last box to the first: X, the flows between the boxes, and what they change.
+/// From the last box to the first: X ← G + c X, and Y = Re X − Im X. Returns the sum of X in the first and last box.
 #[inline(always)]
 fn backward<S: Simd, const K: usize>(
     simd: S,
     line: &Line,
-    factor: f64,
     t: &mut Thirds<S::f64s>,
     part: usize,
-) -> S::f64s {
-    let (zero, factor) = (simd.splat_f64s(0.0), simd.splat_f64s(factor));
-    let (low, high) = (simd.splat_f64s(line.walls[0]), simd.splat_f64s(-line.walls[1]));
-    let mut least = simd.splat_f64s(f64::INFINITY);
-    let (mut x, mut y, mut flow) = ([(zero, zero); K], [zero; K], [zero; K]);
-    let n = line.complex.len();
-    let mut above: Option<usize> = None;
-    for i in (0..n).rev() {
-        let at = i * t.row + part;
-        let (re, im) = (&mut t.re[at..at + K], &t.im[at..at + K]);
+) -> [[S::f64s; K]; 2] {
+    let zero = simd.splat_f64s(0.0);
+    let (mut xr, mut xi) = ([zero; K], [zero; K]);
+    let last = t.re.len() - t.row;
+    let last = [*part_of::<_, K>(&t.re[last..], part), *part_of::<_, K>(&t.im[last..], part)];
+    let rows = t.re.chunks_exact_mut(t.row).zip(t.im.chunks_exact(t.row));
+    for (c, (re, im)) in line.complex.iter().zip(rows).rev() {
+        let (re, im) = (part_of_mut::<_, K>(re, part), part_of::<_, K>(im, part));
+        let (cr, ci) = (simd.splat_f64s(c[0]), simd.splat_f64s(c[1]));
         for k in 0..K {
-            x[k] = back(simd, line.complex[i], (re[k], im[k]), x[k]);
-            let here = simd.sub_f64s(x[k].0, x[k].1);
-            re[k] = here;
-            if let Some(above) = above {
-                let next = simd.sub_f64s(y[k], here);
-                let value = &mut t.values[above + k];
-                *value = simd.mul_f64s(simd.add_f64s(*value, simd.sub_f64s(flow[k], next)), factor);
-                least = simd.min_f64s(least, *value);
-                flow[k] = next;
-            } else {
-                flow[k] = simd.mul_f64s(high, here);
-            }
-            y[k] = here;
+            let next = simd.add_f64s(re[k], simd.sub_f64s(simd.mul_f64s(xr[k], cr), simd.mul_f64s(xi[k], ci)));
+            xi[k] = simd.add_f64s(im[k], simd.add_f64s(simd.mul_f64s(xr[k], ci), simd.mul_f64s(xi[k], cr)));
+            xr[k] = next;
+            re[k] = simd.sub_f64s(xr[k], xi[k]);
         }
-        above = Some(at);
     }
+    let mut ends = last;
     for k in 0..K {
-        let value = &mut t.values[part + k];
-        let next = simd.mul_f64s(low, y[k]);
-        *value = simd.mul_f64s(simd.add_f64s(*value, simd.sub_f64s(flow[k], next)), factor);
-        least = simd.min_f64s(least, *value);
+        ends[0][k] = simd.add_f64s(ends[0][k], xr[k]);
+        ends[1][k] = simd.add_f64s(ends[1][k], xi[k]);
     }
-    least
+    ends
 }
 
-/// The same where the ends of the lines meet.
+/// Adds to Y what the meeting of the ends of the lines asks for.
 #[inline(always)]
-fn backward_ring<S: Simd, const K: usize>(
+fn close<S: Simd, const K: usize>(
+    simd: S,
+    ring: &Ring,
+    t: &mut Thirds<S::f64s>,
+    part: usize,
+    [re, im]: [[S::f64s; K]; 2],
+) {
+    let (cr, ci) = (simd.splat_f64s(ring.close[0]), simd.splat_f64s(ring.close[1]));
+    let (mut dr, mut di) = (re, im);
+    for k in 0..K {
+        dr[k] = simd.sub_f64s(simd.mul_f64s(re[k], cr), simd.mul_f64s(im[k], ci));
+        di[k] = simd.add_f64s(simd.mul_f64s(re[k], ci), simd.mul_f64s(im[k], cr));
+    }
+    for (share, y) in ring.share.iter().zip(t.re.chunks_exact_mut(t.row)) {
+        let y = part_of_mut::<_, K>(y, part);
+        let (sr, si) = (simd.splat_f64s(share[0]), simd.splat_f64s(share[1]));
+        for k in 0..K {
+            y[k] = simd.add_f64s(y[k], simd.add_f64s(simd.mul_f64s(sr, dr[k]), simd.mul_f64s(si, di[k])));
+        }
+    }
+}
+
+/// What flows between the boxes and through the walls changes the values. Returns the least of them.
+#[inline(always)]
+fn flow<S: Simd, const K: usize>(
     simd: S,
     line: &Line,
-    ring: &Ring,
     factor: f64,
     t: &mut Thirds<S::f64s>,
     part: usize,
 ) -> S::f64s {
-    let (zero, factor) = (simd.splat_f64s(0.0), simd.splat_f64s(factor));
-    let n = line.complex.len();
-    let (mut x, mut ends) = ([(zero, zero); K], [(zero, zero); K]);
-    for i in (0..n).rev() {
-        let at = i * t.row + part;
-        for k in 0..K {
-            x[k] = back(simd, line.complex[i], (t.re[at + k], t.im[at + k]), x[k]);
-            t.re[at + k] = simd.sub_f64s(x[k].0, x[k].1);
-            if i + 1 == n || i == 0 {
-                ends[k] = (simd.add_f64s(ends[k].0, x[k].0), simd.add_f64s(ends[k].1, x[k].1));
-            }
-        }
-    }
-    let (cr, ci) = (simd.splat_f64s(ring.close[0]), simd.splat_f64s(ring.close[1]));
-    for end in &mut ends {
-        let re = simd.sub_f64s(simd.mul_f64s(end.0, cr), simd.mul_f64s(end.1, ci));
-        *end = (re, simd.add_f64s(simd.mul_f64s(end.0, ci), simd.mul_f64s(end.1, cr)));
-    }
-    for i in 0..n {
-        let at = i * t.row + part;
-        let (sr, si) = (simd.splat_f64s(ring.share[i][0]), simd.splat_f64s(ring.share[i][1]));
-        for k in 0..K {
-            let more = simd.add_f64s(simd.mul_f64s(sr, ends[k].0), simd.mul_f64s(si, ends[k].1));
-            t.re[at + k] = simd.add_f64s(t.re[at + k], more);
-        }
-    }
-    let mut least = simd.splat_f64s(f64::INFINITY);
+    let factor = simd.splat_f64s(factor);
+    let first = *part_of::<_, K>(t.re, part);
+    let last = *part_of::<_, K>(&t.re[t.re.len() - t.row..], part);
+    let (mut below, mut top) = (first, last);
     for k in 0..K {
-        let first_flow = simd.sub_f64s(t.re[part + k], t.re[(n - 1) * t.row + part + k]);
-        let mut flow = first_flow;
-        for i in 0..n {
-            let at = i * t.row + part + k;
-            let next = if i + 1 == n { first_flow } else { simd.sub_f64s(t.re[at + t.row], t.re[at]) };
-            t.values[at] = simd.mul_f64s(simd.add_f64s(t.values[at], simd.sub_f64s(next, flow)), factor);
-            least = simd.min_f64s(least, t.values[at]);
-            flow = next;
+        if line.ring.is_some() {
+            below[k] = simd.sub_f64s(first[k], last[k]);
+            top[k] = below[k];
+        } else {
+            below[k] = simd.mul_f64s(simd.splat_f64s(line.walls[0]), first[k]);
+            top[k] = simd.mul_f64s(simd.splat_f64s(-line.walls[1]), last[k]);
         }
     }
-    least
+    let mut least = [simd.splat_f64s(f64::INFINITY); K];
+    let mut change = |values: &mut [S::f64s; K], above: &[S::f64s; K], below: &[S::f64s; K]| {
+        for k in 0..K {
+            let sum = simd.add_f64s(values[k], simd.sub_f64s(above[k], below[k]));
+            values[k] = simd.mul_f64s(sum, factor);
+            least[k] = simd.min_f64s(least[k], values[k]);
+        }
+    };
+    let mut here = first;
+    let rows = t.values.chunks_exact_mut(t.row).zip(t.re.chunks_exact(t.row).skip(1));
+    for (values, next) in rows {
+        let next = *part_of::<_, K>(next, part);
+        let mut above = next;
+        for k in 0..K {
+            above[k] = simd.sub_f64s(next[k], here[k]);
+        }
+        change(part_of_mut::<_, K>(values, part), &above, &below);
+        (here, below) = (next, above);
+    }
+    let values = t.values.len() - t.row;
+    change(part_of_mut::<_, K>(&mut t.values[values..], part), &top, &below);
+    least.into_iter().fold(simd.splat_f64s(f64::INFINITY), |a, b| simd.min_f64s(a, b))
 }
