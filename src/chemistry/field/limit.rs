@@ -4,12 +4,12 @@
 //! gives a negative value: the flux correction of Boris and Book in the form of Zalesak, eq. (field.6).
 
 use super::factors::Line;
-use super::sweep::WIDTH;
+use super::sweep::{WIDTH, section};
 
 /// Numbers of scratch that the limiter and the sweep before it need for lines of `n` boxes: values, Y, the values
 /// before the step, and three more for the limiter, each `[box][line]`.
 pub const fn scratch(n: usize) -> usize {
-    6 * n * WIDTH
+    6 * section(n)
 }
 
 /// A negative value this small beside the largest of its lines is set to zero and not worth a correction: the amount
@@ -33,12 +33,9 @@ pub fn clear_specks(values: &mut [f64], least: f64) -> bool {
 /// Corrects the lines in scratch, whose third part holds the values before the step, none of them negative.
 pub fn limit(line: &Line, factor: f64, scratch: &mut [f64]) {
     let n = line.real.len();
-    let (rows, _) = scratch[..6 * n * WIDTH].as_chunks_mut::<WIDTH>();
-    let (values, rest) = rows.split_at_mut(n);
-    let (y, rest) = rest.split_at_mut(n);
-    let (before, rest) = rest.split_at_mut(n);
-    let (low, rest) = rest.split_at_mut(n);
-    let (safe, room) = rest.split_at_mut(n);
+    let mut parts = scratch.chunks_exact_mut(section(n)).map(|part| &mut part.as_chunks_mut::<WIDTH>().0[..n]);
+    let mut next = || parts.next().expect("six sections");
+    let [values, y, before, low, safe, room] = std::array::from_fn(|_| next());
     backward_euler(line, before, low);
     // What stays after the flows of backward Euler, and which part of the further outflow it can pay for.
     for i in 0..n {

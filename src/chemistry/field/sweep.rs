@@ -9,9 +9,10 @@ use super::factors::{Line, Ring};
 /// Lines that are solved side by side.
 pub const WIDTH: usize = 16;
 
-/// Numbers of scratch that lines of `n` boxes need: values, real part (later Y), imaginary part, each `[box][line]`.
-pub const fn scratch(n: usize) -> usize {
-    3 * n * WIDTH
+/// Numbers from one section of scratch, each `[box][line]`, to the next, for lines of `n` boxes. An odd number of rows,
+/// because sections a power of two apart would compete for the same places of the cache.
+pub const fn section(n: usize) -> usize {
+    (n | 1) * WIDTH
 }
 
 struct Sweep<'a> {
@@ -33,13 +34,13 @@ impl WithSimd for Sweep<'_> {
     }
 }
 
-/// One step of diffusion along the lines in scratch, times a factor. Leaves the values and Y in their thirds of
-/// scratch and returns the least value.
+/// One step of diffusion along the lines in the first [`section`] of scratch, times a factor. Leaves Y in the second
+/// section, uses the third, and returns the least value.
 pub fn sweep(line: &Line, factor: f64, scratch: &mut [f64]) -> f64 {
     Arch::new().dispatch(Sweep { line, factor, scratch })
 }
 
-/// The thirds of scratch as registers: `[box × row + part]`.
+/// Values, real part (later Y) and imaginary part as registers: `[box × row + part]`.
 struct Thirds<'a, T> {
     values: &'a mut [T],
     re: &'a mut [T],
@@ -62,8 +63,9 @@ fn part_of_mut<T, const K: usize>(row: &mut [T], part: usize) -> &mut [T; K] {
 fn all_lines<S: Simd, const K: usize>(simd: S, work: Sweep) -> f64 {
     let n = work.line.complex.len();
     let row = WIDTH / S::F64_LANES;
-    let (values, rest) = S::as_mut_simd_f64s(&mut work.scratch[..scratch(n)]).0.split_at_mut(n * row);
-    let (re, im) = rest.split_at_mut(n * row);
+    let (values, rest) = work.scratch.split_at_mut(section(n));
+    let (re, im) = rest.split_at_mut(section(n));
+    let [values, re, im] = [values, re, im].map(|part| S::as_mut_simd_f64s(&mut part[..n * WIDTH]).0);
     let mut thirds = Thirds { values, re, im, row };
     let mut least = simd.splat_f64s(f64::INFINITY);
     for part in (0..row).step_by(K) {

@@ -12,7 +12,7 @@ use super::factors::Line;
 use super::grid::Grid;
 use super::limit::{clear_specks, limit, scratch};
 use super::species::{Range, Species};
-use super::sweep::{WIDTH, sweep};
+use super::sweep::{WIDTH, section, sweep};
 
 /// Fewest values for which threads are worth waking.
 const WORTH_THREADS: usize = 1 << 15;
@@ -224,7 +224,7 @@ impl Task<'_> {
         let least = sweep(self.line, self.factor, scratch);
         if least < 0.0 && self.range == Range::NonNegative && !clear_specks(&mut scratch[..n * WIDTH], least) {
             // SAFETY: this function's contract.
-            unsafe { lines.gather(values, &mut scratch[2 * n * WIDTH..3 * n * WIDTH]) };
+            unsafe { lines.gather(values, &mut scratch[2 * section(n)..3 * section(n)]) };
             limit(self.line, self.factor, scratch);
         }
         // SAFETY: this function's contract.
@@ -234,7 +234,13 @@ impl Task<'_> {
 
 /// Scratch of one part of the work.
 pub fn room(grid: &Grid) -> Vec<f64> {
-    vec![0.0; scratch(*grid.cells.iter().max().expect("three axes"))]
+    vec![0.0; scratch(*grid.cells.iter().max().expect("three axes")) + 8]
+}
+
+/// The same from where a line of the cache begins, so that no register is loaded from two of them.
+fn aligned(room: &mut [f64]) -> &mut [f64] {
+    let skip = room.as_ptr().align_offset(64).min(8);
+    &mut room[skip..]
 }
 
 /// Does `count` tasks, each with scratch that no other task uses meanwhile.
@@ -242,10 +248,12 @@ fn share(count: usize, threads: bool, rooms: &mut [Vec<f64>], work: impl Fn(usiz
     let parts = rooms.len();
     if threads {
         rooms.par_iter_mut().enumerate().for_each(|(part, room)| {
+            let room = aligned(room);
             (part * count / parts..(part + 1) * count / parts).for_each(|task| work(task, room));
         });
     } else {
-        (0..count).for_each(|task| work(task, &mut rooms[0]));
+        let room = aligned(&mut rooms[0]);
+        (0..count).for_each(|task| work(task, room));
     }
 }
 
