@@ -103,7 +103,8 @@ fn main() {
     println!("400², walls held at 1: {:.2} of no-flux walls", rate(cells, 1, Wall::Fixed(1.0), 1) / one);
     println!("400², two threads: {:.2} of one", rate(cells, 1, Wall::NoFlux, 2) / one);
     let mut free = fields(cells, 1, Wall::NoFlux);
-    free = Fields::new(free.grid().clone(), vec![free.species()[0].clone().with_range(Range::Free)]).expect("a species");
+    free =
+        Fields::new(free.grid().clone(), vec![free.species()[0].clone().with_range(Range::Free)]).expect("a species");
     let point = |fields: &mut Fields| {
         fields.deposit(0, Vec3::new(200.0, 200.0, 0.0), 1.0);
         fastest(1, || {
@@ -112,7 +113,10 @@ fn main() {
     };
     let free_time = point(&mut free);
     let mut kept = fields_without_substance(cells);
-    println!("400², a point source, first steps: {:.1} times as long when kept from going below zero", point(&mut kept) / free_time);
+    println!(
+        "400², a point source, first steps: {:.1} times as long when kept from going below zero",
+        point(&mut kept) / free_time
+    );
     for cells in [[100, 100, 1], [64, 64, 64]] {
         let (deposit, sense) = touch(cells);
         println!(

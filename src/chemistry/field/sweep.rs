@@ -102,12 +102,7 @@ fn forward<S: Simd, const K: usize>(simd: S, line: &Line, t: &mut Thirds<S::f64s
 
 /// From the last box to the first: X ← G + c X, and Y = Re X − Im X. Returns the sum of X in the first and last box.
 #[inline(always)]
-fn backward<S: Simd, const K: usize>(
-    simd: S,
-    line: &Line,
-    t: &mut Thirds<S::f64s>,
-    part: usize,
-) -> [[S::f64s; K]; 2] {
+fn backward<S: Simd, const K: usize>(simd: S, line: &Line, t: &mut Thirds<S::f64s>, part: usize) -> [[S::f64s; K]; 2] {
     let zero = simd.splat_f64s(0.0);
     let (mut xr, mut xi) = ([zero; K], [zero; K]);
     let last = t.re.len() - t.row;
@@ -157,13 +152,7 @@ fn close<S: Simd, const K: usize>(
 
 /// What flows between the boxes and through the walls changes the values. Returns the least of them.
 #[inline(always)]
-fn flow<S: Simd, const K: usize>(
-    simd: S,
-    line: &Line,
-    factor: f64,
-    t: &mut Thirds<S::f64s>,
-    part: usize,
-) -> S::f64s {
+fn flow<S: Simd, const K: usize>(simd: S, line: &Line, factor: f64, t: &mut Thirds<S::f64s>, part: usize) -> S::f64s {
     let factor = simd.splat_f64s(factor);
     let first = *part_of::<_, K>(t.re, part);
     let last = *part_of::<_, K>(&t.re[t.re.len() - t.row..], part);
