@@ -22,6 +22,7 @@ struct Axis {
     n: usize,
     origin: f64,
     inverse: f64,
+    half: f64,
     walls: [Wall; 2],
 }
 
@@ -31,6 +32,7 @@ impl Axis {
             n: grid.cells[axis],
             origin: grid.origin[axis],
             inverse: 1.0 / grid.spacing[axis],
+            half: 0.5 * grid.spacing[axis],
             walls: species.walls[axis],
         })
     }
@@ -47,6 +49,19 @@ impl Axis {
             return place;
         }
         if self.periodic() { place.rem_euclid(n).min(n) } else { place.clamp(0.0, n) }
+    }
+
+    /// The box that holds a position and the part of it below the position, if `below` boxes lie before it and `above`
+    /// after it on the grid.
+    #[inline(always)]
+    fn inside(&self, position: f64, below: f64, above: f64) -> Option<(usize, f64)> {
+        let place = (position - self.origin) * self.inverse;
+        if !(place >= below && place < self.n as f64 - above) {
+            return None;
+        }
+        // SAFETY: not negative and less than a number of boxes, which memory can count.
+        let box_at: i64 = unsafe { place.to_int_unchecked() };
+        Some((box_at as usize, place - box_at as f64))
     }
 
     /// The two boxes that share what is released, and the part of the second.
@@ -134,9 +149,75 @@ impl<const N: usize> Stencil<N> {
     }
 }
 
-/// The value and gradient at a position, written for four boxes along x at a time.
+/// The quadratic B-spline and its slope at part `t` of a box, counted from its low side, eq. (field.9).
+#[inline(always)]
+fn spline(t: f64, inverse: f64) -> ([f64; 3], [f64; 3]) {
+    let (low, high) = (1.0 - t, t - 0.5);
+    let weights = [0.5 * low * low, 0.75 - high * high, 0.5 * t * t];
+    (weights, [-low * inverse, -2.0 * high * inverse, t * inverse])
+}
+
+/// Four boxes side by side along x.
+#[inline(always)]
+fn four(rows: &[f64], first: usize) -> &[f64; 4] {
+    rows[first..].first_chunk().expect("four boxes")
+}
+
+/// A weighted sum of three runs of four numbers.
+#[inline(always)]
+fn sum(weights: &[f64; 3], of: [&[f64; 4]; 3]) -> [f64; 4] {
+    let mut sum = [0.0; 4];
+    for l in 0..4 {
+        sum[l] = (weights[0] * of[0][l] + weights[1] * of[1][l]) + weights[2] * of[2][l];
+    }
+    sum
+}
+
+/// A weighted sum of three of four numbers.
+#[inline(always)]
+fn dot(weights: &[f64; 3], of: &[f64; 4]) -> f64 {
+    (weights[0] * of[0] + weights[1] * of[1]) + weights[2] * of[2]
+}
+
+/// Three rows of four boxes, added up with weights across the rows, and with the weights of the slope across them.
+#[inline(always)]
+fn plane(values: &[f64], first: usize, nx: usize, (weights, slopes): &([f64; 3], [f64; 3])) -> [[f64; 4]; 2] {
+    let rows = &values[first..first + 2 * nx + 4];
+    let (a, b, c) = (four(rows, 0), four(rows, nx), four(rows, 2 * nx));
+    [sum(weights, [a, b, c]), sum(slopes, [a, b, c])]
+}
+
+/// The value and gradient at a position; four boxes along x at a time where no wall is near.
 #[inline(always)]
 fn sense(axes: &[Axis; 3], values: &[f64], position: Vec3, floor: f64) -> Sensed {
+    let flat = axes[2].n == 1;
+    let z = if flat { Some((1, 0.5)) } else { axes[2].inside(position.z, 1.0, 1.0) };
+    let (x, y) = (axes[0].inside(position.x, 1.0, 2.0), axes[1].inside(position.y, 1.0, 1.0));
+    let (Some(x), Some(y), Some(z)) = (x, y, z) else { return sense_at_wall(axes, values, position, floor) };
+    let (nx, across) = (axes[0].n, axes[0].n * axes[1].n);
+    let ((wx, sx), across_y) = (spline(x.1, axes[0].inverse), spline(y.1, axes[1].inverse));
+    let first = (z.0 - 1) * across + (y.0 - 1) * nx + x.0 - 1;
+    let (value, along_y, along_z) = if flat {
+        let [level, slope] = plane(values, first, nx, &across_y);
+        (level, slope, [0.0; 4])
+    } else {
+        let (wz, sz) = spline(z.1, axes[2].inverse);
+        let a = plane(values, first, nx, &across_y);
+        let b = plane(values, first + across, nx, &across_y);
+        let c = plane(values, first + 2 * across, nx, &across_y);
+        let level = [&a[0], &b[0], &c[0]];
+        (sum(&wz, level), sum(&wz, [&a[1], &b[1], &c[1]]), sum(&sz, level))
+    };
+    let value_here = dot(&wx, &value);
+    Sensed {
+        value: if value_here < floor { floor } else { value_here },
+        gradient: Vec3::new(dot(&sx, &value), dot(&wx, &along_y), dot(&wx, &along_z)),
+    }
+}
+
+/// The same where a wall is near, or the grid is narrow, or the position lies beyond it.
+#[inline(never)]
+fn sense_at_wall(axes: &[Axis; 3], values: &[f64], position: Vec3, floor: f64) -> Sensed {
     let (x, y) = (Stencil::<4>::of(&axes[0], position.x), Stencil::<3>::of(&axes[1], position.y));
     let z = Stencil::<3>::of(&axes[2], position.z);
     let (nx, ny, deep) = (axes[0].n, axes[1].n, if axes[2].n == 1 { 1 } else { 3 });
@@ -201,13 +282,14 @@ impl Fields {
         let axes = Axis::all(&self.grid, &self.species[species]);
         let limited = self.species[species].range == Range::NonNegative;
         let (measure, len) = (self.grid.measure(), self.grid.len());
+        let inverse = 1.0 / measure;
         let values = &mut self.values[species * len..(species + 1) * len];
         let mut gained = 0.0;
         for (position, amount) in positions.iter().zip(amounts) {
             if !(position.iter().all(|p| p.is_finite()) && amount.is_finite()) {
                 continue;
             }
-            let density = amount / measure;
+            let density = amount * inverse;
             if density >= 0.0 || !limited {
                 release(&axes, values, position, |value, weight| *value += weight * density);
                 gained += amount;
@@ -255,8 +337,11 @@ impl Fields {
 /// Calls back for each box around a position with its weight; the weights sum to one.
 #[inline(always)]
 fn release(axes: &[Axis; 3], values: &mut [f64], position: &Vec3, mut change: impl FnMut(&mut f64, f64)) {
-    let ((xs, wx), (ys, wy)) = (axes[0].pair(position.x), axes[1].pair(position.y));
-    let (zs, wz) = axes[2].pair(position.z);
+    let pair = |axis: usize| match axes[axis].inside(position[axis] + axes[axis].half, 1.0, 0.0) {
+        Some((high, part)) => ([high - 1, high], part),
+        None => axes[axis].pair(position[axis]),
+    };
+    let ((xs, wx), (ys, wy), (zs, wz)) = (pair(0), pair(1), if axes[2].n == 1 { ([0, 0], 0.0) } else { pair(2) });
     let (nx, ny, deep) = (axes[0].n, axes[1].n, if axes[2].n == 1 { 1 } else { 2 });
     for (z, wz) in zs.into_iter().zip([1.0 - wz, wz]).take(deep) {
         for (y, wy) in ys.into_iter().zip([1.0 - wy, wy]) {
