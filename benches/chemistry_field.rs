@@ -58,10 +58,10 @@ fn touch(cells: [usize; 3]) -> (f64, f64) {
     let positions: Vec<Vec3> = (0..42_000).map(atom).collect();
     let amounts = vec![1e-6; positions.len()];
     let mut sensed = vec![Sensed::default(); positions.len()];
-    let deposit = fastest(21, || {
+    let deposit = fastest(200, || {
         black_box(fields.deposit_all(0, black_box(&positions), &amounts));
     });
-    let sense = fastest(21, || fields.sense_all(0, black_box(&positions), black_box(&mut sensed)));
+    let sense = fastest(200, || fields.sense_all(0, black_box(&positions), black_box(&mut sensed)));
     (1e6 * deposit, 1e6 * sense)
 }
 
@@ -80,9 +80,9 @@ fn reacting(cells: [usize; 3]) -> (f64, f64) {
         }
     };
     let points = fields.grid().len();
-    let steps = (1_000_000 / points).max(1) as u32;
+    let steps = (300_000 / points).max(1) as u32;
     let mut time = |reactions: Option<&(dyn Fn(&mut Chunk) + Sync)>| {
-        fastest(5, || {
+        fastest(30, || {
             fields.advance(0.01 * f64::from(steps), Stepping::Fixed(steps), reactions).expect("a step");
         })
     };

@@ -41,6 +41,11 @@ const CALM: f64 = 0.08;
 /// Above this error the next step is checked too.
 const WATCH: f64 = 0.5;
 
+/// Whether a step with this error, in tolerances, must be taken again; one that is not a number must.
+fn too_large(error: f64) -> bool {
+    error.is_nan() || error > 1.0
+}
+
 impl Fields {
     /// Moves all species by a window of time, s.
     ///
@@ -104,8 +109,7 @@ impl Fields {
             if self.unchecked == 0 {
                 let error = self.checked(dt, tolerance, reactions);
                 report.checks += 1;
-                // Written so that an error that is not a number is too large.
-                if !(error <= 1.0) {
+                if too_large(error) {
                     report.rejected += 1;
                     self.level += 1;
                     if self.level > FINEST {
@@ -140,7 +144,7 @@ impl Fields {
         self.time = began;
         self.strang(0.5 * dt, 2, reactions);
         let error = self.difference(tolerance);
-        if !(error <= 1.0) {
+        if too_large(error) {
             std::mem::swap(&mut self.values, &mut self.work.before);
             self.time = began;
         }
@@ -150,7 +154,7 @@ impl Fields {
     /// The error of the whole step in tolerances: the largest over the species of the root mean square.
     fn difference(&self, [relative, absolute]: [f64; 2]) -> f64 {
         let len = self.grid.len();
-        let mut worst = 0.0;
+        let mut worst: f64 = 0.0;
         for (fine, whole) in self.values.chunks_exact(len).zip(self.work.whole.chunks_exact(len)) {
             let (mut apart, mut size) = ([0.0; 8], [0.0; 8]);
             for (at, (fine, whole)) in fine.iter().zip(whole).enumerate() {
@@ -160,12 +164,10 @@ impl Fields {
             let mean = |sums: [f64; 8]| (sums.iter().sum::<f64>() / len as f64).sqrt();
             // The halves are wrong by a quarter of the whole step, so that their difference is three quarters of it.
             let error = 4.0 / 3.0 * mean(apart) / (absolute + relative * mean(size)).max(f64::MIN_POSITIVE);
-            if !(error <= worst) {
-                worst = error;
+            if error.is_nan() {
+                return error;
             }
-            if worst.is_nan() {
-                return worst;
-            }
+            worst = error.max(worst);
         }
         worst
     }
