@@ -23,6 +23,7 @@ struct Axis {
     origin: f64,
     inverse: f64,
     half: f64,
+    size: f64,
     walls: [Wall; 2],
 }
 
@@ -33,6 +34,7 @@ impl Axis {
             origin: grid.origin[axis],
             inverse: 1.0 / grid.spacing[axis],
             half: 0.5 * grid.spacing[axis],
+            size: grid.cells[axis] as f64,
             walls: species.walls[axis],
         })
     }
@@ -56,7 +58,7 @@ impl Axis {
     #[inline(always)]
     fn inside(&self, position: f64, below: f64, above: f64) -> Option<(usize, f64)> {
         let place = (position - self.origin) * self.inverse;
-        if !(place >= below && place < self.n as f64 - above) {
+        if !(place >= below && place < self.size - above) {
             return None;
         }
         // SAFETY: not negative and less than a number of boxes, which memory can count.
@@ -191,9 +193,16 @@ fn plane(values: &[f64], first: usize, nx: usize, (weights, slopes): &([f64; 3],
 #[inline(always)]
 fn sense(axes: &[Axis; 3], values: &[f64], position: Vec3, floor: f64) -> Sensed {
     let flat = axes[2].n == 1;
-    let z = if flat { Some((1, 0.5)) } else { axes[2].inside(position.z, 1.0, 1.0) };
-    let (x, y) = (axes[0].inside(position.x, 1.0, 2.0), axes[1].inside(position.y, 1.0, 1.0));
-    let (Some(x), Some(y), Some(z)) = (x, y, z) else { return sense_at_wall(axes, values, position, floor) };
+    let place = |axis: usize| (position[axis] - axes[axis].origin) * axes[axis].inverse;
+    let (x, y, z) = (place(0), place(1), if flat { 1.5 } else { place(2) });
+    // Not written as its contrary, so that a position that is not a number is near a wall too.
+    let within = |place: f64, axis: usize, above: f64| (place >= 1.0) & (place < axes[axis].size - above);
+    if !(within(x, 0, 2.0) & within(y, 1, 1.0) & (flat | within(z, 2, 1.0))) {
+        return sense_at_wall(axes, values, position, floor);
+    }
+    // SAFETY: the places are not negative and less than numbers of boxes, which memory can count.
+    let (i, j, k): (i64, i64, i64) = unsafe { (x.to_int_unchecked(), y.to_int_unchecked(), z.to_int_unchecked()) };
+    let (x, y, z) = ((i as usize, x - i as f64), (j as usize, y - j as f64), (k as usize, z - k as f64));
     let (nx, across) = (axes[0].n, axes[0].n * axes[1].n);
     let ((wx, sx), across_y) = (spline(x.1, axes[0].inverse), spline(y.1, axes[1].inverse));
     let first = (z.0 - 1) * across + (y.0 - 1) * nx + x.0 - 1;
