@@ -1,0 +1,200 @@
+//! Moves fields through a window of time: reactions for half a step, diffusion and decay for a step, reactions for
+//! half a step, eq. (field.1), with steps as small as the splitting asks.
+
+use super::react::{React, react};
+use super::state::Fields;
+use crate::error::{Error, Result};
+
+/// How a window is cut into steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stepping {
+    /// Into so many equal steps, at least one.
+    Fixed(u32),
+    /// Into 1, 2, 4, … parts, so that the error of a step, eq. (field.7), stays below the tolerance.
+    Adaptive {
+        /// Part of the size of a species (root mean square) that a step may be wrong by, e.g. 1e-3.
+        relative: f64,
+        /// Value that a step may be wrong by whatever the size, e.g. 1e-6 of a usual concentration.
+        absolute: f64,
+    },
+}
+
+/// What a window took.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Report {
+    /// Steps that count.
+    pub steps: u32,
+    /// Steps whose error was measured.
+    pub checks: u32,
+    /// Steps that were too long and taken again.
+    pub rejected: u32,
+    /// Largest error of an accepted step, in tolerances.
+    pub error: f64,
+}
+
+/// A window is never halved more often than this.
+pub const FINEST: u32 = 20;
+/// Of so many steps one is checked, while nothing speaks for a change of the step.
+const CHECK_EVERY: u32 = 4;
+/// Below this error the step is doubled: the error of a doubled step is 8 times as large, and some room is left.
+const CALM: f64 = 0.08;
+/// Above this error the next step is checked too.
+const WATCH: f64 = 0.5;
+
+/// Whether a step with this error, in tolerances, must be taken again; one that is not a number must.
+fn too_large(error: f64) -> bool {
+    error.is_nan() || error > 1.0
+}
+
+impl Fields {
+    /// Moves all species by a window of time, s.
+    ///
+    /// # Errors
+    /// Values that are not finite, or a tolerance that no step meets; the fields are then as they were before.
+    pub fn advance(&mut self, window: f64, stepping: Stepping, reactions: Option<&React>) -> Result<Report> {
+        if window == 0.0 {
+            return Ok(Report::default());
+        }
+        let (began, pace) = (self.time, self.pace());
+        // Diffusion and decay alone cannot fail.
+        if let (Stepping::Fixed(steps), None) = (stepping, reactions) {
+            self.strang(window / f64::from(steps.max(1)), steps.max(1), None);
+            self.time = began + window;
+            return Ok(Report { steps: steps.max(1), ..Report::default() });
+        }
+        let mut start = std::mem::take(&mut self.work.start);
+        start.copy_from_slice(&self.values);
+        let report = match stepping {
+            Stepping::Fixed(steps) => {
+                let steps = steps.max(1);
+                self.strang(window / f64::from(steps), steps, reactions);
+                Ok(Report { steps, ..Report::default() })
+            }
+            Stepping::Adaptive { relative, absolute } => self.adapt(window, [relative, absolute], reactions),
+        };
+        let report = report.and_then(|report| self.check_finite().map(|()| report));
+        if report.is_err() {
+            self.values.copy_from_slice(&start);
+            self.set_pace(pace);
+        }
+        self.time = if report.is_ok() { began + window } else { began };
+        self.work.start = start;
+        report
+    }
+
+    /// Equal steps, with the half steps of reactions between them joined.
+    fn strang(&mut self, dt: f64, steps: u32, reactions: Option<&React>) {
+        let began = self.time;
+        self.react(0.5 * dt, reactions);
+        for step in 1..=steps {
+            self.diffuse(dt);
+            self.time = began + (f64::from(step) - 0.5) * dt;
+            self.react(if step == steps { 0.5 * dt } else { dt }, reactions);
+        }
+        self.time = began + f64::from(steps) * dt;
+    }
+
+    fn react(&mut self, dt: f64, reactions: Option<&React>) {
+        let Some(function) = reactions else { return };
+        let Self { grid, species, values, work, time, .. } = self;
+        react(grid, species, function, (*time, dt), values, &mut work.reacting);
+    }
+
+    /// Steps of a window / 2^level. A step that is checked is taken whole and in halves; the halves are kept.
+    fn adapt(&mut self, window: f64, tolerance: [f64; 2], reactions: Option<&React>) -> Result<Report> {
+        let (mut report, mut done, began) = (Report::default(), 0_u32, self.time);
+        while done < 1 << FINEST {
+            let dt = window / f64::from(1_u32 << self.level);
+            self.time = began + window * (f64::from(done) / f64::from(1_u32 << FINEST));
+            if self.unchecked == 0 {
+                let error = self.checked(dt, tolerance, reactions);
+                report.checks += 1;
+                if too_large(error) {
+                    report.rejected += 1;
+                    self.level += 1;
+                    if self.level > FINEST {
+                        return Err(self.hopeless(dt));
+                    }
+                    continue;
+                }
+                report.error = report.error.max(error);
+                self.unchecked = if error > WATCH { 0 } else { CHECK_EVERY - 1 };
+                done += 1 << (FINEST - self.level);
+                if error < CALM && self.level > 0 && done.is_multiple_of(1 << (FINEST + 1 - self.level)) {
+                    self.level -= 1;
+                    self.unchecked = 0;
+                }
+            } else {
+                self.strang(dt, 1, reactions);
+                self.unchecked -= 1;
+                done += 1 << (FINEST - self.level);
+            }
+            report.steps += 1;
+        }
+        Ok(report)
+    }
+
+    /// A step in halves, and the error of the whole one; if that is above 1 the values are as before.
+    fn checked(&mut self, dt: f64, tolerance: [f64; 2], reactions: Option<&React>) -> f64 {
+        let began = self.time;
+        self.work.before.copy_from_slice(&self.values);
+        self.strang(dt, 1, reactions);
+        std::mem::swap(&mut self.values, &mut self.work.whole);
+        self.values.copy_from_slice(&self.work.before);
+        self.time = began;
+        self.strang(0.5 * dt, 2, reactions);
+        let error = self.difference(tolerance);
+        if too_large(error) {
+            std::mem::swap(&mut self.values, &mut self.work.before);
+            self.time = began;
+        }
+        error
+    }
+
+    /// The error of the whole step in tolerances: the largest over the species of the root mean square.
+    fn difference(&self, [relative, absolute]: [f64; 2]) -> f64 {
+        let len = self.grid.len();
+        let mut worst: f64 = 0.0;
+        for (fine, whole) in self.values.chunks_exact(len).zip(self.work.whole.chunks_exact(len)) {
+            let (mut apart, mut size) = ([0.0; 8], [0.0; 8]);
+            for (at, (fine, whole)) in fine.iter().zip(whole).enumerate() {
+                apart[at % 8] += (fine - whole) * (fine - whole);
+                size[at % 8] += fine * fine;
+            }
+            let mean = |sums: [f64; 8]| (sums.iter().sum::<f64>() / len as f64).sqrt();
+            // The halves are wrong by a quarter of the whole step, so that their difference is three quarters of it.
+            let error = 4.0 / 3.0 * mean(apart) / (absolute + relative * mean(size)).max(f64::MIN_POSITIVE);
+            if error.is_nan() {
+                return error;
+            }
+            worst = error.max(worst);
+        }
+        worst
+    }
+
+    fn hopeless(&self, dt: f64) -> Error {
+        Error::Numbers {
+            message: format!("no step of the fields meets the tolerance at t = {} s (down to {dt:e} s)", self.time),
+            help: "check the reactions for values that grow without bound, or raise the tolerance".into(),
+            kept: None,
+        }
+    }
+
+    fn check_finite(&self) -> Result<()> {
+        // A sum is finite exactly when no value is infinite or not a number, as long as it does not overflow itself.
+        let fine = self.values.iter().map(|value| value * 0.0).sum::<f64>() == 0.0;
+        let bad = if fine { None } else { self.values.iter().position(|value| !value.is_finite()) };
+        let Some(at) = bad else { return Ok(()) };
+        let (species, place) = (&self.species[at / self.grid.len()].name, self.grid.centre(at % self.grid.len()));
+        Err(Error::Numbers {
+            message: format!(
+                "species '{species}' of the field is {} at {:?} µm and t = {} s",
+                self.values[at],
+                place.as_slice(),
+                self.time
+            ),
+            help: "its reactions grow without bound; check their signs and rates, or take smaller steps".into(),
+            kept: None,
+        })
+    }
+}
