@@ -4,3 +4,4 @@ mod example;
 mod faults;
 mod resume;
 mod round_trip;
+mod tables;
