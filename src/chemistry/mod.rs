@@ -5,5 +5,6 @@
 //! cells, and the engine advances the program. Mechanics and contacts are never seen from here.
 
 pub mod derivative;
+pub mod eml;
 pub mod expression;
 pub mod tree;

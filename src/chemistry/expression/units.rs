@@ -57,6 +57,11 @@ impl Unit {
         whole.then_some(Dimension { length, time, force, angle, amount })
     }
 
+    /// How many base units (µm, s, pN, rad, zmol and their products) the unit holds.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
     /// The unit to a power.
     pub fn to_the(&self, power: f64) -> Self {
         let written = self.written.iter().map(|(name, own)| (name.clone(), own * power));
