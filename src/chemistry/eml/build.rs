@@ -10,6 +10,9 @@ use crate::chemistry::tree::{Expr, Quantity, QuantityId, Role, System};
 use crate::error::Place;
 use std::collections::HashMap;
 
+/// The most definitions of which each uses the one before: what orders them is recursive.
+const LONGEST_CHAIN: usize = 1000;
+
 /// What an expression may use.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Use {
@@ -34,7 +37,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         let no_time = "only rates, definitions, events and transfers can use the time".to_owned();
         let start = Scope { no_time: no_time.clone(), ..known.scope.clone() };
         let mut fixed = Scope { no_time, ..known.scope.clone() };
-        let is_parameter = |id: &str| known.quantities.iter().any(|q| q.id == id && q.element.kind.name == "parameter");
+        let is_parameter = |id: &str| known.sort(id) == Some("parameter");
         fixed.quantities.retain(|id, _| is_parameter(id));
         for id in known.scope.quantities.keys().filter(|id| !is_parameter(id)) {
             fixed.absent.insert(id.clone(), "this must keep one value: use numbers and parameters".to_owned());
@@ -72,7 +75,7 @@ impl<'a, 'd> Builder<'a, 'd> {
 
     fn check_units(&mut self, text: &Text, node: &Node, expected: Option<(&Unit, &str)>) {
         let mut troubles = Vec::new();
-        let units = UnitScope { units: &self.known.units, scope: &self.known.scope, time: &self.known.time };
+        let units = UnitScope { units: &self.known.units, scope: &self.known.scope, time: self.known.time_in_units() };
         match expected {
             Some((unit, what)) => units.expect(node, unit, what, &mut troubles),
             None => drop(units.measure(node, &mut troubles)),
@@ -185,8 +188,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         let mut found: HashMap<String, &Element> = HashMap::new();
         for element in root.all("equation").filter(|element| element.attribute("of").is_some()) {
             let id = element.word("of");
-            let owner = self.known.quantities.iter().find(|quantity| quantity.id == id);
-            let sort = owner.map(|owner| owner.element.kind.name);
+            let sort = self.known.sort(&id);
             let (message, help) = match sort {
                 Some("variable") if found.contains_key(&id) => {
                     (format!("`{id}` has two equations"), "remove one, or add the two".to_owned())
@@ -200,8 +202,8 @@ impl<'a, 'd> Builder<'a, 'd> {
                     format!("declare it with <variable id=\"{id}\" initial=\"…\">"),
                 ),
                 None => {
-                    let variables = self.known.quantities.iter().filter(|q| q.element.kind.name == "variable");
-                    let near = crate::chemistry::expression::meant(&id, variables.map(|q| q.id.as_str()));
+                    let variables = self.known.ids().filter(|id| self.known.sort(id) == Some("variable"));
+                    let near = self.desk.meant(&id, variables);
                     let help = near.map_or(format!("declare <variable id=\"{id}\" initial=\"…\">"), |near| {
                         format!("did you mean `{near}`?")
                     });
@@ -275,8 +277,15 @@ impl<'a, 'd> Builder<'a, 'd> {
             let help = "let one of them be a number, or a <variable> with an equation";
             self.desk.fault(at, &message, "in the circle", help);
         }
-        if found.is_empty() && self.desk.is_clean() {
-            self.check_finite(system);
+        if found.is_empty() {
+            let lengths = super::start::lengths(system.quantities.len(), &uses);
+            if let Some(number) = lengths.iter().position(|length| *length > LONGEST_CHAIN) {
+                let at = self.known.quantities[number].element.place("id");
+                let message = format!("more than {LONGEST_CHAIN} quantities in a row use each other to be computed");
+                self.desk.fault(at, &message, "too far down", "let expressions do more at once");
+            } else if self.desk.is_clean() {
+                self.check_finite(system);
+            }
         }
     }
 

@@ -30,6 +30,30 @@ pub(super) struct Declarations<'a> {
     /// Unit of length of the grid.
     pub(super) length_text: String,
     pub(super) length: Unit,
+    /// Whether the document has any unit; in one without, time and position have none either.
+    measured: bool,
+}
+
+impl<'a> Declarations<'a> {
+    /// The quantity with an identifier, as it is declared.
+    pub(super) fn declared(&self, id: &str) -> Option<&Declared<'a>> {
+        self.scope.quantities.get(id).and_then(|number| self.quantities.get(*number as usize))
+    }
+
+    /// The element that declares an identifier: "variable".
+    pub(super) fn sort(&self, id: &str) -> Option<&'static str> {
+        self.declared(id).map(|declared| declared.element.kind.name)
+    }
+
+    /// All identifiers of quantities.
+    pub(super) fn ids(&self) -> impl Iterator<Item = &str> {
+        self.quantities.iter().map(|quantity| quantity.id.as_str())
+    }
+
+    /// The unit of time, if the document has units.
+    pub(super) fn time_in_units(&self) -> Option<&Unit> {
+        self.measured.then_some(&self.time)
+    }
 }
 
 /// Tells a trouble of an expression at its place in the document.
@@ -68,6 +92,8 @@ pub(super) fn declare<'a>(desk: &mut Desk, root: &'a Element) -> Declarations<'a
         time,
         length_text,
         length,
+        measured: root.attribute("time_unit").is_some()
+            || root.children.iter().any(|child| child.attribute("unit").is_some()),
     };
     let mut lines: BTreeMap<String, usize> = BTreeMap::new();
     for element in root.children.iter().filter(|child| child.attribute("id").is_some()) {
@@ -86,7 +112,9 @@ pub(super) fn declare<'a>(desk: &mut Desk, root: &'a Element) -> Declarations<'a
     if level == Level::Field {
         for (place, name) in POSITION.iter().enumerate() {
             found.scope.quantities.insert((*name).to_owned(), (found.quantities.len() + place) as QuantityId);
-            found.units.insert((*name).to_owned(), found.length.clone());
+            if found.measured {
+                found.units.insert((*name).to_owned(), found.length.clone());
+            }
         }
     }
     functions(desk, root, &mut found.scope);
@@ -240,9 +268,11 @@ fn arguments(desk: &mut Desk, element: &Element) -> Vec<String> {
 /// Functions that call each other in a circle, each circle once.
 fn circles(scope: &Scope) -> Vec<Vec<String>> {
     let names: Vec<&String> = scope.functions.keys().collect();
+    let numbers: HashMap<&str, usize> =
+        names.iter().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
     let uses = |number: usize| -> Vec<usize> {
         let calls = scope.functions[names[number]].body.calls();
-        calls.iter().filter_map(|(name, _)| names.iter().position(|known| known == name)).collect()
+        calls.iter().filter_map(|(name, _)| numbers.get(name).copied()).collect()
     };
     let found = super::circles::circles(names.len(), &uses);
     found.into_iter().map(|circle| circle.into_iter().map(|number| names[number].clone()).collect()).collect()

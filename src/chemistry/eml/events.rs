@@ -4,6 +4,7 @@ use super::build::{Builder, Use};
 use super::xml::Element;
 use crate::chemistry::expression::Unit;
 use crate::chemistry::tree::{Event, Expr, QuantityId};
+use std::collections::HashSet;
 
 impl Builder<'_, '_> {
     /// The events of the document.
@@ -26,10 +27,11 @@ impl Builder<'_, '_> {
             self.desk.fault(element.at.clone(), "the event sets nothing", "without <set>", help);
         }
         let mut assignments: Vec<(QuantityId, Expr)> = Vec::new();
+        let mut targets: HashSet<QuantityId> = HashSet::new();
         for set in element.all("set").filter(|set| set.attribute("id").is_some()) {
             let value = self.set(set);
             let target = value.as_ref().map(|(target, _)| *target);
-            if target.is_some() && assignments.iter().any(|(known, _)| Some(*known) == target) {
+            if target.is_some_and(|target| !targets.insert(target)) {
                 let message = format!("the event sets `{}` twice", set.word("id"));
                 self.desk.fault(set.place("id"), &message, "a second time", "remove one of the two");
             }
@@ -43,8 +45,7 @@ impl Builder<'_, '_> {
 
     fn set(&mut self, set: &Element) -> Option<(QuantityId, Expr)> {
         let id = set.word("id");
-        let owner = self.known.quantities.iter().find(|quantity| quantity.id == id);
-        let sort = owner.map(|owner| owner.element.kind.name);
+        let sort = self.known.sort(&id);
         if sort != Some("variable") {
             let (message, help) = match sort {
                 Some(other) => (
@@ -52,8 +53,7 @@ impl Builder<'_, '_> {
                     format!("declare <variable id=\"{id}\" initial=\"…\" rate=\"0\"/>"),
                 ),
                 None => {
-                    let names = self.known.quantities.iter().map(|quantity| quantity.id.as_str());
-                    let near = crate::chemistry::expression::meant(&id, names);
+                    let near = self.desk.meant(&id, self.known.ids());
                     let help =
                         near.map_or("declare it as a <variable>".to_owned(), |near| format!("did you mean `{near}`?"));
                     (format!("nothing has the identifier `{id}`"), help)

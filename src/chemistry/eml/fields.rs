@@ -187,7 +187,7 @@ impl Builder<'_, '_> {
     }
 
     /// Puts the starting expressions in, and tells coefficients that are below 0 or not finite.
-    pub(super) fn finish_fields(&mut self, root: &Element, fields: &mut [FieldDescription], system: &System) {
+    pub(super) fn finish_fields(&mut self, fields: &mut [FieldDescription], system: &System) {
         for field in fields.iter_mut().filter(|field| matches!(field.initial, Profile::Expression(_))) {
             field.initial = Profile::Expression(system.quantities[field.quantity as usize].initial.clone());
         }
@@ -196,7 +196,7 @@ impl Builder<'_, '_> {
         }
         let values = super::start::values(system);
         for field in fields {
-            let element = root.all("field").find(|element| element.word("id") == field.id).unwrap_or(root);
+            let element = self.known.quantities[field.quantity as usize].element;
             for (name, expr) in [("diffusion", &field.diffusion), ("decay", &field.decay)] {
                 let value = expr.evaluate(0.0, &|number| values[number as usize]);
                 if !(value.is_finite() && value >= 0.0) {

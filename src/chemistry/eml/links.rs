@@ -98,7 +98,7 @@ impl Builder<'_, '_> {
         });
         let measure = unit.map_or(Measure::Unknown, Measure::Known);
         let scope: &Scope = &self.known.scope;
-        let units = UnitScope { units: &self.known.units, scope, time: &self.known.time };
+        let units = UnitScope { units: &self.known.units, scope, time: self.known.time_in_units() };
         let mut troubles: Vec<Trouble> = Vec::new();
         units.measure_with(node, &BTreeMap::from([(VALUE.to_owned(), measure)]), &mut troubles);
         troubles.iter().for_each(|trouble| tell(self.desk, text, trouble));
@@ -127,8 +127,7 @@ impl Builder<'_, '_> {
                 match self.find(id) {
                     Some(number) => return Some(Root::System(number)),
                     None => {
-                        let names = self.known.quantities.iter().map(|quantity| quantity.id.as_str());
-                        let help = match meant(id, names) {
+                        let help = match self.desk.meant(id, self.known.ids()) {
                             Some(near) => format!("did you mean system.{near}?"),
                             None => "declare it in this document".to_owned(),
                         };

@@ -58,7 +58,7 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     let solver = builder.solver(&root);
     let system = System { name: root.word("name"), quantities, events };
     builder.check_values(&system);
-    builder.finish_fields(&root, &mut fields, &system);
+    builder.finish_fields(&mut fields, &system);
     let (level, time_unit, seconds) = (builder.known.level, builder.known.time_text.clone(), builder.known.time.size());
     if !desk.is_clean() {
         return Err(desk.error());

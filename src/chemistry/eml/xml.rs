@@ -10,17 +10,20 @@ use std::ops::Range;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Text {
     pub(super) text: String,
-    /// Place of each byte and of the end.
-    origin: Vec<usize>,
+    /// For each byte, where the character that it belongs to begins and ends in the source.
+    origin: Vec<(usize, usize)>,
+    /// Where the whole text begins in the source.
+    start: usize,
 }
 
 impl Text {
     /// The bytes of the source behind a part of the text.
     pub(super) fn place(&self, at: &Range<usize>) -> Range<usize> {
-        let last = self.origin.len().saturating_sub(1);
-        let origin = |position: usize| self.origin.get(position.min(last)).copied().unwrap_or(0);
-        let (start, end) = (origin(at.start), origin(at.end));
-        start..end.max(start)
+        let end_of =
+            |position: usize| position.checked_sub(1).and_then(|last| self.origin.get(last)).map(|last| last.1);
+        let end = end_of(at.end.min(self.origin.len())).unwrap_or(self.start);
+        let start = self.origin.get(at.start).map_or(end, |first| first.0);
+        if at.is_empty() { start..start } else { start..end.max(start) }
     }
 
     /// The bytes of the source behind the whole text, blanks around it left out.
@@ -30,14 +33,14 @@ impl Text {
         self.place(&(start..start + trimmed.len()))
     }
 
-    fn push(&mut self, c: char, origin: usize) {
+    fn push(&mut self, c: char, start: usize, length: usize) {
         self.text.push(c);
-        self.origin.extend(std::iter::repeat_n(origin, c.len_utf8()));
+        self.origin.extend(std::iter::repeat_n((start, start + length), c.len_utf8()));
     }
 
     /// Takes a raw piece of XML that begins at `start` in the source.
     fn decode(raw: &str, start: usize) -> Self {
-        let mut found = Self::default();
+        let mut found = Self { start, ..Self::default() };
         let mut position = 0;
         while let Some(c) = raw[position..].chars().next() {
             let rest = &raw[position..];
@@ -47,18 +50,17 @@ impl Text {
             } else if let Some(inner) = rest.strip_prefix("<![CDATA[") {
                 let end = inner.find("]]>").unwrap_or(inner.len());
                 for (at, c) in inner[..end].char_indices() {
-                    found.push(c, here + 9 + at);
+                    found.push(c, here + 9 + at, c.len_utf8());
                 }
                 position += (9 + end + 3).min(rest.len());
             } else if let Some((c, length)) = escape(rest) {
-                found.push(c, here);
+                found.push(c, here, length);
                 position += length;
             } else {
-                found.push(c, here);
+                found.push(c, here, c.len_utf8());
                 position += c.len_utf8();
             }
         }
-        found.origin.push(start + raw.len());
         found
     }
 }

@@ -15,7 +15,7 @@ mod write;
 
 pub use functions::{function_names, is_identifier, is_reserved};
 pub use parse::parse;
-pub use resolve::{Function, LARGEST, Scope};
+pub use resolve::{Function, LARGEST, Scope, Spent};
 pub use syntax::{DEEPEST, LONGEST, Node, NodeKind};
 pub use units::{Measure, Unit, UnitScope};
 pub use words::{any_of, meant};

@@ -5,6 +5,7 @@ use super::functions::{CONSTANTS, FUNCTIONS, Known, TIME, known};
 use super::syntax::{DEEPEST, Node, NodeKind};
 use super::words::meant;
 use crate::chemistry::tree::{Expr, QuantityId, Unary};
+use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
@@ -34,7 +35,21 @@ pub struct Scope {
     pub absent: HashMap<String, String>,
     /// What `time` is told to be where it has no meaning; empty where it has.
     pub no_time: String,
+    /// Parts made so far by all expressions of the scope, and words looked for.
+    pub spent: Spent,
 }
+
+/// What the expressions of a scope have cost so far: a small document must not ask for much.
+#[derive(Debug, Clone, Default)]
+pub struct Spent {
+    parts: Cell<usize>,
+    words: Cell<usize>,
+}
+
+/// The most parts that all expressions of a scope may have together.
+const MOST_PARTS: usize = 2_000_000;
+/// The most misspelt words that are looked for in a scope, and the most names among which they are.
+const MOST_WORDS: (usize, usize) = (100, 5000);
 
 impl Scope {
     /// The expression with its names looked up and functions expanded.
@@ -50,8 +65,16 @@ impl Scope {
     /// # Errors
     /// As [`Scope::resolve`].
     pub fn resolve_with(&self, node: &Node, arguments: &BTreeMap<String, Expr>) -> Result<Expr, Vec<Trouble>> {
+        if self.spent.parts.get() > MOST_PARTS {
+            return Err(vec![
+                Trouble::new("the document grows too large when its functions are expanded", node.at.clone())
+                    .label(format!("more than {MOST_PARTS} parts"))
+                    .help("let functions call fewer others; name parts with <define>"),
+            ]);
+        }
         let mut walk = Walk { scope: self, troubles: Vec::new(), parts: 0, level: 0 };
         let found = walk.expr(node, arguments);
+        self.spent.parts.set(self.spent.parts.get() + walk.parts);
         if walk.parts > LARGEST || walk.level > DEEPEST {
             walk.troubles = vec![
                 Trouble::new("the expression grows too large when its functions are expanded", node.at.clone())
@@ -66,11 +89,20 @@ impl Scope {
         }
     }
 
+    /// The word that was meant, while not too many have been looked for.
+    fn meant<'a>(&self, word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+        self.spent.words.set(self.spent.words.get() + 1);
+        if self.spent.words.get() > MOST_WORDS.0 { None } else { meant(word, known.take(MOST_WORDS.1)) }
+    }
+
     /// The names that may be written, for advice.
     fn names<'a>(&'a self, arguments: &'a BTreeMap<String, Expr>) -> impl Iterator<Item = &'a str> {
         let own = arguments.keys().map(String::as_str);
         let constants = CONSTANTS.iter().map(|(name, _)| *name).chain([TIME]);
-        let mut quantities: Vec<&str> = self.quantities.keys().map(String::as_str).collect();
+        // They are put in order only while they will be looked at.
+        let wanted = self.spent.words.get() < MOST_WORDS.0;
+        let mut quantities: Vec<&str> =
+            if wanted { self.quantities.keys().map(String::as_str).collect() } else { Vec::new() };
         quantities.sort_unstable();
         own.chain(quantities).chain(constants)
     }
@@ -142,7 +174,7 @@ impl Walk<'_> {
         if self.scope.functions.contains_key(name) {
             return trouble.help(format!("`{name}` is a function of this document; write its arguments: `{name}(…)`"));
         }
-        let advice = match meant(name, self.scope.names(arguments)) {
+        let advice = match self.scope.meant(name, self.scope.names(arguments)) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "declare it with <parameter>, <variable>, <define> or <input>".to_owned(),
         };
@@ -202,7 +234,7 @@ impl Walk<'_> {
                 .help(format!("write a product with `*`: `{name}*(…)`"));
         }
         let own = self.scope.functions.keys().map(String::as_str);
-        let near = meant(name, own.chain(FUNCTIONS.iter().map(|Known { name, .. }| *name)));
+        let near = self.scope.meant(name, own.chain(FUNCTIONS.iter().map(|Known { name, .. }| *name)));
         let advice = match near {
             Some(near) => format!("did you mean `{near}`?"),
             None => "define it with <function id=… args=…>".to_owned(),

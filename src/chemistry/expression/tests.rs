@@ -197,7 +197,7 @@ fn unit_troubles(text: &str, unit: &str) -> Vec<Trouble> {
         HashMap::from([("x", "uM"), ("y", "uM/s"), ("K", "s")].map(|(name, unit)| (name.to_owned(), read(unit))));
     let (scope, time) = (scope(), read("s"));
     let mut troubles = Vec::new();
-    let units = UnitScope { units: &units, scope: &scope, time: &time };
+    let units = UnitScope { units: &units, scope: &scope, time: Some(&time) };
     units.expect(&parse(text).0, &read(unit), "the value", &mut troubles);
     troubles
 }

@@ -161,8 +161,8 @@ pub struct UnitScope<'a> {
     pub units: &'a HashMap<String, Unit>,
     /// The document's functions.
     pub scope: &'a Scope,
-    /// The unit of time.
-    pub time: &'a Unit,
+    /// The unit of time, where there is one.
+    pub time: Option<&'a Unit>,
 }
 
 impl UnitScope<'_> {
@@ -236,7 +236,7 @@ impl Check<'_, '_> {
             return self.scope.units.get(name).map_or(Measure::Unknown, |unit| Measure::Known(unit.clone()));
         }
         if name == TIME {
-            return Measure::Known(self.scope.time.clone());
+            return self.scope.time.map_or(Measure::Unknown, |unit| Measure::Known(unit.clone()));
         }
         match CONSTANTS.iter().find(|(constant, _)| *constant == name) {
             Some((_, value)) if value.is_infinite() => Measure::Fitting,
