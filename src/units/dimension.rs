@@ -1,7 +1,8 @@
 //! What kind of quantity a number is: a length, a speed, a stiffness.
 
-/// The powers of length, time, force and angle in a quantity. An angle counts as a dimension of its own, so that
-/// "15 deg" is not taken for a plain number.
+/// The powers of length, time, force, angle and amount of substance in a quantity. An angle counts as a dimension of its
+/// own, so that "15 deg" is not taken for a plain number. The base unit of amount is the zeptomole (602.2 molecules),
+/// because then 1 µM, the usual concentration in a cell, is exactly 1 zmol/µm³.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Dimension {
     /// Power of length (base unit µm).
@@ -12,6 +13,8 @@ pub struct Dimension {
     pub force: i8,
     /// Power of angle (base unit rad).
     pub angle: i8,
+    /// Power of amount of substance (base unit zmol, so that µM = zmol/µm³ is 1).
+    pub amount: i8,
 }
 
 /// A dimension that has a name: how messages, documents and legends speak of it.
@@ -30,7 +33,7 @@ struct Named {
 }
 
 #[rustfmt::skip] // a table
-const NAMED: [Named; 14] = [
+const NAMED: [Named; 16] = [
     Named { dimension: Dimension::LENGTH, name: "length", unit: "um", label: "µm", example: "5 um",
         ladder: &[("nm", 1e-3), ("µm", 1.0), ("mm", 1e3), ("m", 1e6)] },
     Named { dimension: Dimension::TIME, name: "time", unit: "s", label: "s", example: "10 s",
@@ -59,6 +62,10 @@ const NAMED: [Named; 14] = [
         ladder: &[("mPa", 1e-3), ("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6)] },
     Named { dimension: Dimension::FREQUENCY, name: "rate", unit: "/s", label: "1/s", example: "3 /min",
         ladder: &[("mHz", 1e-3), ("Hz", 1.0), ("kHz", 1e3)] },
+    Named { dimension: Dimension::AMOUNT, name: "amount", unit: "zmol", label: "zmol", example: "2 fmol",
+        ladder: &[("zmol", 1.0), ("amol", 1e3), ("fmol", 1e6), ("pmol", 1e9), ("nmol", 1e12), ("mol", 1e21)] },
+    Named { dimension: Dimension::CONCENTRATION, name: "concentration", unit: "uM", label: "µM", example: "5 uM",
+        ladder: &[("nM", 1e-3), ("µM", 1.0), ("mM", 1e3), ("M", 1e6)] },
 ];
 
 impl Dimension {
@@ -71,7 +78,7 @@ impl Dimension {
     /// A force, pN.
     pub const FORCE: Self = Self::of(0, 0, 1);
     /// An angle, rad.
-    pub const ANGLE: Self = Self { length: 0, time: 0, force: 0, angle: 1 };
+    pub const ANGLE: Self = Self { length: 0, time: 0, force: 0, angle: 1, amount: 0 };
     /// A speed, µm/s.
     pub const SPEED: Self = Self::of(1, -1, 0);
     /// An acceleration, µm/s².
@@ -92,10 +99,14 @@ impl Dimension {
     pub const STRESS: Self = Self::of(-2, 0, 1);
     /// A rate, 1/s.
     pub const FREQUENCY: Self = Self::of(0, -1, 0);
+    /// An amount of substance, zmol.
+    pub const AMOUNT: Self = Self { length: 0, time: 0, force: 0, angle: 0, amount: 1 };
+    /// A concentration, µM = zmol/µm³.
+    pub const CONCENTRATION: Self = Self { length: -3, time: 0, force: 0, angle: 0, amount: 1 };
 
-    /// The dimension with these powers of length, time and force, and no angle.
+    /// The dimension with these powers of length, time and force, and neither angle nor amount.
     pub const fn of(length: i8, time: i8, force: i8) -> Self {
-        Self { length, time, force, angle: 0 }
+        Self { length, time, force, angle: 0, amount: 0 }
     }
 
     /// The dimension named `name` ("length", "speed" …), if there is one.
@@ -135,13 +146,13 @@ impl Dimension {
     pub fn base_unit(self) -> String {
         match self.named() {
             Some(named) => named.unit.to_owned(),
-            None => self.powers(&["pN", "um", "s", "rad"], " ", |power| format!("^{power}")),
+            None => self.powers(&["pN", "um", "s", "rad", "zmol"], " ", |power| format!("^{power}")),
         }
     }
 
     /// The product of the base units with their powers.
-    fn powers(self, symbols: &[&str; 4], times: &str, power_text: impl Fn(i8) -> String) -> String {
-        let factors = symbols.iter().zip([self.force, self.length, self.time, self.angle]);
+    fn powers(self, symbols: &[&str; 5], times: &str, power_text: impl Fn(i8) -> String) -> String {
+        let factors = symbols.iter().zip([self.force, self.length, self.time, self.angle, self.amount]);
         let written = factors.filter(|(_, power)| *power != 0).map(|(symbol, power)| match power {
             1 => (*symbol).to_owned(),
             _ => format!("{symbol}{}", power_text(power)),
@@ -154,7 +165,7 @@ impl Dimension {
 pub fn label(dimension: Dimension) -> String {
     match dimension.named() {
         Some(named) => named.label.to_owned(),
-        None => dimension.powers(&["pN", "µm", "s", "rad"], "·", superscript),
+        None => dimension.powers(&["pN", "µm", "s", "rad", "zmol"], "·", superscript),
     }
 }
 

@@ -326,6 +326,11 @@ mod tests {
             ("6 dyn/cm", 6000.0, Dimension::LINE_STIFFNESS),
             ("−3 pN", -3.0, Dimension::FORCE),
             ("12", 12.0, Dimension::NUMBER),
+            ("3 uM", 3.0, Dimension::CONCENTRATION),
+            ("3 µmol/l", 3.0, Dimension::CONCENTRATION),
+            ("2 nM", 0.002, Dimension::CONCENTRATION),
+            ("2 fmol", 2e6, Dimension::AMOUNT),
+            ("1 zmol/um^3", 1.0, Dimension::CONCENTRATION),
         ] {
             assert_eq!(parse(text), Ok(Measured { value: expected, dimension }), "{text}");
         }

@@ -17,17 +17,17 @@ pub(super) const ONE: Scale = Scale { numerator: 1.0, divisor: 1.0, ten: 0, dime
 
 /// Units that take prefixes: symbol, power of ten in base units, dimension.
 #[rustfmt::skip] // a table
-const PREFIXED: [(&str, i32, Dimension); 10] = [
+const PREFIXED: [(&str, i32, Dimension); 12] = [
     ("m", 6, Dimension::LENGTH), ("s", 0, Dimension::TIME), ("N", 12, Dimension::FORCE),
     ("g", 3, Dimension::MASS), ("J", 18, Dimension::ENERGY), ("Pa", 0, Dimension::STRESS),
     ("l", 15, Dimension::VOLUME), ("L", 15, Dimension::VOLUME), ("Hz", 0, Dimension::FREQUENCY),
-    ("rad", 0, Dimension::ANGLE),
+    ("rad", 0, Dimension::ANGLE), ("mol", 21, Dimension::AMOUNT), ("M", 6, Dimension::CONCENTRATION),
 ];
 /// Prefixes; µ is both the micro sign and the Greek letter.
 #[rustfmt::skip] // a table
-const PREFIXES: [(&str, i32); 14] = [
+const PREFIXES: [(&str, i32); 15] = [
     ("a", -18), ("f", -15), ("p", -12), ("n", -9), ("u", -6), ("µ", -6), ("μ", -6), ("m", -3), ("c", -2), ("d", -1),
-    ("h", 2), ("k", 3), ("M", 6), ("G", 9),
+    ("h", 2), ("k", 3), ("M", 6), ("G", 9), ("z", -21),
 ];
 /// Units that take none: symbol, number of base units as significand × 10^ten, dimension.
 #[rustfmt::skip] // a table
@@ -39,11 +39,12 @@ const PLAIN: [(&str, f64, i32, Dimension); 10] = [
 ];
 /// Words that people write for units.
 #[rustfmt::skip] // a table
-const SPELT: [(&str, &str); 24] = [
+const SPELT: [(&str, &str); 27] = [
     ("sec", "s"), ("secs", "s"), ("second", "s"), ("seconds", "s"), ("mins", "min"), ("minute", "min"),
     ("minutes", "min"), ("hr", "h"), ("hrs", "h"), ("hour", "h"), ("hours", "h"), ("day", "d"), ("days", "d"),
     ("micron", "um"), ("microns", "um"), ("micrometer", "um"), ("micrometre", "um"), ("degree", "deg"),
     ("degrees", "deg"), ("radian", "rad"), ("radians", "rad"), ("percent", "%"), ("newton", "N"), ("cc", "ml"),
+    ("mole", "mol"), ("moles", "mol"), ("molar", "M"),
 ];
 
 impl Scale {
@@ -54,6 +55,7 @@ impl Scale {
             time: a.time.saturating_add(b.time),
             force: a.force.saturating_add(b.force),
             angle: a.angle.saturating_add(b.angle),
+            amount: a.amount.saturating_add(b.amount),
         };
         Self {
             numerator: self.numerator * other.numerator,
@@ -75,6 +77,7 @@ impl Scale {
             time: d.time.saturating_neg(),
             force: d.force.saturating_neg(),
             angle: d.angle.saturating_neg(),
+            amount: d.amount.saturating_neg(),
         };
         Self { numerator: self.divisor, divisor: self.numerator, ten: -self.ten, dimension }
     }

@@ -1,0 +1,86 @@
+//! Collects faults with their places, so that a reader hears of all of them.
+
+use crate::chemistry::expression::meant;
+use crate::error::{Error, Fault, Place, Source};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The source and the faults found so far.
+pub(super) struct Desk {
+    pub(super) source: Arc<Source>,
+    faults: Vec<Fault>,
+    /// Where each line begins.
+    lines: Vec<usize>,
+    /// Faults beyond [`MOST_FAULTS`].
+    untold: usize,
+}
+
+/// The most faults that are told: nobody reads more, and each carries its line of the text.
+const MOST_FAULTS: usize = 100;
+/// The most words among which the one that was meant is looked for.
+const MOST_KNOWN: usize = 5000;
+/// The longest line, in bytes, that is shown with a fault.
+const LONGEST_LINE: usize = 2000;
+
+impl Desk {
+    pub(super) fn new(source: Arc<Source>) -> Self {
+        let ends = source.text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        let lines = std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect();
+        Self { source, faults: Vec::new(), lines, untold: 0 }
+    }
+
+    /// A place in the source.
+    pub(super) fn place(&self, at: Range<usize>, label: &str) -> Place {
+        Place { source: self.source.clone(), start: at.start, length: at.len(), label: label.to_owned() }
+    }
+
+    /// A fault: what was found, a few words beside the place, what to do.
+    pub(super) fn fault(&mut self, at: Range<usize>, message: &str, label: &str, help: &str) {
+        if self.faults.len() >= MOST_FAULTS {
+            self.untold += 1;
+            return;
+        }
+        let text = &self.source.text;
+        let start = text[..at.start].rfind('\n').map_or(0, |end| end + 1);
+        let line = text[at.start..].find('\n').map_or(text.len(), |end| at.start + end) - start;
+        if line > LONGEST_LINE {
+            let column = 1 + text[start..at.start].chars().count();
+            let message = format!("{}:{}:{column}: {message}", self.source.name, self.line(at.start));
+            return self.lost(message, help);
+        }
+        let place = self.place(at, label);
+        self.faults.push(Fault::new(message).at(place).help(help));
+    }
+
+    /// A fault without a place.
+    pub(super) fn lost(&mut self, message: impl Into<String>, help: &str) {
+        self.faults.push(Fault::new(message).help(help));
+    }
+
+    /// The word that was meant; not looked for once enough faults are told.
+    pub(super) fn meant<'a>(&self, word: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
+        if self.faults.len() >= MOST_FAULTS {
+            return None;
+        }
+        meant(word, known.take(MOST_KNOWN)).map(str::to_owned)
+    }
+
+    pub(super) fn is_clean(&self) -> bool {
+        self.faults.is_empty()
+    }
+
+    /// The line of a position, from 1.
+    pub(super) fn line(&self, position: usize) -> usize {
+        self.lines.partition_point(|start| *start <= position)
+    }
+
+    /// All faults in the order of the text.
+    pub(super) fn error(mut self) -> Error {
+        self.faults.sort_by_key(|fault| fault.place.as_ref().map_or(0, |place| place.start));
+        if self.untold > 0 {
+            let message = format!("{} more faults are not told", self.untold);
+            self.faults.push(Fault::new(message).help("correct these first"));
+        }
+        Error::Input(self.faults)
+    }
+}

@@ -1,0 +1,68 @@
+//! EML, the Equations Markup Language: an XML text that describes a system of differential equations, or fields that
+//! diffuse and react, and the links that join them to cells.
+//!
+//! [`read`] turns a text into a [`Document`] or tells every fault in it at its place. Numbers stay as the document
+//! writes them; where quantities have units, these are checked through every expression. The book has the language in
+//! its chapter EML, `eml/eml.xsd` has its grammar.
+
+mod build;
+mod circles;
+mod declare;
+mod desk;
+mod document;
+mod events;
+mod fields;
+mod guard;
+mod links;
+mod solver;
+mod start;
+mod vocabulary;
+mod xml;
+
+pub use document::{
+    Document, Endpoint, FieldDescription, GridDescription, Index, Level, LinkDescription, Profile, Root, SIDES, Scheme,
+    SolverChoice, Step, Wall,
+};
+pub use guard::{DEEPEST_ELEMENT, LARGEST_DOCUMENT, MOST_NODES};
+pub use solver::SCHEMES;
+pub use vocabulary::{ELEMENTS, Kind};
+
+use super::tree::System;
+use crate::error::{Result, Source};
+use build::Builder;
+use desk::Desk;
+use std::sync::Arc;
+
+/// Reads a document. A caller that reads files refuses those above [`LARGEST_DOCUMENT`] bytes unread.
+///
+/// # Errors
+/// [`crate::error::Error::Input`] with every fault: what is no XML, unknown elements, attributes and identifiers, faults
+/// of expressions, units that do not fit, circles, values that are missing or not finite.
+pub fn read(source: Arc<Source>) -> Result<Document> {
+    let mut desk = Desk::new(source);
+    if !guard::admit(&mut desk) {
+        return Err(desk.error());
+    }
+    let Some(root) = xml::tree(&mut desk) else { return Err(desk.error()) };
+    let known = declare::declare(&mut desk, &root);
+    if known.quantities.is_empty() && desk.is_clean() {
+        let help = "declare <variable id=\"U\" initial=\"1\" rate=\"-0.1*U\"/>";
+        desk.fault(root.at.clone(), "the document declares nothing", "empty", help);
+    }
+    let mut builder = Builder::new(&mut desk, known);
+    let (quantities, places) = builder.quantities(&root);
+    let events = builder.events(&root);
+    let grid = builder.grid(&root);
+    let mut fields = builder.fields(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
+    let links = builder.links(&root);
+    let solver = builder.solver(&root);
+    let system = System { name: root.word("name"), quantities, events };
+    builder.check_values(&system);
+    builder.finish_fields(&mut fields, &system);
+    let (level, time_unit, seconds) = (builder.known.level, builder.known.time_text.clone(), builder.known.time.size());
+    if !desk.is_clean() {
+        return Err(desk.error());
+    }
+    let name = root.word("name");
+    Ok(Document { name, level, time_unit, seconds, system, places, grid, fields, links, solver })
+}

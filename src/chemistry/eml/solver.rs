@@ -1,0 +1,50 @@
+//! How a document asks to be solved.
+
+use super::build::Builder;
+use super::document::{Scheme, SolverChoice};
+use super::xml::Element;
+
+/// Names of the schemes; those with a fixed step come last.
+pub const SCHEMES: [(&str, Scheme); 5] = [
+    ("rk45", Scheme::Rk45),
+    ("rosenbrock", Scheme::Rosenbrock),
+    ("bdf", Scheme::Bdf),
+    ("rk4", Scheme::Rk4),
+    ("euler", Scheme::Euler),
+];
+
+impl Builder<'_, '_> {
+    /// The solver that the document asks for.
+    pub(super) fn solver(&mut self, root: &Element) -> SolverChoice {
+        let mut elements = root.all("solver");
+        let Some(element) = elements.next() else { return SolverChoice::default() };
+        if let Some(second) = elements.next() {
+            self.desk.fault(second.at.clone(), "there are two solvers", "a second one", "remove one of them");
+        }
+        let scheme = element.attribute("scheme").map(|_| {
+            let words = SCHEMES.map(|(name, _)| name);
+            SCHEMES[self.choice(element, "scheme", &words)].1
+        });
+        let choice = SolverChoice {
+            scheme,
+            rtol: self.positive(element, "rtol"),
+            atol: self.positive(element, "atol"),
+            step: self.positive(element, "step"),
+            inner_step: self.positive(element, "inner_step"),
+        };
+        let fixed = matches!(scheme, Some(Scheme::Rk4 | Scheme::Euler));
+        if fixed && element.attribute("inner_step").is_none() {
+            let help =
+                "write inner_step=\"…\" in the unit of time, or choose rk45, rosenbrock or bdf, which find their step";
+            let message = format!("the scheme {} has no inner step", element.word("scheme"));
+            self.desk.fault(element.place("scheme"), &message, "a fixed step", help);
+        }
+        if let (Some(step), Some(inner)) = (choice.step, choice.inner_step)
+            && inner > step
+        {
+            let message = format!("the inner step {inner} is longer than the step {step}");
+            self.desk.fault(element.place("inner_step"), &message, "too long", "let it be a part of `step`");
+        }
+        choice
+    }
+}

@@ -1,0 +1,55 @@
+//! Every message about a bad EML document is kept beside the document.
+//!
+//! `PSEUDOPOD_BLESS=1 cargo test --test messages_eml` writes the texts anew; read the difference before committing it.
+
+use pseudopod::chemistry::eml;
+use pseudopod::error::{Error, Paint, Source, render};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+fn documents() -> Vec<(PathBuf, String)> {
+    let folder = std::fs::read_dir("tests/messages/eml").expect("the folder of bad documents");
+    let paths = folder.map(|entry| entry.expect("an entry of the folder").path());
+    let mut paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "eml")).collect();
+    paths.sort();
+    paths.into_iter().map(|path| (path.clone(), std::fs::read_to_string(path).expect("a text"))).collect()
+}
+
+fn read(path: &std::path::Path, text: String) -> Result<eml::Document, Error> {
+    let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+    eml::read(Arc::new(Source { name, text }))
+}
+
+#[test]
+fn every_bad_document_gets_the_message_beside_it() {
+    let documents = documents();
+    assert!(documents.len() >= 40, "bad documents are missing: {}", documents.len());
+    let mut differences = Vec::new();
+    for (path, text) in documents {
+        let kept = path.with_extension("txt");
+        let Err(error) = read(&path, text) else {
+            differences.push(format!("{} is taken for a good document", path.display()));
+            continue;
+        };
+        assert_eq!(error.exit_code(), 2, "bad input ends with 2");
+        let message = render(&error, Paint::Plain);
+        if std::env::var_os("PSEUDOPOD_BLESS").is_some() {
+            std::fs::write(&kept, message).expect("the text is kept");
+        } else if std::fs::read_to_string(&kept).unwrap_or_default() != message {
+            differences.push(format!("{}:\n{message}", kept.display()));
+        }
+    }
+    assert!(differences.is_empty(), "messages that changed:\n\n{}", differences.join("\n\n"));
+}
+
+#[test]
+fn every_fault_of_a_document_has_a_place_and_says_what_to_do() {
+    for (path, text) in documents() {
+        let Err(Error::Input(faults)) = read(&path, text) else { continue };
+        for fault in faults {
+            let place = fault.place.unwrap_or_else(|| panic!("{}: {}", path.display(), fault.message));
+            assert!(place.source.text.get(place.start..place.start + place.length).is_some(), "inside the text");
+            assert!(fault.help.is_some_and(|help| !help.is_empty()), "{}: {}", path.display(), fault.message);
+        }
+    }
+}
