@@ -11,11 +11,12 @@ mod population;
 mod rosenbrock;
 mod scratch;
 mod solve;
+mod stepper;
 pub mod tableau;
 
 pub use control::Tolerances;
 pub use population::{LANES, Population};
-//pub use solve::{Scheme, Solution, SolveOptions, solve};
+pub use solve::{Scheme, Solution, SolveOptions, solve};
 
 use serde::{Deserialize, Serialize};
 
