@@ -8,5 +8,7 @@ pub mod derivative;
 pub mod eml;
 pub mod expression;
 pub mod field;
+pub mod ode;
+pub mod program;
 pub mod sbml;
 pub mod tree;

@@ -1,0 +1,223 @@
+//! Events as SBML means them: triggers, delays, priorities, and what is still to be executed.
+
+use super::stepper::Stepper;
+use super::{OdeTrouble, Reason};
+use crate::chemistry::program::Program;
+use crate::chemistry::tree::{Binary, Event, Expr, QuantityId, Role, System};
+
+/// Executions at one time after which events count as endless.
+const MOST_AT_ONCE: usize = 10_000;
+
+/// Group of the triggers among [`Program::further`].
+pub const TRIGGERS: usize = 0;
+const PRIORITIES: usize = 1;
+/// Group of the differences whose roots in time are met exactly.
+pub const STOPS: usize = 2;
+const FIRST_EVENT: usize = 3;
+
+/// An event that has fired and waits.
+#[derive(Debug, Clone)]
+struct Pending {
+    event: usize,
+    time: f64,
+    /// New values, when they are those of the firing.
+    values: Option<Vec<f64>>,
+}
+
+/// The events of a system on its way.
+pub struct Events<'a> {
+    events: &'a [Event],
+    /// Whether each trigger holds.
+    pub holds: Vec<bool>,
+    pending: Vec<Pending>,
+    /// Slot of each assigned quantity, event by event.
+    slots: Vec<Vec<usize>>,
+}
+
+/// Parameters that events set; they must stay open in the program.
+pub fn assigned_parameters(system: &System) -> Vec<QuantityId> {
+    let assigned = system.events.iter().flat_map(|event| event.assignments.iter().map(|(quantity, _)| *quantity));
+    assigned.filter(|&quantity| matches!(system.quantities[quantity as usize].role, Role::Parameter)).collect()
+}
+
+/// The groups of expressions that events need in the program.
+pub fn groups(system: &System) -> Vec<Vec<Expr>> {
+    let number = Expr::Number;
+    let triggers = system.events.iter().map(|event| event.trigger.clone()).collect();
+    let priority = |event: &Event| event.priority.clone().unwrap_or(number(f64::NEG_INFINITY));
+    let mut groups = vec![triggers, system.events.iter().map(priority).collect(), stops(system)];
+    for event in &system.events {
+        let mut group = vec![event.delay.clone().unwrap_or(number(0.0))];
+        group.extend(event.assignments.iter().map(|(_, value)| value.clone()));
+        groups.push(group);
+    }
+    groups
+}
+
+/// Differences of the sides of every comparison that depends on time but on no variable.
+fn stops(system: &System) -> Vec<Expr> {
+    let mut found = Vec::new();
+    let mut steady = vec![None; system.quantities.len()];
+    for quantity in &system.quantities {
+        match &quantity.role {
+            Role::Variable { rate } => comparisons(system, rate, &mut steady, &mut found),
+            Role::Defined { rule } => comparisons(system, rule, &mut steady, &mut found),
+            _ => {}
+        }
+    }
+    for event in &system.events {
+        comparisons(system, &event.trigger, &mut steady, &mut found);
+    }
+    found
+}
+
+fn comparisons(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>, found: &mut Vec<Expr>) {
+    match expression {
+        Expr::Number(_) | Expr::Time | Expr::Quantity(_) => {}
+        Expr::Unary(_, a) => comparisons(system, a, steady, found),
+        Expr::Binary(function, a, b) => {
+            let compares =
+                matches!(function, Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne);
+            if compares && is_steady(system, a, steady) && is_steady(system, b, steady) {
+                let difference = Expr::Binary(Binary::Sub, a.clone(), b.clone());
+                if !found.contains(&difference) {
+                    found.push(difference);
+                }
+            }
+            comparisons(system, a, steady, found);
+            comparisons(system, b, steady, found);
+        }
+        Expr::Piecewise { branches, otherwise } => {
+            for (condition, value) in branches {
+                comparisons(system, condition, steady, found);
+                comparisons(system, value, steady, found);
+            }
+            comparisons(system, otherwise, steady, found);
+        }
+    }
+}
+
+/// Whether an expression depends on no variable.
+fn is_steady(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>) -> bool {
+    let mut used = Vec::new();
+    expression.each_quantity(&mut |quantity| used.push(quantity));
+    used.into_iter().all(|quantity| match &system.quantities[quantity as usize].role {
+        Role::Variable { .. } => false,
+        Role::Parameter | Role::Input => true,
+        Role::Defined { rule } => steady[quantity as usize].unwrap_or_else(|| {
+            let answer = is_steady(system, rule, steady);
+            steady[quantity as usize] = Some(answer);
+            answer
+        }),
+    })
+}
+
+impl<'a> Events<'a> {
+    /// The events of a system before its start.
+    pub fn new(system: &'a System, program: &Program) -> Self {
+        let slot = |quantity: QuantityId| {
+            let variable = program.variable_place(quantity);
+            variable.or_else(|| program.open_place(quantity).map(|place| program.size() + place)).unwrap_or(usize::MAX)
+        };
+        let slots = |event: &Event| event.assignments.iter().map(|&(quantity, _)| slot(quantity)).collect();
+        Self {
+            events: &system.events,
+            holds: system.events.iter().map(|event| event.true_before_start).collect(),
+            pending: Vec::new(),
+            slots: system.events.iter().map(slots).collect(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.events.is_empty()
+    }
+
+    /// When the next waiting event is due.
+    pub fn next(&self) -> f64 {
+        self.pending.iter().map(|pending| pending.time).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Takes note of the triggers now: fires those that turned true, drops what no longer persists.
+    pub fn update(&mut self, stepper: &mut Stepper) {
+        let (state, mut now) = (present(stepper), Vec::new());
+        let program = stepper.program;
+        stepper.evaluate(&program.further[TRIGGERS], stepper.time, &state, &mut now);
+        self.note(stepper, &now, &state);
+    }
+
+    fn note(&mut self, stepper: &mut Stepper, now: &[f64], state: &[f64]) {
+        for event in 0..self.events.len() {
+            let (held, holds) = (self.holds[event], now[event] != 0.0);
+            self.holds[event] = holds;
+            if !held && holds {
+                let mut values = Vec::new();
+                let program = stepper.program;
+                stepper.evaluate(&program.further[FIRST_EVENT + event], stepper.time, state, &mut values);
+                let delay = values.remove(0).max(0.0);
+                let values = self.events[event].values_from_firing.then_some(values);
+                self.pending.push(Pending { event, time: stepper.time + delay, values });
+            } else if held && !holds && !self.events[event].persistent {
+                self.pending.retain(|pending| pending.event != event);
+            }
+        }
+    }
+
+    /// Takes note of triggers that no longer hold, within a step in which none turns true.
+    pub fn note_falling(&mut self, now: &[f64]) {
+        for (event, _) in now.iter().enumerate().filter(|(_, now)| **now == 0.0) {
+            if self.holds[event] && !self.events[event].persistent {
+                self.pending.retain(|pending| pending.event != event);
+            }
+            self.holds[event] = false;
+        }
+    }
+
+    /// Executes all that is due, in the order of priorities worked out anew each time; events without one come last,
+    /// and equals in the order of their firing. Returns whether anything was executed.
+    pub fn execute(&mut self, stepper: &mut Stepper) -> Result<bool, OdeTrouble> {
+        let mut count = 0;
+        let (mut priorities, mut values) = (Vec::new(), Vec::new());
+        while self.next() <= stepper.time {
+            let (state, program) = (present(stepper), stepper.program);
+            stepper.evaluate(&program.further[PRIORITIES], stepper.time, &state, &mut priorities);
+            let due = self.pending.iter().enumerate().filter(|(_, pending)| pending.time <= stepper.time);
+            // The first of equals: the later one must be strictly larger.
+            let first = due
+                .reduce(|best, other| if priorities[other.1.event] > priorities[best.1.event] { other } else { best });
+            let Some((place, _)) = first else { break };
+            let pending = self.pending.remove(place);
+            match pending.values {
+                Some(known) => values = known,
+                None => {
+                    stepper.evaluate(&program.further[FIRST_EVENT + pending.event], stepper.time, &state, &mut values);
+                    values.remove(0);
+                }
+            }
+            for (&slot, &value) in self.slots[pending.event].iter().zip(&values) {
+                let n = program.size();
+                if slot < n {
+                    stepper.set_state(slot, value);
+                } else if let Some(open) = slot.checked_sub(n).and_then(|place| stepper.open.get_mut(place)) {
+                    *open = value;
+                }
+            }
+            stepper.work.events += 1;
+            self.update(stepper);
+            count += 1;
+            if count > MOST_AT_ONCE {
+                let detail = format!("event '{}'", self.events[pending.event].id);
+                return Err(OdeTrouble { detail, variable: None, ..stepper.trouble(Reason::EndlessEvents) });
+            }
+        }
+        if count > 0 {
+            stepper.restart();
+        }
+        Ok(count > 0)
+    }
+}
+
+/// The present state.
+fn present(stepper: &Stepper) -> Vec<f64> {
+    (0..stepper.program.size()).map(|v| stepper.state(v)).collect()
+}

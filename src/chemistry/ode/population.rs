@@ -1,0 +1,224 @@
+//! All cells that share a system of equations, advanced window by window.
+
+use std::sync::{Mutex, PoisonError};
+
+use pulp::Arch;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::block::{self, BlockTrouble, Stride};
+use super::scratch::Scratch;
+use super::{Method, OdeTrouble, Tolerances, Work};
+use crate::chemistry::program::{Lanes, Program, run};
+use crate::chemistry::tree::QuantityId;
+
+/// Cells side by side in a block.
+pub const LANES: usize = 16;
+
+/// The states of cells that share a program. Arrays are `[block][number][lane]`.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Population {
+    /// How the cells are advanced.
+    method: Method,
+    cells: usize,
+    variables: usize,
+    open: usize,
+    states: Vec<Lanes<LANES>>,
+    given: Vec<Lanes<LANES>>,
+    steps: Vec<Lanes<LANES>>,
+    errors: Vec<Lanes<LANES>>,
+    #[serde(skip)]
+    rooms: Vec<Mutex<Option<Box<Scratch<LANES>>>>>,
+}
+
+impl Population {
+    /// Cells at the system's initial values.
+    pub fn new(program: &Program, cells: usize, method: Method) -> Self {
+        let blocks = cells.div_ceil(LANES);
+        let initial = |numbers: &[QuantityId]| -> Vec<Lanes<LANES>> {
+            (0..blocks).flat_map(|_| numbers.iter().map(|&q| [program.initial[q as usize]; LANES])).collect()
+        };
+        Self {
+            method,
+            cells,
+            variables: program.size(),
+            open: program.open.len(),
+            states: initial(&program.variables),
+            given: initial(&program.open),
+            steps: vec![[0.0; LANES]; blocks],
+            errors: vec![[1.0; LANES]; blocks],
+            rooms: Vec::new(),
+        }
+    }
+
+    /// How many cells there are.
+    pub fn cells(&self) -> usize {
+        self.cells
+    }
+
+    /// A cell's value of the variable at a place of [`Program::variables`].
+    ///
+    /// # Panics
+    /// When there is no such cell or variable.
+    pub fn state(&self, cell: usize, variable: usize) -> f64 {
+        assert!(variable < self.variables, "variable {variable} of {}", self.variables);
+        self.states[cell / LANES * self.variables + variable][cell % LANES]
+    }
+
+    /// Sets a cell's value of a variable.
+    ///
+    /// # Panics
+    /// When there is no such cell or variable.
+    pub fn set_state(&mut self, cell: usize, variable: usize, value: f64) {
+        assert!(variable < self.variables, "variable {variable} of {}", self.variables);
+        self.states[cell / LANES * self.variables + variable][cell % LANES] = value;
+    }
+
+    /// A cell's value of the open quantity at a place of [`Program::open`].
+    ///
+    /// # Panics
+    /// When there is no such cell or open quantity.
+    pub fn given(&self, cell: usize, open: usize) -> f64 {
+        assert!(open < self.open, "open quantity {open} of {}", self.open);
+        self.given[cell / LANES * self.open + open][cell % LANES]
+    }
+
+    /// Sets a cell's value of an open quantity: it stands until it is set again.
+    ///
+    /// # Panics
+    /// When there is no such cell or open quantity.
+    pub fn set_given(&mut self, cell: usize, open: usize, value: f64) {
+        assert!(open < self.open, "open quantity {open} of {}", self.open);
+        self.given[cell / LANES * self.open + open][cell % LANES] = value;
+    }
+
+    /// The step that a cell will try next; 0 before its first window and for methods with fixed steps.
+    pub fn next_step(&self, cell: usize) -> f64 {
+        self.steps[cell / LANES][cell % LANES]
+    }
+
+    /// Forgets a cell's step, after its state was set to something quite different.
+    pub fn forget_step(&mut self, cell: usize) {
+        (self.steps[cell / LANES][cell % LANES], self.errors[cell / LANES][cell % LANES]) = (0.0, 1.0);
+    }
+
+    /// Writes the value of any quantity of all cells at a time, one number a cell.
+    ///
+    /// # Panics
+    /// When `values` has another length than there are cells.
+    pub fn observe(&self, program: &Program, quantity: QuantityId, time: f64, values: &mut [f64]) {
+        assert_eq!(values.len(), self.cells, "one number a cell");
+        let mut file = program.file::<LANES>();
+        for (block, values) in values.chunks_mut(LANES).enumerate() {
+            self.load(block, time, &mut file);
+            run(&program.observe, &mut file);
+            let register = program.observe.outputs[quantity as usize] as usize;
+            values.copy_from_slice(&file[register][..values.len()]);
+        }
+    }
+
+    /// Advances all cells through a window. Each cell has an error and a step of its own; its result does not depend on
+    /// how many cells there are nor on the number of threads. Open quantities stand still within the window. Nothing is
+    /// allocated after the first window.
+    ///
+    /// # Errors
+    /// The cell of the smallest number that could not be advanced. Cells in trouble keep their last good state; all
+    /// others have reached the end.
+    ///
+    /// # Panics
+    /// When the program is not that of the population in the number of variables and open quantities, or the window
+    /// is empty.
+    pub fn advance(
+        &mut self,
+        program: &Program,
+        from: f64,
+        until: f64,
+        tolerances: &Tolerances,
+    ) -> Result<Work, OdeTrouble> {
+        assert_eq!((self.variables, self.open), (program.size(), program.open.len()), "the population's own program");
+        assert!(until > from, "a window from {from} until {until}");
+        let n = self.variables;
+        if n == 0 || self.cells == 0 {
+            return Ok(Work::default());
+        }
+        while self.rooms.len() < rayon::current_num_threads() {
+            self.rooms.push(Mutex::new(None));
+        }
+        let Self { states, steps, errors, given, rooms, .. } = self;
+        let (method, cells, open) = (self.method, self.cells, self.open);
+        let one = |(block, ((states, steps), errors)): (usize, ((&mut [Lanes<LANES>], &mut _), &mut _))| {
+            let room = &rooms[rayon::current_thread_index().unwrap_or(0)];
+            let mut room = room.lock().unwrap_or_else(PoisonError::into_inner);
+            let scratch = room.get_or_insert_with(|| Box::new(Scratch::new(program, method == Method::Rosenbrock)));
+            let job = Job { program, method, scratch, used: (cells - block * LANES).min(LANES), window: (from, until) };
+            let result = Arch::new().dispatch(
+                #[inline(always)]
+                || job.run(states, &given[block * open..(block + 1) * open], steps, errors, tolerances),
+            );
+            result.map_err(|trouble| (block * LANES + trouble.lane, trouble))
+        };
+        let blocks = states.par_chunks_mut(n).zip(steps.par_iter_mut()).zip(errors.par_iter_mut()).enumerate();
+        let result = blocks.map(one).reduce(|| Ok(Work::default()), first_trouble);
+        result.map_err(|(cell, trouble)| OdeTrouble {
+            system: program.name.clone(),
+            cell: Some(cell),
+            time: trouble.time,
+            variable: trouble.variable.map(|v| program.names[program.variables[v] as usize].clone()),
+            reason: trouble.reason,
+            detail: String::new(),
+        })
+    }
+
+    fn load(&self, block: usize, time: f64, file: &mut [Lanes<LANES>]) {
+        let (n, m) = (self.variables, self.open);
+        file[0] = [time; LANES];
+        file[1..=n].copy_from_slice(&self.states[block * n..(block + 1) * n]);
+        file[1 + n..1 + n + m].copy_from_slice(&self.given[block * m..(block + 1) * m]);
+    }
+}
+
+type BlockResult = Result<Work, (usize, BlockTrouble)>;
+
+/// The sum of the work, or the trouble of the smaller cell.
+fn first_trouble(a: BlockResult, b: BlockResult) -> BlockResult {
+    match (a, b) {
+        (Ok(mut a), Ok(b)) => {
+            a.add(b);
+            Ok(a)
+        }
+        (Err(a), Err(b)) => Err(if b.0 < a.0 { b } else { a }),
+        (Err(trouble), Ok(_)) | (Ok(_), Err(trouble)) => Err(trouble),
+    }
+}
+
+/// What one block needs beside its own numbers.
+struct Job<'a> {
+    program: &'a Program,
+    method: Method,
+    scratch: &'a mut Scratch<LANES>,
+    used: usize,
+    window: (f64, f64),
+}
+
+impl Job<'_> {
+    #[inline(always)]
+    fn run(
+        self,
+        states: &mut [Lanes<LANES>],
+        given: &[Lanes<LANES>],
+        steps: &mut Lanes<LANES>,
+        errors: &mut Lanes<LANES>,
+        tolerances: &Tolerances,
+    ) -> Result<Work, BlockTrouble> {
+        let Self { program, method, scratch, used, window } = self;
+        program.set_constants(&mut scratch.file);
+        let open = program.first_open();
+        scratch.file[open..open + given.len()].copy_from_slice(given);
+        scratch.state.copy_from_slice(states);
+        let mut stride = Stride { step: *steps, error: *errors };
+        let result = block::advance(program, method, scratch, &mut stride, used, window, tolerances);
+        states.copy_from_slice(&scratch.state);
+        (*steps, *errors) = (stride.step, stride.error);
+        result
+    }
+}

@@ -1,0 +1,239 @@
+//! One system, step by step, with its state at any time within the last step.
+
+use super::control::{self, EXPLICIT, LEAST, STIFF, Tolerances};
+use super::scratch::Scratch;
+use super::{Method, OdeTrouble, Reason, Work, explicit, rosenbrock};
+use crate::chemistry::program::code::Code;
+use crate::chemistry::program::{Program, run};
+
+/// A system on its way.
+pub struct Stepper<'a> {
+    /// Its program.
+    pub program: &'a Program,
+    method: Method,
+    tolerances: Tolerances,
+    s: Scratch<1>,
+    /// Values of the open quantities.
+    pub open: Vec<f64>,
+    /// Present time: the end of the last step that was committed.
+    pub time: f64,
+    step: f64,
+    error: f64,
+    fresh: bool,
+    taken: f64,
+    /// Work so far.
+    pub work: Work,
+    /// Longest step allowed.
+    pub longest: f64,
+}
+
+impl<'a> Stepper<'a> {
+    /// A system at its initial values.
+    pub fn new(program: &'a Program, method: Method, tolerances: Tolerances, time: f64) -> Self {
+        let mut s = Scratch::new(program, method == Method::Rosenbrock);
+        let at = |quantity: u32| program.initial[quantity as usize];
+        for (value, &quantity) in s.state.iter_mut().zip(&program.variables) {
+            *value = [at(quantity)];
+        }
+        let open = program.open.iter().map(|&quantity| at(quantity)).collect();
+        let (work, longest) = (Work::default(), f64::INFINITY);
+        Self {
+            program,
+            method,
+            tolerances,
+            s,
+            open,
+            time,
+            step: 0.0,
+            error: 1.0,
+            fresh: true,
+            taken: 0.0,
+            work,
+            longest,
+        }
+    }
+
+    /// The variable at a place of the state.
+    pub fn state(&self, variable: usize) -> f64 {
+        self.s.state[variable][0]
+    }
+
+    /// Sets a variable; [`Self::restart`] must follow.
+    pub fn set_state(&mut self, variable: usize, value: f64) {
+        self.s.state[variable] = [value];
+    }
+
+    /// Forgets what was known of the solution's course, after it jumped.
+    pub fn restart(&mut self) {
+        (self.step, self.error, self.fresh) = (0.0, 1.0, true);
+    }
+
+    /// Forgets the rates at the present, after the clock switched something.
+    pub fn forget_rates(&mut self) {
+        self.fresh = true;
+    }
+
+    /// Results of code at a time and state.
+    pub fn evaluate(&mut self, code: &Code, time: f64, state: &[f64], results: &mut Vec<f64>) {
+        self.load(time);
+        for (register, &value) in self.s.file[1..].iter_mut().zip(state) {
+            *register = [value];
+        }
+        run(code, &mut self.s.file);
+        results.clear();
+        results.extend(code.outputs.iter().map(|&register| self.s.file[register as usize][0]));
+    }
+
+    fn load(&mut self, time: f64) {
+        self.s.file[0] = [time];
+        let first = self.program.first_open();
+        for (register, &value) in self.s.file[first..].iter_mut().zip(&self.open) {
+            *register = [value];
+        }
+    }
+
+    /// Takes one step that ends at `limit` at the latest, without committing it. Returns its length.
+    ///
+    /// # Errors
+    /// When no step is short enough, or too many were taken.
+    pub fn step(&mut self, limit: f64) -> Result<f64, OdeTrouble> {
+        self.load(self.time);
+        self.taken = match self.method {
+            Method::Rk45 | Method::Rosenbrock => self.adaptive_step(limit)?,
+            Method::Rk4 { step } | Method::Euler { step } => self.fixed_step(limit, step)?,
+        };
+        self.work.steps += 1;
+        if self.work.steps >= u64::from(self.tolerances.max_steps) {
+            return Err(self.trouble(Reason::TooManySteps));
+        }
+        Ok(self.taken)
+    }
+
+    fn fixed_step(&mut self, limit: f64, longest: f64) -> Result<f64, OdeTrouble> {
+        let step = (limit - self.time) / ((limit - self.time) / longest - 1e-9).ceil().max(1.0);
+        if let Method::Euler { .. } = self.method {
+            explicit::euler(self.program, &mut self.s, [self.time], [step]);
+            self.work.rates += 1;
+        } else {
+            explicit::classical(self.program, &mut self.s, [self.time], [step]);
+            // The rates at the end, for the values between.
+            let n = self.s.state.len();
+            self.s.file[1..=n].copy_from_slice(&self.s.proposal);
+            self.s.rates_into(self.program, 6);
+            self.work.rates += 5;
+        }
+        let good = self.s.proposal.iter().all(|value| value[0].is_finite());
+        if good { Ok(step) } else { Err(self.trouble(Reason::NotFinite)) }
+    }
+
+    fn adaptive_step(&mut self, limit: f64) -> Result<f64, OdeTrouble> {
+        let (stiff, n) = (self.method == Method::Rosenbrock, self.s.state.len());
+        let controller = if stiff { STIFF } else { EXPLICIT };
+        if self.fresh {
+            self.s.rates_at_state(self.program, [self.time]);
+            self.work.rates += 1;
+            self.fresh = false;
+        }
+        if self.step <= 0.0 {
+            let window = limit - self.time;
+            self.step = control::first_step(&self.s.state, &self.s.stages[..n], window, &self.tolerances)[0];
+        }
+        let shortest = 4.0 * f64::EPSILON * self.time.abs().max(limit.abs() * 1e-3);
+        let mut most = controller.most;
+        loop {
+            let rest = limit - self.time;
+            let wanted = self.step.min(self.longest);
+            let last = wanted >= rest * (1.0 - 1e-10);
+            let cut = wanted > 0.5 * rest;
+            let step = match (last, cut) {
+                (true, _) => rest,
+                (false, true) => 0.5 * rest,
+                (false, false) => wanted,
+            };
+            if stiff {
+                rosenbrock::step(self.program, &mut self.s, [self.time], [step]);
+                self.work.jacobians += 1;
+            } else {
+                explicit::dormand_prince(self.program, &mut self.s, [self.time], [step]);
+            }
+            self.work.rates += 6;
+            let error = control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.tolerances)[0];
+            let factor = controller.factor(error, self.error);
+            if error <= 1.0 {
+                let next = step * factor.min(most);
+                self.step = if cut && factor >= most { next.max(self.step) } else { next };
+                self.error = error;
+                return Ok(step);
+            }
+            self.work.rejected += 1;
+            self.step = step * if error < f64::INFINITY { factor.min(0.9) } else { LEAST };
+            most = 1.0;
+            if self.step <= shortest {
+                let broken = !error.is_finite() || self.s.state.iter().any(|value| !value[0].is_finite());
+                return Err(self.trouble(if broken { Reason::NotFinite } else { Reason::StepUnderflow }));
+            }
+        }
+    }
+
+    /// The state at a share of the step that is not yet committed.
+    pub fn between(&self, share: f64, state: &mut [f64]) {
+        let n = state.len();
+        if share >= 1.0 {
+            state.iter_mut().zip(&self.s.proposal).for_each(|(value, end)| *value = end[0]);
+            return;
+        }
+        match self.method {
+            Method::Rk45 => explicit::dormand_prince_between(&self.s, self.taken, share, state),
+            Method::Rosenbrock => rosenbrock::between(&self.s, share, state),
+            Method::Euler { .. } => {
+                for (v, value) in state.iter_mut().enumerate() {
+                    *value = self.s.state[v][0] + share * (self.s.proposal[v][0] - self.s.state[v][0]);
+                }
+            }
+            Method::Rk4 { .. } => {
+                for (v, value) in state.iter_mut().enumerate() {
+                    let (begin, change) = (self.s.state[v][0], self.s.proposal[v][0] - self.s.state[v][0]);
+                    let first = self.taken * self.s.stages[v][0] - change;
+                    let last = self.taken * self.s.stages[6 * n + v][0] - change;
+                    let rest = 1.0 - share;
+                    *value = begin + share * (change + rest * (rest * first - share * last));
+                }
+            }
+        }
+    }
+
+    /// Makes the end of the step the present.
+    pub fn commit(&mut self, time: f64) {
+        self.time = time;
+        self.s.state.copy_from_slice(&self.s.proposal);
+        if self.method == Method::Rk45 {
+            let n = self.s.state.len();
+            self.s.stages.copy_within(6 * n..7 * n, 0);
+        }
+    }
+
+    /// Makes a state within the step the present.
+    pub fn commit_between(&mut self, time: f64, state: &[f64]) {
+        self.time = time;
+        self.s.state.iter_mut().zip(state).for_each(|(to, &from)| *to = [from]);
+        self.fresh = true;
+    }
+
+    /// What went wrong here and now.
+    pub fn trouble(&self, reason: Reason) -> OdeTrouble {
+        let bad = |v: &usize| {
+            !(self.s.state[*v][0].is_finite() && self.s.proposal[*v][0].is_finite() && self.s.error[*v][0].is_finite())
+        };
+        let share = |v: &usize| self.s.error[*v][0].abs() / (self.s.state[*v][0].abs() + self.tolerances.absolute);
+        let n = self.s.state.len();
+        let worst = (0..n).find(bad).or_else(|| (0..n).max_by(|a, b| share(a).total_cmp(&share(b))));
+        OdeTrouble {
+            system: self.program.name.clone(),
+            cell: None,
+            time: self.time,
+            variable: worst.map(|v| self.program.names[self.program.variables[v] as usize].clone()),
+            reason,
+            detail: String::new(),
+        }
+    }
+}

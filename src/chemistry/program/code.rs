@@ -1,0 +1,123 @@
+//! From graph to register code: operations in order, registers used again as soon as their value is done with.
+
+use super::graph::{Graph, Node, NodeId};
+use crate::chemistry::tree::{Binary, Unary};
+
+/// Number of a register: first the slots of the program, then its constants, then what is worked out.
+pub type Register = u32;
+
+/// What an operation does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Action {
+    /// A function of `a`.
+    Unary(Unary),
+    /// A function of `a` and `b`.
+    Binary(Binary),
+    /// `b` where `a` is true, and else `c`.
+    Select,
+}
+
+/// One operation over all lanes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Op {
+    /// What is done.
+    pub action: Action,
+    /// The register that is set.
+    pub to: Register,
+    /// First operand.
+    pub a: Register,
+    /// Second operand, or `a` again.
+    pub b: Register,
+    /// Third operand, or `a` again.
+    pub c: Register,
+}
+
+/// Register code with the registers of its results.
+#[derive(Debug, Clone, Default)]
+pub struct Code {
+    /// Operations in order.
+    pub ops: Vec<Op>,
+    /// Where each result stands in the end.
+    pub outputs: Vec<Register>,
+    /// How many registers are needed.
+    pub registers: usize,
+}
+
+/// The constants that the codes of a program share, placed behind its slots.
+#[derive(Debug, Clone, Default)]
+pub struct Constants {
+    /// Their values.
+    pub values: Vec<f64>,
+}
+
+impl Constants {
+    fn place(&mut self, value: f64) -> usize {
+        let same = |known: &f64| known.to_bits() == value.to_bits();
+        self.values.iter().position(same).unwrap_or_else(|| {
+            self.values.push(value);
+            self.values.len() - 1
+        })
+    }
+
+    /// Takes up the constants that some nodes need.
+    pub fn collect(&mut self, graph: &Graph, roots: &[NodeId]) {
+        for (id, _) in graph.needed(roots).iter().enumerate().filter(|(_, needed)| **needed) {
+            if let Some(value) = graph.value(id as NodeId) {
+                self.place(value);
+            }
+        }
+    }
+}
+
+impl Code {
+    /// Code for some nodes. All their constants must have been collected, since they stand between slots and results.
+    pub fn of(graph: &Graph, roots: &[NodeId], slots: usize, constants: &Constants) -> Self {
+        let needed = graph.needed(roots);
+        let last_use = last_uses(graph, roots, &needed);
+        let mut register = vec![Register::MAX; graph.len()];
+        let (mut free, mut next) = (Vec::new(), (slots + constants.values.len()) as Register);
+        let mut ops = Vec::new();
+        for id in (0..graph.len()).filter(|&id| needed[id]) {
+            let (action, operands) = match graph.node(id as NodeId) {
+                Node::Slot(slot) => {
+                    register[id] = slot;
+                    continue;
+                }
+                Node::Constant(bits) => {
+                    let at = constants.values.iter().position(|value| value.to_bits() == bits);
+                    register[id] = (slots + at.expect("constants are collected before code is made")) as Register;
+                    continue;
+                }
+                Node::Unary(function, a) => (Action::Unary(function), [a, a, a]),
+                Node::Binary(function, a, b) => (Action::Binary(function), [a, b, a]),
+                Node::Select(a, b, c) => (Action::Select, [a, b, c]),
+            };
+            let [a, b, c] = operands.map(|operand| register[operand as usize]);
+            for (place, operand) in operands.iter().enumerate() {
+                let first = !operands[..place].contains(operand);
+                let is_result = graph.operands(*operand).next().is_some();
+                if first && is_result && last_use[*operand as usize] == id {
+                    free.push(register[*operand as usize]);
+                }
+            }
+            let to = free.pop().unwrap_or_else(|| {
+                next += 1;
+                next - 1
+            });
+            register[id] = to;
+            ops.push(Op { action, to, a, b, c });
+        }
+        let outputs = roots.iter().map(|&root| register[root as usize]).collect();
+        Self { ops, outputs, registers: next as usize }
+    }
+}
+
+/// The node that uses each node last; results count as used after all.
+fn last_uses(graph: &Graph, roots: &[NodeId], needed: &[bool]) -> Vec<usize> {
+    let mut last = vec![0; graph.len()];
+    for id in (0..graph.len()).filter(|&id| needed[id]) {
+        graph.operands(id as NodeId).for_each(|operand| last[operand as usize] = id);
+    }
+    roots.iter().for_each(|&root| last[root as usize] = usize::MAX);
+    last
+}
