@@ -120,19 +120,20 @@ fn adaptive<const L: usize, const STIFFLY: bool>(
                 work.rejected += 1;
             }
             refused[l] = !accepted[l];
-            let reason = match () {
-                () if !accepted[l] && stride.step[l] <= shortest => Some(why(&s.state, &s.stages[..n], &error, l)),
-                () if round >= tolerances.max_steps && time[l] < until => Some(Reason::TooManySteps),
-                () => None,
-            };
-            if let Some(reason) = reason {
-                let variable = worst_variable(s, l);
-                trouble = trouble.or(Some(BlockTrouble { lane: l, time: time[l], variable, reason }));
-                trouble = trouble.map(|known: BlockTrouble| {
-                    if l < known.lane { BlockTrouble { lane: l, time: time[l], variable, reason } } else { known }
-                });
+            let short = !accepted[l] && stride.step[l] <= shortest;
+            let endless = round >= tolerances.max_steps && time[l] < until;
+            if short || endless {
+                let (variable, finite) = s.worst_variable(program, time, l);
+                let reason = match (short, finite && error[l].is_finite()) {
+                    (false, _) => Reason::TooManySteps,
+                    (true, true) => Reason::StepUnderflow,
+                    (true, false) => Reason::NotFinite,
+                };
+                if trouble.is_none_or(|known: BlockTrouble| l < known.lane) {
+                    trouble = Some(BlockTrouble { lane: l, time: time[l], variable, reason });
+                }
             }
-            if reason.is_some() || time[l] >= until {
+            if short || endless || time[l] >= until {
                 active[l] = false;
                 left -= 1;
             }
@@ -151,20 +152,6 @@ fn adaptive<const L: usize, const STIFFLY: bool>(
 
 /// A refused step shrinks at least to this share.
 const SAFE_SHRINK: f64 = 0.9;
-
-/// Whether the rates or only the steps are to blame.
-fn why<const L: usize>(state: &[Lanes<L>], rates: &[Lanes<L>], error: &Lanes<L>, l: usize) -> Reason {
-    let bad = state.iter().chain(rates).any(|lanes| !lanes[l].is_finite()) || !error[l].is_finite();
-    if bad { Reason::NotFinite } else { Reason::StepUnderflow }
-}
-
-/// The first variable that is not finite, or else the one with the largest error for its size.
-fn worst_variable<const L: usize>(s: &Scratch<L>, l: usize) -> Option<usize> {
-    let n = s.state.len();
-    let broken = |v: &usize| !(s.state[*v][l].is_finite() && s.stages[*v][l].is_finite() && s.error[*v][l].is_finite());
-    let share = |v: &usize| s.error[*v][l].abs() / (s.state[*v][l].abs() + 1e-300);
-    (0..n).find(broken).or_else(|| (0..n).max_by(|a, b| share(a).total_cmp(&share(b))))
-}
 
 /// Equal inner steps no longer than `longest`.
 #[inline(always)]

@@ -63,4 +63,16 @@ impl<const L: usize> Scratch<L> {
             *to = self.file[from as usize];
         }
     }
+
+    /// The variable that is to blame for trouble in a lane: the first whose value or rate is not finite, or else the one
+    /// that changes fastest for its size. Also returns whether all are finite.
+    #[inline(never)]
+    pub fn worst_variable(&mut self, program: &Program, time: Lanes<L>, l: usize) -> (Option<usize>, bool) {
+        self.rates_at_state(program, time);
+        let (state, rates) = (&self.state, &self.stages);
+        let broken = (0..state.len()).find(|&v| !(state[v][l].is_finite() && rates[v][l].is_finite()));
+        let speed = |v: usize| rates[v][l].abs() / (state[v][l].abs() + f64::MIN_POSITIVE);
+        let fastest = || (0..state.len()).max_by(|&a, &b| speed(a).total_cmp(&speed(b)));
+        (broken.or_else(fastest), broken.is_none())
+    }
 }

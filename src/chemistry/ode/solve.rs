@@ -117,6 +117,9 @@ pub fn solve(
             let events = Events::new(system, &program);
             Course { stepper, events, points, times: Vec::new(), values: Vec::new(), until }.run(method, until - from)
         }
+        _ if program.size() == 0 => {
+            solve(system, from, until, points, &SolveOptions { scheme: SolveOptions::default().scheme, ..*options })
+        }
         _ if !system.events.is_empty() => {
             Err(trouble("this scheme takes no events: use rosenbrock, rk45, rk4 or euler".into()))
         }

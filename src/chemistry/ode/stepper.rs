@@ -169,8 +169,7 @@ impl<'a> Stepper<'a> {
             self.step = step * if error < f64::INFINITY { factor.min(0.9) } else { LEAST };
             most = 1.0;
             if self.step <= shortest {
-                let broken = !error.is_finite() || self.s.state.iter().any(|value| !value[0].is_finite());
-                return Err(self.trouble(if broken { Reason::NotFinite } else { Reason::StepUnderflow }));
+                return Err(self.trouble(if error.is_finite() { Reason::StepUnderflow } else { Reason::NotFinite }));
             }
         }
     }
@@ -220,19 +219,16 @@ impl<'a> Stepper<'a> {
     }
 
     /// What went wrong here and now.
-    pub fn trouble(&self, reason: Reason) -> OdeTrouble {
-        let bad = |v: &usize| {
-            !(self.s.state[*v][0].is_finite() && self.s.proposal[*v][0].is_finite() && self.s.error[*v][0].is_finite())
-        };
-        let share = |v: &usize| self.s.error[*v][0].abs() / (self.s.state[*v][0].abs() + self.tolerances.absolute);
-        let n = self.s.state.len();
-        let worst = (0..n).find(bad).or_else(|| (0..n).max_by(|a, b| share(a).total_cmp(&share(b))));
+    pub fn trouble(&mut self, reason: Reason) -> OdeTrouble {
+        self.load(self.time);
+        let (worst, finite) = self.s.worst_variable(self.program, [self.time], 0);
+        self.fresh = true;
         OdeTrouble {
             system: self.program.name.clone(),
             cell: None,
             time: self.time,
             variable: worst.map(|v| self.program.names[self.program.variables[v] as usize].clone()),
-            reason,
+            reason: if reason == Reason::StepUnderflow && !finite { Reason::NotFinite } else { reason },
             detail: String::new(),
         }
     }
