@@ -2,7 +2,8 @@
 //! from. A new quantity is one row here; writer, reader and `info` follow.
 //!
 //! Shapes are in words: `frame` counts recorded instants, `atom`, `cell`, `facet` and `link` the parts of the
-//! [`Layout`](super::Layout). All numbers take eight bytes: floating point or signed integers.
+//! [`Layout`](super::Layout). All numbers here take eight bytes: floating point or signed integers. Fields and systems
+//! of chemistry, which differ from run to run, are made by `fields` and `systems`.
 
 use super::{CellRecord, Frame};
 

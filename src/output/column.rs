@@ -18,9 +18,9 @@ use super::packing::{LEVEL, pack, packer};
 /// Numbers in a piece of a small dataset: 8 kB, rewritten at most once a second.
 const SMALL_PIECE: usize = 1024;
 /// Most numbers in a piece of a large dataset: 786 kB, less than the 1 MB that HDF5 readers keep unpacked.
-const LARGE_PIECE: usize = 98_304;
+pub(super) const LARGE_PIECE: usize = 98_304;
 /// Pieces that are packed together, to bound the memory they take.
-const PACKED_TOGETHER: usize = 64;
+pub(super) const PACKED_TOGETHER: usize = 64;
 /// What stands where nothing was written.
 const NO_INTEGER: i64 = -1;
 
@@ -315,6 +315,17 @@ fn write_piece(
 ) -> hdf5::Result<()> {
     let mut place = vec![0_u64; 1 + more_dimensions];
     place[0] = first_row as u64;
+    write_piece_at(dataset, &place, bytes, length)
+}
+
+/// The same for a piece whose first number is anywhere; `place` has one number per dimension of the dataset.
+pub(super) fn write_piece_at(
+    dataset: &Dataset,
+    place: &[u64],
+    bytes: *const std::ffi::c_void,
+    length: usize,
+) -> hdf5::Result<()> {
+    assert_eq!(place.len(), dataset.ndim(), "dimensions of {}", dataset.name());
     let default = hdf5_sys::h5p::H5P_DEFAULT;
     // SAFETY: `place` has one number per dimension of the dataset, `bytes` is valid for `length` bytes, and the
     // call holds the lock of the library.

@@ -7,10 +7,12 @@ use hdf5::File;
 use super::catalogue::{CATALOGUE, Entry, FORCE, Filled, Instant, Run};
 use super::column::{Column, Number, PackedColumn, Plan, push_frames};
 use super::container::set_number;
+use super::fields::FieldColumns;
+use super::systems::{SystemColumns, SystemLayout};
 use super::{CellRecord, Frame, Layout};
 
 /// From this many cells on, a frame of a per-cell series is a compressed piece of its own.
-const MANY_CELLS: usize = 1024;
+pub(super) const MANY_CELLS: usize = 1024;
 
 /// Frames after which HDF5 is made to forget where the pieces lie, a few MB.
 const REMEMBERED_FRAMES: usize = 5000;
@@ -55,6 +57,10 @@ pub(super) struct Columns {
     run_numbers: Vec<(RunSource, Column)>,
     scene: Vec<Column>,
     forces: bool,
+    fields: FieldColumns,
+    systems: SystemColumns,
+    /// How many there are of each system.
+    members: Vec<usize>,
     /// Frames at the last [`Columns::forget_history`].
     forgotten: usize,
 }
@@ -88,6 +94,13 @@ impl Columns {
         for (order, (name, unit)) in (0_i64..).zip(&layout.scene_series) {
             columns.add_scene(file, name, unit, order, start)?;
         }
+        columns.members = layout.systems.iter().map(SystemLayout::members).collect();
+        (columns.fields, columns.systems) = match start {
+            Start::New => (FieldColumns::create(file, layout)?, SystemColumns::create(file, layout)?),
+            Start::Cut { frames, .. } => {
+                (FieldColumns::reopen(file, layout, frames)?, SystemColumns::reopen(file, layout, frames)?)
+            }
+        };
         if let Start::Cut { .. } = start
             && file.dataset(FORCE[0].path).is_ok()
         {
@@ -159,6 +172,8 @@ impl Columns {
         }
         self.check_sizes(frame);
         self.append_large(frame)?;
+        self.fields.append(&frame.fields)?;
+        self.systems.append(&self.members, &frame.systems)?;
         let instant = Instant { frame, index: self.frames, atoms: self.atoms, runs: self.runs + frame.runs.len() };
         for (value, column) in &mut self.frame_numbers {
             column.push([value(frame).to_bits()])?;
@@ -204,7 +219,9 @@ impl Columns {
         let frames = frames.chain(self.frame_numbers.iter_mut().map(|(_, column)| column));
         let frames = frames.chain(self.few_cells.iter_mut().map(|(_, column)| column)).chain(&mut self.scene);
         let mut all = frames.chain(self.run_numbers.iter_mut().map(|(_, column)| column));
-        all.try_for_each(Column::write)
+        all.try_for_each(Column::write)?;
+        self.systems.write()?;
+        self.fields.write_counts(self.frames)
     }
 
     /// Lets go of what HDF5 keeps in memory about the frames so far, when it has become much. To be called right
@@ -220,7 +237,8 @@ impl Columns {
         for (source, column) in std::mem::take(&mut self.many_cells) {
             self.many_cells.push((source, column.renewed(file)?));
         }
-        Ok(())
+        self.fields.renew(file)?;
+        self.systems.renew(file)
     }
 }
 

@@ -6,7 +6,9 @@ use hdf5::Group;
 use serde_json::{Map, Value, json};
 
 use super::container::text;
+use super::fields::FieldLayout;
 use super::reader::ResultFile;
+use super::systems::{SystemLayout, SystemScope};
 use crate::error::Result;
 
 /// A page for people: what was simulated, how far it came, what was measured.
@@ -29,6 +31,19 @@ pub fn describe(result: &ResultFile) -> Result<String> {
     let types = count_types(result).into_iter().map(|(name, count)| format!("{count} {name}"));
     line("cells", format!("{} ({})", layout.cells.len(), types.collect::<Vec<_>>().join(", ")));
     line("mesh", format!("{} atoms, {} facets, {} links", layout.atoms(), layout.facets.len(), layout.links.len()));
+    for field in &layout.fields {
+        line("field", describe_field(field));
+    }
+    for system in &layout.systems {
+        let (quantities, place) = (
+            described(&system.quantities),
+            match &system.scope {
+                SystemScope::Scene => "the scene".to_owned(),
+                SystemScope::Cells(cells) => format!("{} cells", cells.len()),
+            },
+        );
+        line("chemistry", format!("{} of {place}: {quantities}", system.name));
+    }
     line(
         "frames",
         format!(
@@ -86,6 +101,8 @@ pub fn to_json(result: &ResultFile) -> Result<Value> {
         "atoms": layout.atoms(),
         "facets": layout.facets.len(),
         "links": layout.links.len(),
+        "fields": layout.fields.iter().map(field_json).collect::<Vec<_>>(),
+        "chemistry": layout.systems.iter().map(system_json).collect::<Vec<_>>(),
         "planes": layout.planes.iter().map(|plane| &plane.0).collect::<Vec<_>>(),
         "frames": result.frames(),
         "time": { "first": times[0], "last": times[times.len() - 1], "unit": "s" },
@@ -93,6 +110,45 @@ pub fn to_json(result: &ResultFile) -> Result<Value> {
         "summary": summary,
         "datasets": datasets,
     }))
+}
+
+/// Names with their units.
+fn described(named: &[(String, String)]) -> String {
+    let one = |(name, unit): &(String, String)| match unit.as_str() {
+        "" | "1" => name.clone(),
+        unit => format!("{name} ({unit})"),
+    };
+    named.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+fn describe_field(field: &FieldLayout) -> String {
+    let shown = |numbers: [String; 3]| if field.is_flat() { numbers[..2].join(" x ") } else { numbers.join(" x ") };
+    let boxes = shown(field.cells.map(|n| n.to_string()));
+    let sizes = shown(field.spacing.map(|h| crate::error::short(h).to_string()));
+    format!("{}: {}; {boxes} boxes of {sizes} um", field.name, described(&field.species))
+}
+
+fn named_json(named: &[(String, String)]) -> Vec<Value> {
+    named.iter().map(|(name, unit)| json!({ "name": name, "unit": unit })).collect()
+}
+
+fn field_json(field: &FieldLayout) -> Value {
+    json!({
+        "name": field.name,
+        "species": named_json(&field.species),
+        "boxes": field.cells,
+        "spacing": field.spacing,
+        "origin": field.origin,
+        "length_unit": "um",
+    })
+}
+
+fn system_json(system: &SystemLayout) -> Value {
+    let cells = match &system.scope {
+        SystemScope::Scene => Value::Null,
+        SystemScope::Cells(cells) => json!(cells.len()),
+    };
+    json!({ "name": system.name, "cells": cells, "quantities": named_json(&system.quantities) })
 }
 
 /// Cells of every type.

@@ -175,6 +175,8 @@ pub(super) fn read_layout(file: &File) -> hdf5::Result<Layout> {
         links: integers("/VTKHDF/Lines/Connectivity")?.as_chunks::<2>().0.to_vec(),
         scene_series: read_scene_names(file)?,
         planes: names.into_iter().zip(points.into_iter().zip(normals)).map(|(name, (p, n))| (name, p, n)).collect(),
+        fields: super::fields::read_layouts(file)?,
+        systems: super::systems::read_layouts(file)?,
     })
 }
 

@@ -1,25 +1,33 @@
 //! The result file: one HDF5 file per run that ParaView, PyVista and h5py open directly.
 //!
 //! [`catalogue`] lists what is in it. [`ResultWriter`] writes it frame by frame, [`ResultFile`] reads it, and
-//! [`save_checkpoint`] keeps the state to resume from. This module is the only one that knows HDF5.
+//! [`save_checkpoint`] keeps the state to resume from. Fields and systems of chemistry stand beside the cells. This
+//! module is the only one that knows HDF5.
 
 pub mod catalogue;
 mod checkpoint;
 mod column;
 mod columns;
 mod container;
+mod field_column;
+mod field_export;
+mod fields;
 mod header;
 mod info;
 mod layout_io;
 mod packing;
 mod reader;
+mod systems;
 mod tables;
 mod writer;
 
 pub use checkpoint::{Checkpoint, CheckpointMeta, checkpoint_path, load_checkpoint, save_checkpoint};
+pub use field_export::{write_field_image, write_field_table};
+pub use fields::{Along, FieldLayout, field_view_path};
 pub use header::{Header, Measure};
 pub use info::{describe, to_json};
 pub use reader::{Ending, ResultFile};
+pub use systems::{SystemLayout, SystemScope};
 pub use tables::{Table, table_text, write_table};
 pub use writer::{Overwrite, ResultWriter};
 
@@ -38,6 +46,10 @@ pub struct Layout {
     pub scene_series: Vec<(String, String)>,
     /// Rigid planes: name, a point (µm), the unit normal that points to the free side.
     pub planes: Vec<(String, [f64; 3], [f64; 3])>,
+    /// The grids of fields.
+    pub fields: Vec<FieldLayout>,
+    /// The systems of chemistry inside cells, and those of the scene.
+    pub systems: Vec<SystemLayout>,
 }
 
 impl Layout {
@@ -79,6 +91,11 @@ pub struct Frame {
     pub scene: Vec<f64>,
     /// Motility runs that ended since the frame before: (cell, end time s, duration s).
     pub runs: Vec<(u32, f64, f64)>,
+    /// Values of the fields: for each field of the layout, for each species, one value for each box, x fastest.
+    pub fields: Vec<Vec<Vec<f64>>>,
+    /// Values of the systems: for each system of the layout, for each quantity, one value for each of its cells (one
+    /// in all for a system of the scene).
+    pub systems: Vec<Vec<Vec<f64>>>,
 }
 
 /// What is recorded of one cell at one instant.

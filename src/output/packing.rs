@@ -17,12 +17,20 @@ pub(super) fn packer() -> Compress {
     Compress::new(Compression::new(LEVEL), false)
 }
 
-/// All first bytes of the numbers, all second bytes, …, as one zlib stream (RFC 1950, RFC 1951).
+/// Numbers of eight bytes: see [`pack_bytes`].
 pub(super) fn pack(packer: &mut Compress, words: impl ExactSizeIterator<Item = u64>) -> Vec<u8> {
+    pack_bytes(packer, words.map(u64::to_ne_bytes))
+}
+
+/// All first bytes of the numbers, all second bytes, …, as one zlib stream (RFC 1950, RFC 1951).
+pub(super) fn pack_bytes<const W: usize>(
+    packer: &mut Compress,
+    words: impl ExactSizeIterator<Item = [u8; W]>,
+) -> Vec<u8> {
     let count = words.len();
-    let mut planes = vec![0_u8; 8 * count];
+    let mut planes = vec![0_u8; W * count];
     for (place, word) in words.enumerate() {
-        for (plane, byte) in word.to_ne_bytes().into_iter().enumerate() {
+        for (plane, byte) in word.into_iter().enumerate() {
             planes[plane * count + place] = byte;
         }
     }

@@ -8,8 +8,10 @@ use ndarray::{Array2, s};
 use super::Layout;
 use super::catalogue::{CATALOGUE, FORCE, Filled, Run, cell_series_names};
 use super::container::{self, Access, damaged, text};
+use super::fields::FieldLayout;
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
+use super::systems::{SystemLayout, SystemScope};
 use crate::error::{Error, Fault, Result};
 
 /// A result file opened for reading. Arrays are read when they are asked for.
@@ -138,13 +140,127 @@ impl ResultFile {
         Ok(values.as_chunks::<3>().0.to_vec())
     }
 
+    /// The field of this name, or the first one that has a species of this name.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that lists what there is.
+    pub fn field(&self, name: &str) -> Result<&FieldLayout> {
+        let fields = &self.layout.fields;
+        let found = fields.iter().find(|field| field.name == name);
+        let found = found.or_else(|| fields.iter().find(|field| field.species_number(name).is_some()));
+        found.ok_or_else(|| self.no_field(name))
+    }
+
+    /// What `text` names: `FIELD.SPECIES`, a field (its first species) or a species (of the first field with it).
+    ///
+    /// # Errors
+    /// [`Error::Input`] that lists what there is.
+    pub fn field_species(&self, text: &str) -> Result<(&FieldLayout, usize)> {
+        let fields = &self.layout.fields;
+        for field in fields {
+            let rest = text.strip_prefix(&field.name).and_then(|rest| rest.strip_prefix('.'));
+            if let Some(species) = rest.and_then(|rest| field.species_number(rest)) {
+                return Ok((field, species));
+            }
+        }
+        let field = self.field(text)?;
+        let named = if field.name == text { None } else { field.species_number(text) };
+        if field.species.is_empty() {
+            return Err(self.no_field(text));
+        }
+        Ok((field, named.or_else(|| field.species_number(text)).unwrap_or(0)))
+    }
+
+    /// The values of a species in a frame, one for each box, x fastest. They were stored with seven digits.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a field or species that is not there, or a damaged file.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    pub fn field_frame(&self, field: &str, species: &str, frame: usize) -> Result<Vec<f64>> {
+        assert!(frame < self.frames, "frame {frame} of {}", self.frames);
+        let known = self.layout.fields.iter().find(|known| known.name == field);
+        let known = known.filter(|known| known.species_number(species).is_some());
+        let Some(known) = known else { return Err(self.no_field(&format!("{field}.{species}"))) };
+        let [nx, ny, nz] = known.cells;
+        let values = self.read(&format!("/fields/{field}/CellData/{species}"), |dataset| {
+            dataset.read_slice::<f32, _, ndarray::Ix3>((frame, 0..nz, 0..ny, 0..nx))
+        })?;
+        Ok(values.iter().map(|value| f64::from(*value)).collect())
+    }
+
+    fn no_field(&self, name: &str) -> Error {
+        let mut known: Vec<String> = Vec::new();
+        for field in &self.layout.fields {
+            known.push(field.name.clone());
+            for (species, _) in field.species.iter().filter(|(species, _)| *species != field.name) {
+                known.push(format!("{}.{species}", field.name));
+            }
+        }
+        let fault = Fault::new(match known.is_empty() {
+            true => format!("{} holds no fields", self.path.display()),
+            false => format!("{} has no field `{name}`", self.path.display()),
+        });
+        Error::input(fault.help(match known.is_empty() {
+            true => "give the experiment a field, or leave the option out".to_owned(),
+            false => listed(name, &known, self.layout.fields.iter().flat_map(|f| f.species.iter().map(|s| &s.0))),
+        }))
+    }
+
+    /// A quantity of a system, `[frame, member]`: one column for each of its cells, one in all for the scene.
+    ///
+    /// # Errors
+    /// An unknown name, or a damaged file.
+    pub fn quantity_series(&self, system: &str, quantity: &str) -> Result<Array2<f64>> {
+        let known = self.layout.systems.iter().find(|known| known.name == system);
+        let known = known.filter(|known| known.quantities.iter().any(|(name, _)| name == quantity));
+        let Some(known) = known else { return Err(self.unknown(&format!("{system}.{quantity}"))) };
+        let (frames, members) = (self.frames, known.members());
+        self.read(&known.path(quantity), |dataset| match known.scope {
+            SystemScope::Scene => {
+                let values = dataset.read_slice_1d::<f64, _>(0..frames)?;
+                Ok(values.insert_axis(ndarray::Axis(1)))
+            }
+            SystemScope::Cells(_) => dataset.read_slice_2d::<f64, _>((0..frames, 0..members)),
+        })
+    }
+
+    /// The system and quantity that a series `SYSTEM.QUANTITY` means.
+    fn quantity_of(&self, name: &str) -> Option<(&SystemLayout, &(String, String))> {
+        self.layout.systems.iter().find_map(|system| {
+            let rest = name.strip_prefix(&system.name)?.strip_prefix('.')?;
+            Some((system, system.quantities.iter().find(|(known, _)| known == rest)?))
+        })
+    }
+
+    /// Names of the series of systems, `SYSTEM.QUANTITY`: of those inside cells, or of those of the scene.
+    fn quantity_names(&self, inside_cells: bool) -> impl Iterator<Item = String> {
+        let wanted = move |system: &&SystemLayout| matches!(system.scope, SystemScope::Cells(_)) == inside_cells;
+        let names = |system: &SystemLayout| {
+            let named = |(quantity, _): &(String, String)| format!("{}.{quantity}", system.name);
+            system.quantities.iter().map(named).collect::<Vec<_>>()
+        };
+        self.layout.systems.iter().filter(wanted).flat_map(names)
+    }
+
     /// Names that [`cell_series`](Self::cell_series) knows.
     pub fn series_names(&self) -> Vec<String> {
-        cell_series_names()
+        let mut names = cell_series_names();
+        names.extend(self.quantity_names(true));
+        names
+    }
+
+    /// Names that [`scene_series`](Self::scene_series) knows.
+    pub fn scene_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = self.layout.scene_series.iter().map(|(name, _)| name.clone()).collect();
+        names.extend(self.quantity_names(false));
+        names
     }
 
     /// A per-cell series, `[frame, cell]`, in the unit of [`units`](Self::units). Vectors go by component:
     /// `position_x`, `velocity_z`, `size_y`, `principal_1` (the longest); `speed` is the length of the velocity.
+    /// `SYSTEM.QUANTITY` is a quantity of a system inside cells, NaN for cells without the system.
     ///
     /// # Errors
     /// An unknown name, or a damaged file.
@@ -154,6 +270,18 @@ impl ResultFile {
             let (x, y, z) = (component("x")?, component("y")?, component("z")?);
             return Ok((&x * &x + &y * &y + &z * &z).sqrt());
         }
+        if let Some((system, (quantity, _))) = self.quantity_of(name)
+            && let SystemScope::Cells(cells) = &system.scope
+        {
+            let values = self.quantity_series(&system.name, quantity)?;
+            let mut all = Array2::from_elem((self.frames, self.layout.cells.len()), f64::NAN);
+            for (column, cell) in values.columns().into_iter().zip(cells) {
+                if (*cell as usize) < self.layout.cells.len() {
+                    all.column_mut(*cell as usize).assign(&column);
+                }
+            }
+            return Ok(all);
+        }
         let (path, component) = find_series(name).ok_or_else(|| self.unknown(name))?;
         let (frames, cells) = (self.frames, self.layout.cells.len());
         self.read(path, |dataset| match component {
@@ -162,14 +290,20 @@ impl ResultFile {
         })
     }
 
-    /// A series of the scene as a whole: one number per frame.
+    /// A series of the scene as a whole: one number per frame. `SYSTEM.QUANTITY` is a quantity of a system of the
+    /// scene.
     ///
     /// # Errors
     /// An unknown name, or a damaged file.
     pub fn scene_series(&self, name: &str) -> Result<Vec<f64>> {
         match self.layout.scene_series.iter().any(|(known, _)| known == name) {
             true => self.numbers(&format!("/scene/{name}")),
-            false => Err(self.unknown(name)),
+            false => match self.quantity_of(name) {
+                Some((system, (quantity, _))) if system.scope == SystemScope::Scene => {
+                    Ok(self.quantity_series(&system.name, quantity)?.into_iter().collect())
+                }
+                _ => Err(self.unknown(name)),
+            },
         }
     }
 
@@ -179,6 +313,9 @@ impl ResultFile {
     /// An unknown name.
     pub fn units(&self, name: &str) -> Result<String> {
         if let Some((_, unit)) = self.layout.scene_series.iter().find(|(known, _)| known == name) {
+            return Ok(unit.clone());
+        }
+        if let Some((_, (_, unit))) = self.quantity_of(name) {
             return Ok(unit.clone());
         }
         let known = match name {
@@ -238,16 +375,20 @@ impl ResultFile {
     }
 
     fn unknown(&self, name: &str) -> Error {
-        let mut known = cell_series_names();
-        known.extend(self.layout.scene_series.iter().map(|(name, _)| name.clone()));
-        let near = known.iter().map(|other| (strsim::damerau_levenshtein(name, other), other)).min();
-        let mut help = format!("there are: {}", known.join(", "));
-        if let Some((distance, other)) = near
-            && distance <= 3
-        {
-            help = format!("did you mean `{other}`? {help}");
-        }
+        let mut known = self.series_names();
+        known.extend(self.scene_names());
+        let help = listed(name, &known, std::iter::empty());
         Error::input(Fault::new(format!("{} has no series `{name}`", self.path.display())).help(help))
+    }
+}
+
+/// What there is, and what may have been meant, one of `known` or `also`.
+fn listed<'a>(name: &str, known: &'a [String], also: impl Iterator<Item = &'a String>) -> String {
+    let near = known.iter().chain(also).map(|other| (strsim::damerau_levenshtein(name, other), other)).min();
+    let help = format!("there are: {}", known.join(", "));
+    match near {
+        Some((distance, other)) if distance <= 3 => format!("did you mean `{other}`? {help}"),
+        _ => help,
     }
 }
 
@@ -289,11 +430,35 @@ pub(super) fn whole_frames(file: &File) -> hdf5::Result<usize> {
             frames = frames.min(series.get_shape()?[0]);
         }
     }
+    let mut fields = Vec::new();
+    if let Ok(group) = file.group("fields") {
+        for field in group.groups()? {
+            for species in field.group("CellData")?.datasets()? {
+                frames = frames.min(species.get_shape()?[0]);
+                fields.push(species);
+            }
+        }
+    }
+    if let Ok(group) = file.group("chemistry") {
+        for system in group.groups()? {
+            for quantity in system.datasets()? {
+                frames = frames.min(quantity.get_shape()?[0]);
+            }
+        }
+    }
     let (times, points) = (file.dataset("/time")?, file.dataset("/VTKHDF/Points")?);
     let written = |frame: usize| -> hdf5::Result<bool> {
         let time = times.read_slice_1d::<f64, _>(frame..frame + 1)?;
         let first = points.read_slice_1d::<f64, _>(s![frame * atoms, ..])?;
         let last = points.read_slice_1d::<f64, _>(s![(frame + 1) * atoms - 1, ..])?;
+        for field in &fields {
+            // The last box of all lies in the last piece of the frame.
+            let last: Vec<usize> = field.get_shape()?[1..].iter().map(|n| n.saturating_sub(1)).collect();
+            let [z, y, x] = last[..] else { return Ok(false) };
+            if field.read_slice_1d::<f32, _>(s![frame, z, y, x..x + 1])?.iter().any(|value| value.is_nan()) {
+                return Ok(false);
+            }
+        }
         Ok(time.iter().chain(&first).chain(&last).all(|value| !value.is_nan()))
     };
     while frames > 0 && !written(frames - 1).unwrap_or(false) {

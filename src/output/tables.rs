@@ -42,8 +42,7 @@ pub fn write_table(result: &ResultFile, table: &Table, path: &Path) -> Result<()
 pub fn table_text(result: &ResultFile, table: &Table) -> Result<String> {
     match table {
         Table::Series(names) if names.is_empty() => {
-            let scene = result.layout().scene_series.iter().map(|(name, _)| name.clone());
-            series(result, &result.series_names().into_iter().chain(scene).collect::<Vec<_>>())
+            series(result, &result.series_names().into_iter().chain(result.scene_names()).collect::<Vec<_>>())
         }
         Table::Series(names) => series(result, names),
         Table::Tracks => series(result, &["position_x", "position_y", "position_z"].map(str::to_owned)),
@@ -64,7 +63,7 @@ fn series(result: &ResultFile, names: &[String]) -> Result<String> {
     let mut columns = Vec::new();
     for name in names {
         text.push_str(&format!(",{}", field(&titled(name, &result.units(name)?))));
-        let of_scene = layout.scene_series.iter().any(|(known, _)| known == name);
+        let of_scene = result.scene_names().contains(name);
         columns.push(match of_scene {
             true => Column::Scene(result.scene_series(name)?),
             false => Column::Cells(result.cell_series(name)?),
@@ -111,7 +110,7 @@ fn titled(name: &str, unit: &str) -> String {
 }
 
 /// A text as one field (RFC 4180): in quotes where it holds a comma, a quote or an end of line.
-fn field(text: &str) -> String {
+pub(super) fn field(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.to_owned(),

@@ -8,6 +8,7 @@ use hdf5::{Attribute, File};
 use super::checkpoint::{CheckpointMeta, DATASET, checkpoint_path, save_checkpoint};
 use super::columns::Columns;
 use super::container::{self, Access, failed, machine_error, set_number, set_text};
+use super::fields::{check_names, field_view_path, write_views};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout, write_header, write_layout};
 use super::reader::{ResultFile, whole_frames};
@@ -44,13 +45,15 @@ impl ResultWriter {
     ///
     /// # Errors
     /// [`Error::Input`] if the file or its checkpoint exists (with [`Overwrite::Refuse`]), its folder does not exist
-    /// or may not be written, or the layout has no atoms; [`Error::Machine`] if the disk refuses.
+    /// or may not be written, the layout has no atoms or names that the file cannot hold; [`Error::Machine`] if the
+    /// disk refuses.
     pub fn create(path: &Path, header: &Header, layout: &Layout, overwrite: Overwrite) -> Result<Self> {
         if layout.atoms() == 0 {
             let fault = Fault::new("there is no cell to record").help("give the experiment at least one cell");
             return Err(Error::input(fault));
         }
-        claim(path, overwrite)?;
+        check_names(layout)?;
+        claim(path, overwrite, layout)?;
         // A file that could not be begun is of no use, and would stand in the way of the next try.
         Self::begin(path, header, layout).inspect_err(|_| drop(std::fs::remove_file(path)))
     }
@@ -61,6 +64,7 @@ impl ResultWriter {
             .and_then(|()| write_layout(&file, layout))
             .and_then(|()| Columns::create(&file, layout));
         let columns = made.map_err(|error| failed(path, "could not be made", &error))?;
+        write_views(path, layout)?;
         Self::around(path, file, header, columns)
     }
 
@@ -93,6 +97,7 @@ impl ResultWriter {
         let columns = unfinished.and_then(|()| {
             Columns::reopen(&file, layout, keep, runs).map_err(|error| failed(path, "could not be changed", &error))
         })?;
+        write_views(path, layout)?;
         Self::around(path, file, header, columns)
     }
 
@@ -304,7 +309,7 @@ fn allocate(_: &std::fs::File, _: u64) -> std::io::Result<()> {
 }
 
 /// Makes sure that the path may be written, with errors that HDF5 does not tell apart.
-fn claim(path: &Path, overwrite: Overwrite) -> Result<()> {
+fn claim(path: &Path, overwrite: Overwrite, layout: &Layout) -> Result<()> {
     use std::io::ErrorKind;
     let name = path.display();
     let side = checkpoint_path(path);
@@ -318,6 +323,10 @@ fn claim(path: &Path, overwrite: Overwrite) -> Result<()> {
     }
     if overwrite == Overwrite::Refuse && side.exists() {
         return fault(format!("{} exists: the checkpoint of a run that can be resumed", side.display()), force);
+    }
+    let views = layout.fields.iter().map(|field| field_view_path(path, &field.name));
+    if let Some(view) = views.filter(|view| view.exists()).find(|_| overwrite == Overwrite::Refuse) {
+        return fault(format!("{} exists: it would lead to a field of the result", view.display()), force);
     }
     let mut options = std::fs::OpenOptions::new();
     match overwrite {

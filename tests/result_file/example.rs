@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use pseudopod::output::{CellLayout, CellRecord, Frame, Header, Layout, Overwrite, ResultWriter};
+use pseudopod::output::{
+    CellLayout, CellRecord, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter, SystemLayout, SystemScope,
+};
 
 /// Corners of an octahedron.
 const CORNERS: [[f64; 3]; 6] =
@@ -21,6 +23,7 @@ pub fn layout(cells: u32) -> Layout {
         links: (0..cells).map(|cell| [6 * cell, 6 * cell + 3]).collect(),
         scene_series: vec![("wall.height".into(), "um".into()), ("load.pull".into(), "pN".into())],
         planes: vec![("floor".into(), [0.0, 0.0, -2.0], [0.0, 0.0, 1.0])],
+        ..Layout::default()
     }
 }
 
@@ -50,6 +53,7 @@ pub fn frame(layout: &Layout, number: usize) -> Frame {
             .collect(),
         scene: vec![10.0 - time, 2.0 * time],
         runs: if number == 0 { Vec::new() } else { vec![(number as u32 % cells as u32, time, 0.5 * time)] },
+        ..Frame::default()
     }
 }
 
@@ -68,4 +72,52 @@ pub fn write(path: &Path, layout: &Layout, frames: usize) -> ResultWriter {
         writer.append(&frame(layout, number)).unwrap();
     }
     writer
+}
+
+/// The same cells with two fields, one of them on the substrate, a system in every other cell and one of the scene.
+pub fn layout_with_fields(cells: u32) -> Layout {
+    let named = |name: &str| (name.to_string(), "uM".to_string());
+    let flat = FieldLayout {
+        name: "attractant".into(),
+        species: vec![named("attractant"), named("inhibitor")],
+        cells: [6, 5, 1],
+        spacing: [2.0, 2.0, 1.0],
+        origin: [-3.0, -4.0, -1.5],
+    };
+    let block = FieldLayout {
+        name: "medium".into(),
+        species: vec![named("oxygen")],
+        cells: [4, 4, 4],
+        spacing: [3.0; 3],
+        origin: [0.0; 3],
+    };
+    let brain = SystemLayout {
+        name: "brain".into(),
+        scope: SystemScope::Cells((0..cells).step_by(2).collect()),
+        quantities: vec![named("U"), ("cells".into(), "1".into())],
+    };
+    let clock = SystemLayout { name: "clock".into(), scope: SystemScope::Scene, quantities: vec![named("tick")] };
+    Layout { fields: vec![flat, block], systems: vec![brain, clock], ..layout(cells) }
+}
+
+/// The frame of this number with values that differ from place to place, from species to species and from frame to frame.
+pub fn frame_with_fields(layout: &Layout, number: usize) -> Frame {
+    let value = |species: usize, i: usize| ((number + 1) * (species + 2)) as f64 + 0.1 * i as f64;
+    let of_field = |field: &FieldLayout| -> Vec<Vec<f64>> {
+        (0..field.species.len()).map(|species| (0..field.len()).map(|i| value(species, i)).collect()).collect()
+    };
+    let of_system = |system: &SystemLayout| -> Vec<Vec<f64>> {
+        let members = |quantity: usize| (0..system.members()).map(|i| value(quantity, i)).collect();
+        (0..system.quantities.len()).map(members).collect()
+    };
+    Frame {
+        fields: layout.fields.iter().map(of_field).collect(),
+        systems: layout.systems.iter().map(of_system).collect(),
+        ..frame(layout, number)
+    }
+}
+
+/// Values of a field as the file keeps them.
+pub fn stored(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| f64::from(*value as f32)).collect()
 }

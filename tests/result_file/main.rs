@@ -2,6 +2,7 @@
 
 mod example;
 mod faults;
+mod fields;
 mod resume;
 mod round_trip;
 mod tables;

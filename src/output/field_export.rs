@@ -1,0 +1,118 @@
+//! A frame of a field for other programs: a table of places and values, or an image for VTK.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::ResultFile;
+use super::container::machine_error;
+use super::fields::{Along, FieldLayout};
+use crate::error::Result;
+
+/// Writes a frame of a field as a table: a row for each box with its centre (µm; no z for a field of the substrate)
+/// and the values of these species, by their numbers. An existing file is replaced.
+///
+/// # Errors
+/// A damaged result, or a file that cannot be written.
+///
+/// # Panics
+/// If there is no such frame or species.
+pub fn write_field_table(
+    result: &ResultFile,
+    field: &FieldLayout,
+    species: &[usize],
+    frame: usize,
+    path: &Path,
+) -> Result<()> {
+    save(path, &table(field, &values_of(result, field, species, frame)?))
+}
+
+/// Writes a frame of a field as an image of VTK (`.vti`) with one array for each of these species. An existing file is
+/// replaced.
+///
+/// # Errors
+/// As [`write_field_table`].
+///
+/// # Panics
+/// As [`write_field_table`].
+pub fn write_field_image(
+    result: &ResultFile,
+    field: &FieldLayout,
+    species: &[usize],
+    frame: usize,
+    path: &Path,
+) -> Result<()> {
+    let time = result.times()?[frame];
+    save(path, &image(field, &values_of(result, field, species, frame)?, time))
+}
+
+/// A species with its name and unit, and its values.
+type Values<'a> = (&'a (String, String), Vec<f64>);
+
+fn values_of<'a>(
+    result: &ResultFile,
+    field: &'a FieldLayout,
+    species: &[usize],
+    frame: usize,
+) -> Result<Vec<Values<'a>>> {
+    let value = |number: &usize| {
+        let named = &field.species[*number];
+        Ok((named, result.field_frame(&field.name, &named.0, frame)?))
+    };
+    species.iter().map(value).collect()
+}
+
+fn save(path: &Path, text: &str) -> Result<()> {
+    std::fs::write(path, text).map_err(|error| machine_error(path, "cannot be written", &error.to_string()))
+}
+
+fn table(field: &FieldLayout, species: &[Values]) -> String {
+    let axes = if field.is_flat() { &[Along::X, Along::Y][..] } else { &[Along::X, Along::Y, Along::Z] };
+    let places = axes.iter().map(|axis| format!("{} (um)", axis.letter()));
+    let values = species.iter().map(|((name, unit), _)| match unit.as_str() {
+        "" | "1" => super::tables::field(name),
+        unit => super::tables::field(&format!("{name} ({unit})")),
+    });
+    let mut text = places.chain(values).collect::<Vec<_>>().join(",");
+    text.push('\n');
+    let [nx, ny, _] = field.cells;
+    for at in 0..field.len() {
+        let index = [at % nx, at / nx % ny, at / (nx * ny)];
+        let places = axes.iter().map(|axis| rounded(field.centre(*axis, index[axis.number()])).to_string());
+        // As many digits as were stored.
+        let values = species.iter().map(|(_, values)| (values[at] as f32).to_string());
+        text.push_str(&places.chain(values).collect::<Vec<_>>().join(","));
+        text.push('\n');
+    }
+    text
+}
+
+/// A place without the noise of its last digits.
+fn rounded(place: f64) -> f64 {
+    (place * 1e9).round() / 1e9
+}
+
+fn image(field: &FieldLayout, species: &[Values], time: f64) -> String {
+    let list = |numbers: &[f64; 3]| numbers.map(|number| number.to_string()).join(" ");
+    let [nx, ny, nz] = field.cells;
+    let (extent, origin, spacing) = (format!("0 {nx} 0 {ny} 0 {nz}"), list(&field.origin), list(&field.spacing));
+    let mut text = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\">\n\
+         <ImageData WholeExtent=\"{extent}\" Origin=\"{origin}\" Spacing=\"{spacing}\">\n\
+         <FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{time}\
+         </DataArray></FieldData>\n<Piece Extent=\"{extent}\">\n<CellData>\n"
+    );
+    for ((name, _), values) in species {
+        let _ = writeln!(text, "<DataArray type=\"Float32\" Name=\"{}\" format=\"ascii\">", escaped(name));
+        for row in values.chunks(nx) {
+            let row: Vec<String> = row.iter().map(|value| (*value as f32).to_string()).collect();
+            let _ = writeln!(text, "{}", row.join(" "));
+        }
+        text.push_str("</DataArray>\n");
+    }
+    text.push_str("</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
+    text
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
