@@ -1,5 +1,6 @@
 //! What an EML document says, checked.
 
+use crate::chemistry::field::Range;
 use crate::chemistry::tree::{Expr, QuantityId, System};
 use crate::error::Place;
 
@@ -102,6 +103,8 @@ pub struct FieldDescription {
     pub decay: Expr,
     /// How it starts.
     pub initial: Profile,
+    /// Which values it may take.
+    pub range: Range,
     /// Walls at x-, x+, y-, y+, z-, z+.
     pub walls: [Wall; 6],
     /// Where it is declared.

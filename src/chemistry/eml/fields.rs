@@ -3,6 +3,7 @@
 use super::build::{Builder, Use};
 use super::document::{FieldDescription, GridDescription, Profile, SIDES, Wall};
 use super::xml::Element;
+use crate::chemistry::field::Range;
 use crate::chemistry::tree::{Expr, System};
 
 impl Builder<'_, '_> {
@@ -83,12 +84,17 @@ impl Builder<'_, '_> {
             none(self.attribute(element, "diffusion", Use::Fixed, Some((&spreads, "the diffusion coefficient"))));
         let decay = none(self.attribute(element, "decay", Use::Fixed, Some((&fades, "the decay"))));
         let initial = self.profile(element);
+        let range = match self.choice(element, "range", &["non_negative", "free"]) {
+            0 => Range::NonNegative,
+            _ => Range::Free,
+        };
         let walls = self.walls(element, &id, dimension);
         Some(FieldDescription {
             quantity: self.find(&id)?,
             diffusion,
             decay,
             initial: initial?,
+            range,
             walls,
             place: self.desk.place(element.place("id"), "the field"),
             id,

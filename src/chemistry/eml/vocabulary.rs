@@ -43,7 +43,7 @@ pub const ELEMENTS: [Kind; 15] = [
     kind("set", &["id"], &[], &[], true),
     kind("solver", &[], &["atol", "inner_step", "rtol", "scheme", "step"], &[], false),
     kind("grid", &["dimension", "spacing"], &["origin", "size", "unit"], &[], false),
-    kind("field", &["id"], &["dataset", "decay", "diffusion", "image", "initial", "name", "scale", "unit"],
+    kind("field", &["id"], &["dataset", "decay", "diffusion", "image", "initial", "name", "range", "scale", "unit"],
         &["reaction", "wall"], false),
     kind("reaction", &[], &[], &[], true),
     kind("wall", &["kind", "side"], &["value"], &[], false),

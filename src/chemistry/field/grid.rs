@@ -1,7 +1,7 @@
 //! The grid of a field: a plane of squares under the cells, or boxes that fill the medium, and what its walls do.
 
 use crate::Vec3;
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Result, short};
 
 /// Boxes of one size, on which all species of a field have one value each, that of the box's centre. The boxes lie
 /// in memory with x running fastest, then y, then z.
@@ -87,6 +87,14 @@ impl Grid {
     /// Place in memory of box (x, y, z).
     pub fn at(&self, x: usize, y: usize, z: usize) -> usize {
         (z * self.cells[1] + y) * self.cells[0] + x
+    }
+
+    /// The centre of a box, µm, as messages tell it: `(1.5, 2.5)`.
+    pub(super) fn told(&self, at: usize) -> String {
+        let centre = self.centre(at);
+        let numbers: Vec<String> =
+            centre.iter().take(if self.is_flat() { 2 } else { 3 }).map(|n| short(*n).to_string()).collect();
+        format!("({})", numbers.join(", "))
     }
 
     /// Centre of the box at a place in memory, µm.

@@ -3,21 +3,29 @@
 //! [`Fields`] holds the values of all species on one [`Grid`]. [`Fields::advance`] moves them in time, second order in
 //! time and space; [`Fields::deposit`] and [`Fields::sense`] are what cells do to them.
 
+mod broken;
 mod factors;
 pub mod grid;
+mod layout;
 mod limit;
+mod lines;
+mod profiles;
 mod react;
+mod reactor;
 mod species;
 mod state;
 mod steady;
 mod step;
 mod sweep;
 mod sweeps;
+mod system;
 mod touch;
 
 pub use grid::{Grid, Wall, Walls};
+pub use layout::Placing;
 pub use react::{Chunk, POINTS, React};
 pub use species::{Range, Species};
 pub use state::Fields;
 pub use step::{Report, Stepping};
+pub use system::{FieldSystem, LoadProfile};
 pub use touch::Sensed;

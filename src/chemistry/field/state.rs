@@ -168,8 +168,7 @@ impl Fields {
         }
         let bad = |value: &f64| !value.is_finite() || (*value < 0.0 && one.range == Range::NonNegative);
         if let Some(at) = values.iter().position(bad) {
-            let place = self.grid.centre(at);
-            let message = format!("species '{}' is {} at {:?} µm", one.name, values[at], place.as_slice());
+            let message = format!("species '{}' is {} at {} µm", one.name, values[at], self.grid.told(at));
             return fault(message, "a concentration is finite and not negative");
         }
         self.values[species * len..(species + 1) * len].copy_from_slice(values);

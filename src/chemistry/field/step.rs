@@ -3,7 +3,7 @@
 
 use super::react::{React, react};
 use super::state::Fields;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, short};
 
 /// How a window is cut into steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -125,7 +125,14 @@ impl Fields {
                     self.unchecked = 0;
                 }
             } else {
+                self.work.before.copy_from_slice(&self.values);
                 self.strang(dt, 1, reactions);
+                if reactions.is_some() && !self.is_finite() {
+                    // The step has become too long since the last check.
+                    std::mem::swap(&mut self.values, &mut self.work.before);
+                    self.unchecked = 0;
+                    continue;
+                }
                 self.unchecked -= 1;
                 done += 1 << (FINEST - self.level);
             }
@@ -172,27 +179,40 @@ impl Fields {
         worst
     }
 
+    /// The box that is worst is told; its values in halves and whole stand where a refused step leaves them.
     fn hopeless(&self, dt: f64) -> Error {
+        let apart = |at: &usize| (self.work.before[*at] - self.work.whole[*at]).abs();
+        let apart = |at: &usize| if apart(at).is_nan() { f64::INFINITY } else { apart(at) };
+        // Of equals the first.
+        let worst = (0..self.values.len()).rev().max_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap_or(0);
+        let (name, place) = self.told(worst);
         Error::Numbers {
-            message: format!("no step of the fields meets the tolerance at t = {} s (down to {dt:e} s)", self.time),
+            message: format!(
+                "no step meets the tolerance of field '{name}' at t = {} s, down to {dt:e} s; it is worst at {place} µm",
+                short(self.time)
+            ),
             help: "check the reactions for values that grow without bound, or raise the tolerance".into(),
             kept: None,
         }
     }
 
+    /// The species and the position of a value, for messages.
+    fn told(&self, value: usize) -> (&str, String) {
+        let len = self.grid.len();
+        (&self.species[value / len].name, self.grid.told(value % len))
+    }
+
+    fn is_finite(&self) -> bool {
+        // Written so that lanes of values are looked at side by side.
+        !self.values.iter().fold(false, |bad, value| bad | !(value.abs() < f64::INFINITY))
+    }
+
     fn check_finite(&self) -> Result<()> {
-        // A sum is finite exactly when no value is infinite or not a number, as long as it does not overflow itself.
-        let fine = self.values.iter().map(|value| value * 0.0).sum::<f64>() == 0.0;
-        let bad = if fine { None } else { self.values.iter().position(|value| !value.is_finite()) };
+        let bad = if self.is_finite() { None } else { self.values.iter().position(|value| !value.is_finite()) };
         let Some(at) = bad else { return Ok(()) };
-        let (species, place) = (&self.species[at / self.grid.len()].name, self.grid.centre(at % self.grid.len()));
+        let (name, place) = self.told(at);
         Err(Error::Numbers {
-            message: format!(
-                "species '{species}' of the field is {} at {:?} µm and t = {} s",
-                self.values[at],
-                place.as_slice(),
-                self.time
-            ),
+            message: format!("field '{name}' is {} at {place} µm and t = {} s", self.values[at], short(self.time)),
             help: "its reactions grow without bound; check their signs and rates, or take smaller steps".into(),
             kept: None,
         })

@@ -1,7 +1,7 @@
 //! Solving the equations: for all cells of a population side by side, each cell with a step of its own, or for one
 //! system alone with events and values at any time.
 
-mod block;
+pub(in crate::chemistry) mod block;
 mod control;
 mod events;
 mod explicit;
@@ -9,7 +9,7 @@ mod lu;
 mod multistep;
 mod population;
 mod rosenbrock;
-mod scratch;
+pub(in crate::chemistry) mod scratch;
 mod solve;
 mod stepper;
 pub mod tableau;

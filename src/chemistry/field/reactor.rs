@@ -1,0 +1,232 @@
+//! The reactions of a document at all boxes of a grid: its compiled equations over lanes of boxes.
+//!
+//! A step of reactions is one explicit midpoint step, second order like the splitting, or what the document's scheme
+//! asks for: the engine's methods with error control, Rosenbrock's for stiff reactions, within each step of the splitting.
+
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+
+use pulp::Arch;
+
+use super::broken::{Broken, Course};
+use super::grid::Grid;
+use super::react::{Chunk, POINTS};
+use super::sweeps::PARTS;
+use super::system::{POSITION, Scales};
+use crate::chemistry::eml::{Document, Scheme};
+use crate::chemistry::ode::block::{self, Stride};
+use crate::chemistry::ode::scratch::Scratch;
+use crate::chemistry::ode::{Method, Tolerances};
+use crate::chemistry::program::{Lanes, Program, run};
+use crate::chemistry::tree::{Expr, Role};
+use crate::error::{Error, Fault, Result};
+
+/// Boxes side by side.
+pub const WIDTH: usize = 16;
+
+/// The compiled reactions.
+#[derive(Debug)]
+pub struct Reactor {
+    program: Program,
+    /// None for the explicit midpoint step.
+    method: Option<Method>,
+    tolerances: Tolerances,
+    scales: Scales,
+    /// Where the position and the inputs stand among the registers.
+    place: Positions,
+    inputs: Vec<usize>,
+    rooms: Vec<Mutex<Option<Room>>>,
+}
+
+/// Registers of the position that the equations use.
+pub type Positions = [Option<usize>; 3];
+
+/// What one thread works in.
+#[derive(Debug)]
+struct Room {
+    scratch: Scratch<WIDTH>,
+}
+
+fn empty_rooms() -> Vec<Mutex<Option<Room>>> {
+    (0..PARTS).map(|_| Mutex::new(None)).collect()
+}
+
+impl Clone for Reactor {
+    fn clone(&self) -> Self {
+        Self { program: self.program.clone(), rooms: empty_rooms(), inputs: self.inputs.clone(), ..*self }
+    }
+}
+
+impl Reactor {
+    /// The reactions of a document, or nothing where nothing reacts.
+    ///
+    /// # Errors
+    /// A scheme that is not for fields.
+    pub fn new(document: &Document, scales: Scales) -> Result<Option<Self>> {
+        let method = method(document)?;
+        let still = |role: &Role| !matches!(role, Role::Variable { rate } if *rate != Expr::Number(0.0));
+        if document.system.quantities.iter().all(|quantity| still(&quantity.role)) {
+            return Ok(None);
+        }
+        let program = super::system::compile(document)?;
+        debug_assert!(document.fields.iter().map(|field| field.quantity).eq(program.variables.iter().copied()));
+        let usual = Tolerances::default();
+        let tolerances = Tolerances {
+            relative: document.solver.rtol.unwrap_or(usual.relative),
+            absolute: document.solver.atol.unwrap_or(usual.absolute),
+            ..usual
+        };
+        let place = positions(&program);
+        let ours = |number: &usize| !POSITION.contains(&program.names[program.open[*number] as usize].as_str());
+        let inputs = (0..program.open.len()).filter(ours).map(|number| program.first_open() + number).collect();
+        Ok(Some(Self { program, method, tolerances, scales, place, inputs, rooms: empty_rooms() }))
+    }
+
+    /// A window with these inputs.
+    pub fn course<'a>(&'a self, grid: &'a Grid, inputs: &'a [f64], adaptive: bool) -> Course<'a> {
+        Course { reactor: self, grid, inputs, adaptive, broken: Mutex::new(None) }
+    }
+
+    /// A room that no other thread is in.
+    fn room(&self, hint: usize) -> MutexGuard<'_, Option<Room>> {
+        for at in 0..self.rooms.len() {
+            match self.rooms[(hint + at) % self.rooms.len()].try_lock() {
+                Ok(room) => return room,
+                Err(TryLockError::Poisoned(room)) => return room.into_inner(),
+                Err(TryLockError::WouldBlock) => {}
+            }
+        }
+        self.rooms[hint % self.rooms.len()].lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lets the boxes of a chunk react; the first whose values are finite before and not after.
+    pub fn react(&self, grid: &Grid, inputs: &[f64], chunk: &mut Chunk) -> Option<Broken> {
+        let mut room = self.room(chunk.first / POINTS);
+        let room = room.get_or_insert_with(|| Room {
+            scratch: Scratch::new(&self.program, self.method == Some(Method::Rosenbrock)),
+        });
+        for (register, value) in self.inputs.iter().zip(inputs) {
+            room.scratch.file[*register] = [*value; WIDTH];
+        }
+        Arch::new().dispatch(
+            #[inline(always)]
+            || self.blocks(grid, &mut room.scratch, chunk),
+        )
+    }
+
+    #[inline(always)]
+    fn blocks(&self, grid: &Grid, scratch: &mut Scratch<WIDTH>, chunk: &mut Chunk) -> Option<Broken> {
+        let (from, dt) = (chunk.time / self.scales.seconds, chunk.dt / self.scales.seconds);
+        let mut broken = None;
+        for first in (0..chunk.points).step_by(WIDTH) {
+            for (s, state) in scratch.state.iter_mut().enumerate() {
+                state.copy_from_slice(&chunk.values[s * POINTS + first..][..WIDTH]);
+            }
+            set_positions(grid, self.scales, &self.place, chunk.first + first, &mut scratch.file);
+            match self.method {
+                None => midpoint(&self.program, scratch, from, dt),
+                Some(method) => self.with_method(method, scratch, (from, from + dt)),
+            }
+            let mut fine = true;
+            for (s, proposal) in scratch.proposal.iter().enumerate() {
+                chunk.values[s * POINTS + first..][..WIDTH].copy_from_slice(proposal);
+                for value in proposal {
+                    fine &= value.abs() < f64::INFINITY;
+                }
+            }
+            if !fine && broken.is_none() {
+                broken = first_broken(scratch, chunk, first);
+            }
+        }
+        broken
+    }
+
+    /// A step of reactions by one of the engine's methods; a box in trouble gets values that are no numbers.
+    #[inline(always)]
+    fn with_method(&self, method: Method, scratch: &mut Scratch<WIDTH>, window: (f64, f64)) {
+        // The splitting has chosen its step for these reactions: it is tried in one piece.
+        let mut stride = Stride { step: [window.1 - window.0; WIDTH], error: [1.0; WIDTH] };
+        let result = block::advance(&self.program, method, scratch, &mut stride, WIDTH, window, &self.tolerances);
+        scratch.proposal.copy_from_slice(&scratch.state);
+        if let Err(trouble) = result {
+            scratch.proposal[trouble.variable.unwrap_or(0)][trouble.lane] = f64::NAN;
+        }
+    }
+}
+
+/// The first box of a block that is finite before and not after.
+#[inline(never)]
+fn first_broken(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<Broken> {
+    let lanes = 0..WIDTH.min(chunk.points - first);
+    let was_fine = |lane: &usize| scratch.state.iter().all(|state| state[*lane].is_finite());
+    let bad = |lane: usize| {
+        let species = scratch.proposal.iter().position(|values| !values[lane].is_finite())?;
+        let (time, dt) = (chunk.time, chunk.dt);
+        Some(Broken { species, value: scratch.proposal[species][lane], at: chunk.first + first + lane, time, dt })
+    };
+    lanes.filter(was_fine).find_map(bad)
+}
+
+/// Leaves the proposal of an explicit midpoint step.
+#[inline(always)]
+fn midpoint(program: &Program, s: &mut Scratch<WIDTH>, time: f64, dt: f64) {
+    let n = s.state.len();
+    s.file[0] = [time; WIDTH];
+    s.file[1..=n].copy_from_slice(&s.state);
+    for half in [true, false] {
+        run(&program.rates, &mut s.file);
+        let share = if half { 0.5 * dt } else { dt };
+        for ((to, from), register) in s.proposal.iter_mut().zip(&s.state).zip(&program.rates.outputs) {
+            let rate = &s.file[*register as usize];
+            for l in 0..WIDTH {
+                to[l] = from[l] + share * rate[l];
+            }
+        }
+        if half {
+            s.file[0] = [time + 0.5 * dt; WIDTH];
+            s.file[1..=n].copy_from_slice(&s.proposal);
+        }
+    }
+}
+
+/// The method that a document asks for.
+fn method(document: &Document) -> Result<Option<Method>> {
+    let inner = document.solver.inner_step.unwrap_or(f64::INFINITY);
+    match document.solver.scheme {
+        None => Ok(None),
+        Some(Scheme::Rk45) => Ok(Some(Method::Rk45)),
+        Some(Scheme::Rosenbrock) => Ok(Some(Method::Rosenbrock)),
+        Some(Scheme::Rk4) => Ok(Some(Method::Rk4 { step: inner })),
+        Some(other @ (Scheme::Euler | Scheme::Bdf)) => {
+            let name = if other == Scheme::Bdf { "bdf" } else { "euler" };
+            let message = format!("the reactions of the fields of '{}' cannot be taken with {name}", document.name);
+            let help = "write scheme=\"rk4\", \"rk45\" or, for stiff reactions, \"rosenbrock\", or leave it out";
+            Err(Error::input(Fault::new(message).help(help)))
+        }
+    }
+}
+
+/// Where the position stands among the registers, as far as the equations use it.
+pub fn positions(program: &Program) -> Positions {
+    POSITION.map(|name| {
+        let number = program.open.iter().position(|open| program.names[*open as usize] == name)?;
+        Some(program.first_open() + number)
+    })
+}
+
+/// Sets the position of boxes that follow each other in memory, in the document's unit.
+pub fn set_positions(grid: &Grid, scales: Scales, place: &Positions, first: usize, file: &mut [Lanes<WIDTH>]) {
+    if place.iter().all(Option::is_none) {
+        return;
+    }
+    for lane in 0..WIDTH {
+        let mut centre = grid.centre((first + lane).min(grid.len() - 1));
+        if grid.is_flat() {
+            centre.z = grid.origin.z;
+        }
+        for (axis, register) in place.iter().enumerate() {
+            if let Some(register) = register {
+                file[*register][lane] = centre[axis] / scales.micrometres;
+            }
+        }
+    }
+}
