@@ -84,7 +84,7 @@ pub fn solve(
     let problem = OdeBuilder::<Matrix>::new()
         .t0(from)
         .rtol(tolerances.relative)
-        .atol(vec![tolerances.absolute; initial.len()])
+        .atol(program.sizes.iter().map(|size| tolerances.absolute * size))
         .rhs_implicit(
             |state: &[f64], _: &[f64], time: f64, rates: &mut [f64]| machine.rates(state, time, rates),
             |state: &[f64], _: &[f64], time: f64, vector: &[f64], product: &mut [f64]| {

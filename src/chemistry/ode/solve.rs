@@ -107,7 +107,7 @@ pub fn solve(
         reason: Reason::Solver,
         detail,
     };
-    let compiled = Program::with(system, &events::assigned_parameters(system), &events::groups(system));
+    let compiled = Program::with(system, from, &events::assigned_parameters(system), &events::groups(system));
     let program = compiled.map_err(|circle| trouble(format!("a circle of {}", circle.join(", "))))?;
     let tolerances =
         Tolerances { relative: options.relative, absolute: options.absolute, max_steps: options.max_steps };

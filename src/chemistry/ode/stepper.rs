@@ -136,7 +136,9 @@ impl<'a> Stepper<'a> {
         }
         if self.step <= 0.0 {
             let window = limit - self.time;
-            self.step = control::first_step(&self.s.state, &self.s.stages[..n], window, &self.tolerances)[0];
+            self.step =
+                control::first_step(&self.s.state, &self.s.stages[..n], &self.program.sizes, window, &self.tolerances)
+                    [0];
         }
         let shortest = 4.0 * f64::EPSILON * self.time.abs().max(limit.abs() * 1e-3);
         let mut most = controller.most;
@@ -157,7 +159,8 @@ impl<'a> Stepper<'a> {
                 explicit::dormand_prince(self.program, &mut self.s, [self.time], [step]);
             }
             self.work.rates += 6;
-            let error = control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.tolerances)[0];
+            let error =
+                control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.program.sizes, &self.tolerances)[0];
             let factor = controller.factor(error, self.error);
             if error <= 1.0 {
                 let next = step * factor.min(most);
