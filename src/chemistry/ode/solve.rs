@@ -66,7 +66,7 @@ impl Default for SolveOptions {
     /// The Rosenbrock method, which takes stiff and other systems, with and without events.
     fn default() -> Self {
         let scheme = Scheme::OneStep(Method::Rosenbrock);
-        Self { scheme, relative: 1e-7, absolute: 1e-12, max_steps: 2_000_000 }
+        Self { scheme, relative: 1e-7, absolute: 1e-14, max_steps: 2_000_000 }
     }
 }
 
