@@ -67,7 +67,7 @@ fn hard_problems_are_solved_to_six_digits_and_their_work_is_known() {
     vdpol     Rosenbrock    10.0   6279       17  37777            6296
     rober     Rosenbrock     7.8   1730        1  10387            1731
     pleiades  Rosenbrock     8.4   3712       54  22597            3766
-    pleiades  RK45           6.2    638       32   4021               0
+    pleiades  RK45           6.6    683       24   4243               0
     ");
 }
 

@@ -88,7 +88,7 @@ fn adaptive<const L: usize, const STIFFLY: bool>(
         if STIFFLY {
             rosenbrock::step(program, s, time, step);
         } else {
-            explicit::dormand_prince(program, s, time, step);
+            explicit::tsitouras(program, s, time, step);
         }
         work.rates += 6 * left as u64;
         work.jacobians += if STIFFLY { left as u64 } else { 0 };

@@ -156,7 +156,7 @@ impl<'a> Stepper<'a> {
                 rosenbrock::step(self.program, &mut self.s, [self.time], [step]);
                 self.work.jacobians += 1;
             } else {
-                explicit::dormand_prince(self.program, &mut self.s, [self.time], [step]);
+                explicit::tsitouras(self.program, &mut self.s, [self.time], [step]);
             }
             self.work.rates += 6;
             let error =
@@ -185,7 +185,7 @@ impl<'a> Stepper<'a> {
             return;
         }
         match self.method {
-            Method::Rk45 => explicit::dormand_prince_between(&self.s, self.taken, share, state),
+            Method::Rk45 => explicit::tsitouras_between(&self.s, self.taken, share, state),
             Method::Rosenbrock => rosenbrock::between(&self.s, share, state),
             Method::Euler { .. } => {
                 for (v, value) in state.iter_mut().enumerate() {
