@@ -1,11 +1,8 @@
 //! SBML models mean what the SBML test suite and other simulators take them to mean.
 
-#[path = "sbml/solver.rs"]
-mod solver;
-
+use pseudopod::chemistry::ode::{SolveOptions, solve};
 use pseudopod::chemistry::sbml::{self, Model};
 use pseudopod::error::{Error, Source};
-use solver::solve_for_test;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -65,7 +62,9 @@ fn case(folder: &Path, file: &Path) -> Result<(), String> {
     let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     let tolerance = |name: &str| setting(&settings, name).parse::<f64>().expect("a number");
     let (absolute, relative) = (tolerance("absolute"), tolerance("relative"));
-    let solved = solve_for_test(&model.system, &times, 1e-8, 1e-3 * absolute.min(1e-6) * 1e-3);
+    let options = SolveOptions { relative: 1e-8, absolute: 1e-6 * absolute.min(1e-6), ..SolveOptions::default() };
+    let solution = solve(&model.system, times[0], times[times.len() - 1], &times, &options);
+    let solved = solution.map_err(|trouble| trouble.to_string())?.values;
     for (row, values) in rows.iter().zip(&solved) {
         for (place, column) in columns.iter().enumerate() {
             let (expected, got) = (row[place + 1], values[*column as usize]);
@@ -116,10 +115,9 @@ fn distance(folder: &Path) -> Result<f64, String> {
     let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     let columns = names[1..].iter().map(|name| model.column(name).ok_or(format!("there is no `{name}`")));
     let columns: Vec<u32> = columns.collect::<Result<_, _>>()?;
-    // Amounts are the state: in a compartment of 1e-15 litres even large concentrations are small amounts.
-    let start = &solve_for_test(&model.system, &times[..1], 1e-9, 1e-14)[0];
-    let smallest = model.compartments.iter().map(|&place| start[place as usize]).fold(1.0, f64::min);
-    let solved = solve_for_test(&model.system, &times, 1e-9, 1e-14 * smallest);
+    let options = SolveOptions { relative: 1e-9, absolute: 1e-14, ..SolveOptions::default() };
+    let solution = solve(&model.system, times[0], times[times.len() - 1], &times, &options);
+    let solved = solution.map_err(|trouble| trouble.to_string())?.values;
     let mut worst: f64 = 0.0;
     for (place, column) in columns.iter().enumerate() {
         let largest = rows.iter().map(|row| row[place + 1].abs()).fold(0.0, f64::max);

@@ -1,12 +1,9 @@
 //! What single constructs of SBML mean, against solutions by hand.
 
-#[path = "sbml/solver.rs"]
-mod solver;
-
+use pseudopod::chemistry::ode::{Method, Scheme, SolveOptions, solve};
 use pseudopod::chemistry::sbml::{self, Model};
 use pseudopod::chemistry::tree::Role;
 use pseudopod::error::{Paint, Source, render};
-use solver::solve_for_test;
 use std::sync::Arc;
 
 const MATH: &str = "http://www.w3.org/1998/Math/MathML";
@@ -24,9 +21,12 @@ fn read(level: u32, version: u32, body: &str) -> Model {
     sbml::read(&source).unwrap_or_else(|error| panic!("{}", render(&error, Paint::Plain)))
 }
 
+const OPTIONS: SolveOptions =
+    SolveOptions { scheme: Scheme::OneStep(Method::Rosenbrock), relative: 1e-9, absolute: 1e-12, max_steps: 1_000_000 };
+
 /// Values of columns at a time.
 fn at(model: &Model, until: f64, columns: &[&str]) -> Vec<f64> {
-    let rows = solve_for_test(&model.system, &[0.0, until], 1e-9, 1e-12);
+    let rows = solve(&model.system, 0.0, until, &[0.0, until], &OPTIONS).expect("a solution").values;
     columns.iter().map(|name| rows[1][model.column(name).expect(name) as usize]).collect()
 }
 

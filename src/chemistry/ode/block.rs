@@ -67,7 +67,7 @@ fn adaptive<const L: usize, const STIFFLY: bool>(
         work.rates += used as u64;
     }
     if (0..used).any(|l| stride.step[l] <= 0.0) {
-        let guess = control::first_step(&s.state, &s.stages[..n], until - from, tolerances);
+        let guess = control::first_step(&s.state, &s.stages[..n], &program.sizes, until - from, tolerances);
         for l in 0..L {
             stride.step[l] = if stride.step[l] > 0.0 { stride.step[l] } else { guess[l] };
         }
@@ -88,11 +88,11 @@ fn adaptive<const L: usize, const STIFFLY: bool>(
         if STIFFLY {
             rosenbrock::step(program, s, time, step);
         } else {
-            explicit::dormand_prince(program, s, time, step);
+            explicit::tsitouras(program, s, time, step);
         }
         work.rates += 6 * left as u64;
         work.jacobians += if STIFFLY { left as u64 } else { 0 };
-        let error = control::norm(&s.error, &s.state, &s.proposal, tolerances);
+        let error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
         let mut factor = [1.0; L];
         for l in 0..L {
             factor[l] = controller.factor(error[l], stride.error[l]);

@@ -4,13 +4,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::chemistry::program::{Lanes, math};
 
-/// How large the error of a step may be: the root mean square over the variables of error / (absolute + relative·|value|)
-/// stays below 1.
+/// How large the error of a step may be: for every variable below absolute·size + relative·|value|, with the sizes of
+/// [`Program::sizes`](crate::chemistry::program::Program::sizes).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Tolerances {
     /// Relative to the variable's size.
     pub relative: f64,
-    /// In the variable's own unit.
+    /// In the variable's own unit, for variables of size 1.
     pub absolute: f64,
     /// Most steps in a window.
     pub max_steps: u32,
@@ -60,28 +60,29 @@ impl Controller {
     }
 }
 
-/// The weighted root mean square of `error`.
+/// The largest of the variables' errors, each over what is allowed; not a number where one of them is none. What does not
+/// err at all counts as 0, even where it is not a number: a value that nothing has set yet.
 #[inline(always)]
 pub fn norm<const L: usize>(
     error: &[Lanes<L>],
     state: &[Lanes<L>],
     proposal: &[Lanes<L>],
+    sizes: &[f64],
     tolerances: &Tolerances,
 ) -> Lanes<L> {
-    let mut sum = [0.0; L];
-    for ((error, state), proposal) in error.iter().zip(state).zip(proposal) {
+    let mut largest = [0.0; L];
+    for (((error, state), proposal), own) in error.iter().zip(state).zip(proposal).zip(sizes) {
+        let absolute = tolerances.absolute * own;
         for l in 0..L {
             let (before, after) = (state[l].abs(), proposal[l].abs());
             let size = if before > after { before } else { after };
-            let ratio = error[l] / (tolerances.absolute + tolerances.relative * size);
-            sum[l] += ratio * ratio;
+            let ratio = error[l].abs() / (absolute + tolerances.relative * size);
+            let ratio = if error[l] == 0.0 { 0.0 } else { ratio };
+            let takes = (ratio > largest[l]) | ratio.is_nan();
+            largest[l] = if takes { ratio } else { largest[l] };
         }
     }
-    let share = 1.0 / (error.len().max(1) as f64);
-    for l in 0..L {
-        sum[l] = (sum[l] * share).sqrt();
-    }
-    sum
+    largest
 }
 
 /// A first step where none is known: a hundredth of the time in which the state would change by its own size.
@@ -89,10 +90,11 @@ pub fn norm<const L: usize>(
 pub fn first_step<const L: usize>(
     state: &[Lanes<L>],
     rates: &[Lanes<L>],
+    sizes: &[f64],
     window: f64,
     tolerances: &Tolerances,
 ) -> Lanes<L> {
-    let (size, speed) = (norm(state, state, state, tolerances), norm(rates, state, state, tolerances));
+    let (size, speed) = (norm(state, state, state, sizes, tolerances), norm(rates, state, state, sizes, tolerances));
     let mut step = [0.0; L];
     for l in 0..L {
         let by_state = 0.01 * size[l] / speed[l];

@@ -1,43 +1,60 @@
-//! Explicit steps: the Dormand–Prince pair, the classical method of order 4 and Euler's.
+//! Explicit steps: the pair of Tsitouras, the classical method of order 4 and Euler's.
 
 use super::scratch::Scratch;
-use super::tableau::dormand_prince::{A, C, D, E, STAGES};
+use super::tableau::tsitouras::{A2, A3, A4, A5, A6, B, C, D, E};
 use crate::chemistry::program::{Lanes, Program};
+
+/// The weighted sum of one variable's first stages.
+#[inline(always)]
+fn weighted<const S: usize, const L: usize>(weights: &[f64; S], stages: &[Lanes<L>], n: usize, v: usize) -> Lanes<L> {
+    let mut sum = [0.0; L];
+    for stage in 0..S {
+        let slope = &stages[stage * n + v];
+        for l in 0..L {
+            let part = weights[stage] * slope[l];
+            sum[l] = if stage == 0 { part } else { sum[l] + part };
+        }
+    }
+    sum
+}
+
+/// The rates at the state that the first `S` stages give, as the next stage.
+#[inline(always)]
+fn stage<const S: usize, const L: usize>(
+    program: &Program,
+    s: &mut Scratch<L>,
+    weights: &[f64; S],
+    time: Lanes<L>,
+    step: Lanes<L>,
+) {
+    let n = s.state.len();
+    for v in 0..n {
+        let sum = weighted(weights, &s.stages, n, v);
+        let (begin, to) = (&s.state[v], &mut s.file[1 + v]);
+        for l in 0..L {
+            to[l] = begin[l] + step[l] * sum[l];
+        }
+    }
+    for l in 0..L {
+        s.file[0][l] = time[l] + C[S] * step[l];
+    }
+    s.rates_into(program, S);
+}
 
 /// One step of the pair from (time, state), whose rates are stage 0. Leaves proposal, error, and the rates at the
 /// proposal as the last stage.
 #[inline(always)]
-pub fn dormand_prince<const L: usize>(program: &Program, s: &mut Scratch<L>, time: Lanes<L>, step: Lanes<L>) {
+pub fn tsitouras<const L: usize>(program: &Program, s: &mut Scratch<L>, time: Lanes<L>, step: Lanes<L>) {
     let n = s.state.len();
-    for stage in 1..STAGES {
-        for v in 0..n {
-            let mut sum = [0.0; L];
-            for (earlier, &weight) in A[stage][..stage].iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
-                let slope = &s.stages[earlier * n + v];
-                for l in 0..L {
-                    sum[l] += weight * slope[l];
-                }
-            }
-            let begin = s.state[v];
-            for l in 0..L {
-                sum[l] = begin[l] + step[l] * sum[l];
-            }
-            s.file[1 + v] = sum;
-            s.proposal[v] = sum;
-        }
-        for l in 0..L {
-            s.file[0][l] = time[l] + C[stage] * step[l];
-        }
-        s.rates_into(program, stage);
-    }
+    stage(program, s, &A2, time, step);
+    stage(program, s, &A3, time, step);
+    stage(program, s, &A4, time, step);
+    stage(program, s, &A5, time, step);
+    stage(program, s, &A6, time, step);
+    stage(program, s, &B, time, step);
+    s.proposal.copy_from_slice(&s.file[1..=n]);
     for v in 0..n {
-        let mut sum = [0.0; L];
-        for (stage, &weight) in E.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
-            let slope = &s.stages[stage * n + v];
-            for l in 0..L {
-                sum[l] += weight * slope[l];
-            }
-        }
+        let sum = weighted(&E, &s.stages, n, v);
         for l in 0..L {
             s.error[v][l] = step[l] * sum[l];
         }
@@ -45,16 +62,12 @@ pub fn dormand_prince<const L: usize>(program: &Program, s: &mut Scratch<L>, tim
 }
 
 /// The state at a share of the last step of the pair, after a step that was accepted.
-pub fn dormand_prince_between(s: &Scratch<1>, step: f64, share: f64, state: &mut [f64]) {
+pub fn tsitouras_between(s: &Scratch<1>, step: f64, share: f64, state: &mut [f64]) {
     let n = state.len();
-    let slope = |stage: usize, v: usize| s.stages[stage * n + v][0];
+    let weights = D.map(|row| row.iter().rev().fold(0.0, |sum, weight| (sum + weight) * share));
     for (v, value) in state.iter_mut().enumerate() {
-        let (begin, change) = (s.state[v][0], s.proposal[v][0] - s.state[v][0]);
-        let bend = step * slope(0, v) - change;
-        let far = change - step * slope(6, v) - bend;
-        let last: f64 = step * D.iter().enumerate().map(|(stage, weight)| weight * slope(stage, v)).sum::<f64>();
-        let rest = 1.0 - share;
-        *value = begin + share * (change + rest * (bend + share * (far + rest * last)));
+        let sum: f64 = weights.iter().enumerate().map(|(stage, weight)| weight * s.stages[stage * n + v][0]).sum();
+        *value = s.state[v][0] + step * sum;
     }
 }
 

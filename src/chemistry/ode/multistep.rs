@@ -1,6 +1,6 @@
 //! Solvers of the crate diffsol for a single system without events, fed from the same program as our own.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason, Vector,
@@ -19,16 +19,19 @@ pub struct Machine<'a> {
     file: RefCell<Vec<Lanes<1>>>,
     /// Time and state of the Jacobian's entries, and the entries.
     known: RefCell<(Vec<f64>, Vec<f64>)>,
+    /// How often the rates were asked for.
+    asked: Cell<u64>,
 }
 
 impl<'a> Machine<'a> {
     /// A program with all open quantities at their initial values.
     pub fn new(program: &'a Program) -> Self {
-        Self { program, file: RefCell::new(program.file()), known: RefCell::default() }
+        Self { program, file: RefCell::new(program.file()), known: RefCell::default(), asked: Cell::new(0) }
     }
 
     /// Rates at a state and time.
     pub fn rates(&self, state: &[f64], time: f64, rates: &mut [f64]) {
+        self.asked.set(self.asked.get() + 1);
         let mut file = self.file.borrow_mut();
         set(&mut file, state, time);
         run(&self.program.rates, &mut file);
@@ -84,7 +87,7 @@ pub fn solve(
     let problem = OdeBuilder::<Matrix>::new()
         .t0(from)
         .rtol(tolerances.relative)
-        .atol(vec![tolerances.absolute; initial.len()])
+        .atol(program.sizes.iter().map(|size| tolerances.absolute * size))
         .rhs_implicit(
             |state: &[f64], _: &[f64], time: f64, rates: &mut [f64]| machine.rates(state, time, rates),
             |state: &[f64], _: &[f64], time: f64, vector: &[f64], product: &mut [f64]| {
@@ -144,6 +147,7 @@ impl Course<'_> {
         }
         let statistics = solver.get_statistics();
         solution.work.rejected = statistics.number_of_error_test_failures as u64;
+        solution.work.rates = self.machine.asked.get();
         solution.work.jacobians = statistics.number_of_linear_solver_setups as u64;
         Ok(solution)
     }

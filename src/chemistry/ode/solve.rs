@@ -66,7 +66,7 @@ impl Default for SolveOptions {
     /// The Rosenbrock method, which takes stiff and other systems, with and without events.
     fn default() -> Self {
         let scheme = Scheme::OneStep(Method::Rosenbrock);
-        Self { scheme, relative: 1e-7, absolute: 1e-12, max_steps: 2_000_000 }
+        Self { scheme, relative: 1e-7, absolute: 1e-14, max_steps: 2_000_000 }
     }
 }
 
@@ -107,7 +107,7 @@ pub fn solve(
         reason: Reason::Solver,
         detail,
     };
-    let compiled = Program::with(system, &events::assigned_parameters(system), &events::groups(system));
+    let compiled = Program::with(system, from, &events::assigned_parameters(system), &events::groups(system));
     let program = compiled.map_err(|circle| trouble(format!("a circle of {}", circle.join(", "))))?;
     let tolerances =
         Tolerances { relative: options.relative, absolute: options.absolute, max_steps: options.max_steps };

@@ -136,7 +136,9 @@ impl<'a> Stepper<'a> {
         }
         if self.step <= 0.0 {
             let window = limit - self.time;
-            self.step = control::first_step(&self.s.state, &self.s.stages[..n], window, &self.tolerances)[0];
+            self.step =
+                control::first_step(&self.s.state, &self.s.stages[..n], &self.program.sizes, window, &self.tolerances)
+                    [0];
         }
         let shortest = 4.0 * f64::EPSILON * self.time.abs().max(limit.abs() * 1e-3);
         let mut most = controller.most;
@@ -154,10 +156,11 @@ impl<'a> Stepper<'a> {
                 rosenbrock::step(self.program, &mut self.s, [self.time], [step]);
                 self.work.jacobians += 1;
             } else {
-                explicit::dormand_prince(self.program, &mut self.s, [self.time], [step]);
+                explicit::tsitouras(self.program, &mut self.s, [self.time], [step]);
             }
             self.work.rates += 6;
-            let error = control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.tolerances)[0];
+            let error =
+                control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.program.sizes, &self.tolerances)[0];
             let factor = controller.factor(error, self.error);
             if error <= 1.0 {
                 let next = step * factor.min(most);
@@ -182,7 +185,7 @@ impl<'a> Stepper<'a> {
             return;
         }
         match self.method {
-            Method::Rk45 => explicit::dormand_prince_between(&self.s, self.taken, share, state),
+            Method::Rk45 => explicit::tsitouras_between(&self.s, self.taken, share, state),
             Method::Rosenbrock => rosenbrock::between(&self.s, share, state),
             Method::Euler { .. } => {
                 for (v, value) in state.iter_mut().enumerate() {

@@ -1,35 +1,69 @@
 //! The numbers of the methods.
 
-/// The explicit pair of order 5(4) of Dormand and Prince (J. Comput. Appl. Math. 6, 1980), with the continuous
-/// extension of order 4 by Shampine as in Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.6.
-pub mod dormand_prince {
-    /// Stages; the last is the first of the next step.
-    pub const STAGES: usize = 7;
+/// The explicit pair of order 5(4) of Tsitouras (Computers & Mathematics with Applications 62, 2011, 770–775) with its
+/// continuous extension of order 4. The last stage is the first of the next step.
+pub mod tsitouras {
     /// Times of the stages.
-    pub const C: [f64; 7] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
-    /// Weights of earlier stages; the last row gives the new state.
-    pub const A: [[f64; 6]; 7] = [
-        [0.0; 6],
-        [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
-        [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
-        [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
-        [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
-        [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
+    pub const C: [f64; 7] = [0.0, 0.161, 0.327, 0.9, 0.980_025_540_904_509_7, 1.0, 1.0];
+    /// Weights of earlier stages.
+    pub const A2: [f64; 1] = [0.161];
+    /// As above.
+    pub const A3: [f64; 2] = [-0.008_480_655_492_356_989, 0.335_480_655_492_357];
+    /// As above.
+    pub const A4: [f64; 3] = [2.897_153_057_105_493_5, -6.359_448_489_975_075, 4.362_295_432_869_581_5];
+    /// As above.
+    pub const A5: [f64; 4] =
+        [5.325_864_828_439_257, -11.748_883_564_062_828, 7.495_539_342_889_836_5, -0.092_495_066_361_755_25];
+    /// As above.
+    pub const A6: [f64; 5] = [
+        5.861_455_442_946_42,
+        -12.920_969_317_847_11,
+        8.159_367_898_576_159,
+        -0.071_584_973_281_401,
+        -0.028_269_050_394_068_383,
     ];
-    /// Weights of the error: order 5 less order 4.
-    pub const E: [f64; 7] =
-        [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
-    /// Weights of the continuous extension.
-    pub const D: [f64; 7] = [
-        -12715105075.0 / 11282082432.0,
-        0.0,
-        87487479700.0 / 32700410799.0,
-        -10690763975.0 / 1880347072.0,
-        701980252875.0 / 199316789632.0,
-        -1453857185.0 / 822651844.0,
-        69997945.0 / 29380423.0,
+    /// Weights of the new state.
+    pub const B: [f64; 6] = [
+        0.096_460_766_818_065_23,
+        0.01,
+        0.479_889_650_414_499_6,
+        1.379_008_574_103_742,
+        -3.290_069_515_436_081,
+        2.324_710_524_099_774,
     ];
+    /// Weights of the error: order 4 less order 5.
+    pub const E: [f64; 7] = [
+        -0.001_780_011_052_225_777_1,
+        -0.000_816_434_459_656_746_9,
+        0.007_880_878_010_261_995,
+        -0.144_711_007_173_262_9,
+        0.582_357_165_452_555_2,
+        -0.458_082_105_929_186_97,
+        1.0 / 66.0,
+    ];
+    /// The continuous extension: the weight of a stage at a share of the step, by powers of the share from the first on.
+    pub const D: [[f64; 4]; 7] = [
+        [1.0, -2.763_706_197_274_826, 2.913_255_461_821_912_6, -1.053_088_497_729_021_6],
+        [0.0, 0.1317, -0.2234, 0.1017],
+        [0.0, 3.930_296_236_894_751_6, -5.941_033_872_131_505, 2.490_627_285_651_253],
+        [0.0, -12.411_077_166_933_676, 30.338_188_630_282_32, -16.548_102_889_244_902],
+        [0.0, 37.509_313_416_511_04, -88.178_904_894_766_4, 47.379_521_962_819_28],
+        [0.0, -27.896_526_289_197_286, 65.091_894_674_793_66, -34.870_657_861_496_61],
+        [0.0, 1.5, -4.0, 2.5],
+    ];
+
+    /// The weights of a stage's argument, or of the new state for the last.
+    pub fn row(stage: usize) -> &'static [f64] {
+        match stage {
+            0 => &[],
+            1 => &A2,
+            2 => &A3,
+            3 => &A4,
+            4 => &A5,
+            5 => &A6,
+            _ => &B,
+        }
+    }
 }
 
 /// RODAS, the L-stable, stiffly accurate Rosenbrock method of order 4(3) with 6 stages of Hairer and Wanner, *Solving
@@ -83,4 +117,76 @@ pub mod rodas {
         24.767_225_114_183_86,
         -6.594_389_125_716_872,
     ];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tsitouras::{B, C, D, E, row};
+
+    type Weights = [f64; 7];
+
+    fn dot(a: Weights, b: Weights) -> f64 {
+        a.iter().zip(&b).map(|(a, b)| a * b).sum()
+    }
+
+    fn times(a: Weights, b: Weights) -> Weights {
+        std::array::from_fn(|i| a[i] * b[i])
+    }
+
+    /// The matrix of the stages times a vector.
+    fn staged(vector: Weights) -> Weights {
+        std::array::from_fn(|stage| row(stage).iter().zip(&vector).map(|(a, b)| a * b).sum())
+    }
+
+    /// How far weights are from the conditions up to an order at a share of the step: one for each rooted tree.
+    fn distance(b: Weights, order: i32, share: f64) -> f64 {
+        let (c, c2) = (C, times(C, C));
+        let (c3, ac) = (times(c2, c), staged(c));
+        let ac2 = staged(c2);
+        let conditions = [
+            (1, dot(b, [1.0; 7]), 1.0),
+            (2, dot(b, c), 2.0),
+            (3, dot(b, c2), 3.0),
+            (3, dot(b, ac), 6.0),
+            (4, dot(b, c3), 4.0),
+            (4, dot(b, times(c, ac)), 8.0),
+            (4, dot(b, ac2), 12.0),
+            (4, dot(b, staged(ac)), 24.0),
+            (5, dot(b, times(c2, c2)), 5.0),
+            (5, dot(b, times(c2, ac)), 10.0),
+            (5, dot(b, times(ac, ac)), 20.0),
+            (5, dot(b, times(c, ac2)), 15.0),
+            (5, dot(b, staged(c3)), 20.0),
+            (5, dot(b, times(c, staged(ac))), 30.0),
+            (5, dot(b, staged(times(c, ac))), 40.0),
+            (5, dot(b, staged(ac2)), 60.0),
+            (5, dot(b, staged(staged(ac))), 120.0),
+        ];
+        let of_order = conditions.iter().filter(|(of, ..)| *of <= order);
+        of_order.map(|(of, value, density)| (value - share.powi(*of) / density).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn the_explicit_pair_meets_the_conditions_of_its_orders() {
+        let fifth: Weights = std::array::from_fn(|stage| if stage < 6 { B[stage] } else { 0.0 });
+        let fourth: Weights = std::array::from_fn(|stage| fifth[stage] + E[stage]);
+        // The coefficients have 16 digits and are as large as 13.
+        assert!(distance(fifth, 5, 1.0) < 1e-13 && distance(fourth, 4, 1.0) < 1e-13);
+        assert!(distance(fourth, 5, 1.0) > 1e-5, "the error estimate must see the fifth order");
+        for stage in 0..7 {
+            let sum: f64 = row(stage).iter().sum();
+            assert!((sum - C[stage]).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn values_between_are_of_order_4_and_end_at_the_new_state() {
+        let weights =
+            |share: f64| -> Weights { D.map(|row| row.iter().rev().fold(0.0, |sum, weight| (sum + weight) * share)) };
+        for share in [0.2, 0.5, 0.9, 1.0] {
+            // Coefficients as large as 88 with 16 digits.
+            assert!(distance(weights(share), 4, share) < 1e-12, "{share}");
+        }
+        (0..7).for_each(|stage| assert!((weights(1.0)[stage] - row(6).get(stage).unwrap_or(&0.0)).abs() < 1e-12));
+    }
 }

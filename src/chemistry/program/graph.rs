@@ -22,7 +22,7 @@ pub enum Node {
     Select(NodeId, NodeId, NodeId),
 }
 
-/// Whole exponents up to this one become products; the error of x^k grows as k/2 units in the last place.
+/// Whole and half exponents up to this one become products and a root; the error of x^k grows as k/2 units in the last place.
 const LARGEST_PRODUCT: f64 = 16.0;
 
 /// Nodes, each once.
@@ -114,16 +114,13 @@ impl Graph {
         self.intern(Node::Binary(function, a, b))
     }
 
-    /// A power with a constant exponent that products or a root give.
+    /// A power with a constant exponent that products and a root give.
     fn power(&mut self, a: NodeId, exponent: f64) -> Option<NodeId> {
-        if exponent == 0.5 {
-            return Some(self.unary(Unary::Sqrt, a));
-        }
-        if exponent.fract() != 0.0 || exponent.abs() > LARGEST_PRODUCT {
+        if (2.0 * exponent).fract() != 0.0 || exponent.abs() > LARGEST_PRODUCT {
             return None;
         }
         let (mut left, mut square) = (exponent.abs() as u32, a);
-        let mut product = self.constant(1.0);
+        let mut product = if exponent.fract() != 0.0 { self.unary(Unary::Sqrt, a) } else { self.constant(1.0) };
         while left > 0 {
             if left & 1 == 1 {
                 product = self.binary(Binary::Mul, product, square);

@@ -14,7 +14,7 @@ mod run;
 pub use initial::initial_values;
 pub use run::{Lanes, run};
 
-use crate::chemistry::tree::{Expr, QuantityId, Role, System};
+use crate::chemistry::tree::{Binary, Expr, QuantityId, Role, System};
 use code::{Code, Constants};
 use graph::{Graph, NodeId};
 
@@ -29,8 +29,10 @@ pub struct Program {
     pub open: Vec<QuantityId>,
     /// Identifiers of all quantities, for messages.
     pub names: Vec<String>,
-    /// Values of all quantities at time 0.
+    /// Values of all quantities at the start.
     pub initial: Vec<f64>,
+    /// Of each variable, the size that its absolute tolerance is meant for; see [`Self::with`].
+    pub sizes: Vec<f64>,
     /// The rates of change of the variables.
     pub rates: Code,
     /// Rates, then their derivatives by time, then the entries of [`Self::pattern`].
@@ -48,20 +50,22 @@ pub struct Program {
 }
 
 impl Program {
-    /// Compiles a system for populations: only its inputs are open.
+    /// Compiles a system for populations: it starts at time 0 and only its inputs are open.
     ///
     /// # Errors
     /// As [`Self::with`].
     pub fn new(system: &System) -> Result<Self, Vec<String>> {
-        Self::with(system, &[], &[])
+        Self::with(system, 0.0, &[], &[])
     }
 
-    /// Compiles a system with some parameters open and further groups of expressions beside its rates.
+    /// Compiles a system that starts at a time, with some parameters open and further groups of expressions beside its
+    /// rates. A variable that a defined quantity divides by the size of a compartment (an amount by a volume) has that
+    /// size, when it is below 1, and all others 1: so the absolute tolerance holds for concentrations.
     ///
     /// # Errors
     /// The identifiers along a circle of definitions or initial values.
-    pub fn with(system: &System, open: &[QuantityId], further: &[Vec<Expr>]) -> Result<Self, Vec<String>> {
-        let initial = initial_values(system, 0.0)?;
+    pub fn with(system: &System, start: f64, open: &[QuantityId], further: &[Vec<Expr>]) -> Result<Self, Vec<String>> {
+        let initial = initial_values(system, start)?;
         let variables = system.variables();
         let is_open = |number: &QuantityId| match system.quantities[*number as usize].role {
             Role::Input => true,
@@ -91,6 +95,7 @@ impl Program {
             variables,
             open,
             names: system.quantities.iter().map(|quantity| quantity.id.clone()).collect(),
+            sizes: sizes(system, &initial),
             initial,
             rates,
             linear,
@@ -141,6 +146,21 @@ impl Program {
         }
         file
     }
+}
+
+/// The sizes of all variables, in order.
+fn sizes(system: &System, initial: &[f64]) -> Vec<f64> {
+    let mut sizes = vec![1.0_f64; initial.len()];
+    for quantity in &system.quantities {
+        let Role::Defined { rule: Expr::Binary(Binary::Div, amount, volume) } = &quantity.role else { continue };
+        if let (Expr::Quantity(amount), Expr::Quantity(volume)) = (amount.as_ref(), volume.as_ref()) {
+            let volume = initial[*volume as usize];
+            if volume > 0.0 && volume < sizes[*amount as usize] {
+                sizes[*amount as usize] = volume;
+            }
+        }
+    }
+    system.variables().into_iter().map(|variable| sizes[variable as usize]).collect()
 }
 
 fn quantity_nodes(
