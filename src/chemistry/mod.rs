@@ -10,5 +10,7 @@ pub mod expression;
 pub mod field;
 pub mod ode;
 pub mod program;
+mod read;
 pub mod sbml;
 pub mod tree;
+pub use read::{Read, read};

@@ -41,6 +41,9 @@ pub struct CellType {
     /// How the cells move by themselves.
     #[serde(default)]
     pub motility: Motility,
+    /// Systems of equations that every cell has a copy of: names in `[chemistry]`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub chemistry: Vec<String>,
 }
 
 impl CellType {
@@ -57,6 +60,7 @@ impl CellType {
             loads: Vec::new(),
             links: Vec::new(),
             motility: Motility::default(),
+            chemistry: Vec::new(),
         }
     }
 

@@ -32,6 +32,7 @@
 
 mod cells;
 mod check;
+mod chemistry;
 mod compile;
 mod document;
 mod loads;
@@ -46,6 +47,7 @@ mod values;
 mod words;
 
 pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
+pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{Compiled, Schedule, compile};
 pub use document::Document;
 pub use loads::{Cap, CapExtent, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
@@ -84,8 +86,11 @@ pub struct Experiment {
     /// How long and with which integrator to run.
     pub run: Run,
     /// The types of cells, by name.
-    #[schemars(extend("minProperties" = 1))]
+    #[serde(default)]
     pub cells: IndexMap<String, CellType>,
+    /// Equations and fields that take part, by name.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub chemistry: IndexMap<String, Chemistry>,
     /// What acts everywhere.
     #[serde(default)]
     pub environment: Environment,
@@ -116,6 +121,7 @@ impl Experiment {
             seed: 0,
             run: Run { until, integrator: Integrator::default() },
             cells: IndexMap::new(),
+            chemistry: IndexMap::new(),
             environment: Environment::default(),
             planes: Vec::new(),
             output: Output::default(),

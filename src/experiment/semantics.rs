@@ -15,6 +15,7 @@ const CELL_SERIES: [&str; 18] = [
 ];
 
 mod cells;
+mod chemistry;
 mod scene;
 
 struct Check<'a> {
@@ -40,6 +41,7 @@ pub(super) fn check(document: &Document, references: &[Reference]) -> Vec<Fault>
             check.direction(&format!("{path}.orientation.axis"), turn.axis);
         }
     }
+    check.chemistry();
     check.scene();
     check.measures();
     check.faults

@@ -48,8 +48,9 @@ impl ResultWriter {
     /// or may not be written, the layout has no atoms or names that the file cannot hold; [`Error::Machine`] if the
     /// disk refuses.
     pub fn create(path: &Path, header: &Header, layout: &Layout, overwrite: Overwrite) -> Result<Self> {
-        if layout.atoms() == 0 {
-            let fault = Fault::new("there is no cell to record").help("give the experiment at least one cell");
+        if layout.atoms() == 0 && layout.fields.is_empty() && layout.systems.is_empty() {
+            let fault =
+                Fault::new("there is nothing to record").help("give the experiment a cell, a field or a system");
             return Err(Error::input(fault));
         }
         check_names(layout)?;

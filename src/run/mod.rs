@@ -13,7 +13,7 @@ use std::time::Instant;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Compiled, Document, compile};
 use crate::output::{Frame, Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
-use crate::sim::{State, Trouble, Workspace, step};
+use crate::sim::{State, Trouble, Workspace, begin_chemistry, step};
 
 /// How a run is to be made.
 #[derive(Debug, Clone)]
@@ -127,6 +127,7 @@ pub fn document_of(header: &Header, result: &Path) -> Result<Document> {
 fn check_fits(fresh: &State, state: &State, result: &Path) -> Result<()> {
     let same = fresh.kinds.len() == state.kinds.len()
         && fresh.walks.len() == state.walks.len()
+        && fresh.chemistry.has_shape_of(&state.chemistry)
         && fresh.kinds.iter().zip(&state.kinds).all(|(a, b)| {
             a.positions.len() == b.positions.len()
                 && a.velocities.len() == b.velocities.len()
@@ -181,6 +182,9 @@ fn drive(
     let mut ws = Workspace::new(&model);
     let mut recorder = record::Recorder::new(&model, &schedule);
     let mut recorded = state.step;
+    if let Err(trouble) = begin_chemistry(&model, &mut state, &mut ws) {
+        return Err(failed(trouble, writer, &state, None, result));
+    }
     if start == Start::Fresh {
         writer.append(&recorder.record(&model, &mut state, &ws, 0.0))?;
         save(&mut writer, &state)?;

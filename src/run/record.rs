@@ -1,7 +1,8 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
 use crate::experiment::Schedule;
-use crate::output::{CellLayout, CellRecord, Frame, Layout};
+use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
+use crate::sim::chemistry::Members;
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
 use crate::sim::{Model, State, Workspace, forces};
@@ -26,7 +27,50 @@ pub fn layout_of(model: &Model) -> Layout {
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
     layout.planes = model.planes.iter().map(plane).collect();
+    add_chemistry(model, &mut layout);
     layout
+}
+
+/// Grids of fields, and quantities of systems.
+fn add_chemistry(model: &Model, layout: &mut Layout) {
+    for field in &model.chemistry.fields {
+        let (grid, units) = (field.system.grid(), field.system.units());
+        let names = field.system.species().iter().map(|species| species.name.clone());
+        layout.fields.push(FieldLayout {
+            name: field.name.clone(),
+            species: names.zip(units.iter().cloned()).collect(),
+            cells: grid.cells,
+            spacing: grid.spacing,
+            origin: grid.origin.into(),
+        });
+    }
+    for reactor in &model.chemistry.reactors {
+        layout.systems.push(SystemLayout {
+            name: reactor.name.clone(),
+            scope: match &reactor.members {
+                Members::Scene => SystemScope::Scene,
+                Members::Cells(cells) => SystemScope::Cells(cells.clone()),
+            },
+            quantities: reactor.recorded.iter().map(|(_, id, unit)| (id.clone(), unit.clone())).collect(),
+        });
+    }
+}
+
+/// Values of fields and systems at this instant.
+fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
+    let now = &state.chemistry;
+    for (reactor, field) in model.chemistry.fields.iter().zip(&now.fields) {
+        let species = field.values.chunks_exact(reactor.system.grid().len());
+        frame.fields.push(species.map(<[f64]>::to_vec).collect());
+    }
+    for ((reactor, population), time) in model.chemistry.reactors.iter().zip(&now.populations).zip(&now.times) {
+        let values = reactor.recorded.iter().map(|(quantity, ..)| {
+            let mut values = vec![0.0; population.cells()];
+            population.observe(&reactor.program, *quantity, time / reactor.seconds, &mut values);
+            values
+        });
+        frame.systems.push(values.collect());
+    }
 }
 
 /// Series name, kind and load of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
@@ -89,5 +133,6 @@ pub fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame 
             smallest_facet: cell.smallest_facet,
         });
     }
+    record_chemistry(model, state, &mut frame);
     frame
 }

@@ -2,9 +2,11 @@
 
 use rayon::prelude::*;
 
+use super::chemistry::Controls;
 use super::model::{Kind, Model, VolumeRule};
 use super::state::State;
 use super::workspace::Workspace;
+use crate::mechanics::lanes::LANES;
 use crate::mechanics::volume;
 
 /// Sets `force` of every kind to the sum of all forces at time `time` (pN), drag not included, and `energy` to the
@@ -13,6 +15,7 @@ pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
     for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&mut ws.kinds) {
         let cells = kind.first_cell..kind.first_cell + kind.cells;
         let drive = &ws.drive[cells];
+        let controls = &state.chemistry.controls;
         let (length, lanes) = (kind.block_len(), kind.lanes);
         (w.force.par_chunks_exact_mut(length))
             .zip(now.positions.par_chunks_exact(length))
@@ -24,7 +27,8 @@ pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
                 f.fill(0.0);
                 energy.fill(0.0);
                 kind.elasticity.add_forces(lanes, x, f, energy);
-                add_loads(kind, time, f);
+                scale_elasticity(kind, controls, block, f, energy);
+                add_loads(kind, controls, block, time, f);
                 add_gravity(model, kind, f);
                 add_attraction(kind, x, f, energy);
                 add_drive(kind, drive, block, f);
@@ -44,14 +48,36 @@ pub fn elastic_energy(kind: &Kind, positions: &[f64]) -> Vec<f64> {
     energy
 }
 
-fn add_loads(kind: &Kind, time: f64, f: &mut [f64]) {
-    for load in &kind.loads {
+/// What chemistry makes of the elastic forces, the only ones in `f` so far.
+fn scale_elasticity(kind: &Kind, controls: &Controls, block: usize, f: &mut [f64], energy: &mut [f64]) {
+    if controls.stiffness.is_empty() {
+        return;
+    }
+    let mut factors = [1.0; LANES];
+    for (lane, factor) in factors.iter_mut().enumerate().take(kind.lanes) {
+        if let Some(cell) = kind.cell_at(block, lane) {
+            *factor = controls.stiffness_of(cell);
+        }
+    }
+    for row in f.chunks_exact_mut(kind.lanes).chain([energy]) {
+        row.iter_mut().zip(&factors).for_each(|(slot, factor)| *slot *= factor);
+    }
+}
+
+fn add_loads(kind: &Kind, controls: &Controls, block: usize, time: f64, f: &mut [f64]) {
+    for (number, load) in kind.loads.iter().enumerate() {
         let force = load.force.at(time);
+        let mut forces = [force; LANES];
+        if controls.loads.get(number).is_some() {
+            for (lane, force) in forces.iter_mut().enumerate().take(kind.lanes) {
+                *force *= kind.cell_at(block, lane).map_or(1.0, |cell| controls.load_of(number, cell));
+            }
+        }
         for &(atom, share) in &load.atoms {
             for axis in 0..3 {
-                let value = force * share * load.direction[axis];
+                let along = share * load.direction[axis];
                 let at = (3 * atom as usize + axis) * kind.lanes;
-                f[at..at + kind.lanes].iter_mut().for_each(|slot| *slot += value);
+                f[at..at + kind.lanes].iter_mut().zip(&forces).for_each(|(slot, force)| *slot += force * along);
             }
         }
     }
@@ -78,7 +104,7 @@ fn add_attraction(kind: &Kind, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
 }
 
 fn add_drive(kind: &Kind, drive: &[[f64; 3]], block: usize, f: &mut [f64]) {
-    if kind.brownian.is_none() {
+    if kind.brownian.is_none() && !kind.biased {
         return;
     }
     for (lane, velocity) in drive.iter().skip(block * kind.lanes).take(kind.lanes).enumerate() {
@@ -102,7 +128,7 @@ fn add_pressure(
 ) {
     let VolumeRule::Compressible { modulus, course } = &kind.volume else { return };
     let factor = course.at(time);
-    let mut volumes = [0.0; crate::mechanics::lanes::LANES];
+    let mut volumes = [0.0; LANES];
     let volumes = &mut volumes[..kind.lanes];
     volume::measure_block(&kind.rest.facets, x, &[], gradient, volumes);
     for lane in 0..kind.lanes {

@@ -1,5 +1,6 @@
 //! The simulator: model, state, workspace and the step. It knows no files, formats or clocks.
 
+pub mod chemistry;
 pub mod constraints;
 pub mod forces;
 pub mod implicit;
@@ -15,6 +16,7 @@ mod step;
 pub mod trouble;
 pub mod workspace;
 
+pub use chemistry::{Chemistry, begin_chemistry};
 pub use model::{Attraction, Kind, Load, Model, Plane, VolumeRule};
 pub use state::{Inertia, KindState, State};
 pub use step::{StepReport, step};

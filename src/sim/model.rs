@@ -1,5 +1,6 @@
 //! What an experiment means: kinds of cells, loads and planes in µm, s and pN. Nothing here changes during a run.
 
+use super::chemistry::Chemistry;
 use crate::Vec3;
 use crate::cell::motility::BrownianMotility;
 use crate::geometry::{self, Surface, Topology};
@@ -27,6 +28,8 @@ pub struct Model {
     pub planes: Vec<Plane>,
     /// Acceleration of gravity, µm/s².
     pub gravity: Vec3,
+    /// Systems of equations, fields, and what joins them to cells.
+    pub chemistry: Chemistry,
     /// Scheme and step.
     pub integrator: Integrator,
     /// End of the run, s.
@@ -75,6 +78,8 @@ pub struct Kind {
     pub drawn_links: Vec<[u32; 2]>,
     /// Brownian persistence.
     pub brownian: Option<BrownianMotility>,
+    /// Whether chemistry adds a velocity to the walk.
+    pub biased: bool,
     /// Central attraction.
     pub attraction: Option<Attraction>,
     /// Number of the first cell in the order of all cells.
@@ -144,6 +149,7 @@ impl Kind {
             loads: Vec::new(),
             drawn_links: Vec::new(),
             brownian: None,
+            biased: false,
             attraction: None,
             first_cell: 0,
             cells: 1,
@@ -222,6 +228,12 @@ impl Kind {
             }
         }
         largest
+    }
+
+    /// The cell in a lane of a block, in the order of all cells; none in lanes beyond the last.
+    pub fn cell_at(&self, block: usize, lane: usize) -> Option<usize> {
+        let local = block * self.lanes + lane;
+        (local < self.cells).then_some(self.first_cell + local)
     }
 
     /// Atoms of a cell.

@@ -36,7 +36,10 @@ pub struct CellMeasure {
 pub fn measure_cells(model: &Model, state: &State) -> Vec<CellMeasure> {
     let mut all = Vec::with_capacity(model.cells());
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-        let energy = elastic_energy(kind, &now.positions);
+        let mut energy = elastic_energy(kind, &now.positions);
+        for (cell, energy) in energy.iter_mut().enumerate() {
+            *energy *= state.chemistry.controls.stiffness_of(kind.first_cell + cell);
+        }
         let rest_areas = geometry::facet_areas(&kind.rest);
         let factor = match &kind.volume {
             VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.at(state.time),

@@ -29,6 +29,17 @@ pub fn refresh_stiffness(model: &Model, state: &mut State, ws: &mut Workspace) {
     }
 }
 
+/// Raises K to cover the stiffest cell of each kind where chemistry sets the stiffness, in powers of two so that few
+/// factorisations are made. A K that is too large costs some accuracy, one that is too small stability.
+pub fn cover_stiffening(model: &Model, state: &State, ws: &mut Workspace) {
+    let controls = &state.chemistry.controls;
+    for (kind, w) in model.kinds.iter().zip(&mut ws.kinds) {
+        let cells = kind.first_cell..kind.first_cell + kind.cells;
+        let largest = controls.stiffness.get(cells).map_or(1.0, |cells| cells.iter().copied().fold(1.0, f64::max));
+        w.stiffening = largest.log2().ceil().exp2();
+    }
+}
+
 /// Whether an edge of a single cell has another length than in the shape that K was made for (the rest shape, if none).
 fn has_changed(kind: &Kind, shape: &[f64], x: &[f64]) -> bool {
     let squared = |x: &[f64], i: u32, j: u32| {

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::chemistry::ChemistryState;
 use super::model::{Kind, Model};
 use crate::Vec3;
 use crate::cell::motility::Walk;
@@ -21,6 +22,8 @@ pub struct State {
     pub walks: Vec<Walk>,
     /// Motility runs that ended and are not recorded yet: (cell, end s, duration s).
     pub ended_runs: Vec<(u32, f64, f64)>,
+    /// Systems and fields; empty in a model without chemistry.
+    pub chemistry: ChemistryState,
 }
 
 /// The cells of a kind, in blocks of lanes.
@@ -89,7 +92,8 @@ pub enum Inertia {
 }
 
 impl State {
-    /// The start of a run with every cell at rest; `places[kind][cell][atom]`.
+    /// The start of a run with every cell at rest, `places[kind][cell][atom]`, and no fields; see
+    /// [`ChemistryState::new`] for a model that has some.
     pub fn new(model: &Model, places: &[Vec<Vec<Vec3>>]) -> Self {
         let inertia = if model.integrator.method.is_inertial() { Inertia::Inertial } else { Inertia::OverDamped };
         let kinds = model.kinds.iter().zip(places).map(|(kind, cells)| KindState::new(kind, cells, inertia)).collect();
@@ -99,6 +103,7 @@ impl State {
                 walks.extend((0..kind.cells).map(|cell| motility.start(model.seed, (kind.first_cell + cell) as u64)));
             }
         }
-        Self { time: 0.0, step: 0, next_step: 0.0, kinds, walks, ended_runs: Vec::new() }
+        let chemistry = ChemistryState::new(model, &[]);
+        Self { time: 0.0, step: 0, next_step: 0.0, kinds, walks, ended_runs: Vec::new(), chemistry }
     }
 }

@@ -1,12 +1,13 @@
 //! One step of the simulation, on one screen.
 
+use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::enforce_constraints;
 use super::forces::add_forces;
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
 use super::model::Model;
 use super::motility::advance_motility;
-use super::refresh::refresh_stiffness;
+use super::refresh::{cover_stiffening, refresh_stiffness};
 use super::state::State;
 use super::trouble::{Trouble, check_finite};
 use super::workspace::Workspace;
@@ -28,8 +29,10 @@ const TRIES: u32 = 60;
 
 /// Moves the state by one step. After an error the state is the one before the step.
 pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<StepReport, Trouble> {
+    begin_chemistry(model, state, ws)?;
     if let Method::Implicit { .. } = model.integrator.method {
         refresh_stiffness(model, state, ws);
+        cover_stiffening(model, state, ws);
     }
     remember(state, ws);
     let mut dt = plan_step(model, state);
@@ -46,7 +49,12 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
         let (accepted, next) = judge(model, dt_now, error);
         if accepted {
             // A step cut short by a kink says nothing against the step planned before it.
-            state.next_step = if dt_now < dt { dt.max(next) } else { next };
+            let next_step = if dt_now < dt { dt.max(next) } else { next };
+            if let Err(trouble) = advance_chemistry(model, dt_now, state, ws) {
+                restore(state, ws);
+                return Err(trouble);
+            }
+            state.next_step = next_step;
             advance_clock(model, dt_now, state, ws);
             return Ok(StepReport { dt: dt_now, refused, error });
         }
@@ -127,11 +135,12 @@ fn plan_step(model: &Model, state: &State) -> f64 {
     }
 }
 
-/// A step never runs over a bend of a course or the end of the run.
+/// A step never runs over a bend of a course, an exchange with chemistry or the end of the run.
 fn end_at_kinks(model: &Model, time: f64, dt: f64) -> f64 {
     // Room for the round-off of a clock that adds many steps.
     let slack = 1e-12 * model.until;
-    let ahead = model.kinks.iter().copied().chain([model.until]).filter(|&kink| kink > time + slack);
+    let kinks = model.kinks.iter().copied().chain([model.until, next_exchange(model, time)]);
+    let ahead = kinks.filter(|&kink| kink > time + slack);
     let left = ahead.fold(f64::INFINITY, f64::min) - time;
     if dt >= left - slack { left } else { dt }
 }
@@ -155,7 +164,9 @@ fn on_ladder(dt: f64) -> f64 {
 fn advance_clock(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
     state.time += dt;
     let slack = 1e-12 * model.until;
-    if let Some(&kink) = model.kinks.iter().chain([&model.until]).find(|&&kink| (kink - state.time).abs() <= slack) {
+    let exchange = next_exchange(model, state.time - 2.0 * slack);
+    let mut kinks = model.kinks.iter().copied().chain([model.until, exchange]);
+    if let Some(kink) = kinks.find(|kink| (kink - state.time).abs() <= slack) {
         state.time = kink;
     }
     state.step += 1;

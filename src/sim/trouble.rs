@@ -3,6 +3,7 @@
 use super::constraints::VolumeFailure;
 use super::model::Model;
 use super::state::{State, index};
+use crate::chemistry::ode::Reason;
 
 /// Why a step could not be made. The state is the one before the step.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +28,37 @@ pub enum Trouble {
         /// Relative error left.
         error: f64,
         /// End of the step, s.
+        time: f64,
+    },
+    /// A system of equations could not be advanced.
+    System {
+        /// Name of the system in the document.
+        system: String,
+        /// Type of the cell that has it and number of the cell within its type; none for the scene.
+        owner: Option<(String, usize)>,
+        /// Time of its last good state, s.
+        time: f64,
+        /// The variable that is worst, where one can be named.
+        variable: Option<String>,
+        /// What is wrong.
+        reason: Reason,
+    },
+    /// A field could not be advanced.
+    Field {
+        /// What is wrong, in which field, where and when.
+        message: String,
+    },
+    /// A link carried a number that its target cannot be.
+    Link {
+        /// The link in the document's words.
+        link: String,
+        /// Type of the cell and number of the cell within its type; none for a number of the scene.
+        owner: Option<(String, usize)>,
+        /// The number.
+        value: f64,
+        /// What it should have been.
+        expected: &'static str,
+        /// When, s.
         time: f64,
     },
     /// No step was small enough for the tolerance.
@@ -55,6 +87,16 @@ impl Trouble {
                 "the free atoms of the cell cannot hold its volume: fix fewer atoms, load it more slowly, shorten \
                  run.integrator.step if you set one, or use volume = { rule = \"compressible\", … }"
             }
+            Self::System { .. } => {
+                "check the signs and sizes of its rates with `pseudopod eml solve`, choose scheme = \"rosenbrock\" if it is \
+                 stiff, or give it tighter tolerances"
+            }
+            Self::Field { .. } => {
+                "check the signs and sizes of the reactions, or lower the tolerance of the fields and run.integrator.max_step"
+            }
+            Self::Link { .. } => {
+                "bound the number in the link's transfer, such as transfer=\"max(value, 0)\", or mend the equations behind it"
+            }
             Self::StepTooSmall { .. } => {
                 "the cell changes shape faster than any step can follow: look at its last state for folded or \
                  collapsed facets, lower the load, or raise run.integrator.tolerance"
@@ -76,10 +118,37 @@ impl std::fmt::Display for Trouble {
                 f,
                 "the volume of cell {cell} of type `{kind}` is {error:.1e} (relative) off its target at t = {time:.6} s"
             ),
+            Self::System { system, owner, time, variable, reason } => {
+                write!(f, "the system `{system}`")?;
+                if let Some((kind, cell)) = owner {
+                    write!(f, " of cell {cell} of type `{kind}`")?;
+                }
+                write!(f, " fails at t = {time:.6} s: {}", words_for(*reason))?;
+                variable.as_ref().map_or(Ok(()), |variable| write!(f, " (worst variable: `{variable}`)"))
+            }
+            Self::Field { message } => f.write_str(message),
+            Self::Link { link, owner, value, expected, time } => {
+                write!(f, "the link {link} carries {value}")?;
+                if let Some((kind, cell)) = owner {
+                    write!(f, " for cell {cell} of type `{kind}`")?;
+                }
+                write!(f, " at t = {time:.6} s; {expected} was expected")
+            }
             Self::StepTooSmall { time, dt } => {
                 write!(f, "at t = {time:.6} s no step was small enough: {dt:.1e} s still misses the tolerance")
             }
         }
+    }
+}
+
+/// What is wrong with a system, in words.
+fn words_for(reason: Reason) -> &'static str {
+    match reason {
+        Reason::NotFinite => "a value is no longer a finite number",
+        Reason::StepUnderflow => "no step is short enough for its tolerance",
+        Reason::TooManySteps => "it takes too many steps",
+        Reason::EndlessEvents => "events follow each other without end",
+        Reason::Solver => "the solver gave up",
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::chemistry::ChemistryScratch;
 use super::model::{Kind, Model};
 use super::planes::TouchScratch;
 use super::projection::ProjectScratch;
@@ -20,6 +21,8 @@ pub struct Workspace {
     pub ended_runs: Vec<(u32, f64, f64)>,
     /// Mean velocity that motility asks of every cell over the step, µm/s.
     pub drive: Vec<[f64; 3]>,
+    /// Scratch of chemistry.
+    pub chemistry: ChemistryScratch,
 }
 
 /// Scratch of a kind; arrays have the shape of the positions unless said otherwise.
@@ -57,10 +60,12 @@ pub struct KindScratch {
     pub project: Vec<ProjectScratch>,
     /// The shape that `stiffness` was made for, as in the state.
     pub stiffness_shape: Vec<f64>,
+    /// Factor of K that covers what chemistry makes of the stiffness of the cells.
+    pub stiffening: f64,
     /// The stiffness K of the implicit step where it is not that of the rest shape.
     stiffness: Option<StiffnessMatrix>,
     /// Factors of the steps used last, most recent first.
-    factors: Vec<(u64, Arc<Solver>)>,
+    factors: Vec<((u64, u64), Arc<Solver>)>,
 }
 
 /// Factors kept: the ladder of steps is coarse, so few are in use at a time.
@@ -128,6 +133,7 @@ impl KindScratch {
             touch: vec![TouchScratch::default(); kind.blocks()],
             project: vec![ProjectScratch::default(); kind.blocks()],
             stiffness_shape: Vec::new(),
+            stiffening: 1.0,
             stiffness: None,
             factors: Vec::new(),
         }
@@ -135,7 +141,8 @@ impl KindScratch {
 
     /// The solver for a step, factored when it is new.
     pub fn solver(&mut self, kind: &Kind, dt: f64, gamma: f64) -> Arc<Solver> {
-        let key = dt.to_bits();
+        let gamma = gamma * self.stiffening;
+        let key = (dt.to_bits(), gamma.to_bits());
         if let Some(at) = self.factors.iter().position(|(known, _)| *known == key) {
             self.factors[..=at].rotate_right(1);
         } else {
@@ -157,6 +164,7 @@ impl KindScratch {
     /// Writes NaN over all scratch numbers: a step must not notice.
     pub fn poison(&mut self) {
         self.set_stiffness(None, &[]);
+        self.stiffening = f64::NAN;
         for array in [
             &mut self.start,
             &mut self.start_velocity,
@@ -188,11 +196,13 @@ impl Workspace {
             walks: Vec::new(),
             ended_runs: Vec::new(),
             drive: vec![[0.0; 3]; model.cells()],
+            chemistry: ChemistryScratch::new(model),
         }
     }
 
     /// Writes NaN over all scratch numbers: a step must not notice.
-    pub fn poison(&mut self) {
+    pub fn poison(&mut self, model: &Model) {
+        self.chemistry.poison(model);
         self.kinds.iter_mut().for_each(KindScratch::poison);
         self.drive.fill([f64::NAN; 3]);
         self.walks.clear();

@@ -10,13 +10,15 @@ use super::xml::{Element, Text};
 use crate::chemistry::expression::{
     Measure, Scope, Trouble, UnitScope, any_of, is_identifier, is_reserved, meant, parse,
 };
-use crate::chemistry::tree::Expr;
+use crate::chemistry::tree::{Expr, QuantityId, System};
 use std::collections::BTreeMap;
 
 /// The word for the value in a transfer.
 const VALUE: &str = "value";
 /// What an end may begin with.
 const ROOTS: [&str; 5] = ["system", "scene", "cell", "type", "field"];
+/// The most identifiers among which the one that was meant is looked for.
+const MOST_KNOWN: usize = 5000;
 /// How an end is written, for advice.
 const EXAMPLE: &str =
     "write an end such as system.U, cell.volume, cell.atom[4].y, type[neutrophil].stiffness or field[cAMP]";
@@ -105,60 +107,92 @@ impl Builder<'_, '_> {
     }
 
     fn endpoint(&mut self, text: &Text) -> Option<Endpoint> {
-        let steps = match steps(&text.text) {
-            Ok(steps) => steps,
+        match end_of(&text.text, self.known.ids(), |id| self.find(id)) {
+            Ok((root, path)) => {
+                let place = self.desk.place(text.whole(), "this end");
+                Some(Endpoint { root, path, text: text.text.trim().to_owned(), place })
+            }
             Err(trouble) => {
                 tell(self.desk, text, &trouble);
-                return None;
+                None
             }
-        };
-        let root = self.root(text, &steps)?;
-        let skipped = if matches!(root, Root::System(_)) { 2 } else { 1 };
-        let path = steps.into_iter().skip(skipped).collect();
-        let place = self.desk.place(text.whole(), "this end");
-        Some(Endpoint { root, path, text: text.text.trim().to_owned(), place })
+        }
     }
+}
 
-    fn root(&mut self, text: &Text, steps: &[Step]) -> Option<Root> {
-        let first = &steps[0];
-        let (message, help) = match (first.name.as_str(), &first.index, steps.len()) {
-            ("system", None, 2) if steps[1].index.is_none() => {
-                let id = &steps[1].name;
-                match self.find(id) {
-                    Some(number) => return Some(Root::System(number)),
-                    None => {
-                        let help = match self.desk.meant(id, self.known.ids()) {
-                            Some(near) => format!("did you mean system.{near}?"),
-                            None => "declare it in this document".to_owned(),
-                        };
-                        (format!("the system has no `{id}`"), help)
-                    }
+/// Reads an end of a link that stands outside of the document, such as `cell.volume` or `system.U`.
+///
+/// # Errors
+/// What is wrong with it and where in the text.
+pub fn read_end(text: &str, system: &System) -> Result<(Root, Vec<Step>), Trouble> {
+    end_of(text, system.quantities.iter().map(|quantity| quantity.id.as_str()), |id| system.find(id))
+}
+
+/// Reads a transfer that stands outside of the document: an expression of `value` and the system's quantities.
+///
+/// # Errors
+/// All that is wrong with it and where in the text.
+pub fn read_transfer(text: &str, system: &System) -> Result<Expr, Vec<Trouble>> {
+    let number = |(number, quantity): (usize, &crate::chemistry::tree::Quantity)| (quantity.id.clone(), number as u32);
+    let scope = Scope { quantities: system.quantities.iter().enumerate().map(number).collect(), ..Scope::default() };
+    let names = BTreeMap::from([(VALUE.to_owned(), Expr::Quantity(LinkDescription::VALUE))]);
+    let (node, mut troubles) = parse(text);
+    match scope.resolve_with(&node, &names) {
+        Ok(transfer) if troubles.is_empty() => Ok(transfer),
+        Ok(_) => Err(troubles),
+        Err(more) => {
+            troubles.extend(more);
+            Err(troubles)
+        }
+    }
+}
+
+/// What an end belongs to and the way from there; `ids` are the system's, `find` looks one up.
+fn end_of<'a>(
+    text: &str,
+    ids: impl Iterator<Item = &'a str>,
+    find: impl Fn(&str) -> Option<QuantityId>,
+) -> Result<(Root, Vec<Step>), Trouble> {
+    let steps = steps(text)?;
+    let first = &steps[0];
+    let rest = |root, skipped: usize| Ok((root, steps[skipped..].to_vec()));
+    let (message, help) = match (first.name.as_str(), &first.index, steps.len()) {
+        ("system", None, 2) if steps[1].index.is_none() => {
+            let id = &steps[1].name;
+            match find(id) {
+                Some(number) => return rest(Root::System(number), 2),
+                None => {
+                    let help = match meant(id, ids.take(MOST_KNOWN)) {
+                        Some(near) => format!("did you mean system.{near}?"),
+                        None => "declare it in this document".to_owned(),
+                    };
+                    (format!("the system has no `{id}`"), help)
                 }
             }
-            ("system", ..) => ("the system's end is not system.ID".to_owned(), EXAMPLE.to_owned()),
-            ("scene", None, 2..) => return Some(Root::Scene),
-            ("cell", index, 2..) => return Some(Root::Cell(index.clone())),
-            ("type", Some(index), 2..) => return Some(Root::Type(index.clone())),
-            ("field", Some(index), _) => return Some(Root::Field(index.clone())),
-            ("type" | "field", None, _) => {
-                (format!("`{}` needs a name in brackets", first.name), format!("write {}[NAME]", first.name))
-            }
-            ("scene", Some(_), _) => ("there is one scene".to_owned(), "write `scene` without brackets".to_owned()),
-            ("scene" | "cell" | "type", ..) => {
-                (format!("`{}` alone has no number to link", text.text.trim()), EXAMPLE.to_owned())
-            }
-            (other, ..) => {
-                let help = match meant(other, ROOTS) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None if self.find(other).is_some() => format!("write system.{other}"),
-                    None => format!("it begins with {}", any_of(ROOTS)),
-                };
-                (format!("an end of a link cannot begin with `{other}`"), help)
-            }
-        };
-        self.desk.fault(text.whole(), &message, "this end", &help);
-        None
-    }
+        }
+        ("system", ..) => ("the system's end is not system.ID".to_owned(), EXAMPLE.to_owned()),
+        ("scene", None, 2..) => return rest(Root::Scene, 1),
+        ("cell", index, 2..) => return rest(Root::Cell(index.clone()), 1),
+        ("type", Some(index), 2..) => return rest(Root::Type(index.clone()), 1),
+        ("field", Some(index), _) => return rest(Root::Field(index.clone()), 1),
+        ("type" | "field", None, _) => {
+            (format!("`{}` needs a name in brackets", first.name), format!("write {}[NAME]", first.name))
+        }
+        ("scene", Some(_), _) => ("there is one scene".to_owned(), "write `scene` without brackets".to_owned()),
+        ("scene" | "cell" | "type", ..) => {
+            (format!("`{}` alone has no number to link", text.trim()), EXAMPLE.to_owned())
+        }
+        (other, ..) => {
+            let help = match meant(other, ROOTS) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None if find(other).is_some() => format!("write system.{other}"),
+                None => format!("it begins with {}", any_of(ROOTS)),
+            };
+            (format!("an end of a link cannot begin with `{other}`"), help)
+        }
+    };
+    let start = text.len() - text.trim_start().len();
+    Err(Trouble::new(message, start..start + text.trim().len()).label("this end").help(help))
 }
 
 /// Takes a path apart: words with or without an index, between points.

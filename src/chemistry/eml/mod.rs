@@ -24,6 +24,7 @@ pub use document::{
     SolverChoice, Step, Wall,
 };
 pub use guard::{DEEPEST_ELEMENT, LARGEST_DOCUMENT, MOST_NODES};
+pub use links::{read_end, read_transfer};
 pub use solver::SCHEMES;
 pub use vocabulary::{ELEMENTS, Kind};
 

@@ -27,7 +27,7 @@ pub fn profiles(
         quantity.role = if given.is_some() { Role::Input } else { Role::Defined { rule } };
     }
     let wanted: Vec<Expr> = starts.iter().map(|(number, _)| Expr::Quantity(*number)).collect();
-    let program = Program::with(&system, &[], &[wanted])?;
+    let program = Program::with(&system, 0.0, &[], &[wanted])?;
     let (place, code) = (positions(&program), &program.further[0]);
     let register = |number: QuantityId| program.open_place(number).map(|at| program.first_open() + at);
     let given: Vec<(usize, &Vec<f64>)> =

@@ -116,6 +116,15 @@ impl Fields {
         self.time
     }
 
+    /// Exchanges the values of all species, `[species][box]`, with others of as many numbers: nothing is copied.
+    ///
+    /// # Panics
+    /// When there are not as many numbers.
+    pub fn exchange_values(&mut self, values: &mut Vec<f64>) {
+        assert_eq!(values.len(), self.values.len(), "one number for each species and box");
+        std::mem::swap(values, &mut self.values);
+    }
+
     /// Says what time it is, s.
     pub fn set_time(&mut self, time: f64) {
         self.time = time;

@@ -149,6 +149,14 @@ impl FieldSystem {
         self.system.find(id)
     }
 
+    /// Fields without any substance in them, for the values of others.
+    ///
+    /// # Panics
+    /// Never: grid and species have been checked.
+    pub fn empty(&self) -> Fields {
+        Fields::new(self.grid.clone(), self.species.clone()).expect("grid and species were checked")
+    }
+
     /// The fields at time 0, as their profiles have them.
     ///
     /// # Errors

@@ -31,7 +31,49 @@ pub struct Population {
     rooms: Vec<Mutex<Option<Box<Scratch<LANES>>>>>,
 }
 
+impl Clone for Population {
+    /// The same cells; scratch is not copied.
+    fn clone(&self) -> Self {
+        Self {
+            method: self.method,
+            cells: self.cells,
+            variables: self.variables,
+            open: self.open,
+            states: self.states.clone(),
+            given: self.given.clone(),
+            steps: self.steps.clone(),
+            errors: self.errors.clone(),
+            rooms: Vec::new(),
+        }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        (self.method, self.cells, self.variables, self.open) = (other.method, other.cells, other.variables, other.open);
+        self.states.clone_from(&other.states);
+        self.given.clone_from(&other.given);
+        self.steps.clone_from(&other.steps);
+        self.errors.clone_from(&other.errors);
+    }
+}
+
+impl PartialEq for Population {
+    /// Whether all cells are the same and will go on the same; scratch does not count.
+    fn eq(&self, other: &Self) -> bool {
+        self.has_shape_of(other)
+            && self.method == other.method
+            && self.states == other.states
+            && self.given == other.given
+            && self.steps == other.steps
+            && self.errors == other.errors
+    }
+}
+
 impl Population {
+    /// Whether another population has as many cells, variables and open quantities.
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        (self.cells, self.variables, self.open) == (other.cells, other.variables, other.open)
+    }
+
     /// Cells at the system's initial values.
     pub fn new(program: &Program, cells: usize, method: Method) -> Self {
         let blocks = cells.div_ceil(LANES);

@@ -1,5 +1,6 @@
 //! From what the user wrote to what it means: a [`Model`] in µm, s and pN, and the [`State`] it starts from.
 
+mod chemistry;
 mod elasticity;
 mod mesh;
 mod place;
@@ -12,6 +13,7 @@ use crate::cell::motility::{BrownianMotility, Space as WalkSpace};
 use crate::error::{Error, Fault, Result};
 use crate::geometry::{self, Surface};
 use crate::mechanics::course::Course;
+use crate::sim::chemistry::ChemistryState;
 use crate::sim::{Attraction, Kind, Load, Model, Plane, State, VolumeRule};
 
 /// When the run records.
@@ -52,12 +54,15 @@ pub fn compile(document: &Document) -> Result<Compiled> {
         if faults.len() > before {
             continue;
         }
-        let mut kind = kind.with_cells(first_cell, cell.count());
-        kind.bound_stiffness();
+        let kind = kind.with_cells(first_cell, cell.count());
         first_cell += cell.count();
         places.push(place::place(experiment, cell, &kind));
         kinds.push(kind);
     }
+    // Atoms that do not exist have been told; links look at kinds and must see them all.
+    let (chemistry, fields) =
+        if faults.is_empty() { chemistry::chemistry(document, &mut kinds, &mut faults) } else { Default::default() };
+    kinds.iter_mut().for_each(Kind::bound_stiffness);
     if !faults.is_empty() {
         return Err(Error::Input(faults));
     }
@@ -66,12 +71,14 @@ pub fn compile(document: &Document) -> Result<Compiled> {
         kinks: kinks(&kinds),
         integrator: steps::integrator(document, &mut kinds)?,
         kinds,
+        chemistry,
         planes: planes(experiment),
         gravity: vector(experiment.environment.gravity.map_or([0.0; 3], |g| g.map(|a| a.value()))),
         until: experiment.run.until.value(),
     };
     let schedule = steps::schedule(document, &model)?;
-    let state = State::new(&model, &places);
+    let mut state = State::new(&model, &places);
+    state.chemistry = ChemistryState::new(&model, &fields);
     Ok(Compiled { model, state, schedule })
 }
 

@@ -1,0 +1,177 @@
+//! What of a cell chemistry can read and what it can set: the words behind `cell.` in a link.
+//!
+//! A link's end such as `cell.atom[4].y` is grammar to EML; here its words get their meaning. Words that exist are in
+//! [`READABLE`] and [`SETTABLE`], in the order in which messages list them.
+
+use crate::chemistry::eml::{Index, Step};
+
+/// A number that can be read from a cell at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reading {
+    /// A component of the centre, µm.
+    Position(usize),
+    /// A component of an atom's position, µm.
+    Atom(usize, usize),
+    /// A component of the mean velocity of the atoms over the last step, µm/s.
+    Velocity(usize),
+    /// Size of that velocity, µm/s.
+    Speed,
+    /// Enclosed volume, µm³.
+    Volume,
+    /// (V − V₀)/V₀, V₀ the volume of the mesh at rest.
+    VolumeStrain,
+    /// Area of the surface, µm².
+    Area,
+    /// (A − A₀)/A₀, A₀ the area of the mesh at rest.
+    AreaStrain,
+    /// Extent of the bounding box along an axis, µm.
+    Size(usize),
+    /// Part of the atoms that touch a plane.
+    ContactShare,
+}
+
+/// A number of a cell that chemistry can set.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Setting {
+    /// Speed of the Brownian walk, µm/s.
+    MotilitySpeed,
+    /// A component of a velocity added to the walk, µm/s.
+    Bias(usize),
+    /// Factor of all elastic forces; 1 without a link.
+    Stiffness,
+    /// Rest volume, µm³.
+    RestVolume,
+    /// Rest volume over that of the mesh at rest.
+    RestVolumeRatio,
+    /// Factor of a load; 1 without a link.
+    Load(String),
+    /// A component of an atom's position, µm, imposed.
+    Atom(usize, usize),
+    /// Amount of a field's substance that the cell releases in a second; negative: takes up.
+    Secretion(String),
+}
+
+/// What is sensed of a field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sense {
+    /// The value, in the field's unit.
+    Value,
+    /// A component of the gradient, per µm.
+    Gradient(usize),
+    /// The size of the gradient, per µm.
+    Steepness,
+}
+
+/// What can be read, as messages list it.
+pub const READABLE: [&str; 14] = [
+    "position.x",
+    "atom[0].x",
+    "velocity.x",
+    "speed",
+    "volume",
+    "volume_strain",
+    "area",
+    "area_strain",
+    "size.x",
+    "contact_share",
+    "field[NAME]",
+    "field[NAME].gradient.x",
+    "field[NAME].steepness",
+    "chemistry[NAME].ID",
+];
+
+/// What can be set, as messages list it.
+pub const SETTABLE: [&str; 8] = [
+    "motility.speed",
+    "motility.bias.x",
+    "stiffness",
+    "rest_volume",
+    "rest_volume_ratio",
+    "load[NAME]",
+    "atom[0].x",
+    "secretion[FIELD]",
+];
+
+/// The meaning of the words behind `cell.`, if they can be read from the cell alone.
+pub fn reading(path: &[Step]) -> Option<Reading> {
+    Some(match words(path)[..] {
+        [("position", None), (axis, None)] => Reading::Position(component(axis)?),
+        [("atom", Some(Index::Number(atom))), (axis, None)] => Reading::Atom(*atom, component(axis)?),
+        [("velocity", None), (axis, None)] => Reading::Velocity(component(axis)?),
+        [("speed", None)] => Reading::Speed,
+        [("volume", None)] => Reading::Volume,
+        [("volume_strain", None)] => Reading::VolumeStrain,
+        [("area", None)] => Reading::Area,
+        [("area_strain", None)] => Reading::AreaStrain,
+        [("size", None), (axis, None)] => Reading::Size(component(axis)?),
+        [("contact_share", None)] => Reading::ContactShare,
+        _ => return None,
+    })
+}
+
+/// The meaning of the words behind `cell.`, if they can be set.
+pub fn setting(path: &[Step]) -> Option<Setting> {
+    Some(match words(path)[..] {
+        [("motility", None), ("speed", None)] => Setting::MotilitySpeed,
+        [("motility", None), ("bias", None), (axis, None)] => Setting::Bias(component(axis)?),
+        [("stiffness", None)] => Setting::Stiffness,
+        [("rest_volume", None)] => Setting::RestVolume,
+        [("rest_volume_ratio", None)] => Setting::RestVolumeRatio,
+        [("load", Some(Index::Name(name)))] => Setting::Load(name.clone()),
+        [("atom", Some(Index::Number(atom))), (axis, None)] => Setting::Atom(*atom, component(axis)?),
+        [("secretion", Some(Index::Name(name)))] => Setting::Secretion(name.clone()),
+        _ => return None,
+    })
+}
+
+/// The meaning of the words behind `field[NAME]`, where a cell or an atom senses it.
+pub fn sense(path: &[Step]) -> Option<Sense> {
+    Some(match words(path)[..] {
+        [] | [("value", None)] => Sense::Value,
+        [("gradient", None), (axis, None)] => Sense::Gradient(component(axis)?),
+        [("steepness", None)] => Sense::Steepness,
+        _ => return None,
+    })
+}
+
+/// The axis of x, y or z.
+pub fn component(name: &str) -> Option<usize> {
+    ["x", "y", "z"].iter().position(|axis| *axis == name)
+}
+
+fn words(path: &[Step]) -> Vec<(&str, Option<&Index>)> {
+    path.iter().map(|step| (step.name.as_str(), step.index.as_ref())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(text: &str) -> Vec<Step> {
+        let one = |word: &str| {
+            let (name, index) = match word.split_once('[') {
+                Some((name, rest)) => (name, Some(rest.trim_end_matches(']'))),
+                None => (word, None),
+            };
+            let index = index.map(|index| match index.parse() {
+                Ok(number) => Index::Number(number),
+                Err(_) => Index::Name(index.to_owned()),
+            });
+            Step { name: name.to_owned(), index }
+        };
+        text.split('.').map(one).collect()
+    }
+
+    #[test]
+    fn every_word_that_is_listed_is_known() {
+        for text in SETTABLE {
+            assert!(setting(&path(text)).is_some(), "{text} can be set");
+        }
+        for text in READABLE.into_iter().filter(|text| !text.starts_with("field") && !text.starts_with("chemistry")) {
+            assert!(reading(&path(text)).is_some(), "{text} can be read");
+        }
+        assert_eq!(sense(&path("gradient.y")), Some(Sense::Gradient(1)));
+        assert_eq!(reading(&path("volume.x")), None);
+        assert_eq!(setting(&path("atom[2].w")), None);
+    }
+}

@@ -1,0 +1,41 @@
+//! One way in for documents of equations: EML, and SBML models wherever an EML document can stand.
+
+use super::{eml, sbml};
+use crate::error::{Place, Result, Source};
+use std::sync::Arc;
+
+/// A document of equations as it was read.
+#[derive(Debug, Clone)]
+pub struct Read {
+    /// What it says; an SBML model is a document of a scene, in seconds, without links.
+    pub document: eml::Document,
+    /// What was ignored, one sentence each.
+    pub notices: Vec<String>,
+    /// The SBML model that it came from, if it did.
+    pub sbml: Option<sbml::Model>,
+}
+
+/// Reads an EML document or an SBML model.
+///
+/// # Errors
+/// As [`eml::read`] and [`sbml::read`].
+pub fn read(source: Arc<Source>) -> Result<Read> {
+    if !sbml::is_sbml(&source.text) {
+        return Ok(Read { document: eml::read(source)?, notices: Vec::new(), sbml: None });
+    }
+    let model = sbml::read(&source)?;
+    let whole = Place { source, start: 0, length: 0, label: String::new() };
+    let document = eml::Document {
+        name: model.system.name.clone(),
+        level: eml::Level::Scene,
+        time_unit: "s".into(),
+        seconds: 1.0,
+        places: vec![whole; model.system.quantities.len()],
+        system: model.system.clone(),
+        grid: None,
+        fields: Vec::new(),
+        links: Vec::new(),
+        solver: eml::SolverChoice::default(),
+    };
+    Ok(Read { document, notices: model.notices.clone(), sbml: Some(model) })
+}

@@ -1,0 +1,347 @@
+//! The meaning of a link's ends in this experiment: which cells, which atom, which field.
+
+use super::super::super::words;
+use super::{Part, within};
+use crate::cell::ends::{self, Reading, Sense, Setting};
+use crate::chemistry::eml::{Endpoint, Index, Root, Step};
+use crate::error::Fault;
+use crate::sim::Kind;
+use crate::sim::chemistry::{Chemistry, Control, Source, Target, Whole, Whose};
+
+/// Which end of a link is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    /// Where the number comes from.
+    From,
+    /// Where it goes.
+    To,
+}
+
+/// What ends are looked up in: all documents, the one whose link it is, and the model so far.
+pub(super) struct Ends<'a, 'b> {
+    pub(super) parts: &'a [Part<'a>],
+    pub(super) part: &'a Part<'a>,
+    pub(super) kinds: &'b [Kind],
+    pub(super) chemistry: &'b mut Chemistry,
+}
+
+impl Ends<'_, '_> {
+    /// The meaning of an end that is read.
+    pub(super) fn read(&mut self, end: &Endpoint, side: Side) -> Result<Source, Fault> {
+        match &end.root {
+            Root::Scene => self.read_scene(end),
+            Root::Field(index) => self.read_field(end, index),
+            _ => {
+                let whose = self.whose(end, side)?;
+                self.read_cell(end, whose)
+            }
+        }
+    }
+
+    fn read_scene(&self, end: &Endpoint) -> Result<Source, Fault> {
+        match parts_of(&end.path)[..] {
+            [("time", None)] => Ok(Source::Time),
+            [("chemistry", Some(Index::Name(name))), (id, None)] => self.other(end, name, id, None),
+            _ => {
+                let message = format!("the scene has no number `{}`", end.text);
+                Err(within(&end.place, "not known", message, "it has scene.time and scene.chemistry[NAME].ID"))
+            }
+        }
+    }
+
+    /// A number of a whole field, or the field as the cell that has the system senses it.
+    fn read_field(&mut self, end: &Endpoint, index: &Index) -> Result<Source, Fault> {
+        let (field, species) = self.species(end, index)?;
+        if let [(word, None)] = parts_of(&end.path)[..] {
+            let whole = [
+                ("mean", Whole::Mean),
+                ("largest", Whole::Largest),
+                ("smallest", Whole::Smallest),
+                ("amount", Whole::Amount),
+            ];
+            if let Some((_, what)) = whole.iter().find(|(name, _)| *name == word) {
+                return Ok(Source::Whole(field, species, *what));
+            }
+        }
+        let Some(sense) = ends::sense(&end.path) else { return Err(unknown_of_field(end)) };
+        let whose = self.whose(end, Side::From)?;
+        Ok(self.sensed(whose, field, species, sense))
+    }
+
+    fn sensed(&mut self, whose: Whose, field: usize, species: usize, sense: Sense) -> Source {
+        let sensed = &mut self.chemistry.sensed;
+        let known = sensed.iter().position(|channel| *channel == (field, species));
+        let channel = known.unwrap_or_else(|| {
+            sensed.push((field, species));
+            sensed.len() - 1
+        });
+        Source::Sensed(whose, channel, sense)
+    }
+
+    fn read_cell(&mut self, end: &Endpoint, whose: Whose) -> Result<Source, Fault> {
+        match parts_of(&end.path)[..] {
+            [("field", Some(index)), ..] => {
+                let (field, species) = self.species(end, index)?;
+                let sense = ends::sense(&end.path[1..]).ok_or_else(|| unknown_of_field(end))?;
+                return Ok(self.sensed(whose, field, species, sense));
+            }
+            [("atom", Some(Index::Number(atom))), ("field", Some(index)), ..] => {
+                let (atom, index) = (*atom, index.clone());
+                self.check_atom(end, whose, atom)?;
+                let (field, species) = self.species(end, &index)?;
+                let sense = ends::sense(&end.path[2..]).ok_or_else(|| unknown_of_field(end))?;
+                return Ok(Source::AtAtom(whose, atom, field, species, sense));
+            }
+            [("chemistry", Some(Index::Name(name))), (id, None)] => return self.other(end, name, id, Some(whose)),
+            _ => {}
+        }
+        let Some(reading) = ends::reading(&end.path) else {
+            let message = format!("a cell has nothing to read that is called `{}`", end.text);
+            let help = format!("it has {}", words::all_of(ends::READABLE));
+            return Err(within(&end.place, &meant(end, ends::READABLE), message, help));
+        };
+        if let Reading::Atom(atom, _) = reading {
+            self.check_atom(end, whose, atom)?;
+        }
+        let open = self.kinds_of(whose).into_iter().find(|kind| !self.kinds[*kind].closed);
+        if let (Some(kind), Reading::Volume | Reading::VolumeStrain) = (open, reading) {
+            let message = format!("cells of type `{}` enclose no volume", self.kinds[kind].name);
+            return Err(within(&end.place, "no volume", message, "read the area, or give the type a closed mesh"));
+        }
+        Ok(Source::Cell(whose, reading))
+    }
+
+    /// The meaning of an end that is set.
+    pub(super) fn set(&mut self, end: &Endpoint) -> Result<Target, Fault> {
+        if matches!(end.root, Root::Scene | Root::Field(_)) {
+            let message = format!("{} cannot be set", end.text);
+            let help = "set an <input> of the field's document from there, or what belongs to a cell or a type";
+            return Err(within(&end.place, "cannot be set", message, help));
+        }
+        let whose = self.whose(end, Side::To)?;
+        let Some(setting) = ends::setting(&end.path) else {
+            let message = format!("`{}` is nothing that can be set", end.text);
+            let help = format!("of a cell can be set {}", words::all_of(ends::SETTABLE));
+            return Err(within(&end.place, &meant(end, ends::SETTABLE), message, help));
+        };
+        self.check_setting(end, whose, &setting)?;
+        let control = match setting {
+            Setting::MotilitySpeed => Control::MotilitySpeed,
+            Setting::Bias(axis) => Control::Bias(axis),
+            Setting::Stiffness => Control::Stiffness,
+            Setting::RestVolume => Control::RestVolume,
+            Setting::RestVolumeRatio => Control::RestVolumeRatio,
+            Setting::Atom(atom, axis) => Control::Atom(atom, axis),
+            Setting::Load(name) => Control::Load(self.load(end, whose, &name)?),
+            Setting::Secretion(name) => {
+                let channel = self.species(end, &Index::Name(name))?;
+                let secreted = &mut self.chemistry.secreted;
+                let known = secreted.iter().position(|one| *one == channel);
+                Control::Secretion(known.unwrap_or_else(|| {
+                    secreted.push(channel);
+                    secreted.len() - 1
+                }))
+            }
+        };
+        Ok(Target::Cell(whose, control))
+    }
+
+    /// Whether all cells concerned have what is set.
+    fn check_setting(&self, end: &Endpoint, whose: Whose, setting: &Setting) -> Result<(), Fault> {
+        for number in self.kinds_of(whose) {
+            let kind = &self.kinds[number];
+            let free = kind.volume == crate::sim::VolumeRule::Free;
+            let (lacking, help) = match setting {
+                Setting::MotilitySpeed if kind.brownian.is_none() => {
+                    ("has no Brownian motility", "add `motility = { brownian = … }`, or set motility.bias")
+                }
+                Setting::RestVolume | Setting::RestVolumeRatio if free => {
+                    ("has no volume that is kept", "give it a closed mesh and the volume rule exact or compressible")
+                }
+                Setting::Atom(..) if matches!(whose, Whose::Cell(_)) && kind.cells > 1 => {
+                    ("has other cells whose atom would be held with it", "make the cell a type of its own")
+                }
+                _ => continue,
+            };
+            let message = format!("{} cannot be set: type `{}` {lacking}", end.text, kind.name);
+            return Err(within(&end.place, "cannot be set", message, help));
+        }
+        if let Setting::Atom(atom, _) = setting {
+            self.check_atom(end, whose, *atom)?;
+        }
+        Ok(())
+    }
+
+    /// The number of a load, the same in all kinds concerned.
+    fn load(&self, end: &Endpoint, whose: Whose, name: &str) -> Result<usize, Fault> {
+        let mut found = None;
+        for kind in self.kinds_of(whose) {
+            let kind = &self.kinds[kind];
+            let Some(number) = kind.loads.iter().position(|load| load.name == name) else {
+                let message = format!("type `{}` has no load `{name}`", kind.name);
+                let known = kind.loads.iter().map(|load| load.name.as_str());
+                let help = format!("its loads are {}", words::all_of(known));
+                return Err(within(&end.place, "no such load", message, help));
+            };
+            if found.is_some_and(|other| other != number) {
+                let message = format!("load `{name}` stands at another place in type `{}`", kind.name);
+                let help = "list the loads of the types that share the system in the same order";
+                return Err(within(&end.place, "not the same", message, help));
+            }
+            found = Some(number);
+        }
+        Ok(found.unwrap_or(0))
+    }
+
+    /// A quantity of another system.
+    fn other(&self, end: &Endpoint, name: &str, id: &str, whose: Option<Whose>) -> Result<Source, Fault> {
+        let systems = || self.parts.iter().filter(|part| !part.is_field());
+        let Some(part) = systems().find(|part| part.name == name) else {
+            let message = format!("there is no system `{name}`");
+            let help = format!("systems here are {}", words::all_of(systems().map(|part| part.name)));
+            return Err(within(&end.place, "not known", message, help));
+        };
+        let Some(quantity) = part.document.system.find(id) else {
+            let ids = part.document.system.quantities.iter().map(|q| q.id.as_str());
+            let label = words::meant(id, ids).map_or("not known".to_owned(), |near| format!("did you mean `{near}`?"));
+            let message = format!("the system `{name}` has no quantity `{id}`");
+            return Err(within(&end.place, &label, message, "name a quantity that its document declares"));
+        };
+        let has = |kind: &usize| part.kinds.contains(kind);
+        match whose {
+            None if !part.kinds.is_empty() => {
+                let message = format!("`{name}` is a system of cells, so that the scene has no single one");
+                Err(within(&end.place, "of cells", message, format!("write cell.chemistry[{name}].{id}")))
+            }
+            Some(whose) if !self.kinds_of(whose).iter().all(has) => {
+                let message = format!("not all cells of {} have the system `{name}`", end.text);
+                let help = format!("add \"{name}\" to the `chemistry` of their type, or write scene.chemistry[{name}]");
+                Err(within(&end.place, "no such system there", message, help))
+            }
+            _ => Ok(Source::Other(part.number, quantity, whose.unwrap_or(Whose::Own))),
+        }
+    }
+
+    /// The cells that an end names.
+    fn whose(&self, end: &Endpoint, side: Side) -> Result<Whose, Fault> {
+        let shared = self.part.kinds.is_empty();
+        let whose = match &end.root {
+            Root::Cell(Some(Index::Number(cell))) => {
+                let cells = self.kinds.iter().map(|kind| kind.cells).sum::<usize>();
+                if *cell >= cells {
+                    let message = format!("there is no cell {cell}: the experiment has {cells}");
+                    return Err(within(&end.place, "no such cell", message, "cells are numbered from 0"));
+                }
+                Whose::Cell(*cell)
+            }
+            Root::Cell(Some(Index::Name(name))) => {
+                let message = format!("cells have numbers, not names such as `{name}`");
+                let help = format!("write cell[0], or type[{name}] for all cells of a type");
+                return Err(within(&end.place, "not a number", message, help));
+            }
+            Root::Type(Index::Name(name)) => match self.kinds.iter().position(|kind| kind.name == *name) {
+                Some(kind) => Whose::Kind(kind),
+                None => {
+                    let known = || self.kinds.iter().map(|kind| kind.name.as_str());
+                    let label = words::meant(name, known()).map(|near| format!("did you mean `{near}`?"));
+                    let help = format!("types of cells here are {}", words::all_of(known()));
+                    let message = format!("there is no type of cells `{name}`");
+                    return Err(within(&end.place, label.as_deref().unwrap_or("unknown type"), message, help));
+                }
+            },
+            Root::Type(Index::Number(_)) => {
+                let message = "types of cells have names, not numbers".to_owned();
+                return Err(within(&end.place, "not a name", message, "write type[NAME]"));
+            }
+            _ if shared => {
+                let message = format!("{} is of the cell that has the system, but the scene has it", end.text);
+                let help = format!(
+                    "add `chemistry = [\"{}\"]` to a type of cells, or name cell[0] or type[NAME]",
+                    self.part.name
+                );
+                return Err(within(&end.place, "which cell?", message, help));
+            }
+            _ => Whose::Own,
+        };
+        if side == Side::To && whose != Whose::Own && !shared {
+            let message = format!("each cell that has `{}` would set {}", self.part.name, end.text);
+            return Err(within(
+                &end.place,
+                "set by many",
+                message,
+                "a system of cells sets its own cell: write cell.…",
+            ));
+        }
+        Ok(whose)
+    }
+
+    /// The kinds of the cells that an end names.
+    fn kinds_of(&self, whose: Whose) -> Vec<usize> {
+        match whose {
+            Whose::Own => self.part.kinds.clone(),
+            Whose::Kind(kind) => vec![kind],
+            Whose::Cell(cell) => {
+                let of = |kind: &Kind| (kind.first_cell..kind.first_cell + kind.cells).contains(&cell);
+                self.kinds.iter().position(of).into_iter().collect()
+            }
+        }
+    }
+
+    fn check_atom(&self, end: &Endpoint, whose: Whose, atom: usize) -> Result<(), Fault> {
+        for kind in self.kinds_of(whose) {
+            let (name, atoms) = (&self.kinds[kind].name, self.kinds[kind].atoms());
+            if atom >= atoms {
+                let message = format!("cells of type `{name}` have no atom {atom}");
+                let help = format!("their atoms are numbered from 0 to {}", atoms - 1);
+                return Err(within(&end.place, "no such atom", message, help));
+            }
+        }
+        Ok(())
+    }
+
+    /// The field with a name, and its species.
+    fn species(&self, end: &Endpoint, index: &Index) -> Result<(usize, usize), Fault> {
+        let Index::Name(name) = index else {
+            let message = "fields have names, not numbers".to_owned();
+            return Err(within(&end.place, "not a name", message, "write field[NAME]"));
+        };
+        let fields = || self.chemistry.fields.iter().enumerate();
+        let found: Vec<(usize, usize)> =
+            fields().filter_map(|(n, field)| field.system.species_number(name).map(|species| (n, species))).collect();
+        match found[..] {
+            [one] => Ok(one),
+            [] => {
+                let known =
+                    || fields().flat_map(|(_, field)| field.system.species()).map(|species| species.name.as_str());
+                let label = words::meant(name, known()).map(|near| format!("did you mean `{near}`?"));
+                let help = match known().next() {
+                    Some(_) => format!("fields here are {}", words::all_of(known())),
+                    None => "the experiment has no fields: name a document with <field> in [chemistry]".to_owned(),
+                };
+                let message = format!("there is no field `{name}`");
+                Err(within(&end.place, label.as_deref().unwrap_or("unknown field"), message, help))
+            }
+            _ => {
+                let message = format!("{} documents have a field `{name}`", found.len());
+                Err(within(&end.place, "which one?", message, "give fields of different documents different names"))
+            }
+        }
+    }
+}
+
+fn unknown_of_field(end: &Endpoint) -> Fault {
+    let message = format!("a field has nothing to read that is called `{}`", end.text);
+    let help = "cells sense field[NAME], field[NAME].gradient.x and field[NAME].steepness; the whole field has .mean, \
+                .largest, .smallest and .amount";
+    within(&end.place, "not known", message, help)
+}
+
+/// The word that was meant by the path of an end.
+fn meant<const N: usize>(end: &Endpoint, known: [&'static str; N]) -> String {
+    let path = end.text.split_once('.').map_or("", |(_, path)| path);
+    words::meant(path, known).map_or("not known".to_owned(), |near| format!("did you mean `{near}`?"))
+}
+
+fn parts_of(path: &[Step]) -> Vec<(&str, Option<&Index>)> {
+    path.iter().map(|step| (step.name.as_str(), step.index.as_ref())).collect()
+}

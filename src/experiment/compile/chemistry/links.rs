@@ -1,0 +1,262 @@
+//! Links: those in the documents of equations and those that the experiment adds, joined to the model.
+
+use super::super::super::{ChemistryLink, Document};
+use super::ends::{Ends, Side};
+use super::order::order;
+use super::{Part, at, within};
+use crate::chemistry::eml::{self, Endpoint, LinkDescription, Root};
+use crate::chemistry::expression::Trouble;
+use crate::chemistry::tree::{Expr, Role, System};
+use crate::error::{Fault, Place};
+use crate::sim::Kind;
+use crate::sim::chemistry::{Chemistry, Control, Link, Owner, Target};
+
+/// Parameters that a link of the experiment sets become inputs.
+pub(super) fn open_linked_parameters(parts: &mut [Part]) {
+    for part in parts {
+        for link in &part.entry.links {
+            if let Ok((Root::System(number), _)) = eml::read_end(&link.to, &part.document.system) {
+                let role = &mut part.document.system.quantities[number as usize].role;
+                if *role == Role::Parameter {
+                    *role = Role::Input;
+                }
+            }
+        }
+    }
+}
+
+/// Joins all links to the model, in an order in which they can carry their numbers.
+pub(super) fn links(
+    document: &Document,
+    parts: &[Part],
+    kinds: &mut [Kind],
+    chemistry: &mut Chemistry,
+    faults: &mut Vec<Fault>,
+) {
+    let before = faults.len();
+    let mut links: Vec<(Link, Place)> = Vec::new();
+    for part in parts {
+        let described = part.document.links.iter().map(|link| (link.clone(), Ok(link.place.clone())));
+        let own: Vec<_> = described.chain(outside(document, part, faults)).collect();
+        for (description, place) in own {
+            let place = place.unwrap_or_else(|key| nowhere(document, &key));
+            let mut ends = Ends { parts, part, kinds, chemistry };
+            match link(&mut ends, &description) {
+                Ok(link) => links.push((link, place)),
+                Err(fault) => faults.push(fault),
+            }
+        }
+    }
+    if faults.len() > before {
+        return;
+    }
+    let systems: Vec<&System> =
+        parts.iter().filter(|part| !part.is_field()).map(|part| &part.document.system).collect();
+    let (plain, places): (Vec<Link>, Vec<Place>) = links.into_iter().unzip();
+    match order(&plain, &systems) {
+        Ok(order) => {
+            for &number in &order {
+                act(&plain[number], chemistry, kinds);
+            }
+            chemistry.links = order.into_iter().map(|number| plain[number].clone()).collect();
+        }
+        Err(circle) => {
+            let texts: Vec<&str> = circle.iter().map(|&number| plain[number].text.as_str()).collect();
+            let message = format!("links close a loop without a time step: {}", texts.join(", then "));
+            let help = "let a variable stand between them: what only definitions join has no beginning";
+            faults.push(within(&places[circle[0]], "in the loop", message, help));
+        }
+    }
+}
+
+/// A place for a link of the experiment that is not written there.
+fn nowhere(document: &Document, key: &str) -> Place {
+    let whole = Place { source: document.source.clone(), start: 0, length: 0, label: String::new() };
+    document.place(key, "this link").unwrap_or(whole)
+}
+
+/// What links do to the model as a whole.
+fn act(link: &Link, chemistry: &mut Chemistry, kinds: &mut [Kind]) {
+    if let crate::sim::chemistry::Source::Cell(_, reading) = link.from {
+        chemistry.measures_cells |= !matches!(reading, crate::cell::ends::Reading::Atom(..));
+    }
+    let Target::Cell(whose, control) = link.to else { return };
+    let cells = link_kinds(link.owner, whose, chemistry, kinds);
+    for kind in cells {
+        let kind = &mut kinds[kind];
+        match control {
+            Control::Bias(_) => kind.biased = true,
+            Control::Atom(atom, axis) => {
+                chemistry.imposes_atoms = true;
+                let held =
+                    if kind.held.is_empty() { vec![1.0; 3 * kind.atoms()] } else { std::mem::take(&mut kind.held) };
+                kind.held = held;
+                kind.held[3 * atom + axis] = 0.0;
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The kinds whose cells a link sets.
+fn link_kinds(owner: Owner, whose: crate::sim::chemistry::Whose, chemistry: &Chemistry, kinds: &[Kind]) -> Vec<usize> {
+    use crate::sim::chemistry::{Members, Whose};
+    let kind_of = |cell: usize| kinds.iter().position(|kind| cell < kind.first_cell + kind.cells);
+    match (whose, owner) {
+        (Whose::Kind(kind), _) => vec![kind],
+        (Whose::Cell(cell), _) => kind_of(cell).into_iter().collect(),
+        (Whose::Own, Owner::Reactor(number)) => match &chemistry.reactors[number].members {
+            Members::Scene => Vec::new(),
+            Members::Cells(cells) => {
+                let mut found: Vec<usize> = cells.iter().filter_map(|&cell| kind_of(cell as usize)).collect();
+                found.dedup();
+                found
+            }
+        },
+        (Whose::Own, Owner::Field(_)) => Vec::new(),
+    }
+}
+
+fn link(ends: &mut Ends, description: &LinkDescription) -> Result<Link, Fault> {
+    let owner = ends.owner();
+    let from = ends.source(&description.from)?;
+    let to = ends.target(&description.to)?;
+    let mut uses = Vec::new();
+    if let crate::sim::chemistry::Source::Own(quantity) = from {
+        uses.push(quantity);
+    }
+    description.transfer.each_quantity(&mut |quantity| {
+        if quantity != LinkDescription::VALUE && !uses.contains(&quantity) {
+            uses.push(quantity);
+        }
+    });
+    let text = format!("of `{}` from {} to {}", ends.part.name, description.from.text, description.to.text);
+    let (transfer, gain) = (description.transfer.clone(), description.gain);
+    Ok(Link { text, owner, from, to, transfer, uses, gain })
+}
+
+type Placed = (LinkDescription, Result<Place, String>);
+
+/// The links that the experiment adds to a document.
+fn outside(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Vec<Placed> {
+    let mut found = Vec::new();
+    for (index, link) in part.entry.links.iter().enumerate() {
+        let key = part.key(&format!("links[{index}]"));
+        if let Some(description) = described(document, &key, link, &part.document.system, faults) {
+            found.push((description, Err(key)));
+        }
+    }
+    found
+}
+
+fn described(
+    document: &Document,
+    key: &str,
+    link: &ChemistryLink,
+    system: &System,
+    faults: &mut Vec<Fault>,
+) -> Option<LinkDescription> {
+    let before = faults.len();
+    let mut end = |name: &str, text: &str| -> Option<Endpoint> {
+        let key = format!("{key}.{name}");
+        match eml::read_end(text, system) {
+            Ok((root, path)) => {
+                Some(Endpoint { root, path, text: text.trim().to_owned(), place: nowhere(document, &key) })
+            }
+            Err(trouble) => {
+                faults.push(fault_of(document, &key, &trouble));
+                None
+            }
+        }
+    };
+    let (from, to) = (end("from", &link.from), end("to", &link.to));
+    let transfer = match &link.transfer {
+        None => Some(Expr::Quantity(LinkDescription::VALUE)),
+        Some(text) => match eml::read_transfer(text, system) {
+            Ok(transfer) => Some(transfer),
+            Err(troubles) => {
+                let key = format!("{key}.transfer");
+                faults.extend(troubles.iter().map(|trouble| fault_of(document, &key, trouble)));
+                None
+            }
+        },
+    };
+    let (from, to) = (from?, to?);
+    match (&from.root, &to.root) {
+        (Root::System(_), Root::System(_)) => {
+            let fault = Fault::new("both ends of the link are in the system")
+                .help("inside a system write expressions; a link joins it to scene, cell, type or field");
+            faults.push(at(document, &format!("{key}.to"), "the same system", fault));
+        }
+        (Root::System(_), _) => {}
+        (_, Root::System(number)) => {
+            let quantity = &system.quantities[*number as usize];
+            if quantity.role != Role::Input {
+                let fault = Fault::new(format!("a link cannot set `{}`, which the equations give", quantity.id))
+                    .help("let it set a parameter or an <input>");
+                faults.push(at(document, &format!("{key}.to"), "not set from outside", fault));
+            }
+        }
+        _ => {
+            let fault = Fault::new("no end of the link is in the system")
+                .help("let one end be system.ID: the link belongs to this document");
+            faults.push(at(document, key, "this link", fault));
+        }
+    }
+    if faults.len() > before {
+        return None;
+    }
+    let place = nowhere(document, key);
+    Some(LinkDescription { id: String::new(), from, to, transfer: transfer?, gain: link.gain.unwrap_or(1.0), place })
+}
+
+/// A trouble in a text of the experiment, marked where it is in the text.
+fn fault_of(document: &Document, key: &str, trouble: &Trouble) -> Fault {
+    let fault = Fault::new(trouble.message.clone()).help(trouble.help.clone());
+    let Some(mut place) = document.place(key, trouble.label.clone()) else { return fault };
+    let written = &place.source.text[place.start..place.start + place.length];
+    // In a text with escapes places shift; then the whole text is marked.
+    let plain = written.len() >= 2 && written.starts_with(['"', '\'']) && !written.contains('\\');
+    if plain && trouble.at.end <= written.len() - 2 {
+        place.start += 1 + trouble.at.start;
+        place.length = trouble.at.len();
+    }
+    fault.at(place)
+}
+
+impl Ends<'_, '_> {
+    /// Whose link it is.
+    pub(super) fn owner(&self) -> Owner {
+        if self.part.is_field() { Owner::Field(self.part.number) } else { Owner::Reactor(self.part.number) }
+    }
+
+    /// Where a number comes from.
+    fn source(&mut self, end: &Endpoint) -> Result<crate::sim::chemistry::Source, Fault> {
+        match &end.root {
+            Root::System(quantity) if !self.part.is_field() => Ok(crate::sim::chemistry::Source::Own(*quantity)),
+            Root::System(_) => Err(within(
+                &end.place,
+                "of fields",
+                "a document of fields has no single number to give".to_owned(),
+                "link from field[NAME].mean, .largest, .smallest or .amount in the system that wants it",
+            )),
+            _ => self.read(end, Side::From),
+        }
+    }
+
+    /// Where a number goes.
+    fn target(&mut self, end: &Endpoint) -> Result<Target, Fault> {
+        let Root::System(quantity) = end.root else { return self.set(end) };
+        let place = if self.part.is_field() {
+            let id = &self.part.document.system.quantities[quantity as usize].id;
+            let inputs = self.chemistry.fields[self.part.number].system.inputs();
+            inputs.iter().position(|(input, _)| input == id)
+        } else {
+            self.chemistry.reactors[self.part.number].program.open_place(quantity)
+        };
+        place.map(Target::Own).ok_or_else(|| {
+            let message = format!("{} cannot be set by a link", end.text);
+            within(&end.place, "not an input", message, "link to an <input>")
+        })
+    }
+}

@@ -1,0 +1,214 @@
+//! Reads the documents of equations and fields that an experiment names, and joins them to its cells.
+
+mod ends;
+mod links;
+mod order;
+mod profile;
+mod read;
+
+use super::super::{Chemistry as Entry, Document, Scheme};
+use crate::chemistry::eml;
+use crate::chemistry::field::{FieldSystem, Fields, Placing};
+use crate::chemistry::ode::{Method, Tolerances};
+use crate::chemistry::program::{Program, initial_values};
+use crate::chemistry::tree::Role;
+use crate::error::{Error, Fault, Place};
+use crate::sim::Kind;
+use crate::sim::chemistry::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
+
+/// Tolerances of systems and of a step of fields, where neither document says any: relative and absolute.
+const SYSTEM_TOLERANCE: (f64, f64) = (1e-6, 1e-9);
+const FIELD_TOLERANCE: (f64, f64) = (1e-3, 1e-6);
+
+/// A document of equations, read, with what the experiment says of it.
+struct Part<'a> {
+    /// Its name in the experiment.
+    name: &'a str,
+    entry: &'a Entry,
+    document: eml::Document,
+    /// Kinds that have it.
+    kinds: Vec<usize>,
+    /// Its number among the systems, or among the fields.
+    number: usize,
+}
+
+impl Part<'_> {
+    fn is_field(&self) -> bool {
+        !self.document.fields.is_empty()
+    }
+
+    /// The key of the experiment that says something of it.
+    fn key(&self, of: &str) -> String {
+        format!("chemistry.{}.{of}", self.name)
+    }
+}
+
+/// The chemistry of an experiment, and the fields as they start. Marks the kinds that links act on.
+pub fn chemistry(document: &Document, kinds: &mut [Kind], faults: &mut Vec<Fault>) -> (Chemistry, Vec<Fields>) {
+    let before = faults.len();
+    let mut chemistry = Chemistry::default();
+    if document.experiment.chemistry.is_empty() {
+        return (chemistry, Vec::new());
+    }
+    let mut parts = read::parts(document, kinds, faults);
+    if faults.len() > before {
+        return (chemistry, Vec::new());
+    }
+    chemistry.rest = kinds
+        .iter()
+        .map(|kind| {
+            [if kind.closed { crate::geometry::volume(&kind.rest) } else { 0.0 }, crate::geometry::area(&kind.rest)]
+        })
+        .collect();
+    let mut fields = Vec::new();
+    for part in parts.iter().filter(|part| part.is_field()) {
+        if let Some((reactor, start)) = field(document, part, faults) {
+            chemistry.fields.push(reactor);
+            fields.push(start);
+        }
+    }
+    links::open_linked_parameters(&mut parts);
+    for part in parts.iter().filter(|part| !part.is_field()) {
+        chemistry.reactors.extend(reactor(document, part, kinds, faults));
+    }
+    // Ends of links name systems and fields by their numbers, which stand only when all are there.
+    if faults.len() == before {
+        links::links(document, &parts, kinds, &mut chemistry, faults);
+    }
+    (chemistry, fields)
+}
+
+/// A fault at a key of the experiment.
+fn at(document: &Document, key: &str, label: &str, fault: Fault) -> Fault {
+    document.place(key, label).into_iter().fold(fault, Fault::at)
+}
+
+/// A fault in the document of equations, at a place there.
+fn within(place: &Place, label: &str, message: String, help: impl Into<String>) -> Fault {
+    Fault::new(message).at(Place { label: label.to_owned(), ..place.clone() }).help(help)
+}
+
+/// What a failed part of chemistry adds to the faults.
+fn tell(error: Error, faults: &mut Vec<Fault>) {
+    match error {
+        Error::Input(more) => faults.extend(more),
+        other => faults.push(Fault::new(other.to_string())),
+    }
+}
+
+fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fault>) -> Option<Reactor> {
+    let (entry, eml) = (part.entry, &part.document);
+    if let Some(event) = eml.system.events.first() {
+        let message = format!("`{}` has an event (`{}`), which systems in a run cannot have yet", part.name, event.id);
+        let help =
+            "write what it does with piecewise() or heaviside(); `pseudopod eml solve` solves the document with it";
+        faults.push(at(document, &part.key("document"), "this document", Fault::new(message).help(help)));
+        return None;
+    }
+    let method = method(document, part, faults)?;
+    let program = match Program::new(&eml.system) {
+        Ok(program) => program,
+        Err(circle) => {
+            let message = format!("`{}` has a circle of definitions: {}", part.name, circle.join(" → "));
+            let help = "let one of them be a variable";
+            faults.push(at(document, &part.key("document"), "this document", Fault::new(message).help(help)));
+            return None;
+        }
+    };
+    let members = match &part.kinds[..] {
+        [] => Members::Scene,
+        some => {
+            let cells =
+                |kind: &usize| kinds[*kind].first_cell as u32..(kinds[*kind].first_cell + kinds[*kind].cells) as u32;
+            Members::Cells(some.iter().flat_map(cells).collect())
+        }
+    };
+    let exchange = entry.exchange.map(|time| time.value()).or(eml.solver.step.map(|step| step * eml.seconds));
+    let kept = |role: &Role| matches!(role, Role::Variable { .. } | Role::Defined { .. } | Role::Input);
+    let quantities = eml.system.quantities.iter().enumerate().filter(|(_, quantity)| kept(&quantity.role));
+    Some(Reactor {
+        name: part.name.to_owned(),
+        program,
+        members,
+        seconds: eml.seconds,
+        method,
+        tolerances: Tolerances {
+            relative: entry.rtol.or(eml.solver.rtol).unwrap_or(SYSTEM_TOLERANCE.0),
+            absolute: entry.atol.or(eml.solver.atol).unwrap_or(SYSTEM_TOLERANCE.1),
+            ..Tolerances::default()
+        },
+        exchange,
+        recorded: quantities.map(|(number, q)| (number as u32, q.id.clone(), q.unit.clone())).collect(),
+    })
+}
+
+/// The scheme of a system, with its inner step in the system's unit of time.
+fn method(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<Method> {
+    let (entry, solver) = (part.entry, &part.document.solver);
+    let chosen = entry.scheme.map(|scheme| match scheme {
+        Scheme::Rk45 => eml::Scheme::Rk45,
+        Scheme::Rosenbrock => eml::Scheme::Rosenbrock,
+        Scheme::Rk4 => eml::Scheme::Rk4,
+        Scheme::Euler => eml::Scheme::Euler,
+    });
+    let inner = entry.inner_step.map(|step| step.value() / part.document.seconds).or(solver.inner_step);
+    let fixed = |make: fn(f64) -> Method, faults: &mut Vec<Fault>| {
+        if inner.is_none() {
+            let fault = Fault::new(format!("the scheme of `{}` needs a step", part.name))
+                .help("add `inner_step = \"10 ms\"`, or choose scheme = \"rosenbrock\", which finds its step");
+            faults.push(at(document, &part.key("scheme"), "has no step", fault));
+        }
+        inner.map(make)
+    };
+    match chosen.or(solver.scheme).unwrap_or(eml::Scheme::Rosenbrock) {
+        eml::Scheme::Rk45 => Some(Method::Rk45),
+        eml::Scheme::Rosenbrock => Some(Method::Rosenbrock),
+        eml::Scheme::Rk4 => fixed(|step| Method::Rk4 { step }, faults),
+        eml::Scheme::Euler => fixed(|step| Method::Euler { step }, faults),
+        eml::Scheme::Bdf => {
+            let fault = Fault::new(format!("`{}` asks for the scheme bdf, which cannot take part in a run", part.name))
+                .help("add `scheme = \"rosenbrock\"`: it takes stiff systems too, and a run can be resumed with it");
+            faults.push(at(document, &part.key("document"), "this document", fault));
+            None
+        }
+    }
+}
+
+fn field(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<(FieldReactor, Fields)> {
+    let (entry, eml) = (part.entry, &part.document);
+    for (key, given) in [("scheme", entry.scheme.is_some()), ("exchange", entry.exchange.is_some())] {
+        if given {
+            let fault = Fault::new(format!("`{}` has no meaning for fields", part.key(key)))
+                .help("remove it; fields advance with every step of the run, with rtol, or with a fixed inner_step");
+            faults.push(at(document, &part.key(key), "not used", fault));
+        }
+    }
+    let corner = |given: Option<[crate::units::Length; 3]>| given.map(|corner| corner.map(|x| x.value()));
+    let placing = match (corner(entry.origin), corner(entry.size)) {
+        (None, None) => None,
+        (origin, Some(size)) => {
+            // Where only the size is given, the grid lies around the origin, its floor at z = 0.
+            let middle = [-0.5 * size[0], -0.5 * size[1], 0.0];
+            Some(Placing { origin: origin.unwrap_or(middle), size })
+        }
+        (Some(_), None) => {
+            let fault = Fault::new(format!("`{}` is given without a size", part.key("origin")))
+                .help("add `size = [\"200 um\", \"200 um\", \"0 um\"]`");
+            faults.push(at(document, &part.key("origin"), "without a size", fault));
+            return None;
+        }
+    };
+    let system = FieldSystem::new(eml, placing.as_ref()).map_err(|error| tell(error, faults)).ok()?;
+    let folder = document.resolve(&entry.document);
+    let load = |profile: &eml::Profile, grid: &_| profile::load(&folder, profile, grid);
+    let start = system.start(&load).map_err(|error| tell(error, faults)).ok()?;
+    let stepping = match entry.inner_step {
+        Some(step) => FieldStepping::Longest(step.value()),
+        None => FieldStepping::Adaptive {
+            relative: entry.rtol.or(eml.solver.rtol).unwrap_or(FIELD_TOLERANCE.0),
+            absolute: entry.atol.or(eml.solver.atol).unwrap_or(FIELD_TOLERANCE.1),
+        },
+    };
+    let constants = initial_values(&eml.system, 0.0).unwrap_or_default();
+    Some((FieldReactor { name: part.name.to_owned(), system, stepping, constants }, start))
+}

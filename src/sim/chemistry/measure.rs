@@ -1,0 +1,101 @@
+//! What links read of cells, measured from the blocks without a copy of any surface.
+
+use rayon::prelude::*;
+
+use super::super::model::{Kind, Model};
+use super::super::state::{State, vector};
+use super::super::workspace::KindScratch;
+use crate::Vec3;
+use crate::cell::ends::Reading;
+
+/// An atom touches a plane when it is nearer to it than this part of the mean edge: planes put atoms exactly on them.
+const TOUCHING: f64 = 1e-6;
+
+/// Measures of one cell at one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CellNumbers {
+    /// Centre of volume, or of the atoms of an open surface, µm.
+    centre: Vec3,
+    /// Mean velocity of the atoms over the last step, µm/s.
+    velocity: Vec3,
+    /// µm³, 0 for an open surface.
+    volume: f64,
+    /// µm².
+    area: f64,
+    /// Extents of the bounding box, µm.
+    size: Vec3,
+    /// Part of the atoms on a plane.
+    contact_share: f64,
+    /// Volume and area of the mesh at rest.
+    rest: [f64; 2],
+}
+
+impl CellNumbers {
+    pub(super) fn poisoned() -> Self {
+        let none = Vec3::repeat(f64::NAN);
+        Self { centre: none, velocity: none, volume: f64::NAN, area: f64::NAN, ..Self::default() }
+    }
+
+    /// A reading; positions of atoms are read elsewhere.
+    pub(super) fn read(&self, reading: Reading) -> f64 {
+        let strain = |now: f64, rest: f64| if rest > 0.0 { (now - rest) / rest } else { 0.0 };
+        match reading {
+            Reading::Position(axis) => self.centre[axis],
+            Reading::Velocity(axis) => self.velocity[axis],
+            Reading::Speed => self.velocity.norm(),
+            Reading::Volume => self.volume,
+            Reading::VolumeStrain => strain(self.volume, self.rest[0]),
+            Reading::Area => self.area,
+            Reading::AreaStrain => strain(self.area, self.rest[1]),
+            Reading::Size(axis) => self.size[axis],
+            Reading::ContactShare => self.contact_share,
+            Reading::Atom(..) => f64::NAN,
+        }
+    }
+}
+
+/// Measures all cells; `dt` is the step just made, s, 0 before the first.
+pub(super) fn measure_cells(model: &Model, state: &State, kinds: &[KindScratch], dt: f64, out: &mut [CellNumbers]) {
+    let rest = &model.chemistry.rest;
+    for (((kind, now), w), rest) in model.kinds.iter().zip(&state.kinds).zip(kinds).zip(rest) {
+        let out = &mut out[kind.first_cell..kind.first_cell + kind.cells];
+        out.par_iter_mut().enumerate().for_each(|(cell, out)| {
+            *out = measure(model, kind, &now.positions, cell);
+            out.rest = *rest;
+            if dt > 0.0 {
+                let mean = |x: &[f64]| (0..kind.atoms()).map(|atom| vector(kind, x, cell, atom)).sum::<Vec3>();
+                out.velocity = (mean(&now.positions) - mean(&w.start)) / (kind.atoms() as f64 * dt);
+            }
+        });
+    }
+}
+
+fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize) -> CellNumbers {
+    let place = |atom: usize| vector(kind, x, cell, atom);
+    let base = place(0);
+    let (mut low, mut high, mut sum, mut touching) = (base, base, Vec3::zeros(), 0_usize);
+    for atom in 0..kind.atoms() {
+        let p = place(atom);
+        (low, high, sum) = (low.inf(&p), high.sup(&p), sum + (p - base));
+        let near = |plane: &super::super::Plane| (p - plane.point).dot(&plane.normal) < TOUCHING * kind.edge;
+        touching += usize::from(model.planes.iter().any(near));
+    }
+    let (mut area, mut volume, mut moment) = (0.0, 0.0, Vec3::zeros());
+    for facet in &kind.rest.facets {
+        let [a, b, c] = facet.map(|atom| place(atom as usize) - base);
+        area += 0.5 * (b - a).cross(&(c - a)).norm();
+        // The tetrahedron with the first atom: its volume, and its centre a quarter of the way to a + b + c.
+        let part = a.dot(&b.cross(&c)) / 6.0;
+        volume += part;
+        moment += 0.25 * part * (a + b + c);
+    }
+    let atoms = kind.atoms() as f64;
+    CellNumbers {
+        centre: base + if kind.closed { moment / volume } else { sum / atoms },
+        volume: if kind.closed { volume } else { 0.0 },
+        area,
+        size: high - low,
+        contact_share: touching as f64 / atoms,
+        ..CellNumbers::default()
+    }
+}

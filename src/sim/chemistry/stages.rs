@@ -1,0 +1,141 @@
+//! The stages of chemistry in a step, and when systems exchange numbers with the model.
+
+use super::super::constraints::enforce_constraints;
+use super::super::model::Model;
+use super::super::state::{State, vector};
+use super::super::trouble::Trouble;
+use super::super::workspace::Workspace;
+use super::carry::carry_links;
+use super::model::{Members, Reactor};
+use crate::chemistry::ode::OdeTrouble;
+use crate::error::Error;
+
+/// Lets the links carry the numbers of the start, once.
+pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+    if model.chemistry.is_empty() || state.chemistry.carried {
+        return Ok(());
+    }
+    ws.chemistry.exchange_values(&mut state.chemistry, state.time);
+    let carried = carry_links(model, state.time, 0.0, true, state, ws);
+    ws.chemistry.exchange_values(&mut state.chemistry, state.time);
+    carried?;
+    state.chemistry.carried = true;
+    impose(model, state.time, state, ws)
+}
+
+/// Chemistry over a step of mechanics that has just been made, `dt` long: intracellular and scene systems, secretion, fields, then
+/// the links. After an error chemistry is as it was before.
+pub fn advance_chemistry(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+    if model.chemistry.is_empty() {
+        return Ok(());
+    }
+    ws.chemistry.remember(state);
+    let (start, end) = (state.time, state.time + dt);
+    ws.chemistry.exchange_values(&mut state.chemistry, start);
+    let result = advance_systems(model, end, state).and_then(|()| {
+        deposit_secretion(model, dt, state, ws);
+        advance_fields(model, dt, state, ws)?;
+        carry_links(model, end, dt, false, state, ws)
+    });
+    ws.chemistry.exchange_values(&mut state.chemistry, end);
+    let result = result.and_then(|()| impose(model, end, state, ws));
+    if result.is_err() {
+        ws.chemistry.restore(state);
+    }
+    result
+}
+
+/// The next time after `time` at which a system exchanges numbers with the model, s; a step ends there.
+pub fn next_exchange(model: &Model, time: f64) -> f64 {
+    let next = |every: f64| ((time / every * (1.0 + 1e-12)).floor() + 1.0) * every;
+    model.chemistry.reactors.iter().filter_map(|reactor| reactor.exchange).map(next).fold(f64::INFINITY, f64::min)
+}
+
+/// Whether a system exchanges numbers with the model at a time.
+pub(super) fn is_due(reactor: &Reactor, time: f64) -> bool {
+    reactor.exchange.is_none_or(|every| {
+        let count = time / every;
+        (count - count.round()).abs() <= 1e-9 * count.abs().max(1.0)
+    })
+}
+
+/// Advances all systems that are due, each from the time that it has reached.
+fn advance_systems(model: &Model, end: f64, state: &mut State) -> Result<(), Trouble> {
+    let chemistry = &mut state.chemistry;
+    for ((reactor, population), time) in
+        model.chemistry.reactors.iter().zip(&mut chemistry.populations).zip(&mut chemistry.times)
+    {
+        if !is_due(reactor, end) || *time >= end {
+            continue;
+        }
+        let window = (*time / reactor.seconds, end / reactor.seconds);
+        population
+            .advance(&reactor.program, window.0, window.1, &reactor.tolerances)
+            .map_err(|trouble| system_trouble(model, reactor, &trouble))?;
+        *time = end;
+    }
+    Ok(())
+}
+
+/// Which cell of which type, when and in which variable.
+fn system_trouble(model: &Model, reactor: &Reactor, trouble: &OdeTrouble) -> Trouble {
+    let cell = match (&reactor.members, trouble.cell) {
+        (Members::Cells(cells), Some(member)) => cells.get(member).map(|&cell| cell as usize),
+        _ => None,
+    };
+    let owner = cell.and_then(|cell| {
+        let kind = model.kinds.iter().find(|kind| (kind.first_cell..kind.first_cell + kind.cells).contains(&cell))?;
+        Some((kind.name.clone(), cell - kind.first_cell))
+    });
+    Trouble::System {
+        system: reactor.name.clone(),
+        owner,
+        time: trouble.time * reactor.seconds,
+        variable: trouble.variable.clone(),
+        reason: trouble.reason,
+    }
+}
+
+/// Releases into the fields what cells secrete in a step, spread evenly over the atoms.
+fn deposit_secretion(model: &Model, dt: f64, state: &State, ws: &mut Workspace) {
+    let scratch = &mut ws.chemistry;
+    for (&(field, species), rates) in model.chemistry.secreted.iter().zip(&state.chemistry.controls.secretion) {
+        for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+            let atoms = kind.atoms();
+            scratch.amounts.clear();
+            scratch.places.clear();
+            for cell in 0..kind.cells {
+                let rate = rates[kind.first_cell + cell];
+                if rate != 0.0 {
+                    scratch.places.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
+                    scratch.amounts.resize(scratch.places.len(), rate * dt / atoms as f64);
+                }
+            }
+            scratch.fields[field].deposit_all(species, &scratch.places, &scratch.amounts);
+        }
+    }
+}
+
+/// Diffusion, decay and reactions of all fields.
+fn advance_fields(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+    for ((reactor, fields), now) in
+        model.chemistry.fields.iter().zip(&mut ws.chemistry.fields).zip(&mut state.chemistry.fields)
+    {
+        fields.set_pace(now.pace);
+        match reactor.system.advance(fields, dt, &now.inputs, reactor.stepping.of(dt)) {
+            Ok(_) => now.pace = fields.pace(),
+            Err(Error::Numbers { message, .. }) => return Err(Trouble::Field { message }),
+            Err(error) => return Err(Trouble::Field { message: error.to_string() }),
+        }
+    }
+    Ok(())
+}
+
+/// After links imposed positions of atoms: the volumes are exact again with these atoms where they are.
+fn impose(model: &Model, time: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+    if !model.chemistry.imposes_atoms {
+        return Ok(());
+    }
+    super::super::implicit::measure_volumes(model, time, state, ws);
+    enforce_constraints(model, state, ws).map_err(|failure| Trouble::of_volume(model, time, failure))
+}

@@ -1,0 +1,143 @@
+//! Where chemistry is: part of the state, and so of a checkpoint.
+
+use serde::{Deserialize, Serialize};
+
+use super::super::model::Model;
+use super::model::{Control, Target};
+use crate::chemistry::field::Fields;
+use crate::chemistry::ode::Population;
+
+/// Everything of chemistry that changes.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ChemistryState {
+    /// One population a system; the scene is a population of one.
+    pub populations: Vec<Population>,
+    /// Time that each system has reached, s.
+    pub times: Vec<f64>,
+    /// One entry a document of fields.
+    pub fields: Vec<FieldState>,
+    /// What links set for mechanics.
+    pub controls: Controls,
+    /// Whether links have carried the numbers of this instant.
+    pub carried: bool,
+}
+
+/// The fields of one document.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct FieldState {
+    /// `[species][box]`, in the document's unit of concentration.
+    pub values: Vec<f64>,
+    /// The pace of the adaptive steps.
+    pub pace: (u32, u32),
+    /// Values of the document's inputs.
+    pub inputs: Vec<f64>,
+}
+
+/// What links set for mechanics, one number a cell in the order of all cells. A list that no link writes is empty.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Controls {
+    /// Speed of the walk, µm/s; NaN where the type's own speed stands.
+    pub speed: Vec<f64>,
+    /// Velocity added to the walk, µm/s.
+    pub bias: Vec<[f64; 3]>,
+    /// Factor of elastic forces.
+    pub stiffness: Vec<f64>,
+    /// Factors of loads, one list a load number.
+    pub loads: Vec<Vec<f64>>,
+    /// Amount released per second, one list for each species secreted.
+    pub secretion: Vec<Vec<f64>>,
+}
+
+impl ChemistryState {
+    /// The start: systems at their initial values, `fields` as they start.
+    pub fn new(model: &Model, fields: &[Fields]) -> Self {
+        let chemistry = &model.chemistry;
+        let reactors = &chemistry.reactors;
+        let populations = reactors.iter().map(|r| Population::new(&r.program, r.members.len(), r.method));
+        let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
+            values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
+            pace: fields.pace(),
+            inputs: reactor.system.inputs().iter().map(|(_, value)| *value).collect(),
+        };
+        Self {
+            populations: populations.collect(),
+            times: vec![0.0; reactors.len()],
+            fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
+            controls: Controls::new(model),
+            carried: false,
+        }
+    }
+
+    /// Copies another of the same shape without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.populations.clone_from(&other.populations);
+        self.times.clone_from(&other.times);
+        if self.fields.len() != other.fields.len() {
+            self.fields.clone_from(&other.fields);
+        }
+        for (to, from) in self.fields.iter_mut().zip(&other.fields) {
+            to.values.clone_from(&from.values);
+            to.inputs.clone_from(&from.inputs);
+            to.pace = from.pace;
+        }
+        self.controls.copy_from(&other.controls);
+        self.carried = other.carried;
+    }
+
+    /// Whether a checkpoint has the shape of a fresh start.
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        let cells = |a: &Population, b: &Population| a.cells() == b.cells() && a.has_shape_of(b);
+        self.populations.len() == other.populations.len()
+            && self.fields.len() == other.fields.len()
+            && self.populations.iter().zip(&other.populations).all(|(a, b)| cells(a, b))
+            && self.fields.iter().zip(&other.fields).all(|(a, b)| a.values.len() == b.values.len())
+    }
+}
+
+impl Controls {
+    fn new(model: &Model) -> Self {
+        let (mut controls, cells) = (Self::default(), model.cells());
+        controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
+        for link in &model.chemistry.links {
+            match link.to {
+                Target::Cell(_, Control::MotilitySpeed) => controls.speed = vec![f64::NAN; cells],
+                Target::Cell(_, Control::Bias(_)) => controls.bias = vec![[0.0; 3]; cells],
+                Target::Cell(_, Control::Stiffness) => controls.stiffness = vec![1.0; cells],
+                Target::Cell(_, Control::Load(load)) => {
+                    let loads = controls.loads.len().max(load + 1);
+                    controls.loads.resize(loads, vec![1.0; cells]);
+                }
+                _ => {}
+            }
+        }
+        controls
+    }
+
+    fn copy_from(&mut self, other: &Self) {
+        self.speed.clone_from(&other.speed);
+        self.bias.clone_from(&other.bias);
+        self.stiffness.clone_from(&other.stiffness);
+        self.loads.clone_from(&other.loads);
+        self.secretion.clone_from(&other.secretion);
+    }
+
+    /// The velocity added to a cell's walk, µm/s.
+    pub fn bias_of(&self, cell: usize) -> [f64; 3] {
+        self.bias.get(cell).copied().unwrap_or_default()
+    }
+
+    /// The speed that a link asks of a cell, µm/s.
+    pub fn speed_of(&self, cell: usize) -> Option<f64> {
+        self.speed.get(cell).copied().filter(|speed| !speed.is_nan())
+    }
+
+    /// Factor of a cell's elastic forces.
+    pub fn stiffness_of(&self, cell: usize) -> f64 {
+        self.stiffness.get(cell).copied().unwrap_or(1.0)
+    }
+
+    /// Factor of a load of a cell.
+    pub fn load_of(&self, load: usize, cell: usize) -> f64 {
+        self.loads.get(load).and_then(|cells| cells.get(cell)).copied().unwrap_or(1.0)
+    }
+}
