@@ -1,7 +1,7 @@
 //! The picture and the charts that a run makes when it ends.
 
 use super::values::{OneOrMany, When};
-use crate::units::{Speed, Time};
+use crate::units::{Length, Speed, Time};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -18,6 +18,16 @@ pub struct Picture {
     /// The ends of the scale of colours, in base units; chosen when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub colour_range: Option<[f64; 2]>,
+    /// The field under or between the cells: its name, FIELD.SPECIES for another than its first species, or "none". The
+    /// first field when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field: Option<String>,
+    /// The ends of the field's scale of colours, in the field's unit; chosen when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field_range: Option<[f64; 2]>,
+    /// The height at which a field of the medium is cut; the mean height of the cells when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field_height: Option<Length>,
     /// Shows the loads as arrows, the longest for the strongest.
     pub loads: bool,
     /// Where the picture is taken from.
@@ -33,8 +43,18 @@ pub struct Picture {
 impl Default for Picture {
     fn default() -> Self {
         let (width, height) = (1280, 720);
-        let (time, view) = (When::Last, View::default());
-        Self { time, colour_by: "type".into(), colour_range: None, loads: false, view, width, height }
+        Self {
+            time: When::Last,
+            colour_by: "type".into(),
+            colour_range: None,
+            field: None,
+            field_range: None,
+            field_height: None,
+            loads: false,
+            view: View::default(),
+            width,
+            height,
+        }
     }
 }
 

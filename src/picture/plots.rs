@@ -2,6 +2,7 @@
 
 use super::chart::{Aspect, Axis, Chart, Scale, Series};
 use super::colour::Colour;
+use super::field_view::with_unit;
 use crate::analysis::measure::curve;
 use crate::analysis::msd::{from_the_start, furth};
 use crate::analysis::recording::Recording;
@@ -35,8 +36,7 @@ pub fn label_of(result: &ResultFile, series: &str) -> String {
         return "time (s)".into();
     }
     let unit = result.units(series).unwrap_or_default();
-    let name = readable(series);
-    if unit.is_empty() || unit == "1" { name } else { format!("{name} ({unit})") }
+    with_unit(&readable(series), &unit)
 }
 
 fn readable(series: &str) -> String {
