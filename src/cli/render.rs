@@ -99,7 +99,7 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
 }
 
 /// Two numbers, the second larger.
-fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
+pub(super) fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
     let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     match numbers[..] {
         [low, high] if low < high && low.is_finite() && high.is_finite() => Ok([low, high]),

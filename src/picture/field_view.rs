@@ -74,10 +74,18 @@ pub fn species_label(field: &FieldLayout, species: usize) -> String {
     with_unit(&name.replace('_', " "), unit)
 }
 
-/// A name with its unit in the usual signs: `uM` as µM, `1/um^2` as 1/µm².
+/// A name with its unit, if it has one: `cAMP (µM)`.
 pub fn with_unit(name: &str, unit: &str) -> String {
-    if unit.is_empty() || unit == "1" {
-        return name.to_owned();
+    match unit_text(unit) {
+        none if none.is_empty() => name.to_owned(),
+        signs => format!("{name} ({signs})"),
+    }
+}
+
+/// A unit in the usual signs: `uM` as µM, `1/um^2` as 1/µm²; empty for a pure number.
+pub fn unit_text(unit: &str) -> String {
+    if unit == "1" {
+        return String::new();
     }
     let mut signs = String::new();
     let mut before = ' ';
@@ -93,7 +101,7 @@ pub fn with_unit(name: &str, unit: &str) -> String {
         }
         before = letter;
     }
-    format!("{name} ({signs})")
+    signs
 }
 
 #[cfg(test)]

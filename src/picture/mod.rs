@@ -7,6 +7,7 @@
 pub mod arrows;
 pub mod chart;
 pub mod colour;
+pub mod field_plots;
 pub mod field_view;
 pub mod from_file;
 pub mod from_result;

@@ -274,7 +274,7 @@ fn write_standing_bar(svg: &mut String, bar: &FieldBar, right: f64, top: f64, un
     let small = 15.0 * unit;
     let marks = ticks.major.iter().map(|(_, text)| text_width(text, small)).fold(0.0, f64::max) + 10.0 * unit;
     let wide = text_width(&label, size).max(marks + thick);
-    let (above, room) = (26.0 * unit, 10.0 * unit);
+    let (above, room) = (30.0 * unit, 10.0 * unit);
     let _ = writeln!(
         svg,
         r##"<rect class="ground" x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="{:.1}" fill="#ffffff" fill-opacity="0.82"/>"##,
