@@ -12,7 +12,7 @@ use pseudopod::output::{Overwrite, ResultFile, ResultWriter, load_checkpoint};
 #[path = "result_file/example.rs"]
 #[allow(dead_code)]
 mod example;
-use example::{frame, header, layout};
+use example::{frame_with_fields as frame, header, layout_with_fields as layout, stored};
 
 /// Names the file that the child process writes, and the milliseconds between its flushes.
 const TASK: &str = "PSEUDOPOD_TEST_WRITE";
@@ -92,6 +92,7 @@ fn check(path: &Path) -> Result<usize, String> {
     let layout = layout(CELLS);
     let series = |name: &str| result.cell_series(name).map_err(|error| error.to_string());
     let (x, principal) = (series("position_x")?, series("principal_3")?);
+    let brain = result.quantity_series("brain", "U").map_err(|error| error.to_string())?;
     for number in 0..result.frames() {
         let expected = frame(&layout, number);
         let positions = result.positions(number).map_err(|error| error.to_string())?;
@@ -99,7 +100,15 @@ fn check(path: &Path) -> Result<usize, String> {
         let cells = (0..CELLS as usize).all(|cell| {
             x[[number, cell]] == expected.cells[cell].position[0]
                 && principal[[number, cell]] == expected.cells[cell].principal[2]
-        });
+        }) && brain.row(number).to_vec() == expected.systems[0][0];
+        for (field, values) in layout.fields.iter().zip(&expected.fields) {
+            for ((name, _), values) in field.species.iter().zip(values) {
+                let found = result.field_frame(&field.name, name, number).map_err(|error| error.to_string())?;
+                if found != stored(values) {
+                    return Err(format!("field {name} in frame {number} of {} is wrong", result.frames()));
+                }
+            }
+        }
         if positions != expected.positions || forces.as_ref() != Some(&expected.forces) || !cells {
             return Err(format!("frame {number} of {} is wrong", result.frames()));
         }

@@ -49,9 +49,9 @@ impl Recording {
             runs: file.runs()?,
             ..Self::default()
         };
-        let of_cells = file.series_names();
+        let (of_cells, of_scene) = (file.series_names(), file.scene_names());
         for &name in names {
-            if layout.scene_series.iter().any(|(known, _)| known == name) {
+            if of_scene.iter().any(|known| known == name) {
                 recording.scene.insert(name.to_owned(), file.scene_series(name)?);
             } else if name == "speed" || of_cells.iter().any(|known| known == name) {
                 recording.cells.insert(name.to_owned(), file.cell_series(name)?);
@@ -94,6 +94,10 @@ impl Recording {
         }
         let cells = self.cells_of(kind)?;
         let series = self.cell_series(name)?;
+        // A system of chemistry may live in some of the cells only: the others have no value in any frame.
+        let having: Vec<usize> =
+            cells.iter().copied().filter(|cell| series.column(*cell).iter().any(|value| !value.is_nan())).collect();
+        let cells = if having.is_empty() { cells } else { having };
         let rows = series.rows().into_iter();
         Ok(rows.map(|row| reduce(over, &cells.iter().map(|&cell| row[cell]).collect::<Vec<_>>())).collect())
     }

@@ -1,4 +1,4 @@
-//! `pseudopod export`: a frame of a result as a mesh, or its numbers as a table.
+//! `pseudopod export`: a frame of a result as a mesh or as the values of a field, or its numbers as a table.
 
 use super::frames::FrameArgs;
 use super::render::{Named, refuse_existing};
@@ -7,23 +7,27 @@ use crate::Vec3;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::When;
 use crate::geometry::{Surface, export_surface};
-use crate::output::{ResultFile, Table, write_table};
+use crate::output::{ResultFile, Table, write_field_image, write_field_table, write_table};
 use std::path::PathBuf;
 
-/// Writes the cells of a frame as OBJ, PLY or STL, in um, or series, tracks and measures as CSV.
+/// Writes the cells of a frame as OBJ, PLY or STL, in um, a field of a frame as VTI or CSV, or series, tracks and
+/// measures as CSV.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ExportArgs {
     /// The result file.
     pub result: PathBuf,
-    /// The file; its ending says what is written: .obj, .ply, .stl a mesh, .csv a table.
+    /// The file; its ending says what is written: .obj, .ply, .stl a mesh, .vti a field, .csv a table.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Which frame a mesh shows; the last when absent.
+    /// Which frame a mesh or a field shows; the last when absent.
     #[command(flatten)]
     pub frame: FrameArgs,
     /// One cell by its number, from 0, in a mesh; all when absent.
     #[arg(long, value_name = "NUMBER")]
     pub cell: Option<usize>,
+    /// A field, FIELD.SPECIES for one of its species only; the first field in a .vti when absent.
+    #[arg(long, value_name = "FIELD")]
+    pub field: Option<String>,
     /// What a table holds; series when absent.
     #[arg(long, value_enum)]
     pub table: Option<TableKind>,
@@ -57,41 +61,72 @@ pub enum TableKind {
 /// A result, frame, cell or series that is not there; a file that exists, has an unknown ending or cannot be written.
 pub fn run(args: &ExportArgs) -> Result<Report> {
     let ending = args.output.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    let as_table = match ending.as_deref() {
-        Some("csv") => true,
-        Some("obj" | "ply" | "stl") => false,
+    let what = match ending.as_deref() {
+        Some("csv") if args.field.is_some() => What::FieldTable,
+        Some("csv") => What::Table,
+        Some("vti") => What::FieldImage,
+        Some("obj" | "ply" | "stl") => What::Mesh,
         _ => {
             let fault = Fault::new(format!("cannot tell from its name what to write to {}", args.output.display()));
             return Err(Error::input(
-                fault.help("let the name end in .obj, .ply or .stl for a mesh, .csv for a table"),
+                fault.help("let the name end in .obj, .ply or .stl for a mesh, .vti for a field, .csv for a table"),
             ));
         }
     };
-    refuse_unused(args, as_table)?;
+    refuse_unused(args, what)?;
     let result = ResultFile::open(&args.result)?;
     refuse_existing(&args.output, args.force, Named::ByUser)?;
-    if as_table {
-        write_table(&result, &table_of(args), &args.output)?;
-    } else {
-        let frame = args.frame.of(&result, When::Last)?;
-        export_surface(&surface_of(&result, frame, args.cell)?, &args.output)?;
+    match what {
+        What::Table => write_table(&result, &table_of(args), &args.output)?,
+        What::Mesh => {
+            let frame = args.frame.of(&result, When::Last)?;
+            export_surface(&surface_of(&result, frame, args.cell)?, &args.output)?;
+        }
+        What::FieldTable | What::FieldImage => write_field(args, &result, what)?,
     }
     Ok(Report::of_files(&args.result, std::slice::from_ref(&args.output)))
 }
 
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum What {
+    Mesh,
+    Table,
+    FieldTable,
+    FieldImage,
+}
+
+/// Writes the species of a field, or the one that is named.
+fn write_field(args: &ExportArgs, result: &ResultFile, what: What) -> Result<()> {
+    let frame = args.frame.of(result, When::Last)?;
+    let first = result.layout().fields.first().map(|field| field.name.as_str());
+    // Without any field the name does not matter: the message says that there is none.
+    let name = args.field.as_deref().or(first).unwrap_or_default();
+    let (field, species) = result.field_species(name)?;
+    let species = if field.name == name { (0..field.species.len()).collect() } else { vec![species] };
+    match what {
+        What::FieldImage => write_field_image(result, field, &species, frame, &args.output),
+        _ => write_field_table(result, field, &species, frame, &args.output),
+    }
+}
+
 /// Options that say nothing about what is written are a mistake that the user wants to know of.
-fn refuse_unused(args: &ExportArgs, as_table: bool) -> Result<()> {
-    let unused = match as_table {
-        true if args.frame.frame.is_some() => "--frame",
-        true if args.frame.time.is_some() => "--time",
-        true if args.cell.is_some() => "--cell",
-        false if args.table.is_some() => "--table",
-        false if !args.series.is_empty() => "--series",
-        true if !args.series.is_empty() && args.table.is_some_and(|kind| kind != TableKind::Series) => "--series",
-        _ => return Ok(()),
+fn refuse_unused(args: &ExportArgs, what: What) -> Result<()> {
+    let (table, field) = (what == What::Table, matches!(what, What::FieldTable | What::FieldImage));
+    let unused = match () {
+        () if table && args.frame.frame.is_some() => "--frame",
+        () if table && args.frame.time.is_some() => "--time",
+        () if what != What::Mesh && args.cell.is_some() => "--cell",
+        () if !table && args.table.is_some() => "--table",
+        () if !table && !args.series.is_empty() => "--series",
+        () if !args.series.is_empty() && args.table.is_some_and(|kind| kind != TableKind::Series) => "--series",
+        () if !field && args.field.is_some() => "--field",
+        () => return Ok(()),
     };
-    let fault = Fault::new(format!("{unused} has no meaning for {}", args.output.display()))
-        .help("--frame, --time and --cell belong to a mesh (.obj, .ply, .stl), --table and --series to a table (.csv)");
+    let fault = Fault::new(format!("{unused} has no meaning for {}", args.output.display())).help(
+        "--frame and --time belong to a mesh (.obj, .ply, .stl) or a field (.vti, or .csv with --field), --cell to a \
+         mesh, --field to a field, --table and --series to a table (.csv)",
+    );
     Err(Error::input(fault))
 }
 

@@ -3,11 +3,12 @@
 use super::render::{Named, refuse_existing};
 use super::report::Report;
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{OneOrMany, Plot, PlotKind};
+use crate::experiment::{Axis, FieldLine, OneOrMany, Plot, PlotKind, When};
 use crate::output::ResultFile;
 use crate::picture::from_file::beside;
 use crate::picture::plots::chart_of;
 use crate::picture::save_chart;
+use crate::units::Length;
 use std::path::PathBuf;
 
 /// Draws the charts of the experiment, or one of its own.
@@ -29,6 +30,27 @@ pub struct PlotArgs {
     /// The mean squared displacement.
     #[arg(long, conflicts_with_all = ["y", "name", "tracks"])]
     pub msd: bool,
+    /// Every cell as a thin line besides the mean.
+    #[arg(long, requires = "y", conflicts_with = "x")]
+    pub each_cell: bool,
+    /// A field along an axis at some instants: FIELD or FIELD.SPECIES.
+    #[arg(long, value_name = "FIELD", conflicts_with_all = ["y", "name", "tracks", "msd"])]
+    pub profile: Option<String>,
+    /// A field along an axis against time, as colours.
+    #[arg(long, value_name = "FIELD", conflicts_with_all = ["y", "name", "tracks", "msd", "profile"])]
+    pub kymograph: Option<String>,
+    /// The axis of a profile or kymograph: x, y or z; x when absent.
+    #[arg(long, value_name = "AXIS", value_parser = axis)]
+    pub along: Option<Axis>,
+    /// A place that a profile or kymograph goes through, in um, as in 10,20,0; the mean over the other axes when absent.
+    #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
+    pub through: Option<[Length; 3]>,
+    /// The instants of a profile, by commas: first, last, or times such as "12 s"; five of the run when absent.
+    #[arg(long, value_delimiter = ',', value_name = "TIME", requires = "profile", value_parser = instant)]
+    pub times: Vec<When>,
+    /// The numbers at the ends of a kymograph's colour bar; those of the field when absent.
+    #[arg(long, value_name = "LOW,HIGH", requires = "kymograph", value_parser = super::render::ends, allow_hyphen_values = true)]
+    pub range: Option<[f64; 2]>,
     /// Replaces files that are there.
     #[arg(long)]
     pub force: bool,
@@ -72,11 +94,29 @@ fn wanted(args: &PlotArgs, known: &[Plot]) -> Result<Vec<Plot>> {
     if args.msd {
         return Ok(vec![own("msd", PlotKind::Msd { speed: None, persistence: None })]);
     }
+    let line = |field: &String| FieldLine {
+        field: Some(field.clone()),
+        along: args.along.unwrap_or(Axis::X),
+        through: args.through,
+    };
+    let file = |kind: &str, field: &str| format!("{kind}-{}", field.replace(['.', '/'], "-"));
+    if let Some(field) = &args.profile {
+        let times = (!args.times.is_empty()).then(|| OneOrMany::Many(args.times.clone()));
+        return Ok(vec![own(&file("profile", field), PlotKind::Profile { line: line(field), times })]);
+    }
+    if let Some(field) = &args.kymograph {
+        let kind = PlotKind::Kymograph { line: line(field), range: args.range };
+        return Ok(vec![own(&file("kymograph", field), kind)]);
+    }
+    if args.along.is_some() || args.through.is_some() {
+        let fault = Fault::new("--along and --through belong to a field");
+        return Err(Error::input(fault.help("add --profile FIELD or --kymograph FIELD")));
+    }
     if !args.y.is_empty() {
         let y = OneOrMany::Many(args.y.clone());
         let kind = match &args.x {
             Some(x) => PlotKind::Curve { x: x.clone(), y },
-            None => PlotKind::Series { y },
+            None => PlotKind::Series { y, each_cell: args.each_cell },
         };
         return Ok(vec![own(&args.y.join("-"), kind)]);
     }
@@ -85,11 +125,36 @@ fn wanted(args: &PlotArgs, known: &[Plot]) -> Result<Vec<Plot>> {
     if found.is_empty() {
         let names: Vec<&str> = known.iter().map(|plot| plot.name.as_str()).collect();
         let help = match names.is_empty() {
-            true => "it declares no [[plot]]; name series with --y, or use --tracks or --msd".to_owned(),
+            true => "it declares no [[plot]]; name series with --y, or use --tracks, --msd, --profile or --kymograph"
+                .to_owned(),
             false => format!("its charts are: {}; or name series with --y", names.join(", ")),
         };
         let fault = Fault::new(format!("the experiment has no chart \"{name}\"")).help(help);
         return Err(Error::input(fault));
     }
     Ok(found)
+}
+
+fn axis(text: &str) -> std::result::Result<Axis, String> {
+    match text {
+        "x" => Ok(Axis::X),
+        "y" => Ok(Axis::Y),
+        "z" => Ok(Axis::Z),
+        _ => Err("give x, y or z".to_owned()),
+    }
+}
+
+/// Three numbers, µm.
+fn place(text: &str) -> std::result::Result<[Length; 3], String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if numbers.iter().all(|number| number.is_finite()) => Ok([x, y, z].map(Length::new)),
+        _ => Err("give three numbers in um, as in 10,20,0".to_owned()),
+    }
+}
+
+fn instant(text: &str) -> std::result::Result<When, String> {
+    text.trim()
+        .parse::<When>()
+        .map_err(|fault| format!("{}; write first, last, or a time such as \"12 s\"", fault.message))
 }

@@ -6,8 +6,8 @@ use crate::error::{Error, Fault, Result};
 use crate::experiment::When;
 use crate::output::ResultFile;
 use crate::picture::Movie;
-use crate::picture::from_file::{beside, check_colour, film, still};
-use crate::units::Time;
+use crate::picture::from_file::{beside, check_colour, check_field, film, still};
+use crate::units::{Length, Time};
 use std::path::{Path, PathBuf};
 
 /// What a picture may measure along a side: from an icon to the largest that fits in memory with ease.
@@ -31,6 +31,15 @@ pub struct RenderArgs {
     /// The numbers at the ends of the colour bar, in the units that it shows; those of the frames when absent.
     #[arg(long, value_name = "LOW,HIGH", value_parser = ends, allow_hyphen_values = true)]
     pub range: Option<[f64; 2]>,
+    /// The field that is shown: its name, FIELD.SPECIES, or none; the first field when absent.
+    #[arg(long, value_name = "FIELD")]
+    pub field: Option<String>,
+    /// The numbers at the ends of the field's colour bar; those of the frames when absent.
+    #[arg(long, value_name = "LOW,HIGH", value_parser = ends, allow_hyphen_values = true)]
+    pub field_range: Option<[f64; 2]>,
+    /// The height at which a field of the medium is cut, in um; the mean height of the cells when absent.
+    #[arg(long, value_name = "Z", allow_hyphen_values = true)]
+    pub field_height: Option<f64>,
     /// Shows the loads as arrows.
     #[arg(long)]
     pub loads: bool,
@@ -61,6 +70,9 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     let mut picture = document.experiment.picture.clone();
     args.colour_by.iter().for_each(|series| picture.colour_by.clone_from(series));
     picture.colour_range = args.range.or(picture.colour_range);
+    args.field.iter().for_each(|field| picture.field = Some(field.clone()));
+    picture.field_range = args.field_range.or(picture.field_range);
+    picture.field_height = args.field_height.map(Length::new).or(picture.field_height);
     picture.loads |= args.loads;
     picture.width = args.width.unwrap_or(picture.width);
     picture.height = args.height.unwrap_or(picture.height);
@@ -75,6 +87,7 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     }
     // What is not there is told before the movie's file is made.
     check_colour(&result, &picture.colour_by)?;
+    check_field(&result, &picture)?;
     let mut movie = Movie::create(&output, args.fps)?;
     let frames: Vec<usize> = (0..result.frames()).collect();
     film(&result, &document, &picture, &frames, |image| movie.add(image))?;
@@ -86,7 +99,7 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
 }
 
 /// Two numbers, the second larger.
-fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
+pub(super) fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
     let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     match numbers[..] {
         [low, high] if low < high && low.is_finite() && high.is_finite() => Ok([low, high]),

@@ -56,7 +56,7 @@ pub use mechanics::{
     Barrier, BendingRest, Form, Law, Mechanics, Membrane, Reaction, ShapeMemory, ShapeStrength, Springs, VolumeControl,
     VolumeRule,
 };
-pub use pictures::{Picture, Plot, PlotKind, PlotTable, View};
+pub use pictures::{FieldLine, Picture, Plot, PlotKind, PlotTable, View};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
 pub use schema::schema;
 pub use values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};

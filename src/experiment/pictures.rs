@@ -1,7 +1,7 @@
 //! The picture and the charts that a run makes when it ends.
 
-use super::values::{OneOrMany, When};
-use crate::units::{Speed, Time};
+use super::values::{Axis, OneOrMany, When};
+use crate::units::{Length, Speed, Time};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -18,6 +18,16 @@ pub struct Picture {
     /// The ends of the scale of colours, in base units; chosen when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub colour_range: Option<[f64; 2]>,
+    /// The field under or between the cells: its name, FIELD.SPECIES for another than its first species, or "none". The
+    /// first field when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field: Option<String>,
+    /// The ends of the field's scale of colours, in the field's unit; chosen when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field_range: Option<[f64; 2]>,
+    /// The height at which a field of the medium is cut; the mean height of the cells when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field_height: Option<Length>,
     /// Shows the loads as arrows, the longest for the strongest.
     pub loads: bool,
     /// Where the picture is taken from.
@@ -33,8 +43,18 @@ pub struct Picture {
 impl Default for Picture {
     fn default() -> Self {
         let (width, height) = (1280, 720);
-        let (time, view) = (When::Last, View::default());
-        Self { time, colour_by: "type".into(), colour_range: None, loads: false, view, width, height }
+        Self {
+            time: When::Last,
+            colour_by: "type".into(),
+            colour_range: None,
+            field: None,
+            field_range: None,
+            field_height: None,
+            loads: false,
+            view: View::default(),
+            width,
+            height,
+        }
     }
 }
 
@@ -91,6 +111,9 @@ pub enum PlotKind {
         /// The series, one or several.
         #[schemars(extend("x-text" = "series"))]
         y: OneOrMany<String>,
+        /// Draws every cell as a thin line besides the mean.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        each_cell: bool,
     },
     /// Series against another one.
     Curve {
@@ -114,6 +137,42 @@ pub enum PlotKind {
         #[schemars(extend("x-exclusive-minimum" = 0))]
         persistence: Option<Time>,
     },
+    /// A field along an axis, a curve for each instant.
+    Profile {
+        /// Which field, and along which line.
+        #[serde(flatten)]
+        line: FieldLine,
+        /// The instants, one or several; five that are spread over the run when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        times: Option<OneOrMany<When>>,
+    },
+    /// A field along an axis against time, as colours.
+    Kymograph {
+        /// Which field, and along which line.
+        #[serde(flatten)]
+        line: FieldLine,
+        /// The ends of the scale of colours, in the field's unit; chosen when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        range: Option<[f64; 2]>,
+    },
+}
+
+/// A field along a line.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FieldLine {
+    /// The field's name, or FIELD.SPECIES for another than its first species; the first field when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub field: Option<String>,
+    /// The axis that the line follows.
+    #[serde(default = "along_x")]
+    pub along: Axis,
+    /// A place that the line goes through; when absent, the mean over the other axes is shown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub through: Option<[Length; 3]>,
+}
+
+fn along_x() -> Axis {
+    Axis::X
 }
 
 /// Measured points from a table (CSV with a line of column names).

@@ -64,6 +64,9 @@ pub enum ColourMap {
     Viridis,
     /// Black to pale yellow.
     Magma,
+    /// Pale yellow to dark purple: magma turned round and without its black, so that a field leaves its place light where
+    /// it is absent, and cells and their shadows stand out on it.
+    Ink,
     /// Blue to red through grey, for quantities with a meaningful middle such as a signed error.
     Coolwarm,
 }
@@ -74,6 +77,9 @@ impl ColourMap {
     pub fn at(self, position: f64) -> Colour {
         if position.is_nan() {
             return Colour([0xb0, 0xb4, 0xba]);
+        }
+        if self == Self::Ink {
+            return Self::Magma.at(1.0 - 0.8 * position.clamp(0.0, 1.0));
         }
         let stops = self.stops();
         let place = position.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
@@ -90,7 +96,7 @@ impl ColourMap {
                 0x440154, 0x482576, 0x414487, 0x35608d, 0x2a788e, 0x21908c, 0x22a884, 0x43bf71, 0x7ad151, 0xbbdf27,
                 0xfde725,
             ],
-            Self::Magma => [
+            Self::Magma | Self::Ink => [
                 0x000004, 0x140e36, 0x3b0f70, 0x641a80, 0x8c2981, 0xb73779, 0xde4968, 0xf7705c, 0xfe9f6d, 0xfecf92,
                 0xfcfdbf,
             ],
@@ -111,6 +117,8 @@ mod tests {
         assert_eq!(ColourMap::Viridis.at(-3.0).hex(), "#440154");
         assert_eq!(ColourMap::Viridis.at(1.0).hex(), "#fde725");
         assert_eq!(ColourMap::Magma.at(0.0).hex(), "#000004");
+        assert_eq!(ColourMap::Ink.at(0.0), ColourMap::Magma.at(1.0));
+        assert_eq!(ColourMap::Ink.at(2.0).hex(), "#3b0f70");
         assert_eq!(ColourMap::Coolwarm.at(0.5).hex(), "#dddcdc");
         assert_eq!(ColourMap::Coolwarm.at(9.0).hex(), "#b40426");
     }

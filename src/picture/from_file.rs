@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::arrows::LoadArrows;
 use super::colour::Colour;
+use super::field_view::FieldView;
 use super::from_result::{Framing, Look, Snapshot, Values, picture_of};
 use super::quantities::AtomQuantity;
+use super::render::Sheet;
 use super::{Image, plots};
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Picture, When};
@@ -16,6 +18,7 @@ struct Shot {
     positions: Vec<[f64; 3]>,
     values: Vec<f64>,
     arrows: Vec<[[f64; 3]; 2]>,
+    field: Option<Sheet>,
     time: f64,
 }
 
@@ -33,6 +36,7 @@ struct Stage<'a> {
     look: Look,
     shown: Shown,
     arrows: LoadArrows,
+    field: Option<FieldView>,
     times: Vec<f64>,
 }
 
@@ -74,8 +78,16 @@ pub fn check_colour(result: &ResultFile, name: &str) -> Result<()> {
     shown_of(result, name).map(drop)
 }
 
+/// Makes sure that a result has the field that its pictures are to show.
+///
+/// # Errors
+/// [`Error::Input`] that lists what there is.
+pub fn check_field(result: &ResultFile, picture: &Picture) -> Result<()> {
+    FieldView::of(result, picture).map(drop)
+}
+
 /// The frame that an instant means.
-fn frame_at(result: &ResultFile, when: When) -> Result<usize> {
+pub(super) fn frame_at(result: &ResultFile, when: When) -> Result<usize> {
     let last = result.frames().saturating_sub(1);
     Ok(match when {
         When::First => 0,
@@ -91,9 +103,12 @@ fn frame_at(result: &ResultFile, when: When) -> Result<usize> {
 impl<'a> Stage<'a> {
     fn new(result: &'a ResultFile, document: &Document, picture: &Picture) -> Result<Self> {
         let shown = shown_of(result, &picture.colour_by)?;
-        let look = look_of(result, document, picture, &shown);
+        let mut look = look_of(result, document, picture, &shown);
+        let field = FieldView::of(result, picture)?;
+        look.field_range = picture.field_range;
+        look.field_label = field.as_ref().map_or_else(String::new, FieldView::label);
         let arrows = if picture.loads { LoadArrows::of(document, result.layout())? } else { LoadArrows::default() };
-        Ok(Self { result, look, shown, arrows, times: result.times()? })
+        Ok(Self { result, look, shown, arrows, field, times: result.times()? })
     }
 
     fn shot(&self, frame: usize) -> Result<Shot> {
@@ -104,7 +119,8 @@ impl<'a> Stage<'a> {
             Shown::Cells(name) => self.result.cell_series(name)?.row(frame).to_vec(),
         };
         let time = self.times[frame];
-        Ok(Shot { arrows: self.arrows.at(time, &positions), positions, values, time })
+        let field = self.field.as_ref().map(|field| field.sheet(self.result, frame, &positions)).transpose()?;
+        Ok(Shot { arrows: self.arrows.at(time, &positions), positions, values, field, time })
     }
 
     fn snapshot<'b>(&'b self, shot: &'b Shot) -> Snapshot<'b> {
@@ -114,7 +130,8 @@ impl<'a> Stage<'a> {
             Shown::Cells(_) => Values::Cells(&shot.values),
         };
         let layout = self.result.layout();
-        Snapshot { layout, positions: &shot.positions, time: shot.time, values, arrows: &shot.arrows }
+        let (positions, arrows, field) = (&shot.positions, &shot.arrows, shot.field.as_ref());
+        Snapshot { layout, positions, time: shot.time, values, arrows, field }
     }
 
     fn draw(&self, shot: &Shot, framing: &Framing, picture: &Picture) -> Image {

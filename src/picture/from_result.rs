@@ -6,8 +6,8 @@
 use super::Image;
 use super::colour::{Colour, ColourMap};
 use super::render::{
-    Bounds, Camera, Edges, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Surface, SurfaceColour,
-    draw, time_text,
+    Bounds, Camera, Edges, FieldBar, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Sheet, Surface,
+    SurfaceColour, draw, time_text,
 };
 use super::ticks::nice_above;
 use crate::Vec3;
@@ -26,6 +26,8 @@ pub struct Snapshot<'a> {
     pub values: Values<'a>,
     /// Arrows over the cells, from tail to tip (µm): loads, velocities.
     pub arrows: &'a [[[f64; 3]; 2]],
+    /// A field under or between the cells; the look says its colours.
+    pub field: Option<&'a Sheet>,
 }
 
 /// What colours show.
@@ -53,6 +55,12 @@ pub struct Look {
     pub range: Option<[f64; 2]>,
     /// Name of the numbers with unit.
     pub label: String,
+    /// Colours of a field.
+    pub field_map: ColourMap,
+    /// Lowest and highest number of the field's colour bar; `None` takes them from the frames that were included.
+    pub field_range: Option<[f64; 2]>,
+    /// Name of the field with unit.
+    pub field_label: String,
     /// Whether the edges of facets are drawn.
     pub edges: Edges,
     /// How much skins hide, 0 to 1; `None` lets them be translucent where there are links inside.
@@ -73,6 +81,9 @@ impl Default for Look {
             map: ColourMap::default(),
             range: None,
             label: String::new(),
+            field_map: ColourMap::Ink,
+            field_range: None,
+            field_label: String::new(),
             edges: Edges::Hidden,
             opacity: None,
             direction: [0.35, -1.0, 0.75],
@@ -91,7 +102,10 @@ pub struct Framing {
     bounds: Option<Bounds>,
     /// Corners of the panes, which are to be seen whole.
     pane_corners: Vec<[f64; 3]>,
+    /// Corners of the part of the field around the cells, which is to be seen whole.
+    field_corners: Vec<[f64; 3]>,
     range: [f64; 2],
+    field_range: [f64; 2],
     longest: f64,
 }
 
@@ -114,7 +128,9 @@ impl Framing {
             outermost,
             bounds: None,
             pane_corners: Vec::new(),
+            field_corners: Vec::new(),
             range: [f64::INFINITY, f64::NEG_INFINITY],
+            field_range: [f64::INFINITY, f64::NEG_INFINITY],
             longest: 0.0,
         }
     }
@@ -143,6 +159,12 @@ impl Framing {
                 self.range = [self.range[0].min(*value), self.range[1].max(*value)];
             }
         }
+        if let Some(sheet) = snapshot.field {
+            for value in sheet.values.iter().filter(|value| value.is_finite()) {
+                self.field_range = [self.field_range[0].min(*value), self.field_range[1].max(*value)];
+            }
+            self.field_corners = self.bounds.map_or_else(Vec::new, |bounds| corners_near(sheet, &bounds));
+        }
         self.longest = self.longest.max(snapshot.time);
     }
 
@@ -150,18 +172,47 @@ impl Framing {
     pub fn camera(&self, look: &Look, aspect: f64, insets: Insets) -> Camera {
         let mut points: Vec<[f64; 3]> = self.outermost.iter().filter(|o| o.1.is_finite()).map(|o| o.2).collect();
         points.extend(&self.pane_corners);
+        points.extend(&self.field_corners);
         Camera::fit(&points, self.axes[2].into(), look.projection, aspect, insets)
     }
 
     /// The numbers at the ends of the colour bar.
     fn ends(&self, look: &Look) -> [f64; 2] {
-        let [low, high] = look.range.unwrap_or(self.range);
-        match (low.is_finite() && high.is_finite(), high > low) {
-            (true, true) => [low, high],
-            (true, false) => [low - 0.5 * low.abs().max(1e-3), low + 0.5 * low.abs().max(1e-3)],
-            (false, _) => [0.0, 1.0],
-        }
+        opened(look.range.unwrap_or(self.range))
     }
+
+    /// The numbers at the ends of the field's colour bar.
+    fn field_ends(&self, look: &Look) -> [f64; 2] {
+        // A field that comes close to nothing is shown from nothing on.
+        let [low, high] = self.field_range;
+        let from_zero = if (0.0..0.25 * high).contains(&low) { 0.0 } else { low };
+        opened(look.field_range.unwrap_or([from_zero, high]))
+    }
+}
+
+/// Two ends with room between them.
+fn opened([low, high]: [f64; 2]) -> [f64; 2] {
+    match (low.is_finite() && high.is_finite(), high > low) {
+        (true, true) => [low, high],
+        (true, false) => [low - 0.5 * low.abs().max(1e-3), low + 0.5 * low.abs().max(1e-3)],
+        (false, _) => [0.0, 1.0],
+    }
+}
+
+/// The corners of what a picture should show of a sheet: no more than a wide margin around the cells, so that a few
+/// cells in a wide field do not become specks.
+fn corners_near(sheet: &Sheet, bounds: &Bounds) -> Vec<[f64; 3]> {
+    let margin = 1.5 * bounds.diagonal();
+    let reach = |axis: usize| {
+        let (start, end) = (sheet.corner[axis], sheet.corner[axis] + sheet.side_u[axis] + sheet.side_v[axis]);
+        (start.max(bounds.low[axis] - margin), end.min(bounds.high[axis] + margin))
+    };
+    let (x, y) = (reach(0), reach(1));
+    if x.0 > x.1 || y.0 > y.1 {
+        return Vec::new();
+    }
+    let z = sheet.corner[2];
+    vec![[x.0, y.0, z], [x.1, y.0, z], [x.0, y.1, z], [x.1, y.1, z]]
 }
 
 /// Draws one recorded instant.
@@ -186,7 +237,9 @@ pub fn overlay_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Overla
         _ => Key::Bar { map: look.map, low, high, label: look.label.clone() },
     };
     let time = time_text(snapshot.time, framing.longest);
-    Overlay { title: look.title.clone(), time, scale_bar: look.scale_bar, key }
+    let bar = || FieldBar { map: look.field_map, range: framing.field_ends(look), label: look.field_label.clone() };
+    let field = snapshot.field.map(|_| bar());
+    Overlay { title: look.title.clone(), time, scale_bar: look.scale_bar, key, field }
 }
 
 /// Cells, links, arrows and planes of one recorded instant.
@@ -235,6 +288,8 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     if let Some(bounds) = framing.bounds.or_else(|| Bounds::around(positions)) {
         add_planes(&mut scene, layout, &bounds, typical);
     }
+    let coloured = |sheet: &Sheet| Sheet { map: look.field_map, range: framing.field_ends(look), ..sheet.clone() };
+    scene.sheet = snapshot.field.map(coloured);
     scene
 }
 
@@ -308,8 +363,14 @@ mod tests {
     #[test]
     fn types_and_numbers_colour_the_cells() {
         let (layout, positions) = two_cells();
-        let mut snapshot =
-            Snapshot { layout: &layout, positions: &positions, time: 3.0, values: Values::Type, arrows: &[] };
+        let mut snapshot = Snapshot {
+            layout: &layout,
+            positions: &positions,
+            time: 3.0,
+            values: Values::Type,
+            arrows: &[],
+            field: None,
+        };
         let look = Look::default();
         let mut framing = Framing::new(&look);
         framing.include(&snapshot);
@@ -331,7 +392,14 @@ mod tests {
         let (layout, positions) = two_cells();
         let moved: Vec<[f64; 3]> = positions.iter().map(|p| [p[0] + 40.0, p[1], p[2]]).collect();
         let look = Look::default();
-        let still = |positions| Snapshot { layout: &layout, positions, time: 0.0, values: Values::Type, arrows: &[] };
+        let still = |positions| Snapshot {
+            layout: &layout,
+            positions,
+            time: 0.0,
+            values: Values::Type,
+            arrows: &[],
+            field: None,
+        };
         let (mut one, mut both) = (Framing::new(&look), Framing::new(&look));
         one.include(&still(&positions));
         both.include(&still(&positions));
@@ -359,6 +427,7 @@ mod tests {
             time: k as f64,
             values: Values::Atoms(&heights),
             arrows: &[],
+            field: None,
         };
         let mut framing = Framing::new(&look);
         (0..20).for_each(|k| framing.include(&snapshot(k)));

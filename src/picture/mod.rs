@@ -7,6 +7,8 @@
 pub mod arrows;
 pub mod chart;
 pub mod colour;
+pub mod field_plots;
+pub mod field_view;
 pub mod from_file;
 pub mod from_result;
 pub mod image;

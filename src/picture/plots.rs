@@ -1,12 +1,14 @@
 //! Charts of a result file, as the experiment or the command line asks for them.
 
-use super::chart::{Aspect, Axis, Chart, Scale, Series};
+use super::chart::{Aspect, Axis, Chart, Scale, Series, Stroke};
 use super::colour::Colour;
+use super::field_plots;
+use super::field_view::{unit_text, with_unit};
 use crate::analysis::measure::curve;
 use crate::analysis::msd::{from_the_start, furth};
 use crate::analysis::recording::Recording;
 use crate::analysis::table::Table;
-use crate::error::Result;
+use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Over, Plot, PlotKind, PlotTable};
 use crate::output::ResultFile;
 
@@ -35,8 +37,7 @@ pub fn label_of(result: &ResultFile, series: &str) -> String {
         return "time (s)".into();
     }
     let unit = result.units(series).unwrap_or_default();
-    let name = readable(series);
-    if unit.is_empty() || unit == "1" { name } else { format!("{name} ({unit})") }
+    with_unit(&readable(series), &unit)
 }
 
 fn readable(series: &str) -> String {
@@ -50,13 +51,21 @@ fn readable(series: &str) -> String {
 /// A series, table or column that is not there.
 pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result<Chart> {
     let mut chart = match &plot.kind {
-        PlotKind::Series { y } => curves(result, plot, "time", y.as_slice())?,
+        PlotKind::Series { y, each_cell } => {
+            let mut chart = curves(result, plot, "time", y.as_slice())?;
+            if *each_cell {
+                chart.series.splice(0..0, lines_of_cells(result, plot, y.as_slice())?);
+            }
+            chart
+        }
         PlotKind::Curve { x, y } => curves(result, plot, x, y.as_slice())?,
         PlotKind::Tracks => tracks(result, plot)?,
         PlotKind::Msd { speed, persistence } => {
             let formula = speed.zip(*persistence).map(|(v, p)| (v.value(), p.value()));
             displacement(result, plot, formula)?
         }
+        PlotKind::Profile { line, times } => field_plots::profile(result, line, times.as_ref())?,
+        PlotKind::Kymograph { line, range } => field_plots::kymograph(result, line, *range)?,
     };
     let tables = plot.table.as_ref().map_or(&[][..], |tables| tables.as_slice());
     for table in tables {
@@ -80,27 +89,70 @@ fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Resul
     let recording = Recording::read(result, &names)?;
     let types = types_of(result, plot);
     let mut chart = Chart { x: Axis::linear(label_of(result, x)), ..Chart::default() };
+    let units: Vec<String> = series.iter().map(|y| result.units(y)).collect::<Result<_>>()?;
+    let alike = units.windows(2).all(|pair| pair[0] == pair[1]);
     for y in series {
-        for kind in &types {
+        // A series of the scene against time is the same for all types.
+        let shared = x == "time" && recording.scene.contains_key(y);
+        for kind in if shared { &types[..1] } else { &types[..] } {
             let points: Vec<[f64; 2]> = if x == "time" {
                 let values = recording.series(y, Some(kind), Over::Mean)?;
                 recording.times.iter().zip(values).map(|(t, v)| [*t, v]).collect()
             } else {
                 curve(&recording, x, y, Some(kind))?.points().collect()
             };
+            // A system of chemistry may live in the cells of some types only.
+            if points.iter().all(|point| point[1].is_nan()) {
+                continue;
+            }
+            let named = if alike { readable(y) } else { label_of(result, y) };
             let label = match (series.len(), types.len()) {
+                (1, _) if shared => String::new(),
                 (1, 1) => String::new(),
                 (1, _) => kind.clone(),
-                (_, 1) => readable(y),
-                _ => format!("{kind}: {}", readable(y)),
+                (_, 1) => named,
+                _ if shared => named,
+                _ => format!("{kind}: {named}"),
             };
             chart.series.push(Series::line(label, points));
         }
     }
-    let unit = series.first().map_or(String::new(), |y| result.units(y).unwrap_or_default());
-    let label = if let [only] = series { label_of(result, only) } else { unit };
+    if chart.series.is_empty() {
+        let fault = Fault::new(format!("no cell of {} has a value of {}", types.join(", "), series.join(", ")));
+        return Err(Error::input(fault.help("choose a type of cells with that system of chemistry")));
+    }
+    let label = match series {
+        [only] => label_of(result, only),
+        _ if alike => units.first().map_or_else(String::new, |unit| unit_text(unit)),
+        _ => String::new(),
+    };
     chart.y = Axis::linear(label);
     Ok(chart)
+}
+
+/// A thin line for every cell, pale in the colour that its type's mean has.
+fn lines_of_cells(result: &ResultFile, plot: &Plot, series: &[String]) -> Result<Vec<Series>> {
+    let recording = Recording::read(result, &series.iter().map(String::as_str).collect::<Vec<_>>())?;
+    let (mut lines, mut number) = (Vec::new(), 0);
+    for y in series {
+        let Some(values) = recording.cells.get(y) else { continue };
+        for kind in types_of(result, plot) {
+            let cells = recording.cells_of(Some(&kind))?;
+            let colour = Colour::of_palette(number).mixed(Colour([0xff; 3]), 0.62);
+            let mut drawn = false;
+            for cell in cells {
+                let points: Vec<[f64; 2]> =
+                    recording.times.iter().zip(values.column(cell)).map(|(t, v)| [*t, *v]).collect();
+                if points.iter().any(|point| !point[1].is_nan()) {
+                    drawn = true;
+                    let (label, stroke, width) = (String::new(), Stroke::Solid, 0.9);
+                    lines.push(Series::Line { label, points, colour: Some(colour), stroke, width });
+                }
+            }
+            number += usize::from(drawn);
+        }
+    }
+    Ok(lines)
 }
 
 fn tracks(result: &ResultFile, plot: &Plot) -> Result<Chart> {

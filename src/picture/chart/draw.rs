@@ -3,9 +3,12 @@
 use std::fmt::Write;
 
 use super::frame::{FittedAxis, Frame, LABEL, NUMBER, TITLE};
+use super::heat::Heat;
 use super::legend::{self, Box};
 use super::series::{dashes, write_bar, write_marker, write_points, write_series};
-use super::{Chart, Legend, Marker, Series, Stroke};
+use super::{Chart, Legend, Marker, Series, Stroke, svg_to_png};
+use crate::error::Result;
+use crate::picture::Image;
 use crate::picture::colour::Colour;
 use crate::picture::text::{self, Anchor, Style, Weight, write_text, write_turned_text};
 use crate::picture::ticks;
@@ -31,10 +34,42 @@ enum Shape {
 
 /// Draws a chart on a page of `width` × `height` px. Any contents give a valid SVG document.
 pub fn to_svg(chart: &Chart, width: f64, height: f64) -> String {
+    compose(chart, width, height, Page::Whole).0
+}
+
+/// The bytes of a PNG picture of a chart whose SVG is known, `scale` pixels for each of its units.
+pub(super) fn to_png(chart: &Chart, svg: &str, [width, height]: [f64; 2], scale: f64) -> Result<Vec<u8>> {
+    let Some(heat) = &chart.heat else { return svg_to_png(svg, scale as f32) };
+    // Our own drawing of SVG knows no pictures inside: the heat is painted first, the rest laid over it.
+    let (svg, frame) = compose(chart, width, height, Page::Lines);
+    let mut pixels = text::svg_to_pixels(&svg, scale as f32)?;
+    let mut image = Image::filled(pixels.width() as usize, pixels.height() as usize, Colour([255; 3]));
+    let pixel = |at: f64| (at * scale).round().max(0.0) as usize;
+    let (left, top) = (pixel(frame.left), pixel(frame.top));
+    let area = heat.image(pixel(frame.right) - left, pixel(frame.bottom) - top);
+    for (row, colours) in area.rgb.chunks(3 * area.width).enumerate() {
+        let start = 3 * ((top + row) * image.width + left);
+        image.rgb[start..start + colours.len()].copy_from_slice(colours);
+    }
+    image.lay_over(pixels.data_mut());
+    image.to_png()
+}
+
+/// What is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Page {
+    /// Everything, on white.
+    Whole,
+    /// Without the ground and the heat.
+    Lines,
+}
+
+fn compose(chart: &Chart, width: f64, height: f64, page: Page) -> (String, Frame) {
     let (width, height) = (width.clamp(160.0, 20_000.0), height.clamp(120.0, 20_000.0));
     let colours = colours(chart);
     let key = if chart.legend == Legend::Hidden { None } else { Box::of(entries(chart, &colours)) };
-    let mut frame = Frame::fit(chart, width, height, 0.0);
+    let bar = chart.heat.as_ref().map_or(0.0, Heat::room);
+    let mut frame = Frame::fit(chart, width, height, bar);
     let mut key_at = None;
     if let Some(key) = &key {
         key_at = match chart.legend {
@@ -43,18 +78,28 @@ pub fn to_svg(chart: &Chart, width: f64, height: f64) -> String {
             _ => key.free_corner(&frame, chart),
         };
         if key_at.is_none() {
-            frame = Frame::fit(chart, width, height, (key.width + 4.0).min(0.5 * width));
-            key_at = Some([frame.right + 12.0, frame.top]);
+            frame = Frame::fit(chart, width, height, bar + (key.width + 4.0).min(0.5 * width));
+            key_at = Some([frame.right + bar + 12.0, frame.top]);
         }
     }
     let mut svg = String::with_capacity(1 << 14);
     let _ = writeln!(
         svg,
-        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="{}">
-<rect width="100%" height="100%" fill="#ffffff"/>"##,
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="{}">"##,
         text::FONT_FAMILY
     );
-    write_grid(&mut svg, &frame);
+    if page == Page::Whole {
+        svg.push_str("<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n");
+    }
+    match &chart.heat {
+        None => write_grid(&mut svg, &frame),
+        Some(heat) => {
+            if page == Page::Whole {
+                heat.write_image(&mut svg, &frame);
+            }
+            heat.write_bar(&mut svg, &frame);
+        }
+    }
     let _ = writeln!(
         svg,
         r#"<clipPath id="frame"><rect x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}"/></clipPath><g clip-path="url(#frame)">"#,
@@ -78,7 +123,7 @@ pub fn to_svg(chart: &Chart, width: f64, height: f64) -> String {
         key.write(&mut svg, left, top);
     }
     svg.push_str("</svg>\n");
-    svg
+    (svg, frame)
 }
 
 /// The colour of every series: its own, or the next of the palette; series of one name share one, so that a measured

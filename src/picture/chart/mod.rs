@@ -6,6 +6,7 @@
 
 mod draw;
 mod frame;
+mod heat;
 mod legend;
 mod series;
 #[cfg(test)]
@@ -19,6 +20,7 @@ use super::text;
 use crate::error::Result;
 
 pub use draw::to_svg;
+pub use heat::Heat;
 
 /// One chart.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -31,6 +33,8 @@ pub struct Chart {
     pub y: Axis,
     /// What is drawn, later series over earlier ones.
     pub series: Vec<Series>,
+    /// Numbers as colours over the whole area, below the series.
+    pub heat: Option<Heat>,
     /// Where the names of the series stand.
     pub legend: Legend,
     /// How lengths along x and y relate.
@@ -282,6 +286,6 @@ pub fn save_chart(chart: &Chart, path_without_extension: &Path) -> Result<Vec<Pa
     };
     let paths = vec![with(".svg"), with(".png")];
     write_file(&paths[0], svg.as_bytes())?;
-    write_file(&paths[1], &svg_to_png(&svg, 2.0)?)?;
+    write_file(&paths[1], &draw::to_png(chart, &svg, [width, height], 2.0)?)?;
     Ok(paths)
 }

@@ -37,6 +37,8 @@ pub enum Projection {
 pub struct Insets {
     /// Left and right.
     pub sides: f64,
+    /// On the right besides.
+    pub right: f64,
     /// Above.
     pub top: f64,
     /// Below.
@@ -99,8 +101,10 @@ impl Camera {
         let bounds = Bounds::around(points).unwrap_or(Bounds { low: [-1.0; 3], high: [1.0; 3] });
         let radius = (0.5 * bounds.diagonal()).max(1e-6);
         let [right, up, forward] = basis(-Vec3::from(direction), Vec3::z());
-        let (half_x, half_y) =
-            ((0.5 * aspect - insets.sides).max(0.05), (0.5 - 0.5 * (insets.top + insets.bottom)).max(0.05));
+        let (half_x, half_y) = (
+            (0.5 * aspect - insets.sides - 0.5 * insets.right).max(0.05),
+            (0.5 - 0.5 * (insets.top + insets.bottom)).max(0.05),
+        );
         let middle = 0.5 * (insets.bottom - insets.top);
         let mut target = Vec3::from(bounds.centre());
         let mut camera = Self {
@@ -108,7 +112,7 @@ impl Camera {
             target: target.into(),
             up: up.into(),
             projection,
-            shift: [0.0, middle],
+            shift: [-0.5 * insets.right, middle],
         };
         // One round is exact for parallel rays; perspective changes a little with each shift of the target.
         for _ in 0..4 {

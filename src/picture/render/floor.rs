@@ -9,6 +9,9 @@ use crate::Vec3;
 
 /// Texels along the longer side of the shadow maps.
 const TEXELS: usize = 512;
+/// Shares of light that the two kinds of shadow on the floor take away where they are full.
+const SHADOW_DEPTH: f32 = 0.20;
+const CONTACT_DEPTH: f32 = 0.42;
 
 /// The floor made ready for drawing.
 pub(super) struct Ground {
@@ -87,8 +90,19 @@ impl Ground {
         (0.5 * line(self.grid)).max(line(5.0 * self.grid))
     }
 
+    /// How much light reaches the floor at one of its places, 0 to 1.
+    pub fn light(&self, at: [f64; 2]) -> f32 {
+        let [shadow, contact] = self.shade(at);
+        (1.0 - SHADOW_DEPTH * shadow) * (1.0 - CONTACT_DEPTH * contact)
+    }
+
+    /// The same where the floor is seen at a pixel.
+    pub fn light_at(&self, px: f64, py: f64) -> f32 {
+        self.light(self.screen.meet(px, py).0)
+    }
+
     /// Shares of main light and of light from all around that are kept away at a place.
-    pub fn shade(&self, at: [f64; 2]) -> [f32; 2] {
+    fn shade(&self, at: [f64; 2]) -> [f32; 2] {
         let place = [0, 1].map(|k| (at[k] as f32 - self.corner[k]) / self.texel - 0.5);
         let inside = |k: usize| place[k] >= 0.0 && place[k] < self.size[k] as f32 - 1.001;
         if self.size[0] == 0 || !inside(0) || !inside(1) {

@@ -10,6 +10,7 @@ mod overlay;
 mod raster;
 mod scene;
 mod shade;
+mod sheet;
 #[cfg(test)]
 pub(in crate::picture) mod tests;
 mod tubes;
@@ -20,8 +21,8 @@ use rayon::prelude::*;
 use super::Image;
 
 pub use camera::{Bounds, Camera, Insets, Projection};
-pub use overlay::{Key, Overlay, ScaleBar, time_text};
-pub use scene::{Background, Edges, Floor, Pane, Scene, Surface, SurfaceColour};
+pub use overlay::{FieldBar, Key, Overlay, ScaleBar, time_text};
+pub use scene::{Background, Edges, Floor, Pane, Scene, Sheet, Surface, SurfaceColour};
 
 use raster::{Band, Geometry};
 use shade::Shader;
@@ -46,6 +47,7 @@ pub fn draw(scene: &Scene, camera: &Camera, overlay: &Overlay, width: usize, hei
         let first_row = number * BAND_ROWS;
         let mut band = Band::new(width, rows.len() / (3 * width), first_row);
         shader.lay_floor(&mut band);
+        shader.lay_sheet(&mut band);
         for triangle in &bins[number] {
             band.add(&geometry, *triangle);
         }

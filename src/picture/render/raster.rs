@@ -10,6 +10,8 @@ use super::{BAND_ROWS, SAMPLES};
 pub(super) const NOTHING: u32 = u32::MAX;
 /// A sample through which the floor is seen.
 pub(super) const FLOOR: u32 = u32::MAX - 1;
+/// A sample through which the sheet is seen.
+pub(super) const SHEET: u32 = u32::MAX - 2;
 
 /// All facets of a scene in the coordinates of the picture.
 pub(super) struct Geometry {
@@ -137,7 +139,7 @@ pub(super) struct Band {
     /// First row of samples, counted from the top of the picture.
     pub first: usize,
     pub nearness: Vec<f32>,
-    /// Facet, [`FLOOR`] or [`NOTHING`].
+    /// Facet, [`SHEET`], [`FLOOR`] or [`NOTHING`].
     pub seen: Vec<u32>,
     /// The nearest translucent facet, or [`NOTHING`], and its nearness; left out when it lies behind what is seen.
     pub veil: Vec<u32>,

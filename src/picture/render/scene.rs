@@ -1,6 +1,6 @@
 //! What can be drawn: surfaces, lines, a floor and panes, all in µm.
 
-use crate::picture::colour::Colour;
+use crate::picture::colour::{Colour, ColourMap};
 
 /// Everything in front of the camera.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -11,6 +11,8 @@ pub struct Scene {
     pub strokes: Surface,
     /// The substrate that cells sit on and throw shadows on; seen from its free side only.
     pub floor: Option<Floor>,
+    /// Values of a field, on the floor or on a slice through the scene.
+    pub sheet: Option<Sheet>,
     /// Translucent rectangles: walls, plates.
     pub panes: Vec<Pane>,
     /// What is behind everything.
@@ -86,6 +88,25 @@ pub struct Floor {
     pub grid: f64,
     /// Radius where the floor has faded away, µm.
     pub radius: f64,
+}
+
+/// A rectangle that shows numbers as colours, smoothly between the centres of its boxes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sheet {
+    /// The corner of the first box, µm.
+    pub corner: [f64; 3],
+    /// Its first side as a vector, µm.
+    pub side_u: [f64; 3],
+    /// Its second side as a vector at a right angle to the first, µm.
+    pub side_v: [f64; 3],
+    /// Number of boxes along the two sides.
+    pub size: [usize; 2],
+    /// A value for each box, those along the first side together; NaN is shown grey.
+    pub values: Vec<f64>,
+    /// Colours.
+    pub map: ColourMap,
+    /// Values of the first and the last colour.
+    pub range: [f64; 2],
 }
 
 /// A translucent rectangle.

@@ -4,17 +4,15 @@ use nalgebra::Vector3;
 
 use super::SAMPLES;
 use super::floor::Ground;
-use super::raster::{Band, FLOOR, Geometry, NOTHING, Triangle};
+use super::raster::{Band, FLOOR, Geometry, NOTHING, SHEET, Triangle};
 use super::scene::{Background, Edges, Pane, Scene};
+use super::sheet::Carpet;
 use super::view::{PlaneOnScreen, View};
 use crate::Vec3;
 
 /// Colour of the floor and of its grid, sRGB from 0 to 1.
 const FLOOR_COLOUR: [f32; 3] = [0.930, 0.940, 0.952];
 const GRID_COLOUR: [f32; 3] = [0.795, 0.82, 0.85];
-/// Shares of light that the two kinds of shadow on the floor take away where they are full.
-const SHADOW_DEPTH: f32 = 0.20;
-const CONTACT_DEPTH: f32 = 0.42;
 /// Entries of the table from linear light to sRGB: steps below a third of a grey level at the dark end.
 const GAMMA_STEPS: usize = 8192;
 
@@ -22,6 +20,7 @@ const GAMMA_STEPS: usize = 8192;
 pub(super) struct Shader<'a> {
     view: &'a View,
     ground: Option<Ground>,
+    carpet: Option<Carpet<'a>>,
     panes: Vec<Glass>,
     background: Background,
     /// Unit vector towards the main light.
@@ -39,7 +38,7 @@ struct Glass {
 }
 
 impl<'a> Shader<'a> {
-    pub fn new(scene: &Scene, view: &'a View, geometry: &Geometry) -> Self {
+    pub fn new(scene: &'a Scene, view: &'a View, geometry: &Geometry) -> Self {
         let sky = scene.floor.and_then(|f| Vec3::from(f.normal).try_normalize(1e-300)).unwrap_or(Vec3::z());
         // Over the viewer's left shoulder, and always well above the floor.
         let light = (-view.forward * 0.75 - view.right * 0.62 + view.up * 0.5 + sky * 0.75).normalize();
@@ -47,7 +46,9 @@ impl<'a> Shader<'a> {
         let gamma = (0..=GAMMA_STEPS).map(|k| to_srgb(k as f32 / GAMMA_STEPS as f32)).collect();
         let panes = scene.panes.iter().filter_map(|pane| Glass::new(pane, view)).collect();
         let (light, sky) = (light.cast(), sky.cast());
-        Self { view, ground, panes, background: scene.background, light, sky, gamma }
+        let floor = scene.floor.and_then(|f| Some((Vec3::from(f.point), Vec3::from(f.normal).try_normalize(1e-300)?)));
+        let carpet = scene.sheet.as_ref().and_then(|sheet| Carpet::new(sheet, view, floor));
+        Self { view, ground, carpet, panes, background: scene.background, light, sky, gamma }
     }
 
     /// Puts the floor into the samples of a band that show it.
@@ -61,6 +62,26 @@ impl<'a> Shader<'a> {
                 if near > 0.0 || !self.view.is_perspective {
                     band.nearness[y * band.width + x] = near as f32;
                     band.seen[y * band.width + x] = FLOOR;
+                }
+            }
+        }
+    }
+
+    /// Puts the sheet into the samples of a band where it is not below the floor.
+    pub fn lay_sheet(&self, band: &mut Band) {
+        let Some(carpet) = &self.carpet else { return };
+        let per_sample = 1.0 / SAMPLES as f64;
+        for y in 0..band.height {
+            let py = ((band.first + y) as f64 + 0.5) * per_sample;
+            let row = carpet.nearness_along_row(py);
+            for x in 0..band.width {
+                let place = y * band.width + x;
+                let Some(near) = carpet.nearness(self.view, (x as f64 + 0.5) * per_sample, row, py) else { continue };
+                // A sheet on the floor hides it, whatever the last digits say.
+                let (below, hides) = (band.nearness[place], carpet.lies_on_floor() && band.seen[place] == FLOOR);
+                if hides || near >= below {
+                    band.nearness[place] = near;
+                    band.seen[place] = SHEET;
                 }
             }
         }
@@ -113,6 +134,7 @@ impl<'a> Shader<'a> {
         };
         let mut colour = match (seen, &self.ground) {
             (NOTHING, _) | (FLOOR, None) => behind(),
+            (SHEET, ground) => self.carpet.as_ref().map_or_else(behind, |c| c.colour(ground.as_ref(), px, py)),
             (FLOOR, Some(ground)) => self.floor_colour(ground, behind(), px, py),
             (facet, _) => self.facet_colour(geometry, &geometry.triangles[facet as usize], x, y).0,
         };
@@ -139,8 +161,7 @@ impl<'a> Shader<'a> {
             return behind;
         }
         let line = ground.grid_strength(at, pixel);
-        let [shadow, contact] = ground.shade(at);
-        let light = (1.0 - SHADOW_DEPTH * shadow) * (1.0 - CONTACT_DEPTH * contact);
+        let light = ground.light(at);
         std::array::from_fn(|k| {
             let plain = FLOOR_COLOUR[k] + line * (GRID_COLOUR[k] - FLOOR_COLOUR[k]);
             // Shadows keep a little blue, as under an open sky.
