@@ -41,6 +41,7 @@ fn relax(kind: &Kind, method: Method, size: StepSize) -> Option<Relaxed> {
         seed: 1,
         kinds: vec![kind.clone()],
         planes: vec![],
+        chemistry: Default::default(),
         gravity: Vec3::zeros(),
         integrator,
         until: 1e9,

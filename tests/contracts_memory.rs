@@ -79,6 +79,7 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
         seed: 1,
         kinds: vec![kind.with_cells(0, cells)],
         planes,
+        chemistry: Default::default(),
         gravity: Vec3::zeros(),
         integrator: Integrator { method, size: StepSize::Fixed(0.01) },
         until: 1e9,

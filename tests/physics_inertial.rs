@@ -13,7 +13,16 @@ const INERTIAL: [Method; 4] = [Method::Euler, Method::SemiImplicitEuler, Method:
 
 fn model(kind: Kind, method: Method, dt: f64, until: f64) -> Model {
     let integrator = Integrator { method, size: StepSize::Fixed(dt) };
-    Model { seed: 1, kinds: vec![kind], planes: vec![], gravity: Vec3::zeros(), integrator, until, kinks: vec![] }
+    Model {
+        seed: 1,
+        kinds: vec![kind],
+        planes: vec![],
+        chemistry: Default::default(),
+        gravity: Vec3::zeros(),
+        integrator,
+        until,
+        kinks: vec![],
+    }
 }
 
 /// Two atoms on a spring of 3 pN/µm and 1 µm at rest, a facet of no matter; mass 0.5 mg each.
@@ -233,7 +242,7 @@ fn scratch_is_scratch_for_every_scheme() {
         let (mut clean, mut ws) = (State::new(&model, &[vec![shape.clone(); 11]]), Workspace::new(&model));
         let (mut poisoned, mut bad) = (clean.clone(), Workspace::new(&model));
         for _ in 0..20 {
-            bad.poison();
+            bad.poison(&model);
             step(&model, &mut clean, &mut ws).unwrap();
             step(&model, &mut poisoned, &mut bad).unwrap();
             assert_eq!(clean, poisoned, "{method:?}");

@@ -20,7 +20,16 @@ fn sphere_kind(level: u32, stiffness: f64) -> Kind {
 
 fn model_of(kind: Kind, method: Method, size: StepSize, until: f64) -> Model {
     let integrator = Integrator { method, size };
-    Model { seed: 1, kinds: vec![kind], planes: vec![], gravity: Vec3::zeros(), integrator, until, kinks: vec![] }
+    Model {
+        seed: 1,
+        kinds: vec![kind],
+        planes: vec![],
+        chemistry: Default::default(),
+        gravity: Vec3::zeros(),
+        integrator,
+        until,
+        kinks: vec![],
+    }
 }
 
 const ADAPTIVE: StepSize = StepSize::Adaptive { tolerance: 1e-3, largest: 1e3 };
@@ -175,7 +184,7 @@ fn scratch_is_scratch() {
     let mut other = Workspace::new(&model);
     for _ in 0..20 {
         step(&model, &mut clean, &mut ws).unwrap();
-        other.poison();
+        other.poison(&model);
         step(&model, &mut poisoned, &mut other).unwrap();
         assert_eq!(clean, poisoned);
     }
