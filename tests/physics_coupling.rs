@@ -146,7 +146,7 @@ fn a_linear_field_is_sensed_exactly() {
     for (dimension, size, z, gz) in [(2, "80 80", "0", 0.0), (3, "80 80 80", "0.25*z", 0.25)] {
         let field = format!(
             r#"<eml name="field"><grid dimension="{dimension}" spacing="4" origin="-40 -40 -40" size="{size}"/>
-            <field id="c" initial="100 + 2*x - 0.5*y + {z}"/></eml>"#
+            <field id="c" initial="200 + 2*x - 0.5*y + {z}"/></eml>"#
         );
         let field = if dimension == 2 { field.replace("-40 -40 -40", "-40 -40") } else { field };
         let own = r#"<eml name="own" level="cell"><input id="c" default="0"/><input id="gx" default="0"/>
@@ -159,7 +159,7 @@ fn a_linear_field_is_sensed_exactly() {
         let mut scene = scene(&[("field", &field), ("own", own)], &text);
         scene.begin();
         let atom = scene.state().kinds[0].cell(&scene.compiled.model.kinds[0], 0)[7];
-        let value = |x: f64, y: f64, z: f64| 100.0 + 2.0 * x - 0.5 * y + gz * z;
+        let value = |x: f64, y: f64, z: f64| 200.0 + 2.0 * x - 0.5 * y + gz * z;
         let expected = [
             ("c", value(7.0, -3.0, 4.0)),
             ("gx", 2.0),
@@ -275,13 +275,14 @@ fn a_system_that_blows_up_is_named_and_the_state_stays() {
     let Trouble::System { system, owner, time, variable, .. } = &trouble else { panic!("{trouble}") };
     assert_eq!((system.as_str(), owner.clone()), ("own", Some(("cell".to_owned(), 1))));
     assert_eq!(variable.as_deref(), Some("U"));
-    assert!((9.9..=10.0).contains(time), "{time}");
+    // The pole is met as exactly as the tolerance of 1e-6 lets the solution be.
+    assert!((time - 10.0).abs() < 1e-3, "{time}");
 }
 
 #[test]
 fn a_link_that_carries_nonsense_is_named() {
-    let own = r#"<eml name="own" level="cell"><variable id="r" initial="1" rate="-1"/>
-        <link from="system.r" to="cell.rest_volume_ratio"/></eml>"#;
+    let own = r#"<eml name="own" level="cell"><variable id="r" initial="1" rate="-0.01"/>
+        <link from="system.r" to="cell.rest_volume_ratio" transfer="piecewise(value, value gt 0.98, -1)"/></eml>"#;
     let mut scene = scene(&[("own", own)], &one_cell("5 s", "0.25 s"));
     let trouble = loop {
         if let Err(trouble) = scene.step() {
@@ -310,6 +311,8 @@ seed = 4
 [run]
 until = "40 s"
 integrator = { max_step = "1 s" }
+[output]
+every = "10 s"
 [cells.cell]
 number = 37
 mesh = { shape = "icosphere", radius = "5 um", level = 1 }

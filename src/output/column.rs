@@ -61,8 +61,11 @@ impl Plan<'_> {
         packing: Packing,
     ) -> hdf5::Result<Dataset> {
         let first = rows.map_or(Extent::resizable(0), Extent::fixed);
-        let extents: Vec<Extent> = [first].into_iter().chain(row.iter().map(|n| Extent::fixed(*n))).collect();
-        let piece: Vec<usize> = [piece_rows].into_iter().chain(row.iter().copied()).collect();
+        // A dimension of nothing (a scene without cells) has no fixed size that a piece could fill.
+        let across = |n: &usize| if *n == 0 { Extent::resizable(0) } else { Extent::fixed(*n) };
+        let extents: Vec<Extent> = [first].into_iter().chain(row.iter().map(across)).collect();
+        let least = usize::from(rows.is_none());
+        let piece: Vec<usize> = [piece_rows].into_iter().chain(row.iter().copied()).map(|n| n.max(least)).collect();
         let builder = file.new_dataset_builder();
         let mut builder = match self.number {
             Number::Float => builder.empty::<f64>().fill_value(f64::NAN),
@@ -117,7 +120,7 @@ impl Column {
         let selection: Vec<SliceOrIndex> =
             std::iter::once((rows - column.tail_rows..rows).into()).chain(row.iter().map(|n| (0..*n).into())).collect();
         let known: Vec<u64> = match number {
-            _ if column.tail_rows == 0 => Vec::new(),
+            _ if column.tail_rows == 0 || column.tail.is_empty() => Vec::new(),
             Number::Float => column
                 .dataset
                 .read_slice::<f64, _, IxDyn>(selection_of(selection))?
@@ -167,6 +170,9 @@ impl Column {
             return Ok(());
         }
         self.resize(self.rows)?;
+        if self.tail.is_empty() {
+            return Ok(());
+        }
         let bytes = std::mem::size_of_val(self.tail.as_slice());
         // Plain pieces are the numbers themselves, in the byte order of the machine, which is the dataset's.
         let pointer = self.tail.as_ptr().cast();
@@ -229,7 +235,7 @@ pub(super) fn push_frames(frames: &mut [(&mut PackedColumn, Cow<[f64]>)]) -> hdf
         let length = column.piece_rows * column.row.iter().product::<usize>();
         let first = column.frames * column.frame_rows;
         let rows = (0..).map(|piece| first + piece * column.piece_rows);
-        pieces.extend(values.chunks(length).zip(rows).map(|(piece, row)| (number, row, piece)));
+        pieces.extend(values.chunks(length.max(1)).zip(rows).map(|(piece, row)| (number, row, piece)));
     }
     // The new size comes first: a piece outside the dataset is refused.
     for (column, _) in frames.iter() {
