@@ -1,0 +1,30 @@
+//! Sums over stages, written for the processor's registers: as plain loops over lanes they are not always compiled so.
+
+use pulp::Simd;
+
+use crate::chemistry::program::Lanes;
+
+/// begin + factor·Σ weight·stage for one variable, lane by lane, without fused multiply-add: the same bits whatever the
+/// registers. The stages stand one after the other, `n` variables each.
+#[inline(always)]
+pub fn combine<S: Simd, const W: usize, const L: usize>(
+    simd: S,
+    weights: &[f64; W],
+    stages: &[Lanes<L>],
+    (n, variable): (usize, usize),
+    begin: Lanes<L>,
+    factor: &Lanes<L>,
+    to: &mut Lanes<L>,
+) {
+    let parts: [&[S::f64s]; W] = std::array::from_fn(|stage| S::as_simd_f64s(&stages[stage * n + variable]).0);
+    let weights: [S::f64s; W] = std::array::from_fn(|stage| simd.splat_f64s(weights[stage]));
+    let (begin, factor, to) = (S::as_simd_f64s(&begin).0, S::as_simd_f64s(factor).0, S::as_mut_simd_f64s(to).0);
+    for place in 0..to.len() {
+        let mut sum = simd.splat_f64s(0.0);
+        for stage in 0..W {
+            let part = simd.mul_f64s(weights[stage], parts[stage][place]);
+            sum = if stage == 0 { part } else { simd.add_f64s(sum, part) };
+        }
+        to[place] = simd.add_f64s(begin[place], simd.mul_f64s(factor[place], sum));
+    }
+}
