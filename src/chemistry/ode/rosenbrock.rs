@@ -5,7 +5,7 @@ use pulp::Simd;
 use super::lu;
 use super::scratch::Scratch;
 use super::tableau::rodas::{A1, A2, A3, A4, A5, C, D2, D3, G, GAMMA, K1, K2, K3, K4, K5, STAGES};
-use super::wide::combine;
+use super::wide::{combine, negated_where_finite, take_away};
 use crate::chemistry::program::{Lanes, Program, run};
 
 /// One step from (time, state). Leaves proposal, error and the stages. Derivatives that are not finite (a root at 0,
@@ -17,9 +17,9 @@ pub fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch
     for l in 0..L {
         inverse[l] = 1.0 / step[l];
     }
-    prepare(program, s, time, &inverse);
+    prepare(simd, program, s, time, &inverse);
     let clock = Clock { time, step, inverse: &inverse };
-    solve_stage(s, 0, &clock);
+    solve_stage(simd, s, program.timeless, 0, &clock);
     stage(simd, program, s, &A1, &K1, &clock);
     stage(simd, program, s, &A2, &K2, &clock);
     stage(simd, program, s, &A3, &K3, &clock);
@@ -66,19 +66,21 @@ fn stage<S: Simd, const W: usize, const L: usize>(
     for (v, rate) in present[..n].iter_mut().enumerate() {
         combine(simd, right, earlier, (n, v), *rate, clock.inverse, rate);
     }
-    solve_stage(s, W, clock);
+    solve_stage(simd, s, program.timeless, W, clock);
 }
 
 /// The linear system of a stage whose right side lacks only the derivative by time.
 #[inline(always)]
-fn solve_stage<const L: usize>(s: &mut Scratch<L>, stage: usize, clock: &Clock<L>) {
+fn solve_stage<S: Simd, const L: usize>(simd: S, s: &mut Scratch<L>, timeless: bool, stage: usize, clock: &Clock<L>) {
     let n = s.state.len();
     let present = &mut s.stages[stage * n..(stage + 1) * n];
-    if G[stage] != 0.0 {
-        for (rate, drift) in present.iter_mut().zip(&s.drift) {
-            for l in 0..L {
-                rate[l] += G[stage] * clock.step[l] * drift[l];
-            }
+    if G[stage] != 0.0 && !timeless {
+        let mut weight = *clock.step;
+        for l in 0..L {
+            weight[l] *= G[stage];
+        }
+        for (rate, negated) in present.iter_mut().zip(&s.drift) {
+            take_away(simd, rate, &weight, negated);
         }
     }
     lu::solve(&s.matrix, n, &s.swaps, present);
@@ -86,27 +88,28 @@ fn solve_stage<const L: usize>(s: &mut Scratch<L>, stage: usize, clock: &Clock<L
 
 /// Rates, derivatives and the factored matrix 1/(γ·step) − J at (time, state).
 #[inline(always)]
-fn prepare<const L: usize>(program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, inverse: &Lanes<L>) {
+fn prepare<S: Simd, const L: usize>(
+    simd: S,
+    program: &Program,
+    s: &mut Scratch<L>,
+    time: &Lanes<L>,
+    inverse: &Lanes<L>,
+) {
     let n = s.state.len();
     s.file[0] = *time;
     s.file[1..=n].copy_from_slice(&s.state);
     run(&program.linear, &mut s.file);
-    let finite = |value: f64| if value.abs() < f64::INFINITY { value } else { 0.0 };
     for v in 0..n {
         s.stages[v] = s.file[program.linear.outputs[v] as usize];
-        let from = &s.file[program.linear.outputs[n + v] as usize];
-        let drift = &mut s.drift[v];
-        for l in 0..L {
-            drift[l] = finite(from[l]);
+        if !program.timeless {
+            // Kept with the other sign, as the matrix is.
+            negated_where_finite(simd, &s.file[program.linear.outputs[n + v] as usize], &mut s.drift[v]);
         }
     }
     s.matrix.fill([0.0; L]);
     for (&(row, column), &register) in program.pattern.iter().zip(&program.linear.outputs[2 * n..]) {
-        let entry = &s.file[register as usize];
         let to = &mut s.matrix[row as usize * n + column as usize];
-        for l in 0..L {
-            to[l] = -finite(entry[l]);
-        }
+        negated_where_finite(simd, &s.file[register as usize], to);
     }
     for v in 0..n {
         let diagonal = &mut s.matrix[v * n + v];
@@ -114,7 +117,7 @@ fn prepare<const L: usize>(program: &Program, s: &mut Scratch<L>, time: &Lanes<L
             diagonal[l] += inverse[l] * (1.0 / GAMMA);
         }
     }
-    lu::factor(&mut s.matrix, n, &mut s.swaps);
+    lu::factor(simd, &mut s.matrix, n, &mut s.swaps);
 }
 
 /// The state at a share of the last step, after a step that was accepted.

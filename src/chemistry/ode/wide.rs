@@ -28,3 +28,25 @@ pub fn combine<S: Simd, const W: usize, const L: usize>(
         to[place] = simd.add_f64s(begin[place], simd.mul_f64s(factor[place], sum));
     }
 }
+
+/// The numbers negated, and 0 where they are not finite.
+#[inline(always)]
+pub fn negated_where_finite<S: Simd, const L: usize>(simd: S, from: &Lanes<L>, to: &mut Lanes<L>) {
+    let (from, to) = (S::as_simd_f64s(from).0, S::as_mut_simd_f64s(to).0);
+    let (zero, infinite) = (simd.splat_f64s(0.0), simd.splat_f64s(f64::INFINITY));
+    for (to, &from) in to.iter_mut().zip(from) {
+        let finite = simd.less_than_f64s(simd.abs_f64s(from), infinite);
+        *to = simd.select_f64s(finite, simd.neg_f64s(from), zero);
+    }
+}
+
+/// Takes factor·other away. A zero factor leaves the numbers, sign of zero and all, as if nothing had been done.
+#[inline(always)]
+pub fn take_away<S: Simd, const L: usize>(simd: S, from: &mut Lanes<L>, factor: &Lanes<L>, other: &Lanes<L>) {
+    let (from, factor, other) = (S::as_mut_simd_f64s(from).0, S::as_simd_f64s(factor).0, S::as_simd_f64s(other).0);
+    let zero = simd.splat_f64s(0.0);
+    for ((from, &factor), &other) in from.iter_mut().zip(factor).zip(other) {
+        let less = simd.sub_f64s(*from, simd.mul_f64s(factor, other));
+        *from = simd.select_f64s(simd.equal_f64s(factor, zero), *from, less);
+    }
+}
