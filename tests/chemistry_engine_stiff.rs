@@ -49,7 +49,7 @@ const ABSOLUTE: f64 = 1e-14;
 
 #[test]
 fn hard_problems_are_solved_to_six_digits_and_their_work_is_known() {
-    let mut table = String::from("problem   method      digits  steps  refused  rates  factorisations\n");
+    let mut table = String::from("problem   method      steps  refused  rates  factorisations\n");
     for (name, label, scheme) in [
         ("vdpol", "Rosenbrock", ROSENBROCK),
         ("rober", "Rosenbrock", ROSENBROCK),
@@ -60,14 +60,14 @@ fn hard_problems_are_solved_to_six_digits_and_their_work_is_known() {
         assert!(digits >= 6.0, "{name} with {label}: {digits:.2} digits");
         let Work { steps, rejected, rates, jacobians, .. } = work;
         // No function of the system's library is called, so that the counts are the same on every machine.
-        table += &format!("{name:<9} {label:<10} {digits:>7.1} {steps:>6} {rejected:>8} {rates:>6} {jacobians:>15}\n");
+        table += &format!("{name:<9} {label:<10} {steps:>6} {rejected:>8} {rates:>6} {jacobians:>15}\n");
     }
     insta::assert_snapshot!(table, @"
-    problem   method      digits  steps  refused  rates  factorisations
-    vdpol     Rosenbrock    10.0   6279       17  37777            6296
-    rober     Rosenbrock     7.8   1730        1  10387            1731
-    pleiades  Rosenbrock     8.4   3712       54  22597            3766
-    pleiades  RK45           6.6    683       24   4243               0
+    problem   method      steps  refused  rates  factorisations
+    vdpol     Rosenbrock   6279       17  37777            6296
+    rober     Rosenbrock   1730        1  10387            1731
+    pleiades  Rosenbrock   3712       54  22597            3766
+    pleiades  RK45          683       24   4243               0
     ");
 }
 

@@ -4,7 +4,6 @@
 //! A text becomes a [`tree::System`] (checked, with its units and places), the tree becomes a program over lanes of
 //! cells, and the engine advances the program. Mechanics and contacts are never seen from here.
 
-pub mod derivative;
 pub mod eml;
 pub mod expression;
 pub mod field;

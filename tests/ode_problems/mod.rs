@@ -134,3 +134,32 @@ pub fn martiel_goldbeter() -> System {
     ];
     system("Martiel–Goldbeter", &variables, &parameters)
 }
+
+/// The five variables of Goldbeter's PER oscillator of the fruit fly (Proc. R. Soc. Lond. B 261, 1995, 319–324), in µM and
+/// hours, with the parameters of its figure 2: the period is close to 24 h.
+pub fn goldbeter_per() -> System {
+    let (there1, back1) = ("V1*P0/(K1+P0)", "V2*P1/(K1+P1)");
+    let (there2, back2) = ("V3*P1/(K1+P1)", "V4*P2/(K1+P2)");
+    let m = "vs*KI^4/(KI^4+PN^4)-vm*M/(Km+M)";
+    let p0 = format!("ks*M-{there1}+{back1}");
+    let p1 = format!("{there1}-{back1}-{there2}+{back2}");
+    let p2 = format!("{there2}-{back2}-k1*P2+k2*PN-vd*P2/(Kd+P2)");
+    let variables = [("M", 0.6, m), ("P0", 0.5, &p0), ("P1", 0.6, &p1), ("P2", 0.6, &p2), ("PN", 1.1, "k1*P2-k2*PN")];
+    let parameters = [
+        ("vs", 0.76),
+        ("vm", 0.65),
+        ("Km", 0.5),
+        ("ks", 0.38),
+        ("vd", 0.95),
+        ("k1", 1.9),
+        ("k2", 1.3),
+        ("KI", 1.0),
+        ("Kd", 0.2),
+        ("K1", 2.0),
+        ("V1", 3.2),
+        ("V2", 1.58),
+        ("V3", 5.0),
+        ("V4", 2.5),
+    ];
+    system("Goldbeter PER", &variables, &parameters)
+}

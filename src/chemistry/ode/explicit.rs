@@ -1,63 +1,53 @@
 //! Explicit steps: the pair of Tsitouras, the classical method of order 4 and Euler's.
 
+use pulp::Simd;
+
 use super::scratch::Scratch;
 use super::tableau::tsitouras::{A2, A3, A4, A5, A6, B, C, D, E};
+use super::wide::combine;
 use crate::chemistry::program::{Lanes, Program};
 
-/// The weighted sum of one variable's first stages.
+/// The rates at the state that the first `W` stages give, as the next stage.
 #[inline(always)]
-fn weighted<const S: usize, const L: usize>(weights: &[f64; S], stages: &[Lanes<L>], n: usize, v: usize) -> Lanes<L> {
-    let mut sum = [0.0; L];
-    for stage in 0..S {
-        let slope = &stages[stage * n + v];
-        for l in 0..L {
-            let part = weights[stage] * slope[l];
-            sum[l] = if stage == 0 { part } else { sum[l] + part };
-        }
-    }
-    sum
-}
-
-/// The rates at the state that the first `S` stages give, as the next stage.
-#[inline(always)]
-fn stage<const S: usize, const L: usize>(
+fn stage<S: Simd, const W: usize, const L: usize>(
+    simd: S,
     program: &Program,
     s: &mut Scratch<L>,
-    weights: &[f64; S],
-    time: Lanes<L>,
-    step: Lanes<L>,
+    weights: &[f64; W],
+    time: &Lanes<L>,
+    step: &Lanes<L>,
 ) {
     let n = s.state.len();
     for v in 0..n {
-        let sum = weighted(weights, &s.stages, n, v);
-        let (begin, to) = (&s.state[v], &mut s.file[1 + v]);
-        for l in 0..L {
-            to[l] = begin[l] + step[l] * sum[l];
-        }
+        combine(simd, weights, &s.stages, (n, v), s.state[v], step, &mut s.file[1 + v]);
     }
+    let clock = &mut s.file[0];
     for l in 0..L {
-        s.file[0][l] = time[l] + C[S] * step[l];
+        clock[l] = time[l] + C[W] * step[l];
     }
-    s.rates_into(program, S);
+    s.rates_into(program, W);
 }
 
 /// One step of the pair from (time, state), whose rates are stage 0. Leaves proposal, error, and the rates at the
 /// proposal as the last stage.
 #[inline(always)]
-pub fn tsitouras<const L: usize>(program: &Program, s: &mut Scratch<L>, time: Lanes<L>, step: Lanes<L>) {
+pub fn tsitouras<S: Simd, const L: usize>(
+    simd: S,
+    program: &Program,
+    s: &mut Scratch<L>,
+    time: &Lanes<L>,
+    step: &Lanes<L>,
+) {
     let n = s.state.len();
-    stage(program, s, &A2, time, step);
-    stage(program, s, &A3, time, step);
-    stage(program, s, &A4, time, step);
-    stage(program, s, &A5, time, step);
-    stage(program, s, &A6, time, step);
-    stage(program, s, &B, time, step);
+    stage(simd, program, s, &A2, time, step);
+    stage(simd, program, s, &A3, time, step);
+    stage(simd, program, s, &A4, time, step);
+    stage(simd, program, s, &A5, time, step);
+    stage(simd, program, s, &A6, time, step);
+    stage(simd, program, s, &B, time, step);
     s.proposal.copy_from_slice(&s.file[1..=n]);
     for v in 0..n {
-        let sum = weighted(&E, &s.stages, n, v);
-        for l in 0..L {
-            s.error[v][l] = step[l] * sum[l];
-        }
+        combine(simd, &E, &s.stages, (n, v), [0.0; L], step, &mut s.error[v]);
     }
 }
 

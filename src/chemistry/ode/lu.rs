@@ -1,5 +1,8 @@
 //! Small dense linear systems, one for each cell, factored side by side.
 
+use pulp::Simd;
+
+use super::wide::take_away;
 use crate::chemistry::program::Lanes;
 
 /// A row is taken as pivot instead of the present one when its entry is this many times larger.
@@ -25,7 +28,7 @@ fn exchange<const L: usize>(values: &mut [Lanes<L>], first: usize, second: usize
 /// Factors matrices in place, `matrix[row·n + column]`. Each lane chooses its own pivots, so that its result does not
 /// depend on its neighbours. A singular matrix gives numbers that are not finite.
 #[inline(always)]
-pub fn factor<const L: usize>(matrix: &mut [Lanes<L>], n: usize, swaps: &mut Vec<Swap<L>>) {
+pub fn factor<S: Simd, const L: usize>(simd: S, matrix: &mut [Lanes<L>], n: usize, swaps: &mut Vec<Swap<L>>) {
     swaps.clear();
     for k in 0..n {
         for i in k + 1..n {
@@ -62,10 +65,7 @@ pub fn factor<const L: usize>(matrix: &mut [Lanes<L>], n: usize, swaps: &mut Vec
             let (above, below) = matrix.split_at_mut(i * n);
             let (above, below) = (&above[k * n + k + 1..k * n + n], &mut below[k + 1..n]);
             for (a, b) in below.iter_mut().zip(above) {
-                for l in 0..L {
-                    // A zero factor leaves the entry, sign of zero and all, as if the row had been skipped.
-                    a[l] = if factor[l] != 0.0 { a[l] - factor[l] * b[l] } else { a[l] };
-                }
+                take_away(simd, a, &factor, b);
             }
         }
     }
@@ -128,7 +128,7 @@ mod tests {
                 right[i][l] += matrix[i * n + j][l] * wanted[j][l];
             }
             let mut swaps = Vec::new();
-            factor(&mut matrix, n, &mut swaps);
+            factor(pulp::Scalar, &mut matrix, n, &mut swaps);
             solve(&matrix, n, &swaps, &mut right);
             let worst = right.iter().flatten().zip(wanted.iter().flatten()).map(|(a, b)| (a - b).abs());
             // Random matrices of this size have condition numbers up to about 1e4.
@@ -144,9 +144,9 @@ mod tests {
         let mut alone: Vec<[f64; 1]> = together.iter().map(|lanes| [lanes[1]]).collect();
         let (mut right, mut right_alone) = (vec![[1.0; 3]; n], vec![[1.0; 1]; n]);
         let (mut swaps, mut swaps_alone) = (Vec::new(), Vec::new());
-        factor(&mut together, n, &mut swaps);
+        factor(pulp::Scalar, &mut together, n, &mut swaps);
         solve(&together, n, &swaps, &mut right);
-        factor(&mut alone, n, &mut swaps_alone);
+        factor(pulp::Scalar, &mut alone, n, &mut swaps_alone);
         solve(&alone, n, &swaps_alone, &mut right_alone);
         (0..n).for_each(|i| assert_eq!(right[i][1].to_bits(), right_alone[i][0].to_bits()));
     }

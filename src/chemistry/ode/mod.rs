@@ -2,6 +2,7 @@
 //! system alone with events and values at any time.
 
 pub(in crate::chemistry) mod block;
+mod cells;
 mod control;
 mod events;
 mod explicit;
@@ -13,6 +14,7 @@ pub(in crate::chemistry) mod scratch;
 mod solve;
 mod stepper;
 pub mod tableau;
+mod wide;
 
 pub use control::Tolerances;
 pub use population::{LANES, Population};

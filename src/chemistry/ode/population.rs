@@ -2,11 +2,12 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::block::{self, BlockTrouble, Stride};
+use super::block::{self, CellTrouble};
+use super::cells::Cells;
 use super::scratch::Scratch;
 use super::{Method, OdeTrouble, Tolerances, Work};
 use crate::chemistry::program::{Lanes, Program, run};
@@ -183,27 +184,31 @@ impl Population {
         if n == 0 || self.cells == 0 {
             return Ok(Work::default());
         }
-        while self.rooms.len() < rayon::current_num_threads() {
+        let threads = rayon::current_num_threads();
+        while self.rooms.len() < threads {
             self.rooms.push(Mutex::new(None));
         }
         let Self { states, steps, errors, given, rooms, .. } = self;
         let (method, cells, open) = (self.method, self.cells, self.open);
-        let one = |(block, ((states, steps), errors)): (usize, ((&mut [Lanes<LANES>], &mut _), &mut _))| {
+        let blocks = blocks_a_task(steps.len(), threads);
+        let one = |(task, ((states, steps), errors)): (usize, ((&mut [_], &mut [_]), &mut [_]))| {
             let room = &rooms[rayon::current_thread_index().unwrap_or(0)];
             let mut room = room.lock().unwrap_or_else(PoisonError::into_inner);
             let scratch = room.get_or_insert_with(|| Box::new(Scratch::new(program, method == Method::Rosenbrock)));
-            let job = Job { program, method, scratch, used: (cells - block * LANES).min(LANES), window: (from, until) };
-            let result = Arch::new().dispatch(
-                #[inline(always)]
-                || job.run(states, &given[block * open..(block + 1) * open], steps, errors, tolerances),
-            );
-            result.map_err(|trouble| (block * LANES + trouble.lane, trouble))
+            program.set_constants(&mut scratch.file);
+            let first = task * blocks;
+            let given = &given[first * open..(first + steps.len()) * open];
+            let count = (cells - first * LANES).min(steps.len() * LANES);
+            let cells = Cells { count, states, given, steps, errors };
+            let result =
+                Arch::new().dispatch(Task { program, method, scratch, cells, window: (from, until), tolerances });
+            result.map_err(|trouble| CellTrouble { cell: first * LANES + trouble.cell, ..trouble })
         };
-        let blocks = states.par_chunks_mut(n).zip(steps.par_iter_mut()).zip(errors.par_iter_mut()).enumerate();
-        let result = blocks.map(one).reduce(|| Ok(Work::default()), first_trouble);
-        result.map_err(|(cell, trouble)| OdeTrouble {
+        let tasks = states.par_chunks_mut(n * blocks).zip(steps.par_chunks_mut(blocks));
+        let result = tasks.zip(errors.par_chunks_mut(blocks)).enumerate().map(one);
+        result.reduce(|| Ok(Work::default()), first_trouble).map_err(|trouble| OdeTrouble {
             system: program.name.clone(),
-            cell: Some(cell),
+            cell: Some(trouble.cell),
             time: trouble.time,
             variable: trouble.variable.map(|v| program.names[program.variables[v] as usize].clone()),
             reason: trouble.reason,
@@ -219,48 +224,44 @@ impl Population {
     }
 }
 
-type BlockResult = Result<Work, (usize, BlockTrouble)>;
+/// Tasks of so many blocks have enough cells to fill lanes that are done early.
+const MOST_BLOCKS: usize = 256;
+
+/// How many blocks a task takes: several tasks a thread, so that the threads end together.
+fn blocks_a_task(blocks: usize, threads: usize) -> usize {
+    let tasks = if threads == 1 { 1 } else { 4 * threads };
+    blocks.div_ceil(tasks).clamp(1, MOST_BLOCKS)
+}
+
+/// What one task needs, as an object with a method of its own: only so is all of it compiled for the wide registers.
+struct Task<'a> {
+    program: &'a Program,
+    method: Method,
+    scratch: &'a mut Scratch<LANES>,
+    cells: Cells<'a, LANES>,
+    window: (f64, f64),
+    tolerances: &'a Tolerances,
+}
+
+impl WithSimd for Task<'_> {
+    type Output = TaskResult;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> TaskResult {
+        let Self { program, method, scratch, mut cells, window, tolerances } = self;
+        block::advance(simd, program, method, scratch, &mut cells, window, tolerances)
+    }
+}
+
+type TaskResult = Result<Work, CellTrouble>;
 
 /// The sum of the work, or the trouble of the smaller cell.
-fn first_trouble(a: BlockResult, b: BlockResult) -> BlockResult {
+fn first_trouble(a: TaskResult, b: TaskResult) -> TaskResult {
     match (a, b) {
         (Ok(mut a), Ok(b)) => {
             a.add(b);
             Ok(a)
         }
-        (Err(a), Err(b)) => Err(if b.0 < a.0 { b } else { a }),
+        (Err(a), Err(b)) => Err(if b.cell < a.cell { b } else { a }),
         (Err(trouble), Ok(_)) | (Ok(_), Err(trouble)) => Err(trouble),
-    }
-}
-
-/// What one block needs beside its own numbers.
-struct Job<'a> {
-    program: &'a Program,
-    method: Method,
-    scratch: &'a mut Scratch<LANES>,
-    used: usize,
-    window: (f64, f64),
-}
-
-impl Job<'_> {
-    #[inline(always)]
-    fn run(
-        self,
-        states: &mut [Lanes<LANES>],
-        given: &[Lanes<LANES>],
-        steps: &mut Lanes<LANES>,
-        errors: &mut Lanes<LANES>,
-        tolerances: &Tolerances,
-    ) -> Result<Work, BlockTrouble> {
-        let Self { program, method, scratch, used, window } = self;
-        program.set_constants(&mut scratch.file);
-        let open = program.first_open();
-        scratch.file[open..open + given.len()].copy_from_slice(given);
-        scratch.state.copy_from_slice(states);
-        let mut stride = Stride { step: *steps, error: *errors };
-        let result = block::advance(program, method, scratch, &mut stride, used, window, tolerances);
-        states.copy_from_slice(&scratch.state);
-        (*steps, *errors) = (stride.step, stride.error);
-        result
     }
 }

@@ -1,88 +1,123 @@
 //! The step for stiff systems.
 
+use pulp::Simd;
+
 use super::lu;
 use super::scratch::Scratch;
-use super::tableau::rodas::{A, C, D2, D3, G, GAMMA, K, STAGES};
+use super::tableau::rodas::{A1, A2, A3, A4, A5, C, D2, D3, G, GAMMA, K1, K2, K3, K4, K5, STAGES};
+use super::wide::{combine, negated_where_finite, take_away};
 use crate::chemistry::program::{Lanes, Program, run};
 
 /// One step from (time, state). Leaves proposal, error and the stages. Derivatives that are not finite (a root at 0,
 /// say) count as 0: the error estimate then decides about the step.
 #[inline(always)]
-pub fn step<const L: usize>(program: &Program, s: &mut Scratch<L>, time: Lanes<L>, step: Lanes<L>) {
+pub fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
     let n = s.state.len();
-    prepare(program, s, time, step);
-    for stage in 0..STAGES {
-        if stage > 0 {
-            for v in 0..n {
-                let mut sum = s.state[v];
-                for (earlier, &weight) in A[stage][..stage].iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
-                    let slope = &s.stages[earlier * n + v];
-                    for l in 0..L {
-                        sum[l] += weight * slope[l];
-                    }
-                }
-                s.file[1 + v] = sum;
-                s.proposal[v] = sum;
-            }
-            for l in 0..L {
-                s.file[0][l] = time[l] + C[stage] * step[l];
-            }
-            s.rates_into(program, stage);
-        }
-        for v in 0..n {
-            let mut sum = [0.0; L];
-            for (earlier, &weight) in K[stage][..stage].iter().enumerate() {
-                let slope = &s.stages[earlier * n + v];
-                for l in 0..L {
-                    sum[l] += weight * slope[l];
-                }
-            }
-            let (rate, drift) = (s.stages[stage * n + v], s.drift[v]);
-            for l in 0..L {
-                sum[l] = rate[l] + sum[l] / step[l] + G[stage] * step[l] * drift[l];
-            }
-            s.stages[stage * n + v] = sum;
-        }
-        lu::solve(&s.matrix, n, &s.swaps, &mut s.stages[stage * n..(stage + 1) * n]);
+    let mut inverse = *step;
+    for l in 0..L {
+        inverse[l] = 1.0 / step[l];
     }
+    prepare(simd, program, s, time, &inverse);
+    let clock = Clock { time, step, inverse: &inverse };
+    solve_stage(simd, s, program.timeless, 0, &clock);
+    stage(simd, program, s, &A1, &K1, &clock);
+    stage(simd, program, s, &A2, &K2, &clock);
+    stage(simd, program, s, &A3, &K3, &clock);
+    stage(simd, program, s, &A4, &K4, &clock);
+    stage(simd, program, s, &A5, &K5, &clock);
     for v in 0..n {
         let last = s.stages[(STAGES - 1) * n + v];
         s.error[v] = last;
+        let proposal = &mut s.proposal[v];
         for l in 0..L {
-            s.proposal[v][l] += last[l];
+            proposal[l] += last[l];
         }
     }
 }
 
+/// When the step begins, its length and one over it.
+struct Clock<'a, const L: usize> {
+    time: &'a Lanes<L>,
+    step: &'a Lanes<L>,
+    inverse: &'a Lanes<L>,
+}
+
+/// The stage after the first `W`: its argument, its rates, its right side and its linear system.
+#[inline(always)]
+fn stage<S: Simd, const W: usize, const L: usize>(
+    simd: S,
+    program: &Program,
+    s: &mut Scratch<L>,
+    argument: &[f64; W],
+    right: &[f64; W],
+    clock: &Clock<L>,
+) {
+    let n = s.state.len();
+    for v in 0..n {
+        combine(simd, argument, &s.stages, (n, v), s.state[v], &[1.0; L], &mut s.file[1 + v]);
+    }
+    let now = &mut s.file[0];
+    for l in 0..L {
+        now[l] = clock.time[l] + C[W] * clock.step[l];
+    }
+    s.proposal.copy_from_slice(&s.file[1..=n]);
+    s.rates_into(program, W);
+    let (earlier, present) = s.stages.split_at_mut(W * n);
+    for (v, rate) in present[..n].iter_mut().enumerate() {
+        combine(simd, right, earlier, (n, v), *rate, clock.inverse, rate);
+    }
+    solve_stage(simd, s, program.timeless, W, clock);
+}
+
+/// The linear system of a stage whose right side lacks only the derivative by time.
+#[inline(always)]
+fn solve_stage<S: Simd, const L: usize>(simd: S, s: &mut Scratch<L>, timeless: bool, stage: usize, clock: &Clock<L>) {
+    let n = s.state.len();
+    let present = &mut s.stages[stage * n..(stage + 1) * n];
+    if G[stage] != 0.0 && !timeless {
+        let mut weight = *clock.step;
+        for l in 0..L {
+            weight[l] *= G[stage];
+        }
+        for (rate, negated) in present.iter_mut().zip(&s.drift) {
+            take_away(simd, rate, &weight, negated);
+        }
+    }
+    lu::solve(&s.matrix, n, &s.swaps, present);
+}
+
 /// Rates, derivatives and the factored matrix 1/(γ·step) − J at (time, state).
 #[inline(always)]
-fn prepare<const L: usize>(program: &Program, s: &mut Scratch<L>, time: Lanes<L>, step: Lanes<L>) {
+fn prepare<S: Simd, const L: usize>(
+    simd: S,
+    program: &Program,
+    s: &mut Scratch<L>,
+    time: &Lanes<L>,
+    inverse: &Lanes<L>,
+) {
     let n = s.state.len();
-    s.file[0] = time;
+    s.file[0] = *time;
     s.file[1..=n].copy_from_slice(&s.state);
     run(&program.linear, &mut s.file);
-    let finite = |value: f64| if value.abs() < f64::INFINITY { value } else { 0.0 };
     for v in 0..n {
         s.stages[v] = s.file[program.linear.outputs[v] as usize];
-        let drift = s.file[program.linear.outputs[n + v] as usize];
-        for l in 0..L {
-            s.drift[v][l] = finite(drift[l]);
+        if !program.timeless {
+            // Kept with the other sign, as the matrix is.
+            negated_where_finite(simd, &s.file[program.linear.outputs[n + v] as usize], &mut s.drift[v]);
         }
     }
     s.matrix.fill([0.0; L]);
     for (&(row, column), &register) in program.pattern.iter().zip(&program.linear.outputs[2 * n..]) {
-        let entry = s.file[register as usize];
         let to = &mut s.matrix[row as usize * n + column as usize];
-        for l in 0..L {
-            to[l] = -finite(entry[l]);
-        }
+        negated_where_finite(simd, &s.file[register as usize], to);
     }
     for v in 0..n {
+        let diagonal = &mut s.matrix[v * n + v];
         for l in 0..L {
-            s.matrix[v * n + v][l] += 1.0 / (GAMMA * step[l]);
+            diagonal[l] += inverse[l] * (1.0 / GAMMA);
         }
     }
-    lu::factor(&mut s.matrix, n, &mut s.swaps);
+    lu::factor(simd, &mut s.matrix, n, &mut s.swaps);
 }
 
 /// The state at a share of the last step, after a step that was accepted.

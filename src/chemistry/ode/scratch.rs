@@ -19,7 +19,7 @@ pub struct Scratch<const L: usize> {
     pub error: Vec<Lanes<L>>,
     /// Stage after stage, one number a variable.
     pub stages: Vec<Lanes<L>>,
-    /// Derivatives of the rates by time.
+    /// Derivatives of the rates by time, negated.
     pub drift: Vec<Lanes<L>>,
     /// Matrix of the linear systems.
     pub matrix: Vec<Lanes<L>>,

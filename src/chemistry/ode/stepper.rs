@@ -1,5 +1,7 @@
 //! One system, step by step, with its state at any time within the last step.
 
+use pulp::Scalar;
+
 use super::control::{self, EXPLICIT, LEAST, STIFF, Tolerances};
 use super::scratch::Scratch;
 use super::{Method, OdeTrouble, Reason, Work, explicit, rosenbrock};
@@ -153,10 +155,10 @@ impl<'a> Stepper<'a> {
                 (false, false) => wanted,
             };
             if stiff {
-                rosenbrock::step(self.program, &mut self.s, [self.time], [step]);
+                rosenbrock::step(Scalar, self.program, &mut self.s, &[self.time], &[step]);
                 self.work.jacobians += 1;
             } else {
-                explicit::tsitouras(self.program, &mut self.s, [self.time], [step]);
+                explicit::tsitouras(Scalar, self.program, &mut self.s, &[self.time], &[step]);
             }
             self.work.rates += 6;
             let error =

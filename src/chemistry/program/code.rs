@@ -15,6 +15,12 @@ pub enum Action {
     Binary(Binary),
     /// `b` where `a` is true, and else `c`.
     Select,
+    /// `a·b + c`, rounded twice as the two operations would be.
+    MulAdd,
+    /// `a·b − c`, rounded twice.
+    MulSub,
+    /// `c − a·b`, rounded twice.
+    SubMul,
 }
 
 /// One operation over all lanes.
@@ -73,11 +79,12 @@ impl Code {
     /// Code for some nodes. All their constants must have been collected, since they stand between slots and results.
     pub fn of(graph: &Graph, roots: &[NodeId], slots: usize, constants: &Constants) -> Self {
         let needed = graph.needed(roots);
-        let last_use = last_uses(graph, roots, &needed);
+        let merged = Merged::of(graph, roots, &needed);
+        let last_use = merged.last_uses(graph, roots, &needed);
         let mut register = vec![Register::MAX; graph.len()];
         let (mut free, mut next) = (Vec::new(), (slots + constants.values.len()) as Register);
         let mut ops = Vec::new();
-        for id in (0..graph.len()).filter(|&id| needed[id]) {
+        for id in (0..graph.len()).filter(|&id| needed[id] && !merged.inner[id]) {
             let (action, operands) = match graph.node(id as NodeId) {
                 Node::Slot(slot) => {
                     register[id] = slot;
@@ -89,6 +96,7 @@ impl Code {
                     continue;
                 }
                 Node::Unary(function, a) => (Action::Unary(function), [a, a, a]),
+                Node::Binary(..) if merged.outer[id].is_some() => merged.outer[id].expect("just asked"),
                 Node::Binary(function, a, b) => (Action::Binary(function), [a, b, a]),
                 Node::Select(a, b, c) => (Action::Select, [a, b, c]),
             };
@@ -112,12 +120,54 @@ impl Code {
     }
 }
 
-/// The node that uses each node last; results count as used after all.
-fn last_uses(graph: &Graph, roots: &[NodeId], needed: &[bool]) -> Vec<usize> {
-    let mut last = vec![0; graph.len()];
-    for id in (0..graph.len()).filter(|&id| needed[id]) {
-        graph.operands(id as NodeId).for_each(|operand| last[operand as usize] = id);
+/// Products that only one sum or difference uses become one operation with it.
+struct Merged {
+    /// The operation of a sum that has taken up a product.
+    outer: Vec<Option<(Action, [NodeId; 3])>>,
+    /// Whether a node is such a product.
+    inner: Vec<bool>,
+}
+
+impl Merged {
+    fn of(graph: &Graph, roots: &[NodeId], needed: &[bool]) -> Self {
+        let mut uses = vec![0; graph.len()];
+        for id in (0..graph.len()).filter(|&id| needed[id]) {
+            graph.operands(id as NodeId).for_each(|operand| uses[operand as usize] += 1);
+        }
+        roots.iter().for_each(|&root| uses[root as usize] += 2);
+        let product = |id: NodeId| match graph.node(id) {
+            Node::Binary(Binary::Mul, a, b) if uses[id as usize] == 1 => Some([a, b]),
+            _ => None,
+        };
+        let mut merged = Self { outer: vec![None; graph.len()], inner: vec![false; graph.len()] };
+        for id in (0..graph.len()).filter(|&id| needed[id]) {
+            let Node::Binary(function @ (Binary::Add | Binary::Sub), left, right) = graph.node(id as NodeId) else {
+                continue;
+            };
+            let sum = function == Binary::Add;
+            let found = match (product(left), product(right)) {
+                (Some([a, b]), _) => Some((left, if sum { Action::MulAdd } else { Action::MulSub }, [a, b, right])),
+                (None, Some([a, b])) => Some((right, if sum { Action::MulAdd } else { Action::SubMul }, [a, b, left])),
+                _ => None,
+            };
+            if let Some((taken, action, operands)) = found {
+                merged.outer[id] = Some((action, operands));
+                merged.inner[taken as usize] = true;
+            }
+        }
+        merged
     }
-    roots.iter().for_each(|&root| last[root as usize] = usize::MAX);
-    last
+
+    /// The node that uses each node last; results count as used after all.
+    fn last_uses(&self, graph: &Graph, roots: &[NodeId], needed: &[bool]) -> Vec<usize> {
+        let mut last = vec![0; graph.len()];
+        for id in (0..graph.len()).filter(|&id| needed[id] && !self.inner[id]) {
+            match self.outer[id] {
+                Some((_, operands)) => operands.iter().for_each(|&operand| last[operand as usize] = id),
+                None => graph.operands(id as NodeId).for_each(|operand| last[operand as usize] = id),
+            }
+        }
+        roots.iter().for_each(|&root| last[root as usize] = usize::MAX);
+        last
+    }
 }

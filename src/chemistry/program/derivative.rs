@@ -150,3 +150,150 @@ impl Graph {
         self.binary(B::Add, from_base, from_exponent)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Program, run};
+    use crate::chemistry::expression::{Scope, parse};
+    use crate::chemistry::tree::{Binary, Expr, Quantity, Role, System, Unary};
+    use proptest::prelude::*;
+
+    fn read(text: &str) -> Expr {
+        let names = [("x", 0), ("y", 1)].map(|(name, number)| (name.to_owned(), number));
+        let scope = Scope { quantities: names.into(), ..Scope::default() };
+        let (node, troubles) = parse(text);
+        assert_eq!(troubles, [], "{text}");
+        scope.resolve(&node).expect(text)
+    }
+
+    fn at(expr: &Expr, time: f64, x: f64, y: f64) -> f64 {
+        expr.evaluate(time, &|number| if number == 0 { x } else { y })
+    }
+
+    /// Derivatives by x, y and time, from the program of dx/dt = expression.
+    fn derivatives(expr: &Expr, time: f64, x: f64, y: f64) -> [f64; 3] {
+        let quantity = |id: &str, rate: Expr| Quantity {
+            id: id.into(),
+            name: String::new(),
+            role: Role::Variable { rate },
+            initial: Expr::Number(0.0),
+            unit: String::new(),
+        };
+        let quantities = vec![quantity("x", expr.clone()), quantity("y", Expr::Number(0.0))];
+        let program = Program::new(&System { quantities, ..System::default() }).expect("no circles");
+        let mut file = program.file::<1>();
+        (file[0], file[1], file[2]) = ([time], [x], [y]);
+        run(&program.linear, &mut file);
+        let output = |number: usize| file[program.linear.outputs[number] as usize][0];
+        let by = |column: u32| program.pattern.iter().position(|entry| *entry == (0, column));
+        [by(0).map_or(0.0, |entry| output(4 + entry)), by(1).map_or(0.0, |entry| output(4 + entry)), output(2)]
+    }
+
+    /// Compares all three derivatives with central differences.
+    fn check(expr: &Expr, time: f64, x: f64, y: f64) {
+        let h = 1e-5;
+        let differences = [
+            (at(expr, time, x + h, y) - at(expr, time, x - h, y)) / (2.0 * h),
+            (at(expr, time, x, y + h) - at(expr, time, x, y - h)) / (2.0 * h),
+            (at(expr, time + h, x, y) - at(expr, time - h, x, y)) / (2.0 * h),
+        ];
+        let size = at(expr, time, x, y).abs();
+        for (value, difference) in derivatives(expr, time, x, y).into_iter().zip(differences) {
+            // The difference errs by h² times a third derivative (of the size of the first for these functions, with
+            // room for steep ones) and by round-off over h.
+            let error = 1e-6 * (1.0 + value.abs()) * (1.0 + value.abs()).sqrt() + 1e-10 * size;
+            assert!((value - difference).abs() <= error, "{expr:?}: {value} against {difference}");
+        }
+    }
+
+    #[test]
+    fn every_function_has_the_derivative_that_differences_show() {
+        for text in [
+            "exp(x*y)",
+            "ln(x + 1)",
+            "log10(x)",
+            "log(y + 2, x)",
+            "pow(x, y)",
+            "x^3",
+            "x^(1/3)",
+            "2^x",
+            "sqrt(x*y)",
+            "abs(x - 2)",
+            "sin(x)*cos(y)",
+            "tan(x/2)",
+            "asin(x/2)",
+            "acos(y/2)",
+            "atan(x*y)",
+            "sinh(x)",
+            "cosh(y)",
+            "tanh(x - y)",
+            "asinh(x)",
+            "acosh(x + 1.5)",
+            "atanh(x/3)",
+            "min(x, y)*x",
+            "max(x, y, 0.2)*y",
+            "rem(x*7, 1.3)",
+            "rem(7, x)",
+            "-rem(-7, x)",
+            "quotient(x, 0.37)",
+            "sign(x)*y",
+            "floor(x) + y",
+            "ceil(y)*x",
+            "heaviside(x - 0.3)*y",
+            "factorial(3)*x",
+            "hill(x, y, 4)",
+            "hill(x, 0.5, y)",
+            "piecewise(x^2, x < y, y^2)",
+            "time*x",
+            "sin(time*y)",
+            "x/(y + time)",
+            "-(x - y)/x",
+            "not x",
+            "x < y",
+            "x > y and y > 0",
+            "x*(x > y xor y > 9)",
+        ] {
+            check(&read(text), 0.7, 0.83, 0.41);
+            check(&read(text), 1.9, 0.29, 1.13);
+        }
+    }
+
+    #[test]
+    fn a_power_of_nothing_has_a_derivative() {
+        for (text, wanted) in [("x^2", 0.0), ("x^1", 1.0), ("x^3", 0.0), ("hill(x, 1, 2)", 0.0)] {
+            assert_eq!(derivatives(&read(text), 0.0, 0.0, 0.5)[0], wanted, "{text}");
+        }
+    }
+
+    /// Smooth expressions in which no function leaves its domain.
+    fn smooth() -> impl Strategy<Value = Expr> {
+        let leaf =
+            prop_oneof![(-2.0f64..2.0).prop_map(Expr::Number), Just(Expr::Time), (0u32..2).prop_map(Expr::Quantity),];
+        leaf.prop_recursive(3, 12, 3, |inner| {
+            let bounded = [Unary::Sin, Unary::Cos, Unary::Tanh, Unary::Atan, Unary::Asinh, Unary::Neg];
+            prop_oneof![
+                (prop::sample::select(bounded.to_vec()), inner.clone()).prop_map(|(function, a)| a.unary(function)),
+                (inner.clone(), inner.clone()).prop_map(|(a, b)| a.binary(Binary::Add, b)),
+                (inner.clone(), inner.clone()).prop_map(|(a, b)| a.binary(Binary::Sub, b)),
+                (inner.clone(), inner.clone()).prop_map(|(a, b)| a.unary(Unary::Sin).binary(Binary::Mul, b)),
+                (inner.clone(), inner.clone()).prop_map(|(a, b)| {
+                    let positive = b.unary(Unary::Cos).binary(Binary::Add, Expr::Number(2.0));
+                    a.unary(Unary::Tanh).binary(Binary::Div, positive)
+                }),
+                (inner.clone(), inner).prop_map(|(a, b)| {
+                    let positive = a.unary(Unary::Sin).binary(Binary::Add, Expr::Number(2.0));
+                    positive.binary(Binary::Pow, b.unary(Unary::Cos))
+                }),
+            ]
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn random_expressions_have_the_derivatives_that_differences_show(
+            expr in smooth(), time in 0.0f64..2.0, x in -2.0f64..2.0, y in -2.0f64..2.0,
+        ) {
+            check(&expr, time, x, y);
+        }
+    }
+}

@@ -37,6 +37,8 @@ pub struct Program {
     pub rates: Code,
     /// Rates, then their derivatives by time, then the entries of [`Self::pattern`].
     pub linear: Code,
+    /// Whether the rates do not depend on time.
+    pub timeless: bool,
     /// Row and column of the Jacobian's entries that are not always zero, row after row.
     pub pattern: Vec<(u32, u32)>,
     /// All quantities.
@@ -77,6 +79,8 @@ impl Program {
         let nodes = quantity_nodes(system, &mut graph, &variables, &open, &initial)?;
         let rates = rate_nodes(system, &mut graph, &variables, &nodes);
         let (linear, pattern) = linear_nodes(&mut graph, &rates);
+        let drifts = &linear[rates.len()..2 * rates.len()];
+        let timeless = drifts.iter().all(|&drift| graph.value(drift) == Some(0.0));
         let further: Vec<Vec<NodeId>> = further
             .iter()
             .map(|group| group.iter().map(|expression| graph.expression(expression, &nodes)).collect())
@@ -99,6 +103,7 @@ impl Program {
             initial,
             rates,
             linear,
+            timeless,
             pattern,
             observe,
             further,

@@ -87,6 +87,9 @@ pub fn run<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
                     result
                 }
             },
+            Action::MulAdd => zip(zip(a, file[op.b as usize], |a, b| a * b), file[op.c as usize], |ab, c| ab + c),
+            Action::MulSub => zip(zip(a, file[op.b as usize], |a, b| a * b), file[op.c as usize], |ab, c| ab - c),
+            Action::SubMul => zip(zip(a, file[op.b as usize], |a, b| a * b), file[op.c as usize], |ab, c| c - ab),
             Action::Select => {
                 let (yes, no) = (file[op.b as usize], file[op.c as usize]);
                 let mut result = [0.0; L];
