@@ -98,7 +98,8 @@ impl Reactor {
         self.rooms[hint % self.rooms.len()].lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets the boxes of a chunk react; the first whose values are finite before and not after.
+    /// Lets the boxes of a chunk react; of those whose values are finite before and
+    /// not after the one with the largest before.
     pub fn react(&self, grid: &Grid, inputs: &[f64], chunk: &mut Chunk) -> Option<Broken> {
         let mut room = self.room(chunk.first / POINTS);
         let room = room.get_or_insert_with(|| Room {
@@ -133,8 +134,10 @@ impl Reactor {
                     fine &= value.abs() < f64::INFINITY;
                 }
             }
-            if !fine && broken.is_none() {
-                broken = first_broken(scratch, chunk, first);
+            if !fine {
+                let found = broken_box(scratch, chunk, first);
+                let larger = |known: Broken| found.is_some_and(|found| found.before > known.before);
+                broken = if broken.is_none_or(larger) { found } else { broken };
             }
         }
         broken
@@ -153,17 +156,18 @@ impl Reactor {
     }
 }
 
-/// The first box of a block that is finite before and not after.
+/// The box of a block that is finite before and not after; of several the one with the largest value before.
 #[inline(never)]
-fn first_broken(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<Broken> {
-    let lanes = 0..WIDTH.min(chunk.points - first);
+fn broken_box(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<Broken> {
+    let before = |lane: usize| scratch.state.iter().map(|state| state[lane].abs()).fold(0.0, f64::max);
     let was_fine = |lane: &usize| scratch.state.iter().all(|state| state[*lane].is_finite());
     let bad = |lane: usize| {
         let species = scratch.proposal.iter().position(|values| !values[lane].is_finite())?;
-        let (time, dt) = (chunk.time, chunk.dt);
-        Some(Broken { species, value: scratch.proposal[species][lane], at: chunk.first + first + lane, time, dt })
+        let (value, at) = (scratch.proposal[species][lane], chunk.first + first + lane);
+        Some(Broken { species, value, before: before(lane), at, time: chunk.time, dt: chunk.dt })
     };
-    lanes.filter(was_fine).find_map(bad)
+    let found = (0..WIDTH.min(chunk.points - first)).filter(was_fine).filter_map(bad);
+    found.rev().max_by(|a, b| a.before.total_cmp(&b.before))
 }
 
 /// Leaves the proposal of an explicit midpoint step.
