@@ -194,7 +194,7 @@ fn main() {
             cells[0], cells[1], cells[2]
         );
     }
-    documents();
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("threads start").install(documents);
     let (rate, part) = reacting([256, 256, 1]);
     println!("Schnakenberg on 256²: {rate:.0} million points/s, {:.0} % of it reaction", 100.0 * part);
 }

@@ -10,23 +10,26 @@ use pulp::Arch;
 use super::broken::{Broken, Course};
 use super::grid::Grid;
 use super::react::{Chunk, POINTS};
+use super::rows::{ROW, Rows};
 use super::sweeps::PARTS;
 use super::system::{POSITION, Scales};
 use crate::chemistry::eml::{Document, Scheme};
 use crate::chemistry::ode::block::{self, Stride};
 use crate::chemistry::ode::scratch::Scratch;
 use crate::chemistry::ode::{Method, Tolerances};
-use crate::chemistry::program::{Lanes, Program, run};
+use crate::chemistry::program::code::Code;
+use crate::chemistry::program::{Lanes, Program};
 use crate::chemistry::tree::{Expr, Role};
 use crate::error::{Error, Fault, Result};
 
 /// Boxes side by side.
-pub const WIDTH: usize = 16;
+pub const WIDTH: usize = ROW;
 
 /// The compiled reactions.
 #[derive(Debug)]
 pub struct Reactor {
     program: Program,
+    rows: Rows,
     /// None for the explicit midpoint step.
     method: Option<Method>,
     tolerances: Tolerances,
@@ -52,7 +55,13 @@ fn empty_rooms() -> Vec<Mutex<Option<Room>>> {
 
 impl Clone for Reactor {
     fn clone(&self) -> Self {
-        Self { program: self.program.clone(), rooms: empty_rooms(), inputs: self.inputs.clone(), ..*self }
+        Self {
+            program: self.program.clone(),
+            rows: self.rows.clone(),
+            rooms: empty_rooms(),
+            inputs: self.inputs.clone(),
+            ..*self
+        }
     }
 }
 
@@ -75,10 +84,10 @@ impl Reactor {
             absolute: document.solver.atol.unwrap_or(usual.absolute),
             ..usual
         };
-        let place = positions(&program);
+        let (place, rows) = (positions(&program, &program.rates), Rows::new(&program));
         let ours = |number: &usize| !POSITION.contains(&program.names[program.open[*number] as usize].as_str());
         let inputs = (0..program.open.len()).filter(ours).map(|number| program.first_open() + number).collect();
-        Ok(Some(Self { program, method, tolerances, scales, place, inputs, rooms: empty_rooms() }))
+        Ok(Some(Self { program, rows, method, tolerances, scales, place, inputs, rooms: empty_rooms() }))
     }
 
     /// A window with these inputs.
@@ -124,7 +133,7 @@ impl Reactor {
             }
             set_positions(grid, self.scales, &self.place, chunk.first + first, &mut scratch.file);
             match self.method {
-                None => midpoint(&self.program, scratch, from, dt),
+                None => midpoint(&self.rows, scratch, from, dt),
                 Some(method) => self.with_method(method, scratch, (from, from + dt)),
             }
             let mut fine = true;
@@ -172,15 +181,15 @@ fn broken_box(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<B
 
 /// Leaves the proposal of an explicit midpoint step.
 #[inline(always)]
-fn midpoint(program: &Program, s: &mut Scratch<WIDTH>, time: f64, dt: f64) {
+fn midpoint(rows: &Rows, s: &mut Scratch<WIDTH>, time: f64, dt: f64) {
     let n = s.state.len();
     s.file[0] = [time; WIDTH];
     s.file[1..=n].copy_from_slice(&s.state);
     for half in [true, false] {
-        run(&program.rates, &mut s.file);
+        rows.run(&mut s.file);
         let share = if half { 0.5 * dt } else { dt };
-        for ((to, from), register) in s.proposal.iter_mut().zip(&s.state).zip(&program.rates.outputs) {
-            let rate = &s.file[*register as usize];
+        for ((to, from), register) in s.proposal.iter_mut().zip(&s.state).zip(&rows.outputs) {
+            let rate = &s.file[*register];
             for l in 0..WIDTH {
                 to[l] = from[l] + share * rate[l];
             }
@@ -209,11 +218,13 @@ fn method(document: &Document) -> Result<Option<Method>> {
     }
 }
 
-/// Where the position stands among the registers, as far as the equations use it.
-pub fn positions(program: &Program) -> Positions {
+/// Where the position stands among the registers, as far as the code uses it.
+pub fn positions(program: &Program, code: &Code) -> Positions {
     POSITION.map(|name| {
         let number = program.open.iter().position(|open| program.names[*open as usize] == name)?;
-        Some(program.first_open() + number)
+        let register = program.first_open() + number;
+        let read = code.ops.iter().flat_map(|op| [op.a, op.b, op.c]).chain(code.outputs.iter().copied());
+        read.into_iter().any(|one| one as usize == register).then_some(register)
     })
 }
 
@@ -222,15 +233,23 @@ pub fn set_positions(grid: &Grid, scales: Scales, place: &Positions, first: usiz
     if place.iter().all(Option::is_none) {
         return;
     }
+    let [nx, ny, _] = grid.cells;
+    let mut index = [first % nx, first / nx % ny, first / (nx * ny)];
+    // On the substrate z is its height.
+    let centre = if grid.is_flat() { [0.5, 0.5, 0.0] } else { [0.5; 3] };
     for lane in 0..WIDTH {
-        let mut centre = grid.centre((first + lane).min(grid.len() - 1));
-        if grid.is_flat() {
-            centre.z = grid.origin.z;
-        }
         for (axis, register) in place.iter().enumerate() {
             if let Some(register) = register {
-                file[*register][lane] = centre[axis] / scales.micrometres;
+                let position = grid.origin[axis] + (index[axis] as f64 + centre[axis]) * grid.spacing[axis];
+                file[*register][lane] = position / scales.micrometres;
             }
+        }
+        index[0] += 1;
+        if index[0] == nx {
+            index = [0, index[1] + 1, index[2]];
+        }
+        if index[1] == ny {
+            index = [0, 0, index[2] + 1];
         }
     }
 }
