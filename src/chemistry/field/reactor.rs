@@ -117,10 +117,7 @@ impl Reactor {
         for (register, value) in self.inputs.iter().zip(inputs) {
             room.scratch.file[*register] = [*value; WIDTH];
         }
-        Arch::new().dispatch(
-            #[inline(always)]
-            || self.blocks(grid, &mut room.scratch, chunk),
-        )
+        Arch::new().dispatch(Job { reactor: self, grid, scratch: &mut room.scratch, chunk })
     }
 
     #[inline(always)]
@@ -165,6 +162,23 @@ impl Reactor {
     }
 }
 
+/// The reactions of a chunk, so that they are compiled for the processor's lanes.
+struct Job<'a, 'c> {
+    reactor: &'a Reactor,
+    grid: &'a Grid,
+    scratch: &'a mut Scratch<WIDTH>,
+    chunk: &'a mut Chunk<'c>,
+}
+
+impl pulp::WithSimd for Job<'_, '_> {
+    type Output = Option<Broken>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Broken> {
+        self.reactor.blocks(self.grid, self.scratch, self.chunk)
+    }
+}
+
 /// The box of a block that is finite before and not after; of several the one with the largest value before.
 #[inline(never)]
 fn broken_box(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<Broken> {
@@ -179,7 +193,7 @@ fn broken_box(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<B
     found.rev().max_by(|a, b| a.before.total_cmp(&b.before))
 }
 
-/// Leaves the proposal of an explicit midpoint step.
+/// Leaves the proposal of an explicit midpoint step, eq. (field.12).
 #[inline(always)]
 fn midpoint(rows: &Rows, s: &mut Scratch<WIDTH>, time: f64, dt: f64) {
     let n = s.state.len();

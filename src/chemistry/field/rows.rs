@@ -69,10 +69,9 @@ impl Rows {
                 Stretch::Plain(ops) => {
                     let (parts, _) = file.as_flattened_mut().as_chunks_mut::<PART>();
                     let cells = Cell::from_mut(parts).as_slice_of_cells();
-                    ops.iter().for_each(
-                        #[inline(always)]
-                        |op| plain(op, cells),
-                    );
+                    for op in ops {
+                        plain(op, cells);
+                    }
                 }
                 Stretch::Other(code) => run(code, file),
             }

@@ -49,7 +49,7 @@ impl Start {
     }
 }
 
-/// The document's units.
+/// The document's units, eq. (field.11).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Scales {
     /// Seconds in its unit of time.
