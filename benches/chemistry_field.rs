@@ -2,10 +2,13 @@
 //! what it costs that cells release into a field and sense it. All ratios come from one run.
 
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Instant;
 
 use pseudopod::Vec3;
-use pseudopod::chemistry::field::{Chunk, Fields, Grid, Range, Sensed, Species, Stepping, Wall};
+use pseudopod::chemistry::eml;
+use pseudopod::chemistry::field::{Chunk, FieldSystem, Fields, Grid, Range, Sensed, Species, Stepping, Wall};
+use pseudopod::error::Source;
 
 /// Seconds of the fastest of several rounds: the least disturbed one.
 fn fastest(rounds: usize, mut work: impl FnMut()) -> f64 {
@@ -90,6 +93,73 @@ fn reacting(cells: [usize; 3]) -> (f64, f64) {
     (1e-6 * f64::from(steps) * points as f64 / with, 1.0 - without / with)
 }
 
+/// Million values a second of reaction and diffusion through a document's compiled equations, and how many times as long
+/// its reactions alone take as those of a function written by hand with the same arithmetic.
+fn document(name: &str, by_hand: &(dyn Fn(&mut Chunk) + Sync), dt: f64) -> (f64, f64) {
+    let path = format!("{}/eml/{name}.eml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).expect("a document of eml/");
+    let began = Instant::now();
+    let document = eml::read(Arc::new(Source { name: name.into(), text })).expect("a good document");
+    let system = FieldSystem::new(&document, None).expect("a good document");
+    let read = began.elapsed().as_secs_f64();
+    let no_file = |_: &eml::Profile, _: &Grid| unreachable!("the document names no file");
+    let start = system.start(&no_file).expect("good profiles");
+    println!("{name}: read and compiled in {:.2} ms", 1e3 * read);
+    let mut fields = start.clone();
+    let points = fields.grid().len();
+    let steps = (300_000 / points).max(4) as u32;
+    let (window, stepping) = (dt * f64::from(steps), Stepping::Fixed(steps));
+    let compiled = fastest(40, || {
+        system.advance(&mut fields, window, &[], stepping).expect("a step");
+    });
+    let mut time = |reactions: Option<&(dyn Fn(&mut Chunk) + Sync)>| {
+        fastest(40, || {
+            fields.advance(window, stepping, reactions).expect("a step");
+        })
+    };
+    let (hand, without) = (time(Some(by_hand)), time(None));
+    let values = f64::from(steps) * (points * fields.species().len()) as f64;
+    println!(
+        "{name} on {points} boxes, million values/s: {:.0} compiled, {:.0} by hand, {:.0} without reactions",
+        1e-6 * values / compiled,
+        1e-6 * values / hand,
+        1e-6 * values / without
+    );
+    (1e-6 * values / compiled, (compiled - without) / (hand - without))
+}
+
+/// A midpoint step of two species, lanes side by side.
+fn midpoint(chunk: &mut Chunk, slope: impl Fn(f64, f64) -> (f64, f64)) {
+    let dt = chunk.dt;
+    pulp::Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            let [u, v] = chunk.rows();
+            for (u, v) in u.iter_mut().zip(v) {
+                let first = slope(*u, *v);
+                let second = slope(*u + 0.5 * dt * first.0, *v + 0.5 * dt * first.1);
+                *u += dt * second.0;
+                *v += dt * second.1;
+            }
+        },
+    );
+}
+
+fn documents() {
+    let gray_scott = |chunk: &mut Chunk| {
+        midpoint(chunk, |u, v| (-u * (v * v) + 0.04 * (1.0 - u), u * (v * v) - (0.04 + 0.06) * v));
+    };
+    let brusselator = |chunk: &mut Chunk| {
+        midpoint(chunk, |u, v| (4.5 - (7.0 + 1.0) * u + u * u * v, 7.0 * u - u * u * v));
+    };
+    for (name, by_hand, dt) in
+        [("gray_scott", &gray_scott as &(dyn Fn(&mut Chunk) + Sync), 0.5), ("brusselator", &brusselator, 0.005)]
+    {
+        let (_, ratio) = document(name, by_hand, dt);
+        println!("{name}: compiled reactions take {ratio:.2} times as long as those by hand");
+    }
+}
+
 fn main() {
     println!("diffusion and decay, million values/s on one thread (aim: 300 at 100² and 64³)");
     println!("{:>12} {:>8} {:>8} {:>8}", "grid", "1 field", "2", "5");
@@ -124,6 +194,7 @@ fn main() {
             cells[0], cells[1], cells[2]
         );
     }
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("threads start").install(documents);
     let (rate, part) = reacting([256, 256, 1]);
     println!("Schnakenberg on 256²: {rate:.0} million points/s, {:.0} % of it reaction", 100.0 * part);
 }

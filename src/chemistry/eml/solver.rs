@@ -1,7 +1,7 @@
 //! How a document asks to be solved.
 
 use super::build::Builder;
-use super::document::{Scheme, SolverChoice};
+use super::document::{Level, Scheme, SolverChoice};
 use super::xml::Element;
 
 /// Names of the schemes; those with a fixed step come last.
@@ -38,6 +38,11 @@ impl Builder<'_, '_> {
                 "write inner_step=\"…\" in the unit of time, or choose rk45, rosenbrock or bdf, which find their step";
             let message = format!("the scheme {} has no inner step", element.word("scheme"));
             self.desk.fault(element.place("scheme"), &message, "a fixed step", help);
+        }
+        if let (Level::Field, Some(Scheme::Bdf | Scheme::Euler)) = (self.known.level, scheme) {
+            let message = format!("the reactions of fields cannot be taken with {}", element.word("scheme"));
+            let help = "write \"rk4\", \"rk45\" or, for stiff reactions, \"rosenbrock\", or leave the scheme out";
+            self.desk.fault(element.place("scheme"), &message, "this scheme", help);
         }
         if let (Some(step), Some(inner)) = (choice.step, choice.inner_step)
             && inner > step

@@ -15,6 +15,8 @@ pub struct Broken {
     pub species: usize,
     /// Its value.
     pub value: f64,
+    /// The largest value that the box had before.
+    pub before: f64,
     /// The box.
     pub at: usize,
     /// Start of the step, s.
@@ -54,8 +56,8 @@ impl Course<'_> {
     /// Lets the boxes of a chunk react.
     pub fn react(&self, chunk: &mut Chunk) {
         let Some(found) = self.reactor.react(self.grid, self.inputs, chunk) else { return };
-        // Which thread comes first must not matter.
-        let order = |one: &Broken| (if self.adaptive { one.dt } else { 0.0 }, one.time, one.at);
+        // Which thread comes first must not matter. Where several boxes break at once, the largest value has led.
+        let order = |one: &Broken| (if self.adaptive { one.dt } else { 0.0 }, one.time, -one.before, one.at);
         let mut broken = self.broken.lock().unwrap_or_else(PoisonError::into_inner);
         if broken.is_none_or(|known| order(&found) < order(&known)) {
             *broken = Some(found);

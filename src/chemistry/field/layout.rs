@@ -25,7 +25,11 @@ const ARRAYS: usize = 6;
 pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
     let Some(wanted) = &document.grid else {
         let message = format!("the document '{}' has no grid", document.name);
-        return Err(Error::input(Fault::new(message).help("give it a <grid> and a <field>")));
+        let fault = Fault::new(message).help("give it a <grid> and a <field>");
+        return Err(Error::input(match document.places.first() {
+            Some(place) => fault.at(place.clone()),
+            None => fault,
+        }));
     };
     let fault = |message: String, help: String| Fault::new(message).at(wanted.place.clone()).help(help);
     let in_micrometres = |numbers: [f64; 3]| numbers.map(|number| number * wanted.micrometres);
@@ -35,12 +39,21 @@ pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
     let mut faults = Vec::new();
     for (name, open) in [("origin", origin.is_none()), ("size", size.is_none())] {
         if open {
-            let example = if flat { "100 100" } else { "100 100 50" };
+            let example = match (name, flat) {
+                ("origin", true) => "0 0",
+                ("origin", false) => "0 0 0",
+                (_, true) => "100 100",
+                _ => "100 100 50",
+            };
             let help = format!("write {name}=\"{example}\", or let an experiment place the grid");
             faults.push(fault(format!("the grid has no {name}, and nothing else places it"), help));
         }
     }
     let (Some(mut origin), Some(size)) = (origin, size) else { return Err(Error::Input(faults)) };
+    if document.fields.is_empty() {
+        let help = "declare <field id=\"c\" initial=\"0\" diffusion=\"1\"/>".to_owned();
+        faults.push(fault(format!("the grid of '{}' has no fields", document.name), help));
+    }
     if let (true, Some(placing)) = (flat, placing) {
         origin[2] = placing.origin[2];
     }

@@ -1,4 +1,4 @@
-//! The method of lines: one differential equation for each species and box, handed whole to the engine of equations.
+//! The method of lines, eq. (field.13): one differential equation for each species and box, handed whole to the engine.
 //!
 //! It knows no splitting and no approximant, so that it measures both; its steps are as short as diffusion asks.
 

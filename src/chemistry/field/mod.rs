@@ -12,6 +12,7 @@ mod lines;
 mod profiles;
 mod react;
 mod reactor;
+mod rows;
 mod species;
 mod state;
 mod steady;

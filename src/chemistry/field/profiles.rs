@@ -28,7 +28,8 @@ pub fn profiles(
     }
     let wanted: Vec<Expr> = starts.iter().map(|(number, _)| Expr::Quantity(*number)).collect();
     let program = Program::with(&system, 0.0, &[], &[wanted])?;
-    let (place, code) = (positions(&program), &program.further[0]);
+    let code = &program.further[0];
+    let place = positions(&program, code);
     let register = |number: QuantityId| program.open_place(number).map(|at| program.first_open() + at);
     let given: Vec<(usize, &Vec<f64>)> =
         starts.iter().filter_map(|(number, values)| Some((register(*number)?, values.as_ref()?))).collect();

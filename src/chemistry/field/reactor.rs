@@ -10,23 +10,26 @@ use pulp::Arch;
 use super::broken::{Broken, Course};
 use super::grid::Grid;
 use super::react::{Chunk, POINTS};
+use super::rows::{ROW, Rows};
 use super::sweeps::PARTS;
 use super::system::{POSITION, Scales};
 use crate::chemistry::eml::{Document, Scheme};
 use crate::chemistry::ode::block::{self, Stride};
 use crate::chemistry::ode::scratch::Scratch;
 use crate::chemistry::ode::{Method, Tolerances};
-use crate::chemistry::program::{Lanes, Program, run};
+use crate::chemistry::program::code::Code;
+use crate::chemistry::program::{Lanes, Program};
 use crate::chemistry::tree::{Expr, Role};
 use crate::error::{Error, Fault, Result};
 
 /// Boxes side by side.
-pub const WIDTH: usize = 16;
+pub const WIDTH: usize = ROW;
 
 /// The compiled reactions.
 #[derive(Debug)]
 pub struct Reactor {
     program: Program,
+    rows: Rows,
     /// None for the explicit midpoint step.
     method: Option<Method>,
     tolerances: Tolerances,
@@ -52,7 +55,13 @@ fn empty_rooms() -> Vec<Mutex<Option<Room>>> {
 
 impl Clone for Reactor {
     fn clone(&self) -> Self {
-        Self { program: self.program.clone(), rooms: empty_rooms(), inputs: self.inputs.clone(), ..*self }
+        Self {
+            program: self.program.clone(),
+            rows: self.rows.clone(),
+            rooms: empty_rooms(),
+            inputs: self.inputs.clone(),
+            ..*self
+        }
     }
 }
 
@@ -75,10 +84,10 @@ impl Reactor {
             absolute: document.solver.atol.unwrap_or(usual.absolute),
             ..usual
         };
-        let place = positions(&program);
+        let (place, rows) = (positions(&program, &program.rates), Rows::new(&program));
         let ours = |number: &usize| !POSITION.contains(&program.names[program.open[*number] as usize].as_str());
         let inputs = (0..program.open.len()).filter(ours).map(|number| program.first_open() + number).collect();
-        Ok(Some(Self { program, method, tolerances, scales, place, inputs, rooms: empty_rooms() }))
+        Ok(Some(Self { program, rows, method, tolerances, scales, place, inputs, rooms: empty_rooms() }))
     }
 
     /// A window with these inputs.
@@ -98,7 +107,8 @@ impl Reactor {
         self.rooms[hint % self.rooms.len()].lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets the boxes of a chunk react; the first whose values are finite before and not after.
+    /// Lets the boxes of a chunk react; of those whose values are finite before and
+    /// not after the one with the largest before.
     pub fn react(&self, grid: &Grid, inputs: &[f64], chunk: &mut Chunk) -> Option<Broken> {
         let mut room = self.room(chunk.first / POINTS);
         let room = room.get_or_insert_with(|| Room {
@@ -107,10 +117,7 @@ impl Reactor {
         for (register, value) in self.inputs.iter().zip(inputs) {
             room.scratch.file[*register] = [*value; WIDTH];
         }
-        Arch::new().dispatch(
-            #[inline(always)]
-            || self.blocks(grid, &mut room.scratch, chunk),
-        )
+        Arch::new().dispatch(Job { reactor: self, grid, scratch: &mut room.scratch, chunk })
     }
 
     #[inline(always)]
@@ -123,7 +130,7 @@ impl Reactor {
             }
             set_positions(grid, self.scales, &self.place, chunk.first + first, &mut scratch.file);
             match self.method {
-                None => midpoint(&self.program, scratch, from, dt),
+                None => midpoint(&self.rows, scratch, from, dt),
                 Some(method) => self.with_method(method, scratch, (from, from + dt)),
             }
             let mut fine = true;
@@ -133,8 +140,10 @@ impl Reactor {
                     fine &= value.abs() < f64::INFINITY;
                 }
             }
-            if !fine && broken.is_none() {
-                broken = first_broken(scratch, chunk, first);
+            if !fine {
+                let found = broken_box(scratch, chunk, first);
+                let larger = |known: Broken| found.is_some_and(|found| found.before > known.before);
+                broken = if broken.is_none_or(larger) { found } else { broken };
             }
         }
         broken
@@ -153,30 +162,48 @@ impl Reactor {
     }
 }
 
-/// The first box of a block that is finite before and not after.
+/// The reactions of a chunk, so that they are compiled for the processor's lanes.
+struct Job<'a, 'c> {
+    reactor: &'a Reactor,
+    grid: &'a Grid,
+    scratch: &'a mut Scratch<WIDTH>,
+    chunk: &'a mut Chunk<'c>,
+}
+
+impl pulp::WithSimd for Job<'_, '_> {
+    type Output = Option<Broken>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Broken> {
+        self.reactor.blocks(self.grid, self.scratch, self.chunk)
+    }
+}
+
+/// The box of a block that is finite before and not after; of several the one with the largest value before.
 #[inline(never)]
-fn first_broken(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<Broken> {
-    let lanes = 0..WIDTH.min(chunk.points - first);
+fn broken_box(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<Broken> {
+    let before = |lane: usize| scratch.state.iter().map(|state| state[lane].abs()).fold(0.0, f64::max);
     let was_fine = |lane: &usize| scratch.state.iter().all(|state| state[*lane].is_finite());
     let bad = |lane: usize| {
         let species = scratch.proposal.iter().position(|values| !values[lane].is_finite())?;
-        let (time, dt) = (chunk.time, chunk.dt);
-        Some(Broken { species, value: scratch.proposal[species][lane], at: chunk.first + first + lane, time, dt })
+        let (value, at) = (scratch.proposal[species][lane], chunk.first + first + lane);
+        Some(Broken { species, value, before: before(lane), at, time: chunk.time, dt: chunk.dt })
     };
-    lanes.filter(was_fine).find_map(bad)
+    let found = (0..WIDTH.min(chunk.points - first)).filter(was_fine).filter_map(bad);
+    found.rev().max_by(|a, b| a.before.total_cmp(&b.before))
 }
 
-/// Leaves the proposal of an explicit midpoint step.
+/// Leaves the proposal of an explicit midpoint step, eq. (field.12).
 #[inline(always)]
-fn midpoint(program: &Program, s: &mut Scratch<WIDTH>, time: f64, dt: f64) {
+fn midpoint(rows: &Rows, s: &mut Scratch<WIDTH>, time: f64, dt: f64) {
     let n = s.state.len();
     s.file[0] = [time; WIDTH];
     s.file[1..=n].copy_from_slice(&s.state);
     for half in [true, false] {
-        run(&program.rates, &mut s.file);
+        rows.run(&mut s.file);
         let share = if half { 0.5 * dt } else { dt };
-        for ((to, from), register) in s.proposal.iter_mut().zip(&s.state).zip(&program.rates.outputs) {
-            let rate = &s.file[*register as usize];
+        for ((to, from), register) in s.proposal.iter_mut().zip(&s.state).zip(&rows.outputs) {
+            let rate = &s.file[*register];
             for l in 0..WIDTH {
                 to[l] = from[l] + share * rate[l];
             }
@@ -205,11 +232,13 @@ fn method(document: &Document) -> Result<Option<Method>> {
     }
 }
 
-/// Where the position stands among the registers, as far as the equations use it.
-pub fn positions(program: &Program) -> Positions {
+/// Where the position stands among the registers, as far as the code uses it.
+pub fn positions(program: &Program, code: &Code) -> Positions {
     POSITION.map(|name| {
         let number = program.open.iter().position(|open| program.names[*open as usize] == name)?;
-        Some(program.first_open() + number)
+        let register = program.first_open() + number;
+        let read = code.ops.iter().flat_map(|op| [op.a, op.b, op.c]).chain(code.outputs.iter().copied());
+        read.into_iter().any(|one| one as usize == register).then_some(register)
     })
 }
 
@@ -218,15 +247,23 @@ pub fn set_positions(grid: &Grid, scales: Scales, place: &Positions, first: usiz
     if place.iter().all(Option::is_none) {
         return;
     }
+    let [nx, ny, _] = grid.cells;
+    let mut index = [first % nx, first / nx % ny, first / (nx * ny)];
+    // On the substrate z is its height.
+    let centre = if grid.is_flat() { [0.5, 0.5, 0.0] } else { [0.5; 3] };
     for lane in 0..WIDTH {
-        let mut centre = grid.centre((first + lane).min(grid.len() - 1));
-        if grid.is_flat() {
-            centre.z = grid.origin.z;
-        }
         for (axis, register) in place.iter().enumerate() {
             if let Some(register) = register {
-                file[*register][lane] = centre[axis] / scales.micrometres;
+                let position = grid.origin[axis] + (index[axis] as f64 + centre[axis]) * grid.spacing[axis];
+                file[*register][lane] = position / scales.micrometres;
             }
+        }
+        index[0] += 1;
+        if index[0] == nx {
+            index = [0, index[1] + 1, index[2]];
+        }
+        if index[1] == ny {
+            index = [0, 0, index[2] + 1];
         }
     }
 }

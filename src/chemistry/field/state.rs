@@ -178,7 +178,15 @@ impl Fields {
         let bad = |value: &f64| !value.is_finite() || (*value < 0.0 && one.range == Range::NonNegative);
         if let Some(at) = values.iter().position(bad) {
             let message = format!("species '{}' is {} at {} µm", one.name, values[at], self.grid.told(at));
-            return fault(message, "a concentration is finite and not negative");
+            return fault(
+                message,
+                match one.range {
+                    Range::NonNegative => {
+                        "a concentration is finite and not negative; the range `free` allows what is negative"
+                    }
+                    Range::Free => "give finite numbers",
+                },
+            );
         }
         self.values[species * len..(species + 1) * len].copy_from_slice(values);
         Ok(())

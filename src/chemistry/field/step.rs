@@ -188,8 +188,9 @@ impl Fields {
         let (name, place) = self.told(worst);
         Error::Numbers {
             message: format!(
-                "no step meets the tolerance of field '{name}' at t = {} s, down to {dt:e} s; it is worst at {place} µm",
-                short(self.time)
+                "no step meets the tolerance of field '{name}' at t = {} s, down to {} s; it is worst at {place} µm",
+                short(self.time),
+                short(dt)
             ),
             help: "check the reactions for values that grow without bound, or raise the tolerance".into(),
             kept: None,

@@ -49,7 +49,7 @@ impl Start {
     }
 }
 
-/// The document's units.
+/// The document's units, eq. (field.11).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Scales {
     /// Seconds in its unit of time.
@@ -71,10 +71,6 @@ impl FieldSystem {
     pub fn new(document: &eml::Document, placing: Option<&Placing>) -> Result<Self> {
         let grid = layout(document, placing)?;
         let mut faults = Vec::new();
-        if document.fields.is_empty() {
-            let message = format!("the document '{}' has no fields", document.name);
-            faults.push(Fault::new(message).help("declare <field id=\"c\" initial=\"0\" diffusion=\"1\"/>"));
-        }
         let system = &document.system;
         let constants = initial_values(system, 0.0).map_err(|circle| in_circle(document, &circle))?;
         let scales = Scales {
