@@ -2,7 +2,7 @@
 
 use divan::Bencher;
 use divan::counter::BytesCount;
-use pseudopod::output::{CellLayout, CellRecord, Frame, Header, Layout, Overwrite, ResultWriter};
+use pseudopod::output::{CellLayout, CellRecord, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter};
 
 const ATOMS: usize = 42;
 const FACETS: usize = 80;
@@ -71,4 +71,27 @@ fn append(bencher: Bencher, cells: usize) {
     drop(writer);
     let bytes = std::fs::metadata(&path).unwrap().len();
     eprintln!("{cells} cells: {} bytes a frame on disk", bytes / frames);
+}
+
+/// A frame of one cell with a field of two species on this many boxes along each side of the substrate.
+#[divan::bench(args = [100, 400, 1_000], min_time = 1, max_time = 4)]
+fn append_field(bencher: Bencher, side: usize) {
+    let folder = tempfile::tempdir().unwrap();
+    let header = Header::now("bench.toml", "", "", &[], 0);
+    let species = ["U", "V"].map(|name| (name.to_owned(), "uM".to_owned())).to_vec();
+    let grid =
+        FieldLayout { name: "field".into(), species, cells: [side, side, 1], spacing: [1.0; 3], origin: [0.0; 3] };
+    let layout = Layout { fields: vec![grid], ..layout(1) };
+    let path = folder.path().join("run.vtkhdf");
+    let mut writer = ResultWriter::create(&path, &header, &layout, Overwrite::Refuse).unwrap();
+    let value = |i: usize| 1.0 + (0.01 * (i % side) as f64).sin() * (0.02 * (i / side) as f64).cos();
+    let values: Vec<f64> = (0..side * side).map(value).collect();
+    let mut frame = Frame { fields: vec![vec![values.clone(), values]], ..frame(1) };
+    bencher.bench_local(|| {
+        frame.step += 1;
+        writer.append(&frame).unwrap();
+    });
+    writer.flush().unwrap();
+    let bytes = std::fs::metadata(&path).unwrap().len();
+    eprintln!("{side}: {} bytes a frame for {} of numbers", bytes / frame.step, 16 * side * side);
 }

@@ -2,6 +2,7 @@
 //! file that leads to it.
 
 use std::process::Command;
+use std::sync::Mutex;
 
 #[path = "result_file/example.rs"]
 #[allow(dead_code)]
@@ -96,6 +97,9 @@ assert tuple(exported.extent) == tuple(extent) and np.allclose(exported.bounds, 
 print("h5py, VTK and PyVista agree on", frames, "frames of", name)
 "#;
 
+/// Held while a test writes a file or has children: HDF5 locks the files it opens, and a child inherits the locks.
+static CHILDREN: Mutex<()> = Mutex::new(());
+
 /// Whether python agrees; its words if not.
 fn run(script: &str, arguments: &[&std::ffi::OsStr]) {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
@@ -107,6 +111,7 @@ fn run(script: &str, arguments: &[&std::ffi::OsStr]) {
 #[test]
 #[ignore = "slow: needs python3 with h5py, vtk and pyvista"]
 fn python_reads_the_fields_as_images() {
+    let _alone = CHILDREN.lock();
     let folder = tempfile::tempdir().unwrap();
     for (file, finish) in [("finished.vtkhdf", true), ("interrupted.h5", false)] {
         let path = folder.path().join(file);
@@ -135,6 +140,7 @@ fn python_reads_the_fields_as_images() {
 #[test]
 #[ignore = "slow: needs python3 with h5py, vtk and pyvista"]
 fn python_reads_the_animated_surface() {
+    let _alone = CHILDREN.lock();
     let folder = tempfile::tempdir().unwrap();
     for (name, finish) in [("finished.vtkhdf", true), ("interrupted.vtkhdf", false)] {
         let path = folder.path().join(name);

@@ -38,7 +38,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "LOW,HIGH", value_parser = ends, allow_hyphen_values = true)]
     pub field_range: Option<[f64; 2]>,
     /// The height at which a field of the medium is cut, in um; the mean height of the cells when absent.
-    #[arg(long, value_name = "Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true)]
     pub field_height: Option<f64>,
     /// Shows the loads as arrows.
     #[arg(long)]
@@ -96,6 +96,10 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     let mut report = Report::of_files(&args.result, &[written.path]).fact("frames", written.frames);
     report.words = format!("{}: {} frames\n", report.words.trim_end(), written.frames);
     Ok(report)
+}
+
+fn finite(text: &str) -> std::result::Result<f64, String> {
+    text.trim().parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "give a number in um".to_owned())
 }
 
 /// Two numbers, the second larger.

@@ -21,6 +21,7 @@ pub struct Picture {
     /// The field under or between the cells: its name, FIELD.SPECIES for another than its first species, or "none". The
     /// first field when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-text" = "field"))]
     pub field: Option<String>,
     /// The ends of the field's scale of colours, in the field's unit; chosen when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -162,6 +163,7 @@ pub enum PlotKind {
 pub struct FieldLine {
     /// The field's name, or FIELD.SPECIES for another than its first species; the first field when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-text" = "field"))]
     pub field: Option<String>,
     /// The axis that the line follows.
     #[serde(default = "along_x")]

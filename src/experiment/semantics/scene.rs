@@ -1,7 +1,7 @@
 //! What must hold between planes, pictures, plots, measures and the run.
 
 use super::Check;
-use crate::experiment::{Fit, MeasureKind, Reduction, When};
+use crate::experiment::{Fit, MeasureKind, OneOrMany, PlotKind, Reduction, When};
 use crate::units::{Dimension, pretty};
 
 impl Check<'_> {
@@ -37,6 +37,30 @@ impl Check<'_> {
         }
         if let When::At(time) = experiment.picture.time {
             self.instant("picture.time", time.value());
+        }
+        self.range("picture.colour_range", experiment.picture.colour_range);
+        self.range("picture.field_range", experiment.picture.field_range);
+        for (index, plot) in experiment.plot.iter().enumerate() {
+            match &plot.kind {
+                PlotKind::Profile { times: Some(times), .. } => {
+                    for (number, time) in times.as_slice().iter().enumerate() {
+                        let within = if let OneOrMany::Many(_) = times { format!("[{number}]") } else { String::new() };
+                        if let When::At(time) = time {
+                            self.instant(&format!("plot[{index}].times{within}"), time.value());
+                        }
+                    }
+                }
+                PlotKind::Kymograph { range, .. } => self.range(&format!("plot[{index}].range"), *range),
+                _ => {}
+            }
+        }
+    }
+
+    /// A scale of colours must go upwards.
+    fn range(&mut self, path: &str, range: Option<[f64; 2]>) {
+        if range.is_some_and(|[low, high]| low.is_nan() || high.is_nan() || low >= high) {
+            let message = format!("`{path}` does not go upwards");
+            self.fault(path, "the first must be smaller", message, "give the smaller number first");
         }
     }
 
