@@ -96,7 +96,9 @@ impl Check<'_> {
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> = cells.flat_map(|cell| &cell.loads).map(|load| format!("load.{}", load.name)).collect();
         let known = || CELL_SERIES.into_iter().chain(["time"]).chain(loads.iter().map(String::as_str));
-        if known().any(|name| name == text) {
+        // Quantities of chemistry are SYSTEM.QUANTITY; which there are is known once their documents are read.
+        let of_chemistry = text.split_once('.').is_some_and(|(system, _)| words::meant(system, ["load"]).is_none());
+        if of_chemistry || known().any(|name| name == text) {
             return;
         }
         let label = words::meant(text, known()).map(|meant| format!("did you mean \"{meant}\"?"));
