@@ -1,12 +1,14 @@
 //! The scalar measures that an experiment declares, computed from the series of its run.
 
+use super::chemistry;
 use super::curve::Curve;
+use super::fields::Fields;
 use super::msd;
 use super::recording::Recording;
 use super::statistics::{self, Line};
 use super::table::Table;
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Comparison, Fit, MeasureKind, OneOrMany, Over, Reduction, SphereFit};
+use crate::experiment::{Comparison, Fit, MeasureKind, OneOrMany, Over, Reduction, SphereFit, WaveSpeed};
 use crate::units::Time;
 use std::path::{Path, PathBuf};
 
@@ -27,7 +29,15 @@ pub fn series_of(kind: &MeasureKind) -> Vec<&str> {
             vec![&table.x, &table.y]
         }
         MeasureKind::MsdDeviation { .. } => vec!["position_x", "position_y", "position_z"],
-        MeasureKind::RunLengthP { .. } => Vec::new(),
+        MeasureKind::ChemotacticIndex(_) => vec!["position_x", "position_y", "position_z"],
+        MeasureKind::Period(period) => vec![&period.series],
+        MeasureKind::WaveSpeed(WaveSpeed { series: Some(series), .. }) => {
+            vec![series, "position_x", "position_y", "position_z"]
+        }
+        MeasureKind::RunLengthP { .. }
+        | MeasureKind::WaveSpeed(_)
+        | MeasureKind::FieldValue(_)
+        | MeasureKind::Wavelength(_) => Vec::new(),
     };
     names.into_iter().filter(|name| *name != "time").collect()
 }
@@ -38,11 +48,17 @@ fn with_x<'a>(x: &'a String, y: &'a OneOrMany<String>) -> Vec<&'a str> {
 
 /// Computes the number, in base units: µm, s, pN.
 ///
+/// * `fields` – the fields of the same run.
 /// * `resolve` – makes a path of the document one that the system can open.
 ///
 /// # Errors
 /// When a series, type, column or table is not there, or does not reach where it is asked for.
-pub fn evaluate(kind: &MeasureKind, recording: &Recording, resolve: &dyn Fn(&Path) -> PathBuf) -> Result<f64> {
+pub fn evaluate(
+    kind: &MeasureKind,
+    recording: &Recording,
+    fields: Fields,
+    resolve: &dyn Fn(&Path) -> PathBuf,
+) -> Result<f64> {
     match kind {
         MeasureKind::Value { series, cells, over, time } => {
             reduce(*time, &recording.times, &recording.series(series, cells.as_deref(), *over)?)
@@ -69,11 +85,16 @@ pub fn evaluate(kind: &MeasureKind, recording: &Recording, resolve: &dyn Fn(&Pat
         MeasureKind::RunLengthP { cells, persistence } => {
             run_length_p(recording, cells.as_deref(), persistence.value())
         }
+        MeasureKind::FieldValue(value) => chemistry::field_value(value, &recording.times, fields),
+        MeasureKind::ChemotacticIndex(index) => chemistry::chemotactic_index(index, recording),
+        MeasureKind::Period(period) => chemistry::period(period, recording),
+        MeasureKind::WaveSpeed(wave) => chemistry::wave_speed(wave, recording, fields),
+        MeasureKind::Wavelength(pattern) => chemistry::wavelength(pattern, &recording.times, fields),
     }
 }
 
 /// Makes one of the values at several instants.
-fn reduce(reduction: Reduction, times: &[f64], values: &[f64]) -> Result<f64> {
+pub(super) fn reduce(reduction: Reduction, times: &[f64], values: &[f64]) -> Result<f64> {
     let (Some(first), Some(last)) = (values.first(), values.last()) else {
         let fault = Fault::new("the run has no frames to measure");
         return Err(Error::input(fault.help("let the run record at least one frame")));
@@ -92,7 +113,7 @@ fn reduce(reduction: Reduction, times: &[f64], values: &[f64]) -> Result<f64> {
 }
 
 /// The value at a time, between frames on a straight line.
-fn at(time: Time, times: &[f64], values: &[f64]) -> Result<f64> {
+pub(super) fn at(time: Time, times: &[f64], values: &[f64]) -> Result<f64> {
     let (from, to) = (times[0], times[times.len() - 1]);
     // Steps add up to a duration only to some digits: a time that is meant to be that of the last frame is.
     let slack = ROUND_OFF * from.abs().max(to.abs());

@@ -16,13 +16,13 @@ fn pulled() -> Recording {
         cell_types: vec![0, 1, 1],
         cells: BTreeMap::from([("size_x".to_owned(), sizes)]),
         scene: BTreeMap::from([("load.pull".to_owned(), vec![0.0, 10.0, 20.0])]),
-        runs: Vec::new(),
+        ..Recording::default()
     }
 }
 
 /// Evaluates with paths that can be opened as they are.
 fn evaluate(kind: &MeasureKind, recording: &Recording) -> Result<f64> {
-    super::evaluate(kind, recording, &Path::to_path_buf)
+    super::evaluate(kind, recording, Fields::default(), &Path::to_path_buf)
 }
 
 fn value(cells: Option<&str>, over: Over, time: Reduction) -> MeasureKind {
@@ -123,7 +123,7 @@ fn a_curve_through_the_cells_of_mills_meets_all_their_bars() {
             cell_types: vec![0],
             cells: BTreeMap::from([("size_x".to_owned(), Array2::from_shape_vec((load.len(), 1), sizes).unwrap())]),
             scene: BTreeMap::from([("load.pull".to_owned(), load)]),
-            runs: Vec::new(),
+            ..Recording::default()
         }
     };
     let comparison = Comparison {
@@ -182,8 +182,8 @@ fn walkers(number: u32) -> Recording {
         types: vec!["amoeba".to_owned()],
         cell_types: vec![0; number as usize],
         cells: BTreeMap::from(cells),
-        scene: BTreeMap::new(),
         runs,
+        ..Recording::default()
     }
 }
 

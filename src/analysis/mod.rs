@@ -1,19 +1,24 @@
 //! Numbers and series from a finished result file.
 
+mod chemistry;
 pub mod claims;
 pub mod curve;
+pub mod fields;
 pub mod measure;
 pub mod msd;
 #[cfg(test)]
 mod noise;
+pub mod pattern;
 pub mod recording;
 pub mod statistics;
 pub mod table;
+pub mod waves;
 
 use crate::error::{Error, Fault, Result};
 use crate::experiment::Document;
 use crate::output::{Measure, ResultFile};
 use claims::{Claim, ClaimResult};
+use fields::Fields;
 use recording::Recording;
 
 /// Evaluates all measures that a document declares, each multiplied by its scale. Those that cannot be computed come
@@ -29,7 +34,7 @@ pub fn measure_result(file: &ResultFile, document: &Document) -> Result<(Vec<Mea
     let recording = Recording::read(file, &names)?;
     let (mut measures, mut faults) = (Vec::new(), Vec::new());
     for (name, declared) in declared {
-        match measure::evaluate(&declared.kind, &recording, &|path| document.resolve(path)) {
+        match measure::evaluate(&declared.kind, &recording, Fields::of(file), &|path| document.resolve(path)) {
             Ok(value) => measures.push(Measure {
                 name: name.clone(),
                 value: value * declared.scale,

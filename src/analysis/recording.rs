@@ -21,7 +21,12 @@ pub struct Recording {
     pub scene: BTreeMap<String, Vec<f64>>,
     /// Motility runs that ended: cell, time of the end (s), duration (s).
     pub runs: Vec<(u32, f64, f64)>,
+    /// Names of all series that the run has, those of chemistry as `SYSTEM.QUANTITY`.
+    pub known: Vec<String>,
 }
+
+/// What a series of chemistry may begin with, so that a reader of the document knows where it comes from.
+const CHEMISTRY: &str = "chemistry.";
 
 /// Makes one of the values of several cells.
 fn reduce(over: Over, values: &[f64]) -> f64 {
@@ -35,8 +40,9 @@ fn reduce(over: Over, values: &[f64]) -> f64 {
 }
 
 impl Recording {
-    /// Reads the series that are asked for, and the rest, from a result file. Names that the file has no series of are
-    /// passed over; [`Recording::series`] says so when they are used.
+    /// Reads the series that are asked for, and the rest, from a result file. Quantities of chemistry are called
+    /// `chemistry.SYSTEM.QUANTITY` or `SYSTEM.QUANTITY`. Names that the file has no series of are passed over;
+    /// [`Recording::series`] says so when they are used.
     ///
     /// # Errors
     /// A damaged file.
@@ -51,12 +57,15 @@ impl Recording {
         };
         let (of_cells, of_scene) = (file.series_names(), file.scene_names());
         for &name in names {
-            if of_scene.iter().any(|known| known == name) {
-                recording.scene.insert(name.to_owned(), file.scene_series(name)?);
-            } else if name == "speed" || of_cells.iter().any(|known| known == name) {
-                recording.cells.insert(name.to_owned(), file.cell_series(name)?);
+            let in_file = |name: &str| of_scene.iter().chain(&of_cells).any(|known| known == name);
+            let stored = name.strip_prefix(CHEMISTRY).filter(|_| !in_file(name)).unwrap_or(name);
+            if of_scene.iter().any(|known| known == stored) {
+                recording.scene.insert(name.to_owned(), file.scene_series(stored)?);
+            } else if name == "speed" || of_cells.iter().any(|known| known == stored) {
+                recording.cells.insert(name.to_owned(), file.cell_series(stored)?);
             }
         }
+        recording.known = ["time".to_owned()].into_iter().chain(of_scene).chain(of_cells).collect();
         Ok(recording)
     }
 
@@ -92,7 +101,7 @@ impl Recording {
         if let Some(values) = self.scene.get(name) {
             return Ok(values.clone());
         }
-        let cells = self.cells_of(kind)?;
+        let cells = self.cells_with(name, kind)?;
         let series = self.cell_series(name)?;
         // A system of chemistry may live in some of the cells only: the others have no value in any frame.
         let having: Vec<usize> =
@@ -115,11 +124,58 @@ impl Recording {
         Ok(Array3::from_shape_fn(shape, |(frame, cell, axis)| axes[axis][[frame, cells[cell]]]))
     }
 
-    fn cell_series(&self, name: &str) -> Result<&Array2<f64>> {
-        self.cells.get(name).ok_or_else(|| {
-            let known = ["time"].into_iter().chain(self.scene.keys().chain(self.cells.keys()).map(String::as_str));
-            let fault = Fault::new(format!("there is no series \"{name}\" in this run"));
-            Error::input(fault.help(format!("the series at hand are {}", known.collect::<Vec<_>>().join(", "))))
-        })
+    /// The numbers of the cells of a type, or of all, that have values of a series: a system of chemistry may live in
+    /// some of the cells only, and the others are NaN in every frame.
+    ///
+    /// # Errors
+    /// When there is no such series, type or cell.
+    pub fn cells_with(&self, name: &str, kind: Option<&str>) -> Result<Vec<usize>> {
+        let series = self.cell_series(name)?;
+        let mut cells = self.cells_of(kind)?;
+        let lives = |cell: usize| series.is_empty() || series.column(cell).iter().any(|value| !value.is_nan());
+        cells.retain(|&cell| lives(cell));
+        if cells.is_empty() {
+            let which = kind.map_or("no cell".to_owned(), |kind| format!("no cell of the type \"{kind}\""));
+            let fault = Fault::new(format!("{which} has values of \"{name}\""));
+            return Err(Error::input(fault.help("give a type of cells that the system of the series lives in")));
+        }
+        Ok(cells)
+    }
+
+    /// A series of cells, [frame, cell].
+    ///
+    /// # Errors
+    /// When it was not read.
+    pub fn cell_series(&self, name: &str) -> Result<&Array2<f64>> {
+        self.cells.get(name).ok_or_else(|| self.missing(name))
+    }
+
+    /// That there is no such series, what may have been meant, and what there is.
+    fn missing(&self, name: &str) -> Error {
+        let read = ["time"].into_iter().chain(self.scene.keys().chain(self.cells.keys()).map(String::as_str));
+        let mut there: Vec<&str> = match self.known.as_slice() {
+            [] => read.collect(),
+            known => known.iter().map(String::as_str).collect(),
+        };
+        let plain = name.strip_prefix(CHEMISTRY).unwrap_or(name);
+        let distance = |other: &str| strsim::damerau_levenshtein(plain, other);
+        let near = there.iter().map(|other| (distance(other), *other)).min();
+        let prefix = &name[..name.len() - plain.len()];
+        if plain.contains('.') {
+            // Whoever asks for a quantity of a system wants to know of those.
+            there.retain(|known| known.contains('.'));
+        }
+        let list = match there.is_empty() {
+            true => "the run has no series of chemistry".to_owned(),
+            false => format!("the series at hand are {}", there.join(", ")),
+        };
+        let fault = Fault::new(format!("there is no series \"{name}\" in this run"));
+        // One slip in three letters, as in documents.
+        Error::input(fault.help(match near {
+            Some((slips, other)) if slips <= plain.chars().count() / 3 => {
+                format!("did you mean \"{}{other}\"? {list}", if other.contains('.') { prefix } else { "" })
+            }
+            _ => list,
+        }))
     }
 }

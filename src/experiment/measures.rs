@@ -1,5 +1,9 @@
 //! Numbers that are computed from a finished run and stored with it.
 
+mod chemistry;
+
+pub use chemistry::{ChemotacticIndex, FieldValue, OverBoxes, Period, Statistic, WaveSpeed, WaveStatistic, Wavelength};
+
 use super::values::{OneOrMany, words_or_time};
 use crate::units::{LineStiffness, Speed, Time, UnitError};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -38,7 +42,8 @@ impl Measure {
     }
 }
 
-/// What a measure computes. Series are named as in the result: `size_x`, `volume`, `load.pull`; units are µm, s, pN.
+/// What a measure computes. Series are named as in the result: `size_x`, `volume`, `load.pull`,
+/// `chemistry.SYSTEM.QUANTITY`; units are µm, s, pN, and those of their documents for chemistry and fields.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum MeasureKind {
@@ -100,6 +105,16 @@ pub enum MeasureKind {
         #[schemars(extend("x-exclusive-minimum" = 0))]
         persistence: Time,
     },
+    /// A field at a place, or its mean, extremes or amount.
+    FieldValue(FieldValue),
+    /// How straight cells go towards a point: how much nearer they came over the length of their way, from −1 to 1.
+    ChemotacticIndex(ChemotacticIndex),
+    /// The mean time between upward crossings of the middle between the smallest and the largest value, s.
+    Period(Period),
+    /// How fast a wave leaves a point: the fit of a line to its times of arrival against distances, µm/s.
+    WaveSpeed(WaveSpeed),
+    /// The wavelength of a pattern in a flat field, from its spectrum, µm.
+    Wavelength(Wavelength),
 }
 
 /// A part of a curve to which a straight line is fitted.

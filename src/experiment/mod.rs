@@ -51,7 +51,10 @@ pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{Compiled, Schedule, compile};
 pub use document::Document;
 pub use loads::{Cap, CapExtent, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
-pub use measures::{Comparison, Fit, Measure, MeasureKind, Over, Reduction, SphereFit};
+pub use measures::{
+    ChemotacticIndex, Comparison, FieldValue, Fit, Measure, MeasureKind, Over, OverBoxes, Period, Reduction, SphereFit,
+    Statistic, WaveSpeed, WaveStatistic, Wavelength,
+};
 pub use mechanics::{
     Barrier, BendingRest, Form, Law, Mechanics, Membrane, Reaction, ShapeMemory, ShapeStrength, Springs, VolumeControl,
     VolumeRule,

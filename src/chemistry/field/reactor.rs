@@ -14,7 +14,8 @@ use super::rows::{ROW, Rows};
 use super::sweeps::PARTS;
 use super::system::{POSITION, Scales};
 use crate::chemistry::eml::{Document, Scheme};
-use crate::chemistry::ode::block::{self, Stride};
+use crate::chemistry::ode::block;
+use crate::chemistry::ode::cells::Cells;
 use crate::chemistry::ode::scratch::Scratch;
 use crate::chemistry::ode::{Method, Tolerances};
 use crate::chemistry::program::code::Code;
@@ -47,6 +48,10 @@ pub type Positions = [Option<usize>; 3];
 #[derive(Debug)]
 struct Room {
     scratch: Scratch<WIDTH>,
+    /// States now and before, and open quantities, of a row of boxes, for the engine's methods.
+    states: Vec<Lanes<WIDTH>>,
+    before: Vec<Lanes<WIDTH>>,
+    given: Vec<Lanes<WIDTH>>,
 }
 
 fn empty_rooms() -> Vec<Mutex<Option<Room>>> {
@@ -113,26 +118,31 @@ impl Reactor {
         let mut room = self.room(chunk.first / POINTS);
         let room = room.get_or_insert_with(|| Room {
             scratch: Scratch::new(&self.program, self.method == Some(Method::Rosenbrock)),
+            states: vec![[0.0; WIDTH]; self.program.size()],
+            before: vec![[0.0; WIDTH]; self.program.size()],
+            given: vec![[0.0; WIDTH]; self.program.open.len()],
         });
         for (register, value) in self.inputs.iter().zip(inputs) {
             room.scratch.file[*register] = [*value; WIDTH];
         }
-        Arch::new().dispatch(Job { reactor: self, grid, scratch: &mut room.scratch, chunk })
+        Arch::new().dispatch(Job { reactor: self, grid, room, chunk })
     }
 
     #[inline(always)]
-    fn blocks(&self, grid: &Grid, scratch: &mut Scratch<WIDTH>, chunk: &mut Chunk) -> Option<Broken> {
+    fn blocks<S: pulp::Simd>(&self, simd: S, grid: &Grid, room: &mut Room, chunk: &mut Chunk) -> Option<Broken> {
         let (from, dt) = (chunk.time / self.scales.seconds, chunk.dt / self.scales.seconds);
         let mut broken = None;
         for first in (0..chunk.points).step_by(WIDTH) {
+            let scratch = &mut room.scratch;
             for (s, state) in scratch.state.iter_mut().enumerate() {
                 state.copy_from_slice(&chunk.values[s * POINTS + first..][..WIDTH]);
             }
             set_positions(grid, self.scales, &self.place, chunk.first + first, &mut scratch.file);
             match self.method {
                 None => midpoint(&self.rows, scratch, from, dt),
-                Some(method) => self.with_method(method, scratch, (from, from + dt)),
+                Some(method) => self.with_method(simd, method, room, (from, from + dt)),
             }
+            let scratch = &mut room.scratch;
             let mut fine = true;
             for (s, proposal) in scratch.proposal.iter().enumerate() {
                 chunk.values[s * POINTS + first..][..WIDTH].copy_from_slice(proposal);
@@ -151,13 +161,21 @@ impl Reactor {
 
     /// A step of reactions by one of the engine's methods; a box in trouble gets values that are no numbers.
     #[inline(always)]
-    fn with_method(&self, method: Method, scratch: &mut Scratch<WIDTH>, window: (f64, f64)) {
+    fn with_method<S: pulp::Simd>(&self, simd: S, method: Method, room: &mut Room, window: (f64, f64)) {
+        let Room { scratch, states, before, given } = room;
+        states.copy_from_slice(&scratch.state);
+        let open = self.program.first_open();
+        let many = given.len();
+        given.copy_from_slice(&scratch.file[open..open + many]);
         // The splitting has chosen its step for these reactions: it is tried in one piece.
-        let mut stride = Stride { step: [window.1 - window.0; WIDTH], error: [1.0; WIDTH] };
-        let result = block::advance(&self.program, method, scratch, &mut stride, WIDTH, window, &self.tolerances);
-        scratch.proposal.copy_from_slice(&scratch.state);
+        let (mut steps, mut errors) = ([[window.1 - window.0; WIDTH]], [[1.0; WIDTH]]);
+        let mut cells = Cells { count: WIDTH, states, given, steps: &mut steps, errors: &mut errors };
+        before.copy_from_slice(&scratch.state);
+        let result = block::advance(simd, &self.program, method, scratch, &mut cells, window, &self.tolerances);
+        scratch.proposal.copy_from_slice(states);
+        scratch.state.copy_from_slice(before);
         if let Err(trouble) = result {
-            scratch.proposal[trouble.variable.unwrap_or(0)][trouble.lane] = f64::NAN;
+            scratch.proposal[trouble.variable.unwrap_or(0)][trouble.cell] = f64::NAN;
         }
     }
 }
@@ -166,7 +184,7 @@ impl Reactor {
 struct Job<'a, 'c> {
     reactor: &'a Reactor,
     grid: &'a Grid,
-    scratch: &'a mut Scratch<WIDTH>,
+    room: &'a mut Room,
     chunk: &'a mut Chunk<'c>,
 }
 
@@ -174,8 +192,8 @@ impl pulp::WithSimd for Job<'_, '_> {
     type Output = Option<Broken>;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> Option<Broken> {
-        self.reactor.blocks(self.grid, self.scratch, self.chunk)
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Broken> {
+        self.reactor.blocks(simd, self.grid, self.room, self.chunk)
     }
 }
 

@@ -42,7 +42,7 @@ fn is_plain(action: Action) -> bool {
     match action {
         Action::Binary(function) => matches!(function, Add | Sub | Mul | Div | Lt | Le | Gt | Ge | Min | Max),
         Action::Unary(function) => matches!(function, Neg | Abs | Sqrt | Exp | Ln),
-        Action::Select => true,
+        Action::Select | Action::MulAdd | Action::MulSub | Action::SubMul => true,
     }
 }
 
@@ -114,6 +114,17 @@ fn two(a: Row, b: Row, to: Row, function: impl Fn(f64, f64) -> f64) {
 }
 
 #[inline(always)]
+fn three(a: Row, b: Row, c: Row, to: Row, function: impl Fn(f64, f64, f64) -> f64) {
+    for (((a, b), c), to) in a.iter().zip(b).zip(c).zip(to) {
+        let (a, b, c, mut result) = (a.get(), b.get(), c.get(), [0.0; PART]);
+        for l in 0..PART {
+            result[l] = function(a[l], b[l], c[l]);
+        }
+        to.set(result);
+    }
+}
+
+#[inline(always)]
 fn truth(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }
 }
@@ -139,6 +150,9 @@ fn plain(op: &Op, file: Row) {
         Action::Unary(Unary::Sqrt) => one(a, to, #[inline(always)] |a| a.sqrt()),
         Action::Unary(Unary::Exp) => one(a, to, #[inline(always)] |a| math::exp(a)),
         Action::Unary(Unary::Ln) => one(a, to, #[inline(always)] |a| math::ln(a)),
+        Action::MulAdd => three(a, b, row(file, op.c), to, #[inline(always)] |a, b, c| a * b + c),
+        Action::MulSub => three(a, b, row(file, op.c), to, #[inline(always)] |a, b, c| a * b - c),
+        Action::SubMul => three(a, b, row(file, op.c), to, #[inline(always)] |a, b, c| c - a * b),
         Action::Select => {
             let no = row(file, op.c);
             for (((a, yes), no), to) in a.iter().zip(b).zip(no).zip(to) {

@@ -2,7 +2,7 @@
 //! system alone with events and values at any time.
 
 pub(in crate::chemistry) mod block;
-mod cells;
+pub(in crate::chemistry) mod cells;
 mod control;
 mod events;
 mod explicit;
