@@ -21,6 +21,7 @@ mod sweep;
 mod sweeps;
 mod system;
 mod touch;
+mod transpose;
 
 pub use grid::{Grid, Wall, Walls};
 pub use layout::Placing;
