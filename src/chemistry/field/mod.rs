@@ -9,6 +9,7 @@ pub mod grid;
 mod layout;
 mod limit;
 mod lines;
+mod positions;
 mod profiles;
 mod react;
 mod reactor;
