@@ -335,3 +335,11 @@ fn fields_start_from_files_and_others_from_them() {
     assert_eq!((system.species_number("V"), system.species_number("W")), (Some(1), None));
     assert!(system.quantity("U").is_some() && system.quantity("W").is_none());
 }
+
+#[test]
+fn the_method_of_lines_refuses_what_it_is_not_for() {
+    let (system, fields) = placed(&from_file("brusselator"), None);
+    let error = system.reference(&fields, 1.0, &[], 1e-6, 1e-9).expect_err("too many values");
+    assert!(matches!(error, Error::Input(_)), "{error}");
+    assert_eq!(error.to_string(), "the method of lines is given 32768 values; 4000 at most were expected");
+}

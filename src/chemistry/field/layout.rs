@@ -1,8 +1,12 @@
-//! Where the grid of a document lies: its own origin and size, or those that the experiment gives it.
+//! Where the grid of a document lies, by its own origin and size or those that the experiment gives it, and its fields
+//! in µm and s.
 
-use super::grid::{FEWEST, Grid};
+use super::grid::{FEWEST, Grid, Wall};
+use super::species::Species;
+use super::system::Scales;
 use crate::Vec3;
-use crate::chemistry::eml::{Document, GridDescription};
+use crate::chemistry::eml::{self, Document, GridDescription};
+use crate::chemistry::tree::{Expr, System};
 use crate::error::{Error, Fault, Result};
 
 /// Where the experiment puts a grid whose document leaves origin or size open.
@@ -96,4 +100,23 @@ fn boxes(wanted: &GridDescription, size: [f64; 3], spacing: f64) -> [f64; 3] {
         if axis >= wanted.dimension { 1.0 } else { (size[axis] / spacing * (1.0 - ROUND_OFF)).ceil().max(1.0) }
     };
     [count(0), count(1), count(2)]
+}
+
+/// A field with its coefficients in µm and s.
+pub fn describe(field: &eml::FieldDescription, constants: &[f64], scales: Scales) -> Species {
+    let value = |expr: &Expr| expr.evaluate(0.0, &|number| constants[number as usize]);
+    let wall = |number: usize| match &field.walls[number] {
+        eml::Wall::NoFlux => Wall::NoFlux,
+        eml::Wall::Fixed(held) => Wall::Fixed(value(held)),
+        eml::Wall::Periodic => Wall::Periodic,
+    };
+    let diffusion = value(&field.diffusion) * scales.micrometres * scales.micrometres / scales.seconds;
+    Species::new(field.id.clone(), diffusion, value(&field.decay) / scales.seconds)
+        .with_walls([[wall(0), wall(1)], [wall(2), wall(3)], [wall(4), wall(5)]])
+        .with_range(field.range)
+}
+
+/// The unit of a field, as written.
+pub fn unit(system: &System, field: &eml::FieldDescription) -> String {
+    system.quantities[field.quantity as usize].unit.clone()
 }

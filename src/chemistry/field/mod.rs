@@ -9,6 +9,7 @@ pub mod grid;
 mod layout;
 mod limit;
 mod lines;
+mod positions;
 mod profiles;
 mod react;
 mod reactor;
@@ -21,6 +22,7 @@ mod sweep;
 mod sweeps;
 mod system;
 mod touch;
+mod transpose;
 
 pub use grid::{Grid, Wall, Walls};
 pub use layout::Placing;

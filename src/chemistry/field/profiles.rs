@@ -1,7 +1,8 @@
 //! The starting expressions of a document's fields at all boxes of a grid.
 
 use super::grid::Grid;
-use super::reactor::{WIDTH, positions, set_positions};
+use super::positions::{positions, set_positions};
+use super::reactor::WIDTH;
 use super::system::Scales;
 use crate::chemistry::program::{Program, run};
 use crate::chemistry::tree::{Expr, QuantityId, Role, System};

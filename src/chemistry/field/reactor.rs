@@ -9,6 +9,7 @@ use pulp::Arch;
 
 use super::broken::{Broken, Course};
 use super::grid::Grid;
+use super::positions::{Positions, positions, set_positions};
 use super::react::{Chunk, POINTS};
 use super::rows::{ROW, Rows};
 use super::sweeps::PARTS;
@@ -18,8 +19,7 @@ use crate::chemistry::ode::block;
 use crate::chemistry::ode::cells::Cells;
 use crate::chemistry::ode::scratch::Scratch;
 use crate::chemistry::ode::{Method, Tolerances};
-use crate::chemistry::program::code::Code;
-use crate::chemistry::program::{Lanes, Program};
+use crate::chemistry::program::Program;
 use crate::chemistry::tree::{Expr, Role};
 use crate::error::{Error, Fault, Result};
 
@@ -40,9 +40,6 @@ pub struct Reactor {
     inputs: Vec<usize>,
     rooms: Vec<Mutex<Option<Room>>>,
 }
-
-/// Registers of the position that the equations use.
-pub type Positions = [Option<usize>; 3];
 
 /// What one thread works in.
 #[derive(Debug)]
@@ -246,42 +243,6 @@ fn method(document: &Document) -> Result<Option<Method>> {
             let message = format!("the reactions of the fields of '{}' cannot be taken with {name}", document.name);
             let help = "write scheme=\"rk4\", \"rk45\" or, for stiff reactions, \"rosenbrock\", or leave it out";
             Err(Error::input(Fault::new(message).help(help)))
-        }
-    }
-}
-
-/// Where the position stands among the registers, as far as the code uses it.
-pub fn positions(program: &Program, code: &Code) -> Positions {
-    POSITION.map(|name| {
-        let number = program.open.iter().position(|open| program.names[*open as usize] == name)?;
-        let register = program.first_open() + number;
-        let read = code.ops.iter().flat_map(|op| [op.a, op.b, op.c]).chain(code.outputs.iter().copied());
-        read.into_iter().any(|one| one as usize == register).then_some(register)
-    })
-}
-
-/// Sets the position of boxes that follow each other in memory, in the document's unit.
-pub fn set_positions(grid: &Grid, scales: Scales, place: &Positions, first: usize, file: &mut [Lanes<WIDTH>]) {
-    if place.iter().all(Option::is_none) {
-        return;
-    }
-    let [nx, ny, _] = grid.cells;
-    let mut index = [first % nx, first / nx % ny, first / (nx * ny)];
-    // On the substrate z is its height.
-    let centre = if grid.is_flat() { [0.5, 0.5, 0.0] } else { [0.5; 3] };
-    for lane in 0..WIDTH {
-        for (axis, register) in place.iter().enumerate() {
-            if let Some(register) = register {
-                let position = grid.origin[axis] + (index[axis] as f64 + centre[axis]) * grid.spacing[axis];
-                file[*register][lane] = position / scales.micrometres;
-            }
-        }
-        index[0] += 1;
-        if index[0] == nx {
-            index = [0, index[1] + 1, index[2]];
-        }
-        if index[1] == ny {
-            index = [0, 0, index[2] + 1];
         }
     }
 }

@@ -132,6 +132,7 @@ fn truth(holds: bool) -> f64 {
 /// One operation over rows. The functions are those of the engine, so that the bits are the same.
 #[inline(always)]
 #[rustfmt::skip] // a table
+#[allow(clippy::redundant_closure)] // a function by its name would be called, not inlined into the lanes
 fn plain(op: &Op, file: Row) {
     let (a, b, to) = (row(file, op.a), row(file, op.b), row(file, op.to));
     match op.action {

@@ -5,7 +5,6 @@
 
 use std::marker::PhantomData;
 
-use pulp::Arch;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
 use super::factors::Line;
@@ -13,6 +12,7 @@ use super::grid::Grid;
 use super::limit::{clear_specks, limit, scratch};
 use super::species::{Range, Species};
 use super::sweep::{WIDTH, section, sweep};
+use super::transpose::{transpose_in, transpose_out};
 
 /// Fewest values for which threads are worth waking.
 const WORTH_THREADS: usize = 1 << 15;
@@ -98,7 +98,7 @@ impl Lines {
             Self::Rows { first, n, count } => {
                 // SAFETY: the boxes are the caller's alone.
                 let from = unsafe { values.part(first, n * count) };
-                transpose_in(from, n, count, rows);
+                transpose_in(from, [n, count], rows);
             }
             Self::Columns { first, n, stride, count } => {
                 for (i, row) in rows[..n].iter_mut().enumerate() {
@@ -125,7 +125,7 @@ impl Lines {
             Self::Rows { first, n, count } => {
                 // SAFETY: the boxes are the caller's alone.
                 let to = unsafe { values.part(first, n * count) };
-                transpose_out(rows, n, count, to);
+                transpose_out(rows, [n, count], to);
             }
             Self::Columns { first, n, stride, count } => {
                 for (i, row) in rows[..n].iter().enumerate() {
@@ -140,68 +140,6 @@ impl Lines {
             }
         }
     }
-}
-
-/// Four lines of four boxes each become four boxes of four lines each.
-#[inline(always)]
-fn turn(from: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
-    std::array::from_fn(|i| from.map(|line| line[i]))
-}
-
-#[inline(always)]
-fn four(from: &[f64]) -> [f64; 4] {
-    *from.first_chunk().expect("four numbers")
-}
-
-fn transpose_in(from: &[f64], n: usize, count: usize, rows: &mut [[f64; WIDTH]]) {
-    Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            let (wide, long) = (count / 4 * 4, n / 4 * 4);
-            for lane in (0..wide).step_by(4) {
-                let lines: [&[f64]; 4] = std::array::from_fn(|k| &from[(lane + k) * n..(lane + k + 1) * n]);
-                for i in (0..long).step_by(4) {
-                    let turned = turn(lines.map(|line| four(&line[i..])));
-                    for (row, values) in rows[i..i + 4].iter_mut().zip(turned) {
-                        row[lane..lane + 4].copy_from_slice(&values);
-                    }
-                }
-                for i in long..n {
-                    rows[i][lane..lane + 4].copy_from_slice(&lines.map(|line| line[i]));
-                }
-            }
-            for (i, row) in rows[..n].iter_mut().enumerate() {
-                for lane in wide..count {
-                    row[lane] = from[lane * n + i];
-                }
-                row[count..].fill(0.0);
-            }
-        },
-    );
-}
-
-fn transpose_out(rows: &[[f64; WIDTH]], n: usize, count: usize, to: &mut [f64]) {
-    Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            let (wide, long) = (count / 4 * 4, n / 4 * 4);
-            for lane in (0..wide).step_by(4) {
-                for i in (0..long).step_by(4) {
-                    let turned = turn(std::array::from_fn(|k| four(&rows[i + k][lane..])));
-                    for (k, values) in turned.into_iter().enumerate() {
-                        let at = (lane + k) * n + i;
-                        to[at..at + 4].copy_from_slice(&values);
-                    }
-                }
-            }
-            for (i, row) in rows[..n].iter().enumerate() {
-                let first = if i < long { wide } else { 0 };
-                for lane in first..count {
-                    to[lane * n + i] = row[lane];
-                }
-            }
-        },
-    );
 }
 
 /// What a task does to its lines.

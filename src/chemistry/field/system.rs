@@ -3,8 +3,8 @@
 //! A document keeps its own units of time and length; the fields are moved in µm and s, and their values are
 //! concentrations in the unit that the document gives them.
 
-use super::grid::{Grid, Wall};
-use super::layout::{Placing, layout};
+use super::grid::Grid;
+use super::layout::{Placing, describe, layout, unit};
 use super::lines;
 use super::profiles::profiles;
 use super::reactor::Reactor;
@@ -13,7 +13,7 @@ use super::state::Fields;
 use super::step::{Report, Stepping};
 use crate::chemistry::eml;
 use crate::chemistry::program::{Program, initial_values};
-use crate::chemistry::tree::{Expr, QuantityId, Role, System};
+use crate::chemistry::tree::{QuantityId, Role, System};
 use crate::error::{Error, Fault, Place, Result};
 
 /// Gives the values of a profile that lies in a file, its `scale` included: one for each box of the grid, x fastest.
@@ -214,7 +214,7 @@ impl FieldSystem {
     /// explicit method of order 5. For small grids, as the measure of [`Self::advance`].
     ///
     /// # Errors
-    /// More than [`lines::MOST_UNKNOWNS`] values, and what the engine meets.
+    /// More than 4 000 values, and what the engine meets.
     ///
     /// # Panics
     /// As [`Self::advance`].
@@ -234,24 +234,6 @@ impl FieldSystem {
             other => other,
         }
     }
-}
-
-/// A field with its coefficients in µm and s.
-fn describe(field: &eml::FieldDescription, constants: &[f64], scales: Scales) -> Species {
-    let value = |expr: &Expr| expr.evaluate(0.0, &|number| constants[number as usize]);
-    let wall = |number: usize| match &field.walls[number] {
-        eml::Wall::NoFlux => Wall::NoFlux,
-        eml::Wall::Fixed(held) => Wall::Fixed(value(held)),
-        eml::Wall::Periodic => Wall::Periodic,
-    };
-    let diffusion = value(&field.diffusion) * scales.micrometres * scales.micrometres / scales.seconds;
-    Species::new(field.id.clone(), diffusion, value(&field.decay) / scales.seconds)
-        .with_walls([[wall(0), wall(1)], [wall(2), wall(3)], [wall(4), wall(5)]])
-        .with_range(field.range)
-}
-
-fn unit(system: &System, field: &eml::FieldDescription) -> String {
-    system.quantities[field.quantity as usize].unit.clone()
 }
 
 fn in_circle(document: &eml::Document, circle: &[String]) -> Error {

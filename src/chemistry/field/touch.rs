@@ -1,6 +1,6 @@
 //! What cells do to a field: release amounts into it, and sense its value and gradient.
 
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::grid::{Grid, Wall};
 use super::species::{Range, Species};
@@ -332,14 +332,27 @@ impl Fields {
         let axes = Axis::all(&self.grid, &self.species[species]);
         let values = self.values(species);
         let floor = if self.species[species].range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };
-        Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                for (position, out) in positions.iter().zip(out) {
-                    *out = sense(&axes, values, *position, floor);
-                }
-            },
-        );
+        Arch::new().dispatch(SenseAll { axes, values, floor, positions, out });
+    }
+}
+
+/// Sensing at many positions, so that it is compiled for the processor's lanes.
+struct SenseAll<'a> {
+    axes: [Axis; 3],
+    values: &'a [f64],
+    floor: f64,
+    positions: &'a [Vec3],
+    out: &'a mut [Sensed],
+}
+
+impl WithSimd for SenseAll<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (position, out) in self.positions.iter().zip(self.out) {
+            *out = sense(&self.axes, self.values, *position, self.floor);
+        }
     }
 }
 
