@@ -12,6 +12,7 @@ mod container;
 mod field_column;
 mod field_export;
 mod fields;
+mod fields_reader;
 mod header;
 mod info;
 mod layout_io;

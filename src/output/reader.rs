@@ -8,10 +8,9 @@ use ndarray::{Array2, s};
 use super::Layout;
 use super::catalogue::{CATALOGUE, FORCE, Filled, Run, cell_series_names};
 use super::container::{self, Access, damaged, text};
-use super::fields::FieldLayout;
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
-use super::systems::{SystemLayout, SystemScope};
+use super::systems::SystemScope;
 use crate::error::{Error, Fault, Result};
 
 /// A result file opened for reading. Arrays are read when they are asked for.
@@ -140,121 +139,17 @@ impl ResultFile {
         Ok(values.as_chunks::<3>().0.to_vec())
     }
 
-    /// The field of this name, or the first one that has a species of this name.
-    ///
-    /// # Errors
-    /// [`Error::Input`] that lists what there is.
-    pub fn field(&self, name: &str) -> Result<&FieldLayout> {
-        let fields = &self.layout.fields;
-        let found = fields.iter().find(|field| field.name == name);
-        let found = found.or_else(|| fields.iter().find(|field| field.species_number(name).is_some()));
-        found.ok_or_else(|| self.no_field(name))
-    }
-
-    /// What `text` names: `FIELD.SPECIES`, a field (its first species) or a species (of the first field with it).
-    ///
-    /// # Errors
-    /// [`Error::Input`] that lists what there is.
-    pub fn field_species(&self, text: &str) -> Result<(&FieldLayout, usize)> {
-        let fields = &self.layout.fields;
-        for field in fields {
-            let rest = text.strip_prefix(&field.name).and_then(|rest| rest.strip_prefix('.'));
-            if let Some(species) = rest.and_then(|rest| field.species_number(rest)) {
-                return Ok((field, species));
-            }
-        }
-        let field = self.field(text)?;
-        let named = if field.name == text { None } else { field.species_number(text) };
-        if field.species.is_empty() {
-            return Err(self.no_field(text));
-        }
-        Ok((field, named.or_else(|| field.species_number(text)).unwrap_or(0)))
-    }
-
-    /// The values of a species in a frame, one for each box, x fastest. They were stored with seven digits.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a field or species that is not there, or a damaged file.
-    ///
-    /// # Panics
-    /// If there is no such frame.
-    pub fn field_frame(&self, field: &str, species: &str, frame: usize) -> Result<Vec<f64>> {
-        assert!(frame < self.frames, "frame {frame} of {}", self.frames);
-        let known = self.layout.fields.iter().find(|known| known.name == field);
-        let known = known.filter(|known| known.species_number(species).is_some());
-        let Some(known) = known else { return Err(self.no_field(&format!("{field}.{species}"))) };
-        let [nx, ny, nz] = known.cells;
-        let values = self.read(&format!("/fields/{field}/CellData/{species}"), |dataset| {
-            dataset.read_slice::<f32, _, ndarray::Ix3>((frame, 0..nz, 0..ny, 0..nx))
-        })?;
-        Ok(values.iter().map(|value| f64::from(*value)).collect())
-    }
-
-    fn no_field(&self, name: &str) -> Error {
-        let mut known: Vec<String> = Vec::new();
-        for field in &self.layout.fields {
-            known.push(field.name.clone());
-            for (species, _) in field.species.iter().filter(|(species, _)| *species != field.name) {
-                known.push(format!("{}.{species}", field.name));
-            }
-        }
-        let fault = Fault::new(match known.is_empty() {
-            true => format!("{} holds no fields", self.path.display()),
-            false => format!("{} has no field `{name}`", self.path.display()),
-        });
-        Error::input(fault.help(match known.is_empty() {
-            true => "give the experiment a field, or leave the option out".to_owned(),
-            false => listed(name, &known, self.layout.fields.iter().flat_map(|f| f.species.iter().map(|s| &s.0))),
-        }))
-    }
-
-    /// A quantity of a system, `[frame, member]`: one column for each of its cells, one in all for the scene.
-    ///
-    /// # Errors
-    /// An unknown name, or a damaged file.
-    pub fn quantity_series(&self, system: &str, quantity: &str) -> Result<Array2<f64>> {
-        let known = self.layout.systems.iter().find(|known| known.name == system);
-        let known = known.filter(|known| known.quantities.iter().any(|(name, _)| name == quantity));
-        let Some(known) = known else { return Err(self.unknown(&format!("{system}.{quantity}"))) };
-        let (frames, members) = (self.frames, known.members());
-        self.read(&known.path(quantity), |dataset| match known.scope {
-            SystemScope::Scene => {
-                let values = dataset.read_slice_1d::<f64, _>(0..frames)?;
-                Ok(values.insert_axis(ndarray::Axis(1)))
-            }
-            SystemScope::Cells(_) => dataset.read_slice_2d::<f64, _>((0..frames, 0..members)),
-        })
-    }
-
-    /// The system and quantity that a series `SYSTEM.QUANTITY` means.
-    fn quantity_of(&self, name: &str) -> Option<(&SystemLayout, &(String, String))> {
-        self.layout.systems.iter().find_map(|system| {
-            let rest = name.strip_prefix(&system.name)?.strip_prefix('.')?;
-            Some((system, system.quantities.iter().find(|(known, _)| known == rest)?))
-        })
-    }
-
-    /// Names of the series of systems, `SYSTEM.QUANTITY`: of those inside cells, or of those of the scene.
-    fn quantity_names(&self, inside_cells: bool) -> impl Iterator<Item = String> {
-        let wanted = move |system: &&SystemLayout| matches!(system.scope, SystemScope::Cells(_)) == inside_cells;
-        let names = |system: &SystemLayout| {
-            let named = |(quantity, _): &(String, String)| format!("{}.{quantity}", system.name);
-            system.quantities.iter().map(named).collect::<Vec<_>>()
-        };
-        self.layout.systems.iter().filter(wanted).flat_map(names)
-    }
-
     /// Names that [`cell_series`](Self::cell_series) knows.
     pub fn series_names(&self) -> Vec<String> {
         let mut names = cell_series_names();
-        names.extend(self.quantity_names(true));
+        names.extend(self.cell_quantities());
         names
     }
 
     /// Names that [`scene_series`](Self::scene_series) knows.
     pub fn scene_names(&self) -> Vec<String> {
         let mut names: Vec<String> = self.layout.scene_series.iter().map(|(name, _)| name.clone()).collect();
-        names.extend(self.quantity_names(false));
+        names.extend(self.scene_quantities());
         names
     }
 
@@ -369,12 +264,12 @@ impl ResultFile {
         self.read(path, |dataset| Ok(dataset.read_slice_1d::<f64, _>(0..self.frames)?.to_vec()))
     }
 
-    fn read<T>(&self, path: &str, take: impl FnOnce(&Dataset) -> hdf5::Result<T>) -> Result<T> {
+    pub(super) fn read<T>(&self, path: &str, take: impl FnOnce(&Dataset) -> hdf5::Result<T>) -> Result<T> {
         let taken = self.file.dataset(path).and_then(|dataset| take(&dataset));
         taken.map_err(|error| damaged(&self.path, &format!("{path}: {error}")))
     }
 
-    fn unknown(&self, name: &str) -> Error {
+    pub(super) fn unknown(&self, name: &str) -> Error {
         let mut known = self.series_names();
         known.extend(self.scene_names());
         let help = listed(name, &known, std::iter::empty());
@@ -383,7 +278,7 @@ impl ResultFile {
 }
 
 /// What there is, and what may have been meant, one of `known` or `also`.
-fn listed<'a>(name: &str, known: &'a [String], also: impl Iterator<Item = &'a String>) -> String {
+pub(super) fn listed<'a>(name: &str, known: &'a [String], also: impl Iterator<Item = &'a String>) -> String {
     let near = known.iter().chain(also).map(|other| (strsim::damerau_levenshtein(name, other), other)).min();
     let help = format!("there are: {}", known.join(", "));
     match near {

@@ -8,7 +8,7 @@ use hdf5::{Attribute, File};
 use super::checkpoint::{CheckpointMeta, DATASET, checkpoint_path, save_checkpoint};
 use super::columns::Columns;
 use super::container::{self, Access, failed, machine_error, set_number, set_text};
-use super::fields::{check_names, field_view_path, write_views};
+use super::fields::{check_layout, field_view_path, write_views};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout, write_header, write_layout};
 use super::reader::{ResultFile, whole_frames};
@@ -45,15 +45,15 @@ impl ResultWriter {
     ///
     /// # Errors
     /// [`Error::Input`] if the file or its checkpoint exists (with [`Overwrite::Refuse`]), its folder does not exist
-    /// or may not be written, the layout has no atoms or names that the file cannot hold; [`Error::Machine`] if the
-    /// disk refuses.
+    /// or may not be written, the layout has no atoms, or fields or systems that the file cannot hold;
+    /// [`Error::Machine`] if the disk refuses.
     pub fn create(path: &Path, header: &Header, layout: &Layout, overwrite: Overwrite) -> Result<Self> {
         if layout.atoms() == 0 && layout.fields.is_empty() && layout.systems.is_empty() {
             let fault =
                 Fault::new("there is nothing to record").help("give the experiment a cell, a field or a system");
             return Err(Error::input(fault));
         }
-        check_names(layout)?;
+        check_layout(layout)?;
         claim(path, overwrite, layout)?;
         // A file that could not be begun is of no use, and would stand in the way of the next try.
         Self::begin(path, header, layout).inspect_err(|_| drop(std::fs::remove_file(path)))

@@ -155,7 +155,7 @@ fn what_fields_there_are_is_told() {
 }
 
 #[test]
-fn names_that_cannot_stand_in_a_path_are_refused() {
+fn what_the_file_cannot_hold_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.vtkhdf");
     let refusal = |change: fn(&mut Layout)| {
@@ -167,6 +167,10 @@ fn names_that_cannot_stand_in_a_path_are_refused() {
     insta::assert_snapshot!(refusal(|layout| layout.fields[0].name = "a/b".into()), @"a field of the result cannot be named `a/b`");
     insta::assert_snapshot!(refusal(|layout| layout.systems[1].name = "brain".into()), @"a system of the result is there twice under the name `brain`");
     insta::assert_snapshot!(refusal(|layout| layout.fields[0].species[0].0.clear()), @"a species of the result cannot be named ``");
+    let refused = refusal(|layout| layout.fields[1].cells = [4, 0, 4]);
+    insta::assert_snapshot!(refused, @"the field `medium` has no boxes or no species to record");
+    let refused = refusal(|layout| layout.systems[0].scope = SystemScope::Cells(Vec::new()));
+    insta::assert_snapshot!(refused, @"the system `brain` lives in no cell");
     assert!(!path.exists(), "nothing was made");
 }
 
