@@ -19,7 +19,7 @@ use crate::chemistry::ode::block;
 use crate::chemistry::ode::cells::Cells;
 use crate::chemistry::ode::scratch::Scratch;
 use crate::chemistry::ode::{Method, Tolerances};
-use crate::chemistry::program::Program;
+use crate::chemistry::program::{Lanes, Program};
 use crate::chemistry::tree::{Expr, Role};
 use crate::error::{Error, Fault, Result};
 

@@ -45,7 +45,7 @@ pub const LEAST: f64 = 0.2;
 const SMALLEST: f64 = 1e-8;
 
 impl Controller {
-    /// The factor on the step.
+    /// The factor on the step, eq. (ode.4).
     #[inline(always)]
     pub fn factor(&self, error: f64, previous: f64) -> f64 {
         let error = if error > SMALLEST { error } else { SMALLEST };
@@ -60,7 +60,7 @@ impl Controller {
     }
 }
 
-/// The largest of the variables' errors, each over what is allowed; not a number where one of them is none. What does not
+/// The largest of the variables' errors, each over what is allowed, eq. (ode.3); not a number where one of them is none. What does not
 /// err at all counts as 0, even where it is not a number: a value that nothing has set yet.
 #[inline(always)]
 pub fn norm<const L: usize>(

@@ -1,4 +1,4 @@
-//! Solving the equations: for all cells of a population side by side, each cell with a step of its own, or for one
+//! Solving the equations, eq. (ode.1): for all cells of a population side by side, each cell with a step of its own, or for one
 //! system alone with events and values at any time.
 
 pub(in crate::chemistry) mod block;

@@ -1,4 +1,4 @@
-//! The step for stiff systems.
+//! The step for stiff systems, eq. (ode.2).
 
 use pulp::Simd;
 
