@@ -126,7 +126,8 @@ pub(super) fn period(wanted: &Period, recording: &Recording) -> Result<f64> {
         let number = cells.len();
         cells.retain(|known| *known == cell as usize);
         if cells.is_empty() {
-            let found = format!("cell {cell} is not among the {number} cells that have values of \"{}\"", wanted.series);
+            let found =
+                format!("cell {cell} is not among the {number} cells that have values of \"{}\"", wanted.series);
             return Err(Error::input(Fault::new(found).help("cells are counted from 0 over all types")));
         }
     }
@@ -212,3 +213,7 @@ pub(super) fn wavelength(wanted: &Wavelength, times: &[f64], fields: Fields) -> 
     };
     pattern::wavelength(field.layout, &field.frame(frame)?)
 }
+
+#[cfg(test)]
+#[path = "chemistry_tests.rs"]
+mod tests;

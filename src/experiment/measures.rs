@@ -2,9 +2,7 @@
 
 mod chemistry;
 
-pub use chemistry::{
-    ChemotacticIndex, FieldValue, OverBoxes, Period, Statistic, WaveSpeed, WaveStatistic, Wavelength,
-};
+pub use chemistry::{ChemotacticIndex, FieldValue, OverBoxes, Period, Statistic, WaveSpeed, WaveStatistic, Wavelength};
 
 use super::values::{OneOrMany, words_or_time};
 use crate::units::{LineStiffness, Speed, Time, UnitError};

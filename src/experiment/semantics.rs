@@ -15,6 +15,7 @@ const CELL_SERIES: [&str; 18] = [
 ];
 
 mod cells;
+mod measures;
 mod scene;
 
 struct Check<'a> {
