@@ -4,6 +4,10 @@
 
 use pseudopod::error::{Error, Paint, render};
 use pseudopod::experiment::Document;
+use pseudopod::output::{
+    CellLayout, CellRecord, FieldLayout, Frame, Header, Layout, Overwrite, ResultFile, ResultWriter, SystemLayout,
+    SystemScope,
+};
 use std::path::{Path, PathBuf};
 
 /// Changes that a document asks for in lines `#! --set key=value`.
@@ -13,7 +17,10 @@ fn sets(text: &str) -> Vec<String> {
 
 /// Compares a message with the kept text, or keeps it.
 fn compare(error: &Error, kept: &Path) -> Result<(), String> {
-    let message = render(error, Paint::Plain);
+    compare_text(&render(error, Paint::Plain), kept)
+}
+
+fn compare_text(message: &str, kept: &Path) -> Result<(), String> {
     if std::env::var_os("PSEUDOPOD_BLESS").is_some() {
         return std::fs::write(kept, message).map_err(|error| format!("{}: {error}", kept.display()));
     }
@@ -74,4 +81,62 @@ fn every_fault_of_a_document_has_a_place() {
             }
         }
     }
+}
+
+/// Three frames of two amoebae, one of which moves, a rock, two systems and two fields that stay as they are.
+fn recorded(path: &Path) -> ResultFile {
+    let cell = |number: u32| CellLayout { kind: number / 2, first_atom: number, atoms: 1, first_facet: 0, facets: 0 };
+    let unit = |name: &str| vec![(name.to_owned(), "uM".to_owned())];
+    let field = |name: &str, cells| FieldLayout {
+        name: name.into(),
+        species: unit("cAMP"),
+        cells,
+        spacing: [1.0; 3],
+        origin: [0.0; 3],
+    };
+    let system = |name: &str, scope, quantity| SystemLayout { name: name.into(), scope, quantities: unit(quantity) };
+    let layout = Layout {
+        types: vec!["amoeba".into(), "rock".into()],
+        cells: (0..3).map(cell).collect(),
+        fields: vec![field("attractant", [4, 3, 1]), field("medium", [2, 2, 2])],
+        systems: vec![
+            system("oscillator", SystemScope::Cells(vec![0, 1]), "cAMP"),
+            system("clock", SystemScope::Scene, "tick"),
+        ],
+        ..Layout::default()
+    };
+    let header = Header::now("chemistry.toml", "Made up", "", &[], 0);
+    let mut writer = ResultWriter::create(path, &header, &layout, Overwrite::Refuse).expect("a new file");
+    for step in 0..3_u32 {
+        let time = f64::from(step);
+        let frame = Frame {
+            time,
+            step: u64::from(step),
+            positions: vec![[0.0; 3]; 3],
+            cells: [time, 0.0, 0.0].map(|x| CellRecord { position: [x, 0.0, 0.0], ..CellRecord::default() }).to_vec(),
+            fields: vec![vec![vec![3.0; 12]], vec![vec![3.0; 8]]],
+            systems: vec![vec![vec![time, 2.0]], vec![vec![time]]],
+            ..Frame::default()
+        };
+        writer.append(&frame).expect("a frame");
+    }
+    writer.finish(1.0).expect("an end");
+    ResultFile::open(path).expect("a result")
+}
+
+#[test]
+fn every_measure_that_cannot_be_taken_says_why() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = recorded(&folder.path().join("result.h5"));
+    let path = Path::new("tests/messages/measures/chemistry.toml");
+    let document = Document::read(path, &[]).unwrap_or_else(|error| panic!("{}", render(&error, Paint::Plain)));
+    let (measures, faults) = pseudopod::analysis::measure_result(&result, &document).expect("a whole file");
+    let taken: Vec<&str> = measures.iter().map(|measure| measure.name.as_str()).collect();
+    assert!(taken.is_empty(), "can be taken: {taken:?}");
+    assert!(
+        faults.iter().all(|fault| fault.help.is_some() && fault.place.is_some()),
+        "each says what to do, and where"
+    );
+    let message = render(&Error::Input(faults), Paint::Plain).replace(&folder.path().display().to_string(), "FOLDER");
+    compare_text(&message, &path.with_extension("txt")).expect("the message that is kept");
 }

@@ -213,3 +213,7 @@ pub(super) fn wavelength(wanted: &Wavelength, times: &[f64], fields: Fields) -> 
     };
     pattern::wavelength(field.layout, &field.frame(frame)?)
 }
+
+#[cfg(test)]
+#[path = "chemistry_tests.rs"]
+mod tests;

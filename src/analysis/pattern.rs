@@ -10,7 +10,10 @@ use std::f64::consts::{PI, TAU};
 /// next wave at 2, hexagons at √3 times the first.
 const ABOUT_THE_PEAK: f64 = 0.35;
 
-/// The pattern must repeat at least this often along the longer side.
+/// They are also those within so many waves of the shorter side, for the window spreads a wave over two on each side.
+const WINDOW: f64 = 2.5;
+
+/// The pattern must repeat at least this often along each side.
 const REPEATS: f64 = 2.0;
 
 /// Values that differ by less than this share of their size are the same: they are stored with seven digits.
@@ -36,7 +39,7 @@ impl Wave {
 /// window spreads a wave over its neighbours in the spectrum; what this adds to the length of wave vectors is taken off.
 ///
 /// # Errors
-/// When the field is not flat, is the same everywhere, or does not hold the pattern twice.
+/// When the field is not flat, is the same everywhere, or does not hold the pattern twice along each side.
 ///
 /// # Panics
 /// If there is not one value for each box.
@@ -53,14 +56,17 @@ pub fn wavelength(layout: &FieldLayout, values: &[f64]) -> Result<f64> {
         return Err(Error::input(fault.help("give a time at which the field is not the same everywhere")));
     }
     let size = [0, 1].map(|axis| layout.cells[axis] as f64 * layout.spacing[axis]);
+    // A side of one or two boxes holds no waves, and the window does not change it.
+    let sides: Vec<usize> = [0, 1].into_iter().filter(|&axis| layout.cells[axis] > 2).collect();
+    let shortest = sides.iter().map(|&axis| size[axis]).fold(f64::INFINITY, f64::min);
+    let blur = [0, 1].map(|axis| if sides.contains(&axis) { (TAU / size[axis]).powi(2) / 3.0 } else { 0.0 });
     let waves = spectrum(layout, values);
     let peak = peak(&waves, size);
-    let longest = size[0].max(size[1]);
-    let blur = [0, 1].map(|axis| if layout.cells[axis] > 2 { (TAU / size[axis]).powi(2) / 3.0 } else { 0.0 });
+    let reach = (ABOUT_THE_PEAK * peak).max(WINDOW * TAU / shortest);
     let (mut sum, mut power) = (0.0, 0.0);
     for wave in &waves {
         let number = wave.number();
-        if (number - peak).abs() <= ABOUT_THE_PEAK * peak {
+        if (number - peak).abs() <= reach {
             // The window's spread across the wave vector: half of its square over k is what it adds to k.
             let across = (blur[0] * wave.k[1].powi(2) + blur[1] * wave.k[0].powi(2)) / number.powi(2);
             sum += wave.power * (number - across / (2.0 * number));
@@ -68,9 +74,9 @@ pub fn wavelength(layout: &FieldLayout, values: &[f64]) -> Result<f64> {
         }
     }
     let found = TAU * power / sum;
-    if !(found.is_finite() && found > 0.0 && found * REPEATS <= longest * (1.0 + 1e-9)) {
-        let fault = Fault::new(format!("the field {name} of {} × {} µm holds no pattern twice", size[0], size[1]));
-        return Err(Error::input(fault.help("give a time at which there is a pattern, or a field of twice the size")));
+    if !(found.is_finite() && found > 0.0 && found * REPEATS <= shortest) {
+        let found = format!("the field {name} of {} × {} µm holds no pattern twice along each side", size[0], size[1]);
+        return Err(Error::input(Fault::new(found).help("give a time at which there is a pattern, or a larger field")));
     }
     Ok(found)
 }

@@ -16,6 +16,7 @@ const CELL_SERIES: [&str; 18] = [
 
 mod cells;
 mod chemistry;
+mod measures;
 mod scene;
 
 struct Check<'a> {

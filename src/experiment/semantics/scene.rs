@@ -99,7 +99,7 @@ impl Check<'_> {
                     }
                     self.instant(&format!("{path}.lag_to"), lag_to.value());
                 }
-                _ => {}
+                kind => self.measure_of_chemistry(&path, kind),
             }
         }
     }
