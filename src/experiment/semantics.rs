@@ -61,6 +61,11 @@ impl Check<'_> {
             "file" => self.file(path, text),
             "cell type" => self.cell_type(path, text),
             "series" => self.series(path, text),
+            "field" => {
+                if let Some((name, _)) = text.split_once('.') {
+                    self.system(path, name);
+                }
+            }
             _ => {}
         }
     }
@@ -99,10 +104,13 @@ impl Check<'_> {
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> = cells.flat_map(|cell| &cell.loads).map(|load| format!("load.{}", load.name)).collect();
         let known = || CELL_SERIES.into_iter().chain(["time"]).chain(loads.iter().map(String::as_str));
-        // Quantities of chemistry are SYSTEM.QUANTITY; which there are is known once their documents are read.
-        let of_chemistry = text.split_once('.').is_some_and(|(system, _)| words::meant(system, ["load"]).is_none());
-        if of_chemistry || known().any(|name| name == text) {
+        if known().any(|name| name == text) {
             return;
+        }
+        // Quantities of chemistry are SYSTEM.QUANTITY; which there are is known once their documents are read.
+        let stored = text.strip_prefix("chemistry.").unwrap_or(text);
+        if let Some((system, _)) = stored.split_once('.').filter(|(system, _)| words::meant(system, ["load"]).is_none()) {
+            return self.system(path, system);
         }
         let label = words::meant(text, known()).map(|meant| format!("did you mean \"{meant}\"?"));
         let mut list: Vec<&str> = loads.iter().map(String::as_str).collect();
@@ -110,6 +118,21 @@ impl Check<'_> {
         let help = format!("there are series such as {}", words::all_of(list));
         let message = format!("`{path}`: there is no series \"{text}\"");
         self.fault(path, label.as_deref().unwrap_or("unknown series"), message, help);
+    }
+
+    /// A part of `[chemistry]` that a text names.
+    fn system(&mut self, path: &str, name: &str) {
+        let known = &self.document.experiment.chemistry;
+        if known.contains_key(name) {
+            return;
+        }
+        let meant = words::meant(name, known.keys().map(String::as_str));
+        let label = meant.map_or("unknown system".to_owned(), |meant| format!("did you mean \"{meant}\"?"));
+        let help = match known.is_empty() {
+            true => "the experiment has no [chemistry]".to_owned(),
+            false => format!("[chemistry] has {}", words::all_of(known.keys().map(String::as_str))),
+        };
+        self.fault(path, &label, format!("`{path}`: there is no `{name}` in [chemistry]"), help);
     }
 
     /// A direction must not be zero.

@@ -133,6 +133,9 @@ impl ResultFile {
     fn atom_vectors(&self, path: &str, frame: usize) -> Result<Vec<[f64; 3]>> {
         assert!(frame < self.frames, "frame {frame} of {}", self.frames);
         let atoms = self.layout.atoms();
+        if atoms == 0 {
+            return Ok(Vec::new());
+        }
         let first = frame * atoms;
         let values = self.read(path, |dataset| dataset.read_slice_2d::<f64, _>((first..first + atoms, 0..3)))?;
         let (values, _) = values.into_raw_vec_and_offset();
@@ -179,6 +182,9 @@ impl ResultFile {
         }
         let (path, component) = find_series(name).ok_or_else(|| self.unknown(name))?;
         let (frames, cells) = (self.frames, self.layout.cells.len());
+        if cells == 0 {
+            return Ok(Array2::zeros((frames, 0)));
+        }
         self.read(path, |dataset| match component {
             None => dataset.read_slice_2d::<f64, _>((0..frames, 0..cells)),
             Some(i) => dataset.read_slice_2d::<f64, _>((0..frames, 0..cells, i)),
@@ -306,12 +312,12 @@ fn find_series(name: &str) -> Option<(&'static str, Option<usize>)> {
 /// a frame whose numbers never came; such frames are left out.
 pub(super) fn whole_frames(file: &File) -> hdf5::Result<usize> {
     let atoms = file.dataset("/VTKHDF/NumberOfPoints")?.read_raw::<i64>()?;
-    let atoms = atoms.first().map_or(0, |atoms| usize::try_from(*atoms).unwrap_or(0)).max(1);
+    let atoms = atoms.first().map_or(0, |atoms| usize::try_from(*atoms).unwrap_or(0));
     let mut frames = usize::MAX;
     for entry in CATALOGUE.iter().chain(FORCE) {
         let rows_per_frame = match entry.filled {
             Filled::Frame(_) | Filled::Counter(..) | Filled::Cell(_) | Filled::CellVector(..) => 1,
-            Filled::Atoms(_) => atoms,
+            Filled::Atoms(_) if atoms > 0 => atoms,
             _ => continue,
         };
         match file.dataset(entry.path) {
@@ -344,8 +350,11 @@ pub(super) fn whole_frames(file: &File) -> hdf5::Result<usize> {
     let (times, points) = (file.dataset("/time")?, file.dataset("/VTKHDF/Points")?);
     let written = |frame: usize| -> hdf5::Result<bool> {
         let time = times.read_slice_1d::<f64, _>(frame..frame + 1)?;
-        let first = points.read_slice_1d::<f64, _>(s![frame * atoms, ..])?;
-        let last = points.read_slice_1d::<f64, _>(s![(frame + 1) * atoms - 1, ..])?;
+        let mut ends = Vec::new();
+        if atoms > 0 {
+            ends.extend(points.read_slice_1d::<f64, _>(s![frame * atoms, ..])?);
+            ends.extend(points.read_slice_1d::<f64, _>(s![(frame + 1) * atoms - 1, ..])?);
+        }
         for field in &fields {
             // The last box of all lies in the last piece of the frame.
             let last: Vec<usize> = field.get_shape()?[1..].iter().map(|n| n.saturating_sub(1)).collect();
@@ -354,7 +363,7 @@ pub(super) fn whole_frames(file: &File) -> hdf5::Result<usize> {
                 return Ok(false);
             }
         }
-        Ok(time.iter().chain(&first).chain(&last).all(|value| !value.is_nan()))
+        Ok(time.iter().chain(&ends).all(|value| !value.is_nan()))
     };
     while frames > 0 && !written(frames - 1).unwrap_or(false) {
         frames -= 1;

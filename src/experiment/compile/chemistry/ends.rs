@@ -3,8 +3,8 @@
 use super::super::super::words;
 use super::{Part, within};
 use crate::cell::ends::{self, Reading, Sense, Setting};
-use crate::chemistry::eml::{Endpoint, Index, Root, Step};
-use crate::error::Fault;
+use crate::chemistry::eml::{Endpoint, Index, LinkDescription, Root, Step};
+use crate::error::{Fault, short};
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, Control, Source, Target, Whole, Whose};
 
@@ -294,6 +294,37 @@ impl Ends<'_, '_> {
                 let message = format!("cells of type `{name}` have no atom {atom}");
                 let help = format!("their atoms are numbered from 0 to {}", atoms - 1);
                 return Err(within(&end.place, "no such atom", message, help));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the cells that sense or feed a field are larger than its boxes.
+    pub(super) fn check_grid(&self, link: &LinkDescription, from: &Source, to: &Target) -> Result<(), Fault> {
+        let (whose, field, place) = match (*from, *to) {
+            (Source::Sensed(whose, channel, _), _) => (whose, self.chemistry.sensed[channel].0, &link.from.place),
+            (Source::AtAtom(whose, _, field, ..), _) => (whose, field, &link.from.place),
+            (_, Target::Cell(whose, Control::Secretion(channel))) => {
+                (whose, self.chemistry.secreted[channel].0, &link.to.place)
+            }
+            _ => return Ok(()),
+        };
+        let grid = self.chemistry.fields[field].system.grid();
+        let spacing = grid.spacing[0];
+        for kind in self.kinds_of(whose) {
+            let kind = &self.kinds[kind];
+            let size = crate::geometry::bounding_box(&kind.rest.positions).map_or(0.0, |(low, high)| (high - low).min());
+            // A flat cell, such as a sheet, is measured across.
+            let size = if size > 0.0 { size } else { kind.edge };
+            if spacing > size {
+                let (name, spacing, size) = (&self.chemistry.fields[field].name, short(spacing), short(size));
+                let message = format!(
+                    "the grid of `{name}` is too coarse for cells of type `{}`: its boxes are {spacing} um wide, the \
+                     cells {size} um",
+                    kind.name
+                );
+                let help = format!("give the document's <grid> a spacing of at most {size} um, better half of it");
+                return Err(within(place, "here cells and field meet", message, help));
             }
         }
         Ok(())

@@ -130,6 +130,7 @@ fn link(ends: &mut Ends, description: &LinkDescription) -> Result<Link, Fault> {
             uses.push(quantity);
         }
     });
+    ends.check_grid(description, &from, &to)?;
     let text = format!("of `{}` from {} to {}", ends.part.name, description.from.text, description.to.text);
     let (transfer, gain) = (description.transfer.clone(), description.gain);
     Ok(Link { text, owner, from, to, transfer, uses, gain })

@@ -1,0 +1,42 @@
+//! Every message about chemistry that does not fit its experiment is kept beside the experiment.
+//!
+//! `PSEUDOPOD_BLESS=1 cargo test --test messages_chemistry` writes the texts anew; read the difference before committing it.
+
+use pseudopod::error::{Error, Paint, render};
+use pseudopod::experiment::{Document, compile};
+use std::path::{Path, PathBuf};
+
+fn experiments() -> Vec<PathBuf> {
+    let folder = std::fs::read_dir("tests/messages/chemistry").expect("the folder of bad experiments");
+    let paths = folder.map(|entry| entry.expect("an entry of the folder").path());
+    let mut paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+    paths.sort();
+    paths
+}
+
+fn compiled(path: &Path) -> Result<(), Error> {
+    compile(&Document::read(path, &[])?).map(|_| ())
+}
+
+#[test]
+fn every_bad_experiment_gets_the_message_beside_it() {
+    let mut differences = Vec::new();
+    assert!(experiments().len() >= 10, "bad experiments are missing");
+    for path in experiments() {
+        let Err(error) = compiled(&path) else {
+            differences.push(format!("{} is taken for a good experiment", path.display()));
+            continue;
+        };
+        assert_eq!(error.exit_code(), 2, "bad input ends with 2");
+        if let Error::Input(faults) = &error {
+            assert!(faults.iter().all(|fault| fault.help.is_some()), "{}: a fault without help", path.display());
+        }
+        let (message, kept) = (render(&error, Paint::Plain), path.with_extension("txt"));
+        if std::env::var_os("PSEUDOPOD_BLESS").is_some() {
+            std::fs::write(&kept, message).expect("the text can be kept");
+        } else if message != std::fs::read_to_string(&kept).unwrap_or_default() {
+            differences.push(format!("{}:\n{message}", kept.display()));
+        }
+    }
+    assert!(differences.is_empty(), "messages that changed:\n\n{}", differences.join("\n\n"));
+}
