@@ -75,7 +75,7 @@ impl<const L: usize> Seats<L> {
         s: &mut Scratch<L>,
         (step, error): (&mut Lanes<L>, &mut Lanes<L>),
     ) -> bool {
-        if self.next % L != 0 || self.next + L > cells.count || self.active.contains(&true) {
+        if !self.next.is_multiple_of(L) || self.next + L > cells.count || self.active.contains(&true) {
             return false;
         }
         let (block, n) = (self.next / L, s.state.len());
@@ -104,7 +104,7 @@ impl<const L: usize> Seats<L> {
     #[inline(always)]
     pub fn leave_block(&mut self, cells: &mut Cells<L>, s: &Scratch<L>, step: &Lanes<L>, error: &Lanes<L>) -> bool {
         let first = self.cell[0];
-        if first % L != 0 || !(0..L).all(|l| self.active[l] && self.cell[l] == first + l) {
+        if !first.is_multiple_of(L) || !(0..L).all(|l| self.active[l] && self.cell[l] == first + l) {
             return false;
         }
         let (block, n) = (first / L, s.state.len());
