@@ -119,3 +119,34 @@ fn every_refusal_says_what_to_do_and_ends_as_promised() {
         }
     }
 }
+
+/// The page of the book on equations with what the program prints now below each command of its `text` blocks.
+fn page_as_played(page: &str) -> String {
+    let stage = stage(EQUATIONS);
+    let document = page.split("```xml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the page's document");
+    std::fs::write(stage.path().join("decay.eml"), document).unwrap();
+    let mut parts = page.split("```text\n");
+    let mut played = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (block, rest) = part.split_once("```").expect("the end of a block");
+        played.push_str("```text\n");
+        for command in block.lines().filter_map(|line| line.strip_prefix("$ ")) {
+            played.push_str(&format!("$ {command}\n{}", shell(command, stage.path())));
+        }
+        played.push_str("```");
+        played.push_str(rest);
+    }
+    played
+}
+
+#[test]
+fn the_book_shows_what_the_program_prints_of_equations() {
+    let path = "docs/src/howto_equations.md";
+    let kept = std::fs::read_to_string(path).unwrap();
+    let played = page_as_played(&kept);
+    if std::env::var_os("PSEUDOPOD_BLESS").is_some() {
+        std::fs::write(path, played).unwrap();
+    } else {
+        assert_eq!(played, kept, "{path} shows something else");
+    }
+}

@@ -59,6 +59,8 @@ pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fa
     let inner = args.inner_step.or(document.solver.inner_step);
     match Scheme::named(name, inner) {
         Some(scheme) => options.scheme = scheme,
+        // One that is not above 0 has been told of.
+        None if inner.is_some() => {}
         None => {
             let fault = Fault::new(format!("the scheme {name} has no inner step"));
             faults.push(fault.help("give --inner-step, or take --scheme rosenbrock, which finds its step"));
