@@ -123,7 +123,8 @@ fn every_refusal_says_what_to_do_and_ends_as_promised() {
 /// The page of the book on equations with what the program prints now below each command of its `text` blocks.
 fn page_as_played(page: &str) -> String {
     let stage = stage(EQUATIONS);
-    let document = page.split("```xml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the page's document");
+    let document =
+        page.split("```xml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the page's document");
     std::fs::write(stage.path().join("decay.eml"), document).unwrap();
     let mut parts = page.split("```text\n");
     let mut played = parts.next().unwrap_or_default().to_owned();

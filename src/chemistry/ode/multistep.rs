@@ -58,6 +58,18 @@ impl<'a> Machine<'a> {
         }
     }
 
+    /// The variable that changes fastest for its size: the one to blame when no step is short enough.
+    fn fastest(&self, state: &[f64], time: f64) -> Option<String> {
+        let mut rates = vec![0.0; state.len()];
+        self.rates(state, time, &mut rates);
+        let pace = |place: usize| match rates[place].abs() / (state[place].abs() + self.program.sizes[place]) {
+            pace if pace.is_nan() => f64::INFINITY,
+            pace => pace,
+        };
+        let worst = (0..state.len()).max_by(|&a, &b| pace(a).total_cmp(&pace(b)))?;
+        Some(self.program.names[self.program.variables[worst] as usize].clone())
+    }
+
     /// Values of all quantities.
     fn observe(&self, state: &[f64], time: f64) -> Vec<f64> {
         let mut file = self.file.borrow_mut();
@@ -138,9 +150,12 @@ impl Course<'_> {
             if matches!(reason, OdeSolverStopReason::TstopReached) || time >= self.until {
                 break;
             }
-            reason = solver.step().map_err(|error| fail(time, error))?;
+            let before = solver.state().y.clone_as_vec();
+            let worst = || self.machine.fastest(&before, time);
+            reason = solver.step().map_err(|error| OdeTrouble { variable: worst(), ..fail(time, error) })?;
             if !solver.state().y.clone_as_vec().iter().all(|value| value.is_finite()) {
-                return Err(trouble(program, time, Reason::NotFinite, String::new()));
+                let trouble = trouble(program, time, Reason::NotFinite, String::new());
+                return Err(OdeTrouble { variable: worst(), ..trouble });
             }
             work.steps += 1;
             if work.steps >= u64::from(self.most) {

@@ -20,7 +20,7 @@ pub(super) fn points(args: &SolveArgs, faults: &mut Vec<Fault>) -> Vec<f64> {
         return Vec::new();
     }
     if !(2..=MOST_POINTS).contains(&points) {
-        let fault = Fault::new(format!("a table of {points} points cannot be made"));
+        let fault = Fault::new(format!("--points {points} makes no table"));
         faults.push(fault.help(format!("let --points be from 2 (the two ends) to {MOST_POINTS}")));
         return Vec::new();
     }
