@@ -1,16 +1,17 @@
 //! What the program says on the terminal when something goes wrong: transcripts of commands beside their inputs.
 //!
-//! Every `.txt` file of `tests/messages/runs` is a transcript. It begins with a comment (`# …`) that says what must hold;
-//! each line `$ …` is a command of the shell, run in a folder of its own that holds the documents (`*.toml`) of
-//! `tests/messages/runs` and the meshes of `tests/messages/meshes`; below it stand what the command printed on standard
-//! output, then on standard error, and its exit status if that is not 0.
+//! Every `.txt` file of `tests/messages/runs` and `tests/messages/equations` is a transcript. It begins with a comment
+//! (`# …`) that says what must hold; each line `$ …` is a command of the shell, run in a folder of its own that holds the
+//! documents of its folder (`*.toml`, `*.eml`, `*.xml`) and, for runs, the meshes of `tests/messages/meshes`; below it
+//! stand what the command printed on standard output, then on standard error, and its exit status if that is not 0.
 //!
 //! `PSEUDOPOD_BLESS=1 cargo test --test messages_runs` writes the transcripts anew; read the difference before committing it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const FOLDER: &str = "tests/messages/runs";
+const RUNS: &str = "tests/messages/runs";
+const EQUATIONS: &str = "tests/messages/equations";
 
 /// Files of a folder that end in `ending`, in order.
 fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
@@ -20,11 +21,13 @@ fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
     paths
 }
 
-/// A new folder with everything that transcripts name.
-fn stage() -> tempfile::TempDir {
+/// A new folder with everything that the transcripts of a folder name.
+fn stage(folder: &str) -> tempfile::TempDir {
     let stage = tempfile::tempdir().unwrap();
-    let meshes = ["obj", "stl", "ply"].into_iter().flat_map(|ending| files("tests/messages/meshes", ending));
-    for path in files(FOLDER, "toml").into_iter().chain(meshes) {
+    let endings = if folder == RUNS { ["obj", "stl", "ply"].as_slice() } else { &[] };
+    let meshes = endings.iter().flat_map(|ending| files("tests/messages/meshes", ending));
+    let documents = ["toml", "eml", "xml"].into_iter().flat_map(|ending| files(folder, ending));
+    for path in documents.chain(meshes) {
         std::fs::copy(&path, stage.path().join(path.file_name().unwrap())).unwrap();
     }
     stage
@@ -58,8 +61,8 @@ fn shell(command: &str, folder: &Path) -> String {
 }
 
 /// The transcript as it comes out now.
-fn play(transcript: &str) -> String {
-    let stage = stage();
+fn play(transcript: &str, folder: &str) -> String {
+    let stage = stage(folder);
     let comment = transcript.lines().take_while(|line| !line.starts_with("$ "));
     let mut text: String = comment.map(|line| format!("{line}\n")).collect();
     for command in transcript.lines().filter_map(|line| line.strip_prefix("$ ")) {
@@ -70,13 +73,23 @@ fn play(transcript: &str) -> String {
 
 #[test]
 fn every_transcript_comes_out_as_it_is_kept() {
-    let transcripts = files(FOLDER, "txt");
-    assert!(transcripts.len() >= 9, "transcripts are missing: {transcripts:?}");
+    compare(RUNS, 9);
+}
+
+#[test]
+fn every_transcript_of_equations_comes_out_as_it_is_kept() {
+    compare(EQUATIONS, 5);
+}
+
+/// Plays the transcripts of a folder, of which there are some at least.
+fn compare(folder: &str, least: usize) {
+    let transcripts = files(folder, "txt");
+    assert!(transcripts.len() >= least, "transcripts are missing: {transcripts:?}");
     let mut differences = Vec::new();
     // One after the other: a program started while another one is would inherit its files and their locks.
     for path in transcripts {
         let kept = std::fs::read_to_string(&path).unwrap();
-        let said = play(&kept);
+        let said = play(&kept, folder);
         if std::env::var_os("PSEUDOPOD_BLESS").is_some() {
             std::fs::write(&path, &said).unwrap();
         } else if said != kept {
@@ -89,7 +102,7 @@ fn every_transcript_comes_out_as_it_is_kept() {
 
 #[test]
 fn every_refusal_says_what_to_do_and_ends_as_promised() {
-    for path in files(FOLDER, "txt") {
+    for path in files(RUNS, "txt").into_iter().chain(files(EQUATIONS, "txt")) {
         let text = std::fs::read_to_string(&path).unwrap();
         for part in text.split("\n$ ").skip(1).filter(|part| part.starts_with("pseudopod ")) {
             let Some((_, code)) = part.trim_end().rsplit_once("exit ") else { continue };
@@ -104,5 +117,37 @@ fn every_refusal_says_what_to_do_and_ends_as_promised() {
             assert!(helps || part.contains("2> words"), "{place}");
             assert!(!part.contains("panicked") && !part.contains("RUST_BACKTRACE"), "{place}");
         }
+    }
+}
+
+/// The page of the book on equations with what the program prints now below each command of its `text` blocks.
+fn page_as_played(page: &str) -> String {
+    let stage = stage(EQUATIONS);
+    let document =
+        page.split("```xml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the page's document");
+    std::fs::write(stage.path().join("decay.eml"), document).unwrap();
+    let mut parts = page.split("```text\n");
+    let mut played = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (block, rest) = part.split_once("```").expect("the end of a block");
+        played.push_str("```text\n");
+        for command in block.lines().filter_map(|line| line.strip_prefix("$ ")) {
+            played.push_str(&format!("$ {command}\n{}", shell(command, stage.path())));
+        }
+        played.push_str("```");
+        played.push_str(rest);
+    }
+    played
+}
+
+#[test]
+fn the_book_shows_what_the_program_prints_of_equations() {
+    let path = "docs/src/howto_equations.md";
+    let kept = std::fs::read_to_string(path).unwrap();
+    let played = page_as_played(&kept);
+    if std::env::var_os("PSEUDOPOD_BLESS").is_some() {
+        std::fs::write(path, played).unwrap();
+    } else {
+        assert_eq!(played, kept, "{path} shows something else");
     }
 }

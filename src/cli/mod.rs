@@ -1,6 +1,7 @@
 //! The command line: one file per command. Names and exit codes are a contract.
 
 pub mod check;
+pub mod eml;
 pub mod export;
 pub mod frames;
 pub mod info;
@@ -42,6 +43,8 @@ pub enum Command {
     Plot(plot::PlotArgs),
     /// Writes a frame of a result file as a mesh, or its numbers as a table.
     Export(export::ExportArgs),
+    /// Checks, solves and converts documents of equations: EML, and SBML models.
+    Eml(eml::EmlArgs),
     /// Prints the JSON schema of experiment documents.
     Schema(schema::SchemaArgs),
 }
@@ -57,6 +60,7 @@ impl Command {
             Self::Render(args) => ("render", args.json),
             Self::Plot(args) => ("plot", args.json),
             Self::Export(args) => ("export", args.json),
+            Self::Eml(args) => args.command.manner(),
             Self::Schema(_) => ("schema", false),
         };
         (name, if json { Form::Json } else { Form::Words })
@@ -86,6 +90,7 @@ fn act(command: Command) -> Result<Report> {
         Command::Render(args) => render::run(&args),
         Command::Plot(args) => plot::run(&args),
         Command::Export(args) => export::run(&args),
+        Command::Eml(args) => eml::run(&args),
         Command::Schema(args) => schema::run(&args),
     }
 }

@@ -147,7 +147,7 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Fault {
 }
 
 /// A file beside a missing one whose name is like it.
-pub(super) fn near_file(path: &Path) -> Option<PathBuf> {
+pub(crate) fn near_file(path: &Path) -> Option<PathBuf> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let wanted = path.file_name()?.to_str()?;
     let entries = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());

@@ -50,6 +50,7 @@ pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Pla
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{Compiled, Schedule, compile};
 pub use document::Document;
+pub(crate) use document::near_file;
 pub use loads::{Cap, CapExtent, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
 pub use measures::{
     ChemotacticIndex, Comparison, FieldValue, Fit, Measure, MeasureKind, Over, OverBoxes, Period, Reduction, SphereFit,

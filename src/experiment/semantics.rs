@@ -109,7 +109,8 @@ impl Check<'_> {
         }
         // Quantities of chemistry are SYSTEM.QUANTITY; which there are is known once their documents are read.
         let stored = text.strip_prefix("chemistry.").unwrap_or(text);
-        if let Some((system, _)) = stored.split_once('.').filter(|(system, _)| words::meant(system, ["load"]).is_none()) {
+        if let Some((system, _)) = stored.split_once('.').filter(|(system, _)| words::meant(system, ["load"]).is_none())
+        {
             return self.system(path, system);
         }
         let label = words::meant(text, known()).map(|meant| format!("did you mean \"{meant}\"?"));

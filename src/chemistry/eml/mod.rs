@@ -17,6 +17,7 @@ mod links;
 mod solver;
 mod start;
 mod vocabulary;
+mod write;
 mod xml;
 
 pub use document::{
@@ -27,6 +28,7 @@ pub use guard::{DEEPEST_ELEMENT, LARGEST_DOCUMENT, MOST_NODES};
 pub use links::{read_end, read_transfer};
 pub use solver::SCHEMES;
 pub use vocabulary::{ELEMENTS, Kind};
+pub use write::{Written, write};
 
 use super::tree::System;
 use crate::error::{Result, Source};

@@ -18,7 +18,7 @@ mod wide;
 
 pub use control::Tolerances;
 pub use population::{LANES, Population};
-pub use solve::{Scheme, Solution, SolveOptions, solve};
+pub use solve::{Scheme, Solution, SolveOptions, solve, solve_each};
 
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,7 @@ use diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason, Vector,
 };
 
-use super::solve::{Scheme, Solution};
+use super::solve::Scheme;
 use super::{OdeTrouble, Reason, Tolerances, Work};
 use crate::chemistry::program::{Lanes, Program, run};
 
@@ -58,6 +58,18 @@ impl<'a> Machine<'a> {
         }
     }
 
+    /// The variable that changes fastest for its size: the one to blame when no step is short enough.
+    fn fastest(&self, state: &[f64], time: f64) -> Option<String> {
+        let mut rates = vec![0.0; state.len()];
+        self.rates(state, time, &mut rates);
+        let pace = |place: usize| match rates[place].abs() / (state[place].abs() + self.program.sizes[place]) {
+            pace if pace.is_nan() => f64::INFINITY,
+            pace => pace,
+        };
+        let worst = (0..state.len()).max_by(|&a, &b| pace(a).total_cmp(&pace(b)))?;
+        Some(self.program.names[self.program.variables[worst] as usize].clone())
+    }
+
     /// Values of all quantities.
     fn observe(&self, state: &[f64], time: f64) -> Vec<f64> {
         let mut file = self.file.borrow_mut();
@@ -80,7 +92,8 @@ pub fn solve(
     until: f64,
     points: &[f64],
     tolerances: &Tolerances,
-) -> Result<Solution, OdeTrouble> {
+    each: &mut dyn FnMut(f64, &[f64]),
+) -> Result<Work, OdeTrouble> {
     let machine = Machine::new(program);
     let initial: Vec<f64> = program.variables.iter().map(|&quantity| program.initial[quantity as usize]).collect();
     let failed = |error: diffsol::error::DiffsolError| trouble(program, from, Reason::Solver, error.to_string());
@@ -97,7 +110,7 @@ pub fn solve(
         .init(|_: &[f64], _: f64, state: &mut [f64]| state.copy_from_slice(&initial), initial.len())
         .build()
         .map_err(failed)?;
-    let course = Course { machine: &machine, until, points, most: tolerances.max_steps };
+    let course = Course { machine: &machine, until, points, most: tolerances.max_steps, each };
     match scheme {
         Scheme::Bdf => course.run(problem.bdf::<Factors>().map_err(failed)?),
         Scheme::Esdirk34 => course.run(problem.esdirk34::<Factors>().map_err(failed)?),
@@ -111,16 +124,17 @@ struct Course<'a> {
     until: f64,
     points: &'a [f64],
     most: u32,
+    each: &'a mut dyn FnMut(f64, &[f64]),
 }
 
 impl Course<'_> {
-    fn run<'p, Equations, Solver>(self, mut solver: Solver) -> Result<Solution, OdeTrouble>
+    fn run<'p, Equations, Solver>(self, mut solver: Solver) -> Result<Work, OdeTrouble>
     where
         Equations: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'p,
         Solver: OdeSolverMethod<'p, Equations>,
     {
         let program = self.machine.program;
-        let mut solution = Solution { times: Vec::new(), values: Vec::new(), work: Work::default() };
+        let (mut work, mut written) = (Work::default(), 0);
         let fail =
             |time: f64, error: diffsol::error::DiffsolError| trouble(program, time, Reason::Solver, error.to_string());
         let begin = solver.state().t;
@@ -128,28 +142,31 @@ impl Course<'_> {
         let mut reason = OdeSolverStopReason::InternalTimestep;
         loop {
             let time = solver.state().t;
-            while let Some(&point) = self.points.get(solution.times.len()).filter(|point| **point <= time) {
+            while let Some(&point) = self.points.get(written).filter(|point| **point <= time) {
                 let state = solver.interpolate(point).map_err(|error| fail(time, error))?;
-                solution.values.push(self.machine.observe(&state.clone_as_vec(), point));
-                solution.times.push(point);
+                (self.each)(point, &self.machine.observe(&state.clone_as_vec(), point));
+                written += 1;
             }
             if matches!(reason, OdeSolverStopReason::TstopReached) || time >= self.until {
                 break;
             }
-            reason = solver.step().map_err(|error| fail(time, error))?;
+            let before = solver.state().y.clone_as_vec();
+            let worst = || self.machine.fastest(&before, time);
+            reason = solver.step().map_err(|error| OdeTrouble { variable: worst(), ..fail(time, error) })?;
             if !solver.state().y.clone_as_vec().iter().all(|value| value.is_finite()) {
-                return Err(trouble(program, time, Reason::NotFinite, String::new()));
+                let trouble = trouble(program, time, Reason::NotFinite, String::new());
+                return Err(OdeTrouble { variable: worst(), ..trouble });
             }
-            solution.work.steps += 1;
-            if solution.work.steps >= u64::from(self.most) {
+            work.steps += 1;
+            if work.steps >= u64::from(self.most) {
                 return Err(trouble(program, time, Reason::TooManySteps, String::new()));
             }
         }
         let statistics = solver.get_statistics();
-        solution.work.rejected = statistics.number_of_error_test_failures as u64;
-        solution.work.rates = self.machine.asked.get();
-        solution.work.jacobians = statistics.number_of_linear_solver_setups as u64;
-        Ok(solution)
+        work.rejected = statistics.number_of_error_test_failures as u64;
+        work.rates = self.machine.asked.get();
+        work.jacobians = statistics.number_of_linear_solver_setups as u64;
+        Ok(work)
     }
 }
 

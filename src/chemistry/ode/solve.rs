@@ -97,6 +97,31 @@ pub fn solve(
     points: &[f64],
     options: &SolveOptions,
 ) -> Result<Solution, OdeTrouble> {
+    let mut solution = Solution { times: Vec::new(), values: Vec::new(), work: Work::default() };
+    let (times, rows) = (&mut solution.times, &mut solution.values);
+    solution.work = solve_each(system, from, until, points, options, &mut |time, values| {
+        times.push(time);
+        rows.push(values.to_vec());
+    })?;
+    Ok(solution)
+}
+
+/// As [`solve()`]; hands the values of all quantities over, point by point, as soon as they are known. When the numbers
+/// fail, those of all points before have been handed over.
+///
+/// # Errors
+/// As [`solve()`].
+///
+/// # Panics
+/// As [`solve()`].
+pub fn solve_each(
+    system: &System,
+    from: f64,
+    until: f64,
+    points: &[f64],
+    options: &SolveOptions,
+    each: &mut dyn FnMut(f64, &[f64]),
+) -> Result<Work, OdeTrouble> {
     assert!(points.is_sorted(), "points ascend");
     assert!(points.iter().all(|point| (from..=until).contains(point)), "points from {from} until {until}");
     let trouble = |detail: String| OdeTrouble {
@@ -115,15 +140,16 @@ pub fn solve(
         Scheme::OneStep(method) => {
             let stepper = Stepper::new(&program, method, tolerances, from);
             let events = Events::new(system, &program);
-            Course { stepper, events, points, times: Vec::new(), values: Vec::new(), until }.run(method, until - from)
+            Course { stepper, events, points, written: 0, each, until }.run(method, until - from)
         }
         _ if program.size() == 0 => {
-            solve(system, from, until, points, &SolveOptions { scheme: SolveOptions::default().scheme, ..*options })
+            let options = SolveOptions { scheme: SolveOptions::default().scheme, ..*options };
+            solve_each(system, from, until, points, &options, each)
         }
         _ if !system.events.is_empty() => {
             Err(trouble("this scheme takes no events: use rosenbrock, rk45, rk4 or euler".into()))
         }
-        scheme => multistep::solve(&program, scheme, from, until, points, &tolerances),
+        scheme => multistep::solve(&program, scheme, from, until, points, &tolerances, each),
     }
 }
 
@@ -132,13 +158,14 @@ struct Course<'a> {
     stepper: Stepper<'a>,
     events: Events<'a>,
     points: &'a [f64],
-    times: Vec<f64>,
-    values: Vec<Vec<f64>>,
+    /// How many points have been handed over.
+    written: usize,
+    each: &'a mut dyn FnMut(f64, &[f64]),
     until: f64,
 }
 
 impl Course<'_> {
-    fn run(mut self, method: Method, span: f64) -> Result<Solution, OdeTrouble> {
+    fn run(mut self, method: Method, span: f64) -> Result<Work, OdeTrouble> {
         let fixed = matches!(method, Method::Rk4 { .. } | Method::Euler { .. });
         if !self.events.is_empty() {
             self.stepper.longest = LONGEST_SHARE * span;
@@ -149,7 +176,7 @@ impl Course<'_> {
         while self.stepper.time < self.until {
             let stop = self.next_stop();
             let mut limit = self.until.min(self.events.next()).min(stop);
-            if let Some(&point) = self.points.get(self.times.len()).filter(|_| fixed) {
+            if let Some(&point) = self.points.get(self.written).filter(|_| fixed) {
                 limit = limit.min(point);
             }
             // Everything within the step happens before the stop; the stop itself is then met without a step.
@@ -166,7 +193,7 @@ impl Course<'_> {
             }
             self.arrive()?;
         }
-        Ok(Solution { times: self.times, values: self.values, work: self.stepper.work })
+        Ok(self.stepper.work)
     }
 
     /// What happens at the present time: triggers, executions, values asked for.
@@ -272,7 +299,7 @@ impl Course<'_> {
     /// Writes the points before a time, from within the step.
     fn write_between(&mut self, begin: f64, reached: f64, time: f64) {
         let mut state = vec![0.0; self.stepper.program.size()];
-        while let Some(&point) = self.points.get(self.times.len()).filter(|point| **point < time) {
+        while let Some(&point) = self.points.get(self.written).filter(|point| **point < time) {
             self.stepper.between((point - begin) / (reached - begin), &mut state);
             self.write(point, &state);
         }
@@ -280,7 +307,7 @@ impl Course<'_> {
 
     /// Writes the points at the present time.
     fn write_present(&mut self) {
-        while let Some(&point) = self.points.get(self.times.len()).filter(|point| **point <= self.stepper.time) {
+        while let Some(&point) = self.points.get(self.written).filter(|point| **point <= self.stepper.time) {
             let state: Vec<f64> = (0..self.stepper.program.size()).map(|v| self.stepper.state(v)).collect();
             self.write(point, &state);
         }
@@ -290,8 +317,8 @@ impl Course<'_> {
         let mut values = Vec::new();
         let program = self.stepper.program;
         self.stepper.evaluate(&program.observe, point, state, &mut values);
-        self.times.push(point);
-        self.values.push(values);
+        self.written += 1;
+        (self.each)(point, &values);
     }
 }
 

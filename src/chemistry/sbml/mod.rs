@@ -15,6 +15,8 @@ mod quantities;
 mod species;
 mod xml;
 
+pub use xml::LARGEST_DOCUMENT;
+
 use crate::chemistry::tree::{QuantityId, System};
 use crate::error::{Result, Source};
 use std::sync::Arc;
@@ -74,7 +76,7 @@ pub fn is_sbml(text: &str) -> bool {
     name.rsplit(':').next() == Some("sbml")
 }
 
-/// Reads an SBML document.
+/// Reads an SBML document. A caller that reads files refuses those above [`LARGEST_DOCUMENT`] bytes unread.
 ///
 /// # Errors
 /// [`crate::error::Error::Input`] with all faults found, each at its place: XML that is hostile or not well formed,

@@ -12,7 +12,7 @@ pub const MATHML: &str = "http://www.w3.org/1998/Math/MathML";
 /// What the namespaces of the SBML core begin with.
 const CORE: &str = "http://www.sbml.org/sbml/level";
 /// Largest text taken, bytes: the largest published models have about half of it.
-const TEXT_LIMIT: usize = 64 << 20;
+pub const LARGEST_DOCUMENT: usize = 64 << 20;
 /// Deepest nesting taken: far deeper than any formula written by hand or by a tool, far shallower than our stack.
 const DEPTH_LIMIT: usize = 256;
 /// Most elements and texts taken.
@@ -42,8 +42,8 @@ pub struct Page<'a> {
 pub fn parse(source: &Arc<Source>) -> Result<roxmltree::Document<'_>> {
     let text = source.text.as_str();
     let whole = |start, length, label: &str| Place { source: source.clone(), start, length, label: label.to_owned() };
-    if text.len() > TEXT_LIMIT {
-        let found = format!("the text has {} MiB; at most {} MiB are read", text.len() >> 20, TEXT_LIMIT >> 20);
+    if text.len() > LARGEST_DOCUMENT {
+        let found = format!("the text has {} MiB; at most {} MiB are read", text.len() >> 20, LARGEST_DOCUMENT >> 20);
         return Err(Error::input(Fault::new(found).help("give a smaller model, or cut out its annotations")));
     }
     if let Some((start, what)) = hostile(text) {

@@ -313,7 +313,8 @@ impl Ends<'_, '_> {
         let spacing = grid.spacing[0];
         for kind in self.kinds_of(whose) {
             let kind = &self.kinds[kind];
-            let size = crate::geometry::bounding_box(&kind.rest.positions).map_or(0.0, |(low, high)| (high - low).min());
+            let size =
+                crate::geometry::bounding_box(&kind.rest.positions).map_or(0.0, |(low, high)| (high - low).min());
             // A flat cell, such as a sheet, is measured across.
             let size = if size > 0.0 { size } else { kind.edge };
             if spacing > size {

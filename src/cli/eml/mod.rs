@@ -1,0 +1,55 @@
+//! `pseudopod eml`: documents of equations, EML and SBML, by themselves: checked, solved, converted.
+
+pub mod check;
+mod columns;
+mod draw;
+pub mod from_sbml;
+mod read;
+pub mod solve;
+mod wishes;
+
+use super::report::Report;
+use crate::error::Result;
+use clap::Subcommand;
+
+/// Checks, solves and converts documents of equations: EML, and SBML models.
+#[derive(Debug, Clone, clap::Args)]
+pub struct EmlArgs {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: EmlCommand,
+}
+
+/// What can be done with documents of equations.
+#[derive(Debug, Clone, Subcommand)]
+pub enum EmlCommand {
+    /// Checks documents and says what is in them.
+    Check(check::CheckArgs),
+    /// Solves the equations of a document, without any cells.
+    Solve(solve::SolveArgs),
+    /// Writes an SBML model as an EML document.
+    FromSbml(from_sbml::FromSbmlArgs),
+}
+
+impl EmlCommand {
+    /// Its name on the command line, and whether it reports as JSON.
+    pub(super) fn manner(&self) -> (&'static str, bool) {
+        match self {
+            Self::Check(args) => ("eml check", args.json),
+            Self::Solve(args) => ("eml solve", args.json),
+            Self::FromSbml(args) => ("eml from-sbml", args.json),
+        }
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// As each of the commands.
+pub fn run(args: &EmlArgs) -> Result<Report> {
+    match &args.command {
+        EmlCommand::Check(args) => check::run(args),
+        EmlCommand::Solve(args) => solve::run(args),
+        EmlCommand::FromSbml(args) => from_sbml::run(args),
+    }
+}

@@ -1,0 +1,118 @@
+//! `pseudopod eml solve`: solves the equations of a document, without any cells.
+
+use super::columns::{Table, columns, set};
+use super::draw::Drawing;
+use super::read::read;
+use super::wishes::{options, points};
+use crate::chemistry::ode::solve_each;
+use crate::cli::render::{Named, refuse_existing};
+use crate::cli::report::{Report, path_text, paths};
+use crate::error::{Error, Fault, Result};
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Solves the equations of a document, EML or SBML, and writes a table: a row for each point of time.
+#[derive(Debug, Clone, clap::Args)]
+pub struct SolveArgs {
+    /// The document.
+    #[arg(value_name = "FILE")]
+    pub document: PathBuf,
+    /// Where the time begins, in the document's unit of time.
+    #[arg(long, value_name = "TIME", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub from: f64,
+    /// Where it ends.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    pub until: f64,
+    /// Rows of the table, evenly spaced in time, with both ends.
+    #[arg(long, value_name = "NUMBER", default_value_t = 101)]
+    pub points: u32,
+    /// Columns, by commas: time, identifiers, in SBML S for an amount and [S] for a concentration; time and all
+    /// variables when absent.
+    #[arg(long, value_delimiter = ',', value_name = "COLUMNS")]
+    pub columns: Vec<String>,
+    /// Another value of a parameter or input, or another start of a variable, as in --set k=0.2.
+    #[arg(long = "set", value_name = "ID=NUMBER")]
+    pub sets: Vec<String>,
+    /// The scheme: rk45, rosenbrock, bdf, rk4 or euler; the document's when absent, or rosenbrock.
+    #[arg(long, value_name = "SCHEME")]
+    pub scheme: Option<String>,
+    /// Tolerance relative to the size of each variable.
+    #[arg(long, value_name = "NUMBER")]
+    pub rtol: Option<f64>,
+    /// Tolerance in the unit of each variable.
+    #[arg(long, value_name = "NUMBER")]
+    pub atol: Option<f64>,
+    /// The step of rk4 and euler.
+    #[arg(long, value_name = "TIME")]
+    pub inner_step: Option<f64>,
+    /// The most steps that are taken.
+    #[arg(long, value_name = "NUMBER")]
+    pub max_steps: Option<u32>,
+    /// The table to write, as CSV; the terminal when absent.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Draws the curves: .svg or .png.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// Replaces files that are there.
+    #[arg(long)]
+    pub force: bool,
+    /// Prints what was done as JSON.
+    #[arg(long, requires = "output")]
+    pub json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A document or option at fault, all told at once; a file that exists or cannot be written; [`Error::Numbers`] when the
+/// numbers fail: the rows until then are kept.
+pub fn run(args: &SolveArgs) -> Result<Report> {
+    let mut read = read(&args.document)?;
+    if !read.document.fields.is_empty() {
+        let fault = Fault::new(format!("{} is a document of fields, which spread in space", args.document.display()));
+        return Err(Error::input(fault.help("give it to an experiment, under [chemistry.NAME], and run that")));
+    }
+    let mut faults = Vec::new();
+    let points = points(args, &mut faults);
+    let columns = columns(&args.columns, &read, &mut faults);
+    let (scheme, options) = options(args, &read.document, &mut faults);
+    set(&args.sets, &mut read, &mut faults);
+    let drawing = args.plot.as_ref().map(|path| Drawing::new(path, &columns, points.len()));
+    let mut drawing = drawing.and_then(|drawing| drawing.map_err(|fault| faults.push(fault)).ok());
+    if !faults.is_empty() {
+        return Err(Error::Input(faults));
+    }
+    for path in args.output.iter().chain(&args.plot) {
+        refuse_existing(path, args.force, Named::ByUser)?;
+    }
+    if !args.json {
+        tell(&read.notices);
+    }
+    let mut table = Table::new(&columns, args.output.as_deref())?;
+    let system = &read.document.system;
+    let solved = solve_each(system, args.from, args.until, &points, &options, &mut |time, values| {
+        table.row(time, values);
+        if let Some(drawing) = &mut drawing {
+            drawing.row(time, values);
+        }
+    });
+    let rows = table.finish()?;
+    let mut files: Vec<PathBuf> = args.output.iter().cloned().collect();
+    files.extend(drawing.map(|drawing| drawing.save(&read.document)).transpose()?);
+    let work = solved.map_err(|trouble| match Error::from(trouble) {
+        Error::Numbers { message, help, .. } => Error::Numbers { message, help, kept: args.output.clone() },
+        other => other,
+    })?;
+    let words = if args.output.is_some() { paths(&files).join("\n") + "\n" } else { String::new() };
+    let report = Report { words, ..Report::default() }.fact("result", path_text(&args.document));
+    let report = report.fact("files", paths(&files)).fact("rows", rows).fact("scheme", scheme);
+    Ok(report.fact("work", json!(work)).fact("notices", read.notices))
+}
+
+/// Tells what the reader of a model should know, beside what goes to standard output.
+pub(super) fn tell(notices: &[String]) {
+    for notice in notices {
+        eprintln!("note: {notice}");
+    }
+}
