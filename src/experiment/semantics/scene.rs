@@ -41,7 +41,7 @@ impl Check<'_> {
     }
 
     /// An instant must lie within the run.
-    fn instant(&mut self, path: &str, time: f64) {
+    pub(super) fn instant(&mut self, path: &str, time: f64) {
         let until = self.document.experiment.run.until.value();
         if !(0.0..=until).contains(&time) {
             let (time, until) = (pretty(time, Dimension::TIME), pretty(until, Dimension::TIME));
