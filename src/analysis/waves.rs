@@ -149,7 +149,8 @@ pub fn arrivals_in_field(
     Ok(Arrivals { distances, times, places })
 }
 
-/// Places on a ray from a point to the wall of a field, a box apart.
+/// Places on a ray from a point to the wall of a field, a box apart. Those within half a box of a wall that the ray leads
+/// to are left out: the value there is that of the box at the wall, to which the wave comes earlier or later.
 fn points_of_ray(field: &Field, centre: [f64; 3], direction: [f64; 3], axes: usize) -> Result<Vec<[f64; 3]>> {
     fields::check_inside(field.layout, centre)?;
     let length = direction[..axes].iter().map(|part| part * part).sum::<f64>().sqrt();
@@ -162,8 +163,17 @@ fn points_of_ray(field: &Field, centre: [f64; 3], direction: [f64; 3], axes: usi
             [part(0), part(1), part(2)]
         };
         points = (0..).map(point).take_while(|point| fields::check_inside(field.layout, *point).is_ok()).collect();
+        points
+            .retain(|point| (0..axes).all(|axis| direction[axis] == 0.0 || between_centres(field, axis, point[axis])));
     }
     Ok(points)
+}
+
+/// Whether a place lies between the centres of the first and the last box along an axis.
+fn between_centres(field: &Field, axis: usize, place: f64) -> bool {
+    let boxes = (place - field.layout.origin[axis]) / field.layout.spacing[axis];
+    // A billionth of a box forgives the round-off of a place that is meant to be a centre.
+    (0.5 - 1e-9..=field.layout.cells[axis] as f64 - 0.5 + 1e-9).contains(&boxes)
 }
 
 #[cfg(test)]
