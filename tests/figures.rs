@@ -66,3 +66,23 @@ fn softer_spheres_lie_flatter() {
 fn shape_memory_bears_a_step_that_springs_do_not() {
     experiment_keeps_its_word("stability_limits", "experiment.toml");
 }
+
+#[test]
+fn three_times_what_decays_moves_an_atom() {
+    experiment_keeps_its_word("decay_transfer", "experiment.toml");
+}
+
+#[test]
+fn four_cells_climb_the_attractant_they_sense() {
+    experiment_keeps_its_word("chemotaxis_field", "experiment.toml");
+}
+
+#[test]
+fn cells_relay_waves_of_camp() {
+    experiment_keeps_its_word("cAMP_waves", "experiment.toml");
+}
+
+#[test]
+fn a_brusselator_takes_its_wavelength() {
+    experiment_keeps_its_word("turing", "experiment.toml");
+}

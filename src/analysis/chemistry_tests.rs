@@ -29,8 +29,8 @@ fn place(cell: usize, frame: usize) -> [f64; 3] {
     let begin = 10.0 * (cell + 1) as f64;
     match cell {
         6.. => [begin, 0.0, 1.0],
-        _ if cell % 2 == 0 => [begin - 0.1 * frame as f64, 0.0, 1.0],
-        _ => [begin - 0.06 * frame as f64, if frame % 2 == 0 { 0.0 } else { 0.08 }, 1.0],
+        _ if cell.is_multiple_of(2) => [begin - 0.1 * frame as f64, 0.0, 1.0],
+        _ => [begin - 0.06 * frame as f64, if frame.is_multiple_of(2) { 0.0 } else { 0.08 }, 1.0],
     }
 }
 

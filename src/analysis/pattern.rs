@@ -51,7 +51,8 @@ pub fn wavelength(layout: &FieldLayout, values: &[f64]) -> Result<f64> {
         return Err(Error::input(fault.help("measure the wavelength of a field on the substrate")));
     }
     let [least, most] = super::waves::extremes(values);
-    if !(most - least > STORED * least.abs().max(most.abs())) || !(most - least).is_finite() {
+    let (swing, noise) = (most - least, STORED * least.abs().max(most.abs()));
+    if !swing.is_finite() || swing <= noise {
         let fault = Fault::new(format!("the field {name} has no pattern: its values are {least} to {most}"));
         return Err(Error::input(fault.help("give a time at which the field is not the same everywhere")));
     }

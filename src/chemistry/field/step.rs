@@ -205,7 +205,7 @@ impl Fields {
 
     fn is_finite(&self) -> bool {
         // Written so that lanes of values are looked at side by side.
-        !self.values.iter().fold(false, |bad, value| bad | !(value.abs() < f64::INFINITY))
+        self.values.iter().fold(true, |fine, value| fine & (value.abs() < f64::INFINITY))
     }
 
     fn check_finite(&self) -> Result<()> {

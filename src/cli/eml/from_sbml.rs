@@ -31,6 +31,7 @@ pub struct FromSbmlArgs {
 /// A model that cannot be read, or says what EML cannot; a file that exists or cannot be written.
 pub fn run(args: &FromSbmlArgs) -> Result<Report> {
     if let Some(path) = &args.output {
+        super::refuse_same(&[&args.model, path])?;
         refuse_existing(path, args.force, Named::ByUser)?;
     }
     let (text, notices) = convert(&args.model)?;

@@ -9,8 +9,9 @@ pub mod solve;
 mod wishes;
 
 use super::report::Report;
-use crate::error::Result;
+use crate::error::{Error, Fault, Result};
 use clap::Subcommand;
+use std::path::Path;
 
 /// Checks, solves and converts documents of equations: EML, and SBML models.
 #[derive(Debug, Clone, clap::Args)]
@@ -52,4 +53,25 @@ pub fn run(args: &EmlArgs) -> Result<Report> {
         EmlCommand::Solve(args) => solve::run(args),
         EmlCommand::FromSbml(args) => from_sbml::run(args),
     }
+}
+
+/// Refuses files that a command would read and write, or write twice, in one place.
+///
+/// # Errors
+/// Two paths that lead to the same file, whether it is there or not.
+fn refuse_same(files: &[&Path]) -> Result<()> {
+    let place = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let whole = std::fs::canonicalize(path);
+        whole.unwrap_or_else(|_| {
+            std::fs::canonicalize(folder).unwrap_or_default().join(path.file_name().unwrap_or_default())
+        })
+    };
+    for (number, path) in files.iter().enumerate() {
+        if files[..number].iter().any(|other| place(other) == place(path)) {
+            let fault = Fault::new(format!("{} is named twice", path.display()));
+            return Err(Error::input(fault.help("give each file that is read or written a name of its own")));
+        }
+    }
+    Ok(())
 }

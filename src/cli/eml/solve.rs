@@ -3,13 +3,14 @@
 use super::columns::{Table, columns, set};
 use super::draw::Drawing;
 use super::read::read;
+use super::refuse_same;
 use super::wishes::{options, points};
 use crate::chemistry::ode::solve_each;
 use crate::cli::render::{Named, refuse_existing};
 use crate::cli::report::{Report, path_text, paths};
 use crate::error::{Error, Fault, Result};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Solves the equations of a document, EML or SBML, and writes a table: a row for each point of time.
 #[derive(Debug, Clone, clap::Args)]
@@ -24,8 +25,8 @@ pub struct SolveArgs {
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub until: f64,
     /// Rows of the table, evenly spaced in time, with both ends.
-    #[arg(long, value_name = "NUMBER", default_value_t = 101)]
-    pub points: u32,
+    #[arg(long, value_name = "NUMBER", default_value_t = 101, allow_negative_numbers = true)]
+    pub points: i64,
     /// Columns, by commas: time, identifiers, in SBML S for an amount and [S] for a concentration; time and all
     /// variables when absent.
     #[arg(long, value_delimiter = ',', value_name = "COLUMNS")]
@@ -37,16 +38,16 @@ pub struct SolveArgs {
     #[arg(long, value_name = "SCHEME")]
     pub scheme: Option<String>,
     /// Tolerance relative to the size of each variable.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub rtol: Option<f64>,
     /// Tolerance in the unit of each variable.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub atol: Option<f64>,
     /// The step of rk4 and euler.
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub inner_step: Option<f64>,
     /// The most steps that are taken.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_steps: Option<u32>,
     /// The table to write, as CSV; the terminal when absent.
     #[arg(short, long, value_name = "FILE")]
@@ -83,6 +84,12 @@ pub fn run(args: &SolveArgs) -> Result<Report> {
     if !faults.is_empty() {
         return Err(Error::Input(faults));
     }
+    let files: Vec<&Path> = [Some(&args.document), args.output.as_ref(), args.plot.as_ref()]
+        .into_iter()
+        .flatten()
+        .map(PathBuf::as_path)
+        .collect();
+    refuse_same(&files)?;
     for path in args.output.iter().chain(&args.plot) {
         refuse_existing(path, args.force, Named::ByUser)?;
     }

@@ -7,7 +7,7 @@ use crate::chemistry::ode::{Method, Scheme, SolveOptions};
 use crate::error::Fault;
 
 /// The most rows of a table.
-const MOST_POINTS: u32 = 10_000_000;
+const MOST_POINTS: i64 = 10_000_000;
 /// The most steps of a fixed length.
 const MOST_STEPS: f64 = 4e9;
 
@@ -24,6 +24,7 @@ pub(super) fn points(args: &SolveArgs, faults: &mut Vec<Fault>) -> Vec<f64> {
         faults.push(fault.help(format!("let --points be from 2 (the two ends) to {MOST_POINTS}")));
         return Vec::new();
     }
+    let points = points as u32;
     let last = f64::from(points - 1);
     // 0.3 rather than 0.30000000000000004: the product is exact more often than the step.
     let at = |point: u32| if point == points - 1 { until } else { from + f64::from(point) * (until - from) / last };
