@@ -163,7 +163,7 @@ impl Framing {
             for value in sheet.values.iter().filter(|value| value.is_finite()) {
                 self.field_range = [self.field_range[0].min(*value), self.field_range[1].max(*value)];
             }
-            self.field_corners = self.bounds.map_or_else(Vec::new, |bounds| corners_near(sheet, &bounds));
+            self.field_corners = corners_near(sheet, self.bounds.as_ref());
         }
         self.longest = self.longest.max(snapshot.time);
     }
@@ -200,11 +200,12 @@ fn opened([low, high]: [f64; 2]) -> [f64; 2] {
 }
 
 /// The corners of what a picture should show of a sheet: no more than a wide margin around the cells, so that a few
-/// cells in a wide field do not become specks.
-fn corners_near(sheet: &Sheet, bounds: &Bounds) -> Vec<[f64; 3]> {
-    let margin = 1.5 * bounds.diagonal();
+/// cells in a wide field do not become specks. Without cells it is the whole sheet.
+fn corners_near(sheet: &Sheet, bounds: Option<&Bounds>) -> Vec<[f64; 3]> {
     let reach = |axis: usize| {
         let (start, end) = (sheet.corner[axis], sheet.corner[axis] + sheet.side_u[axis] + sheet.side_v[axis]);
+        let Some(bounds) = bounds else { return (start, end) };
+        let margin = 1.5 * bounds.diagonal();
         (start.max(bounds.low[axis] - margin), end.min(bounds.high[axis] + margin))
     };
     let (x, y) = (reach(0), reach(1));

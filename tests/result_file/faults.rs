@@ -111,7 +111,7 @@ fn a_path_that_cannot_be_written_is_named() {
         &pseudopod::output::Layout::default(),
         Overwrite::Refuse,
     ));
-    assert!(found.message.contains("no cell"), "{}", found.message);
+    assert!(found.message.contains("nothing to record"), "{}", found.message);
 }
 
 /// Needs a small disk: `mkdir /tmp/small && sudo mount -t tmpfs -o size=2m tmpfs /tmp/small`, then
