@@ -349,3 +349,26 @@ fn a_state_with_chemistry_survives_its_checkpoint() {
     let back: State = postcard::from_bytes(&bytes).unwrap();
     assert_eq!(state, back);
 }
+
+#[test]
+fn an_sbml_model_stands_where_an_eml_document_can() {
+    let sbml = r#"<?xml version="1.0" encoding="UTF-8"?>
+        <sbml xmlns="http://www.sbml.org/sbml/level3/version1/core" level="3" version="1"><model id="decay">
+        <listOfCompartments><compartment id="c" spatialDimensions="3" size="1" constant="true"/></listOfCompartments>
+        <listOfSpecies><species id="S" compartment="c" initialAmount="2" hasOnlySubstanceUnits="true" boundaryCondition="false" constant="false"/></listOfSpecies>
+        <listOfParameters><parameter id="k" value="7" constant="true"/></listOfParameters>
+        <listOfReactions><reaction id="r" reversible="false" fast="false"><listOfReactants><speciesReference species="S" stoichiometry="1" constant="true"/></listOfReactants>
+        <kineticLaw><math xmlns="http://www.w3.org/1998/Math/MathML"><apply><times/><ci>k</ci><ci>S</ci></apply></math></kineticLaw></reaction></listOfReactions>
+        </model></sbml>"#;
+    let text = one_cell("4 s", "0.1 s")
+        + "[chemistry.own]\ndocument = \"own.eml\"\nrtol = 1e-9\natol = 1e-12\nlinks = [\n\
+           { from = \"scene.time\", to = \"system.k\", transfer = \"0.5 + 0*value\" },\n\
+           { from = \"system.S\", to = \"cell.motility.bias.x\", gain = 0.1 },\n]\n";
+    let mut scene = scene(&[("own", sbml)], &text);
+    scene.run();
+    let exact = |t: f64| 2.0 * (-0.5 * t).exp();
+    assert!((scene.value(0, "S", 0) / exact(4.0) - 1.0).abs() < 1e-7, "the link has set the model's parameter");
+    // Each step is made with the amount at its start.
+    let way: f64 = (0..40).map(|n| 0.1 * 0.1 * exact(0.1 * f64::from(n))).sum();
+    assert!((scene.place(0, 0) - way).abs() < 1e-7, "{} against {way}", scene.place(0, 0));
+}

@@ -91,20 +91,25 @@ fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Resul
     let mut chart = Chart { x: Axis::linear(label_of(result, x)), ..Chart::default() };
     let units: Vec<String> = series.iter().map(|y| result.units(y)).collect::<Result<_>>()?;
     let alike = units.windows(2).all(|pair| pair[0] == pair[1]);
+    let lives =
+        |name: &str, kind: &str| !recording.cells.contains_key(name) || recording.cells_with(name, Some(kind)).is_ok();
+    let nobody = [String::new()];
     for y in series {
         // A series of the scene against time is the same for all types.
         let shared = x == "time" && recording.scene.contains_key(y);
-        for kind in if shared { &types[..1] } else { &types[..] } {
+        // A scene without cells has no type, but may have series of its own.
+        let drawn = if shared { types.get(..1).unwrap_or(&nobody) } else { &types[..] };
+        for kind in drawn {
+            // A system of chemistry may live in the cells of some types only.
+            if !(shared || lives(x, kind) && lives(y, kind)) {
+                continue;
+            }
             let points: Vec<[f64; 2]> = if x == "time" {
                 let values = recording.series(y, Some(kind), Over::Mean)?;
                 recording.times.iter().zip(values).map(|(t, v)| [*t, v]).collect()
             } else {
                 curve(&recording, x, y, Some(kind))?.points().collect()
             };
-            // A system of chemistry may live in the cells of some types only.
-            if points.iter().all(|point| point[1].is_nan()) {
-                continue;
-            }
             let named = if alike { readable(y) } else { label_of(result, y) };
             let label = match (series.len(), types.len()) {
                 (1, _) if shared => String::new(),
