@@ -37,16 +37,7 @@ struct Relaxed {
 /// Relaxes a cell; the best of three goes. Nothing when the cell has not come to rest in many relaxation times.
 fn relax(kind: &Kind, method: Method, size: StepSize) -> Option<Relaxed> {
     let integrator = Integrator { method, size };
-    let model = Model {
-        seed: 1,
-        kinds: vec![kind.clone()],
-        planes: vec![],
-        chemistry: Default::default(),
-        gravity: Vec3::zeros(),
-        integrator,
-        until: 1e9,
-        kinks: vec![],
-    };
+    let model = Model::of(vec![kind.clone()], integrator, 1e9);
     let drawn = |p: &Vec3| Vec3::new(p.x / 1.1, p.y / 1.1, p.z * 1.21);
     let place: Vec<Vec3> = kind.rest.positions.iter().map(drawn).collect();
     let mut best: Option<Relaxed> = None;

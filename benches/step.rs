@@ -23,16 +23,7 @@ fn kind(level: u32, cells: usize) -> Kind {
 
 fn model(kind: Kind, method: Method, dt: f64) -> Model {
     let integrator = Integrator { method, size: StepSize::Fixed(dt) };
-    Model {
-        seed: 1,
-        kinds: vec![kind],
-        planes: vec![],
-        chemistry: Default::default(),
-        gravity: Vec3::zeros(),
-        integrator,
-        until: 1e9,
-        kinks: vec![],
-    }
+    Model::of(vec![kind], integrator, 1e9)
 }
 
 fn stretched(kind: &Kind) -> Vec<Vec3> {

@@ -1,6 +1,7 @@
 //! What can go wrong, told so that the reader knows where, what was found, what was expected and what to do.
 
 mod render;
+pub mod words;
 
 pub use render::{Paint, render};
 

@@ -75,16 +75,8 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
             kind.brownian = Some(BrownianMotility { speed: 0.1, persistence: 1e9, space: Space::Plane });
         }
     }
-    Model {
-        seed: 1,
-        kinds: vec![kind.with_cells(0, cells)],
-        planes,
-        chemistry: Default::default(),
-        gravity: Vec3::zeros(),
-        integrator: Integrator { method, size: StepSize::Fixed(0.01) },
-        until: 1e9,
-        kinks: vec![],
-    }
+    let integrator = Integrator { method, size: StepSize::Fixed(0.01) };
+    Model { planes, ..Model::of(vec![kind.with_cells(0, cells)], integrator, 1e9) }
 }
 
 fn pull(direction: Vec3, atom: u32) -> Load {

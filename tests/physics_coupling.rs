@@ -1,5 +1,6 @@
 //! What chemistry does to cells, and cells to chemistry, against what can be worked out by hand.
 
+use pseudopod::Vec3;
 use pseudopod::experiment::{Compiled, Document, compile};
 use pseudopod::sim::chemistry::next_exchange;
 use pseudopod::sim::{State, StepReport, Trouble, Workspace, begin_chemistry, step};
@@ -185,14 +186,17 @@ fn a_stiffness_set_by_chemistry_is_the_stiffness_of_a_stiffer_cell() {
         let text = one_cell("20 s", "0.05 s").replace("10 pN/um", modulus) + load;
         let mut scene = scene(&[("own", &own.replace("FACTOR", factor))], &text);
         scene.run();
-        (scene.place(0, 2), scene.state().kinds[0].cell(&scene.compiled.model.kinds[0], 0))
+        scene.state().kinds[0].cell(&scene.compiled.model.kinds[0], 0)
     };
+    let distance = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    let unlinked = lengths("1", "10 pN/um");
     for (factor, modulus) in [("4", "40 pN/um"), ("0.5", "5 pN/um")] {
-        let (linked, plain) = (lengths(factor, "10 pN/um").1, lengths("1", modulus).1);
-        let apart = linked.iter().zip(&plain).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        let (linked, plain) = (lengths(factor, "10 pN/um"), lengths("1", modulus));
+        let (apart, moved) = (distance(&linked, &plain), distance(&linked, &unlinked));
         // Both are the same problem; K differs by the power of two that covers the factor, so that steps of second
-        // order differ by their errors.
+        // order differ by their errors. The factor itself moves atoms much further.
         assert!(apart < 2e-3, "factor {factor}: {apart} um apart");
+        assert!(moved > 20.0 * 2e-3, "factor {factor}: only {moved} um from a cell of factor 1");
     }
 }
 
@@ -296,9 +300,9 @@ fn a_link_that_carries_nonsense_is_named() {
     );
 }
 
-/// Cells that wander, secrete and climb what they secrete.
-fn crowd(threads: usize, poisoned: bool) -> State {
-    let field = r#"<eml name="field"><grid dimension="2" spacing="3" origin="-60 -60" size="120 120"/>
+/// Cells that wander, secrete and climb what they secrete; the field has boxes enough that threads share its reactions.
+fn crowd() -> Scene {
+    let field = r#"<eml name="field"><grid dimension="2" spacing="1.5" origin="-60 -60" size="120 120"/>
         <field id="c" diffusion="40" decay="0.05" initial="1 + 0.01*x"><reaction>-0.02*c^2</reaction></field></eml>"#;
     let own = r#"<eml name="own" level="cell"><input id="c" default="0"/><input id="gx" default="0"/>
         <variable id="u" initial="1" rate="c - u"/><variable id="w" initial="0" rate="u - w^3"/>
@@ -321,13 +325,16 @@ mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" }
 motility = { brownian = { speed = "5 um/min", persistence = "5 s" } }
 chemistry = ["own"]
 "#;
+    scene(&[("field", field), ("own", own)], text)
+}
+
+/// The crowd after 20 steps; `before` each step something may be done to it.
+fn crowd_after(threads: usize, before: impl Fn(&mut Scene) + Sync) -> State {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
-        let mut scene = scene(&[("field", field), ("own", own)], text);
+        let mut scene = crowd();
         for _ in 0..20 {
-            if poisoned {
-                scene.ws.poison(&scene.compiled.model);
-            }
+            before(&mut scene);
             scene.step().unwrap();
         }
         scene.compiled.state
@@ -336,18 +343,22 @@ chemistry = ["own"]
 
 #[test]
 fn threads_and_scratch_do_not_matter_to_chemistry() {
-    let plain = crowd(1, false);
-    assert!(plain.chemistry.fields[0].values.iter().all(|value| value.is_finite()));
-    assert_eq!(plain, crowd(2, false), "threads");
-    assert_eq!(plain, crowd(1, true), "scratch");
+    let plain = crowd_after(1, |_| ());
+    let field = &plain.chemistry.fields[0].values;
+    assert!(field.iter().all(|value| value.is_finite()) && field.len() == 6400);
+    assert!(plain.chemistry.controls.stiffness.iter().all(|factor| (*factor - 1.0).abs() > 0.01), "links have acted");
+    assert_eq!(plain, crowd_after(2, |_| ()), "threads");
+    assert_eq!(plain, crowd_after(1, |scene| scene.ws.poison(&scene.compiled.model)), "scratch");
 }
 
 #[test]
-fn a_state_with_chemistry_survives_its_checkpoint() {
-    let state = crowd(1, false);
-    let bytes = postcard::to_stdvec(&state).unwrap();
-    let back: State = postcard::from_bytes(&bytes).unwrap();
-    assert_eq!(state, back);
+fn a_run_goes_on_from_its_checkpoint_as_if_it_had_not_stopped() {
+    let stopped = |scene: &mut Scene| {
+        let bytes = postcard::to_stdvec(scene.state()).unwrap();
+        scene.compiled.state = postcard::from_bytes(&bytes).unwrap();
+        scene.ws = Workspace::new(&scene.compiled.model);
+    };
+    assert_eq!(crowd_after(1, |_| ()), crowd_after(1, stopped));
 }
 
 #[test]

@@ -13,16 +13,7 @@ const INERTIAL: [Method; 4] = [Method::Euler, Method::SemiImplicitEuler, Method:
 
 fn model(kind: Kind, method: Method, dt: f64, until: f64) -> Model {
     let integrator = Integrator { method, size: StepSize::Fixed(dt) };
-    Model {
-        seed: 1,
-        kinds: vec![kind],
-        planes: vec![],
-        chemistry: Default::default(),
-        gravity: Vec3::zeros(),
-        integrator,
-        until,
-        kinks: vec![],
-    }
+    Model::of(vec![kind], integrator, until)
 }
 
 /// Two atoms on a spring of 3 pN/µm and 1 µm at rest, a facet of no matter; mass 0.5 mg each.

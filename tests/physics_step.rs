@@ -20,16 +20,7 @@ fn sphere_kind(level: u32, stiffness: f64) -> Kind {
 
 fn model_of(kind: Kind, method: Method, size: StepSize, until: f64) -> Model {
     let integrator = Integrator { method, size };
-    Model {
-        seed: 1,
-        kinds: vec![kind],
-        planes: vec![],
-        chemistry: Default::default(),
-        gravity: Vec3::zeros(),
-        integrator,
-        until,
-        kinks: vec![],
-    }
+    Model::of(vec![kind], integrator, until)
 }
 
 const ADAPTIVE: StepSize = StepSize::Adaptive { tolerance: 1e-3, largest: 1e3 };

@@ -2,8 +2,8 @@
 
 use super::tree::{Node, Value};
 use super::values::{Colour, LengthUnit};
-use super::words;
 use crate::error::Fault;
+use crate::error::words;
 use crate::units::{self, Dimension, UnitError};
 use indexmap::IndexMap;
 use serde_json::{Map, Value as Json};

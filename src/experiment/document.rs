@@ -153,6 +153,6 @@ pub(crate) fn near_file(path: &Path) -> Option<PathBuf> {
     let entries = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names: Vec<String> = entries.collect();
     names.sort();
-    let near = super::words::meant(wanted, names.iter().map(String::as_str))?;
+    let near = crate::error::words::meant(wanted, names.iter().map(String::as_str))?;
     Some(path.with_file_name(near))
 }

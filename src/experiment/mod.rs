@@ -44,7 +44,6 @@ mod schema;
 mod semantics;
 mod tree;
 mod values;
-mod words;
 
 pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};

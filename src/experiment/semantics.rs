@@ -2,8 +2,8 @@
 
 use super::check::Reference;
 use super::document::{Document, near_file};
-use super::words;
 use crate::error::Fault;
+use crate::error::words;
 use std::path::Path;
 
 /// Series of every cell that the result holds, besides those of the scene (`load.NAME`, `time`).

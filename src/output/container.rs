@@ -1,8 +1,11 @@
 //! The few things that the result file needs of HDF5: files that survive a kill, texts, and errors people understand.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use hdf5::file::{CacheDecreaseMode, CacheIncreaseMode, FileBuilder, FlashIncreaseMode, MetadataCacheConfig};
+use hdf5::plist::FileAccess;
+use hdf5::plist::file_access::FileAccessBuilder;
 use hdf5::types::VarLenUnicode;
 use hdf5::{File, Group, H5Type, Location};
 use ndarray::Array1;
@@ -30,8 +33,18 @@ fn kill_safe() -> FileBuilder {
         ..MetadataCacheConfig::default()
     };
     let mut builder = FileBuilder::new();
-    builder.with_fapl(|access| access.libver_earliest().mdc_config(&cache).evict_on_close(true));
+    builder.with_fapl(|access| forgetful(access.libver_earliest().mdc_config(&cache)));
     builder
+}
+
+/// Lets a dataset that is closed take its metadata with it. An HDF5 that is built for MPI cannot do that, and refuses to
+/// be asked: with it the metadata of long results stay in memory, and all else is as usual.
+fn forgetful(access: &mut FileAccessBuilder) -> &mut FileAccessBuilder {
+    static IS_KNOWN: OnceLock<bool> = OnceLock::new();
+    match IS_KNOWN.get_or_init(|| FileAccess::build().evict_on_close(true).finish().is_ok()) {
+        true => access.evict_on_close(true),
+        false => access,
+    }
 }
 
 /// Makes the file, or empties one that is there.
@@ -54,7 +67,7 @@ pub(super) fn open(path: &Path, access: Access) -> Result<File> {
     check_signature(path)?;
     let opened = match access {
         // As for writing, or HDF5 would refuse a file that this process is writing.
-        Access::Read => FileBuilder::new().with_fapl(|access| access.evict_on_close(true)).open(path),
+        Access::Read => FileBuilder::new().with_fapl(forgetful).open(path),
         Access::Append => kill_safe().open_rw(path),
     };
     let file = opened.map_err(|error| refused(path, access, &error))?;

@@ -259,6 +259,20 @@ impl Kind {
 }
 
 impl Model {
+    /// A model of these kinds alone: no planes, gravity, chemistry or bends.
+    pub fn of(kinds: Vec<Kind>, integrator: Integrator, until: f64) -> Self {
+        Self {
+            seed: 1,
+            kinds,
+            planes: Vec::new(),
+            gravity: Vec3::zeros(),
+            chemistry: Chemistry::default(),
+            integrator,
+            until,
+            kinks: Vec::new(),
+        }
+    }
+
     /// Number of cells.
     pub fn cells(&self) -> usize {
         self.kinds.iter().map(|kind| kind.cells).sum()

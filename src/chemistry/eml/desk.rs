@@ -1,6 +1,6 @@
 //! Collects faults with their places, so that a reader hears of all of them.
 
-use crate::chemistry::expression::meant;
+use crate::error::words::meant;
 use crate::error::{Error, Fault, Place, Source};
 use std::ops::Range;
 use std::sync::Arc;

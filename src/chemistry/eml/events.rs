@@ -76,7 +76,7 @@ impl Builder<'_, '_> {
             return found;
         }
         let message = format!("`{attribute}` cannot be \"{word}\"");
-        let help = match crate::chemistry::expression::meant(word, words.iter().copied()) {
+        let help = match crate::error::words::meant(word, words.iter().copied()) {
             Some(near) => format!("did you mean \"{near}\"?"),
             None => {
                 format!("write {}", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or "))

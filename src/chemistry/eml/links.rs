@@ -7,10 +7,9 @@ use super::build::Builder;
 use super::declare::tell;
 use super::document::{Endpoint, Index, LinkDescription, Root, Step};
 use super::xml::{Element, Text};
-use crate::chemistry::expression::{
-    Measure, Scope, Trouble, UnitScope, any_of, is_identifier, is_reserved, meant, parse,
-};
+use crate::chemistry::expression::{Measure, Scope, Trouble, UnitScope, is_identifier, is_reserved, parse};
 use crate::chemistry::tree::{Expr, QuantityId, System};
+use crate::error::words::{any_of, meant};
 use std::collections::BTreeMap;
 
 /// The word for the value in a transfer.

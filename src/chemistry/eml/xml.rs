@@ -3,7 +3,7 @@
 use super::desk::Desk;
 use super::guard::{MOST_NODES, tag_end};
 use super::vocabulary::{Kind, kind_of};
-use crate::chemistry::expression::{any_of, meant};
+use crate::error::words::{any_of, meant};
 use std::ops::Range;
 
 /// A text of the document, with escapes and comments taken out, and where each of its bytes came from.

@@ -10,7 +10,6 @@ mod resolve;
 mod syntax;
 mod token;
 mod units;
-mod words;
 mod write;
 
 pub use functions::{function_names, is_identifier, is_reserved};
@@ -18,7 +17,6 @@ pub use parse::parse;
 pub use resolve::{Function, LARGEST, Scope, Spent};
 pub use syntax::{DEEPEST, LONGEST, Node, NodeKind};
 pub use units::{Measure, Unit, UnitScope};
-pub use words::{any_of, meant};
 pub use write::write;
 
 use std::ops::Range;

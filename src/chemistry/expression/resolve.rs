@@ -3,8 +3,8 @@
 use super::Trouble;
 use super::functions::{CONSTANTS, FUNCTIONS, Known, TIME, known};
 use super::syntax::{DEEPEST, Node, NodeKind};
-use super::words::meant;
 use crate::chemistry::tree::{Expr, QuantityId, Unary};
+use crate::error::words::meant;
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;

@@ -49,7 +49,9 @@ pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
                 (_, true) => "100 100",
                 _ => "100 100 50",
             };
-            let help = format!("write {name}=\"{example}\", or let an experiment place the grid");
+            let help = format!(
+                "write {name}=\"{example}\" in <grid>, or give `size` (and `origin`) beside the document in the experiment"
+            );
             faults.push(fault(format!("the grid has no {name}, and nothing else places it"), help));
         }
     }

@@ -1,8 +1,8 @@
 //! The columns of a solution, and the table that is written row by row.
 
 use crate::chemistry::Read;
-use crate::chemistry::expression::{any_of, meant};
 use crate::chemistry::tree::{QuantityId, Role};
+use crate::error::words::{any_of, meant};
 use crate::error::{Error, Fault, Result};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::Path;

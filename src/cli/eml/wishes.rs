@@ -2,9 +2,9 @@
 
 use super::solve::SolveArgs;
 use crate::chemistry::eml::{Document, SCHEMES};
-use crate::chemistry::expression::meant;
 use crate::chemistry::ode::{Method, Scheme, SolveOptions};
 use crate::error::Fault;
+use crate::error::words::meant;
 
 /// The most rows of a table.
 const MOST_POINTS: i64 = 10_000_000;

@@ -2,8 +2,8 @@
 
 use super::{Keys, Walk, dimension_of, kinds_of, name_error, words_of};
 use crate::error::Fault;
+use crate::error::words;
 use crate::experiment::tree::{Node, Value};
-use crate::experiment::words;
 use indexmap::IndexMap;
 use serde_json::{Map, Value as Json};
 

@@ -1,7 +1,8 @@
 //! What must hold between types of cells and chemistry.
 
 use super::Check;
-use crate::experiment::{Scheme, words};
+use crate::error::words;
+use crate::experiment::Scheme;
 
 impl Check<'_> {
     pub(super) fn chemistry(&mut self) {

@@ -1,9 +1,9 @@
 //! The meaning of a link's ends in this experiment: which cells, which atom, which field.
 
-use super::super::super::words;
 use super::{Part, within};
 use crate::cell::ends::{self, Reading, Sense, Setting};
 use crate::chemistry::eml::{Endpoint, Index, LinkDescription, Root, Step};
+use crate::error::words;
 use crate::error::{Fault, short};
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, Control, Source, Target, Whole, Whose};
@@ -180,7 +180,10 @@ impl Ends<'_, '_> {
             let Some(number) = kind.loads.iter().position(|load| load.name == name) else {
                 let message = format!("type `{}` has no load `{name}`", kind.name);
                 let known = kind.loads.iter().map(|load| load.name.as_str());
-                let help = format!("its loads are {}", words::all_of(known));
+                let help = match kind.loads.is_empty() {
+                    true => format!("add [[cells.{}.loads]] with that name to the experiment", kind.name),
+                    false => format!("its loads are {}", words::all_of(known)),
+                };
                 return Err(within(&end.place, "no such load", message, help));
             };
             if found.is_some_and(|other| other != number) {

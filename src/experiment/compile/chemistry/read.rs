@@ -1,9 +1,10 @@
 //! Reads the documents, takes in what the experiment changes, and finds out who has each system.
 
-use super::super::super::{Chemistry as Entry, Document, words};
+use super::super::super::{Chemistry as Entry, Document};
 use super::{Part, at, tell};
 use crate::chemistry::eml::{self, Level};
 use crate::chemistry::tree::{Expr, Role};
+use crate::error::words;
 use crate::error::{Fault, Source};
 use crate::sim::Kind;
 use std::sync::Arc;

@@ -21,6 +21,11 @@ pub fn any_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     joined(words, "or")
 }
 
+/// "`a`, `b` and `c`"; a long list is cut.
+pub fn all_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    joined(words, "and")
+}
+
 fn joined<'a>(words: impl IntoIterator<Item = &'a str>, last: &str) -> String {
     const MOST: usize = 16;
     let words: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
