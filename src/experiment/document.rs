@@ -4,6 +4,7 @@ use super::tree::Node;
 use super::{Experiment, check, schema, semantics};
 use crate::error::{Error, Fault, Place, Result, Source};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -18,6 +19,10 @@ pub struct Document {
     pub base_dir: PathBuf,
     /// What the text says, changes included.
     pub experiment: Experiment,
+    /// Texts of documents of equations, by the path that the experiment writes; they stand in place of the files.
+    pub equations: BTreeMap<String, String>,
+    /// The texts in it that mean something elsewhere.
+    pub(super) references: Vec<check::Reference>,
     tree: Node,
 }
 
@@ -44,6 +49,20 @@ impl Document {
     /// # Errors
     /// [`Error::Input`] with all faults, in the order of the text.
     pub fn parse(name: &str, text: &str, base_dir: &Path, sets: &[String]) -> Result<Self> {
+        Self::parse_beside(name, text, base_dir, sets, BTreeMap::new())
+    }
+
+    /// As [`Document::parse`], with [`equations`](Self::equations) that stand in place of files.
+    ///
+    /// # Errors
+    /// As [`Document::parse`].
+    pub fn parse_beside(
+        name: &str,
+        text: &str,
+        base_dir: &Path,
+        sets: &[String],
+        equations: BTreeMap<String, String>,
+    ) -> Result<Self> {
         let source = Arc::new(Source { name: name.to_owned(), text: text.to_owned() });
         let mut tree = Node::parse(&source).map_err(Error::Input)?;
         let mut sources = vec![source.clone()];
@@ -57,8 +76,10 @@ impl Document {
         faults.extend(found.faults);
         if faults.is_empty() {
             let experiment = experiment_of(&tree)?;
-            let document = Self { source, sets: sets.to_vec(), base_dir: base_dir.to_owned(), experiment, tree };
-            faults = semantics::check(&document, &found.references);
+            let (sets, base_dir) = (sets.to_vec(), base_dir.to_owned());
+            let references = found.references;
+            let document = Self { source, sets, base_dir, experiment, equations, references, tree };
+            faults = semantics::check(&document);
             if faults.is_empty() {
                 return Ok(document);
             }
@@ -81,6 +102,37 @@ impl Document {
             Error::input(fault.help("numbers must be finite and the seed below 2^63"))
         })?;
         Self::parse("experiment built by a program", &text, Path::new("."), &[])
+    }
+
+    /// The document with the texts of all documents of equations that can be read now, so that it means the same whatever
+    /// becomes of the files. Those that cannot are left for [`compile`](super::compile) to tell of.
+    pub fn with_equations(&self) -> Self {
+        let mut document = self.clone();
+        for entry in self.experiment.chemistry.values() {
+            let is_kept = document.equations.contains_key(&written(&entry.document));
+            if let (false, Ok(Ok(text))) = (is_kept, self.equations_at(&entry.document).map(String::from_utf8)) {
+                document.equations.insert(written(&entry.document), text);
+            }
+        }
+        document
+    }
+
+    /// The bytes of a document of equations: those kept, or those of the file.
+    ///
+    /// # Errors
+    /// As [`std::fs::read`], and [`std::io::ErrorKind::FileTooLarge`] for more than
+    /// [`LARGEST_DOCUMENT`](crate::chemistry::eml::LARGEST_DOCUMENT) bytes.
+    pub fn equations_at(&self, path: &Path) -> std::io::Result<Vec<u8>> {
+        if let Some(text) = self.equations.get(&written(path)) {
+            return Ok(text.clone().into_bytes());
+        }
+        let (file, largest) = (self.resolve(path), crate::chemistry::eml::LARGEST_DOCUMENT);
+        let size = std::fs::metadata(&file)?.len();
+        if size > largest as u64 {
+            let words = format!("it has {size} bytes, and at most {largest} are read");
+            return Err(std::io::Error::new(std::io::ErrorKind::FileTooLarge, words));
+        }
+        std::fs::read(file)
     }
 
     /// A path of the document as the system can open it.
@@ -107,6 +159,11 @@ impl Document {
     pub fn says(&self, path: &str) -> bool {
         self.tree.follow(path).1
     }
+}
+
+/// A path as the experiment writes it.
+fn written(path: &Path) -> String {
+    path.display().to_string()
 }
 
 /// What a tree without faults says. The checker has seen everything that `serde` could refuse; should it refuse

@@ -25,9 +25,9 @@ struct Check<'a> {
 }
 
 /// Finds the faults that the keys of a well-formed document have together.
-pub(super) fn check(document: &Document, references: &[Reference]) -> Vec<Fault> {
+pub(super) fn check(document: &Document) -> Vec<Fault> {
     let mut check = Check { document, faults: Vec::new() };
-    for reference in references {
+    for reference in &document.references {
         check.reference(reference);
     }
     for (name, cell) in &document.experiment.cells {
@@ -72,7 +72,7 @@ impl Check<'_> {
 
     fn file(&mut self, path: &str, text: &str) {
         let file = self.document.resolve(Path::new(text));
-        if file.is_file() {
+        if file.is_file() || self.document.equations.contains_key(text) {
             return;
         }
         let (message, help) = match (file.is_dir(), near_file(&file)) {

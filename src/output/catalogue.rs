@@ -153,6 +153,8 @@ pub const CATALOGUE: &[Entry] = &[
     row("/events/runs/duration", "s", "run", RunFloat(|r| r.2), "How long the motility run lasted."),
     row("/scene/<name>", "of the series", "frame", Filled::Scene, "A series of the scene as a whole."),
     row("/provenance/experiment", "1", "1", OnceTexts, "The experiment document, verbatim."),
+    row("/provenance/equation_files", "1", "document", OnceTexts, "Documents of equations, as the experiment names them."),
+    row("/provenance/equations", "1", "document", OnceTexts, "The texts of these documents, verbatim."),
     row("/provenance/sets", "1", "setting", OnceTexts, "Settings of the command line."),
     row("/summary/<name>", "of the measure", "scalar", Filled::Measure, "A measure that the experiment declares."),
     row("/checkpoint", "1", "byte", Bytes, "The state at the end of the run, to resume from."),

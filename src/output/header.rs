@@ -14,6 +14,8 @@ pub struct Header {
     pub experiment: String,
     /// The settings of the command line (`a.b=value`), in their order.
     pub sets: Vec<String>,
+    /// Documents of equations that the experiment names: the path it writes and the text, verbatim.
+    pub equations: Vec<(String, String)>,
     /// Seed of all random numbers.
     pub seed: u64,
     /// Version of the program.
@@ -33,6 +35,7 @@ impl Header {
             title: title.into(),
             experiment: experiment.into(),
             sets: sets.to_vec(),
+            equations: Vec::new(),
             seed,
             version: env!("CARGO_PKG_VERSION").into(),
             commit: env!("PSEUDOPOD_COMMIT").into(),
@@ -45,6 +48,7 @@ impl Header {
     pub fn experiment_hash(&self) -> u64 {
         let seed = self.seed.to_le_bytes();
         let texts = std::iter::once(self.experiment.as_bytes()).chain(self.sets.iter().map(|set| set.as_bytes()));
+        let texts = texts.chain(self.equations.iter().flat_map(|(path, text)| [path.as_bytes(), text.as_bytes()]));
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         for part in texts.chain([seed.as_slice()]) {
             // 0xff never occurs in UTF-8, so it parts the texts without doubt.

@@ -39,6 +39,11 @@ pub(super) fn write_header(file: &File, header: &Header) -> hdf5::Result<()> {
     set_text(&group, "wall_time_unit", "s")?;
     let sets: Vec<&str> = header.sets.iter().map(String::as_str).collect();
     described(&write_texts(file, "/provenance/sets", &sets)?, "/provenance/sets")?;
+    let (paths, texts): (Vec<&str>, Vec<&str>) =
+        header.equations.iter().map(|(path, text)| (path.as_str(), text.as_str())).unzip();
+    for (name, texts) in [("/provenance/equation_files", paths), ("/provenance/equations", texts)] {
+        described(&write_texts(file, name, &texts)?, name)?;
+    }
     // A dataset, because an attribute may not be longer than 64 kB.
     let experiment = file.new_dataset::<VarLenUnicode>().obj_track_times(false).create("/provenance/experiment")?;
     experiment.write_scalar(&container::stored(&header.experiment))?;
@@ -54,6 +59,13 @@ pub(super) fn read_header(file: &File) -> hdf5::Result<Header> {
         title: text(&group, "title")?,
         experiment: experiment.as_str().to_string(),
         sets: read_texts(file, "/provenance/sets")?,
+        equations: match file.link_exists("/provenance/equations") {
+            true => read_texts(file, "/provenance/equation_files")?
+                .into_iter()
+                .zip(read_texts(file, "/provenance/equations")?)
+                .collect(),
+            false => Vec::new(),
+        },
         seed: group.attr("seed")?.read_scalar()?,
         version: text(&group, "version")?,
         commit: text(&group, "commit")?,

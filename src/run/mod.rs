@@ -48,14 +48,13 @@ pub static STOP: AtomicBool = AtomicBool::new(false);
 /// the disk refuses.
 pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
     let pool = pool_of(options.threads)?;
+    let document = &document.with_equations();
     let compiled = compile(document)?;
-    let header = Header::now(
-        &document.source.name,
-        &document.experiment.title,
-        &document.source.text,
-        &document.sets,
-        compiled.model.seed,
-    );
+    let (source, title) = (&document.source, &document.experiment.title);
+    let header = Header {
+        equations: document.equations.clone().into_iter().collect(),
+        ..Header::now(&source.name, title, &source.text, &document.sets, compiled.model.seed)
+    };
     let layout = layout_of(&compiled.model);
     let writer = ResultWriter::create(&options.result, &header, &layout, options.overwrite)?;
     within(pool, || drive(compiled, writer, &options.result, report, Start::Fresh))
@@ -121,7 +120,8 @@ pub fn document_of(header: &Header, result: &Path) -> Result<Document> {
     let folder = |path: &Path| path.parent().map(Path::to_path_buf).unwrap_or_default();
     let document = Path::new(&header.document);
     let base = if document.exists() { folder(document) } else { folder(result) };
-    Document::parse(&header.document, &header.experiment, &base, &header.sets)
+    let equations = header.equations.iter().cloned().collect();
+    Document::parse_beside(&header.document, &header.experiment, &base, &header.sets, equations)
 }
 
 fn check_fits(fresh: &State, state: &State, result: &Path) -> Result<()> {

@@ -62,7 +62,9 @@ fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 pub fn header() -> Header {
-    Header::now("walk.toml", "A walk", "title = \"A walk\"\nseed = 7\n", &["cells.round.count=3".into()], 7)
+    let header =
+        Header::now("walk.toml", "A walk", "title = \"A walk\"\nseed = 7\n", &["cells.round.count=3".into()], 7);
+    Header { equations: vec![("own.eml".into(), "<eml name=\"own\"/>".into())], ..header }
 }
 
 /// Makes a file and appends frames `0..frames`.

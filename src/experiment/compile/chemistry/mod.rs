@@ -2,6 +2,7 @@
 
 mod ends;
 mod links;
+mod names;
 mod order;
 mod profile;
 mod read;
@@ -48,6 +49,7 @@ pub fn chemistry(document: &Document, kinds: &mut [Kind], faults: &mut Vec<Fault
     let before = faults.len();
     let mut chemistry = Chemistry::default();
     if document.experiment.chemistry.is_empty() {
+        names::check(document, &chemistry, faults);
         return (chemistry, Vec::new());
     }
     let mut parts = read::parts(document, kinds, faults);
@@ -74,6 +76,7 @@ pub fn chemistry(document: &Document, kinds: &mut [Kind], faults: &mut Vec<Fault
     // Ends of links name systems and fields by their numbers, which stand only when all are there.
     if faults.len() == before {
         links::links(document, &parts, kinds, &mut chemistry, faults);
+        names::check(document, &chemistry, faults);
     }
     (chemistry, fields)
 }

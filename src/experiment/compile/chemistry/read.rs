@@ -7,6 +7,7 @@ use crate::chemistry::tree::{Expr, Role};
 use crate::error::words;
 use crate::error::{Fault, Source};
 use crate::sim::Kind;
+use std::io::ErrorKind;
 use std::sync::Arc;
 
 /// All documents of equations and fields, in the order of the experiment.
@@ -33,16 +34,15 @@ fn read(document: &Document, name: &str, entry: &Entry, faults: &mut Vec<Fault>)
     let refuse = |message: String, help: &str, faults: &mut Vec<Fault>| {
         faults.push(at(document, &key, "this file", Fault::new(message).help(help)));
     };
-    let size = std::fs::metadata(&path).map_or(0, |meta| meta.len());
-    if size > eml::LARGEST_DOCUMENT as u64 {
-        let message = format!("{} has {size} bytes; at most {} are read", path.display(), eml::LARGEST_DOCUMENT);
-        refuse(message, "name a document of equations", faults);
-        return None;
-    }
-    let text = match std::fs::read(&path).map(String::from_utf8) {
+    let text = match document.equations_at(&entry.document).map(String::from_utf8) {
         Ok(Ok(text)) => text,
         Ok(Err(_)) => {
             refuse(format!("{} is not UTF-8 text", path.display()), "name an EML document or an SBML model", faults);
+            return None;
+        }
+        Err(error) if error.kind() == ErrorKind::FileTooLarge => {
+            let message = format!("{} cannot be a document of equations: {error}", path.display());
+            refuse(message, "name an EML document or an SBML model", faults);
             return None;
         }
         Err(error) => {
