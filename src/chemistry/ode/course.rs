@@ -18,6 +18,9 @@ pub struct Course<'c, 'a> {
     written: usize,
     each: &'c mut dyn FnMut(f64, &[f64]),
     until: f64,
+    /// The state within a step, and the triggers there.
+    within: Vec<f64>,
+    now: Vec<f64>,
 }
 
 impl<'c, 'a> Course<'c, 'a> {
@@ -29,7 +32,8 @@ impl<'c, 'a> Course<'c, 'a> {
         points: &'c [f64],
         each: &'c mut dyn FnMut(f64, &[f64]),
     ) -> Self {
-        Self { stepper, events, points, written: 0, each, until }
+        let within = vec![0.0; stepper.program.size()];
+        Self { stepper, events, points, written: 0, each, until, within, now: Vec::new() }
     }
 
     /// Goes all the way. What is triggered at its begin or exactly at its end is executed.
@@ -75,17 +79,16 @@ impl<'c, 'a> Course<'c, 'a> {
         let begin = self.stepper.time;
         let step = self.stepper.step(end)?;
         let reached = if step >= end - begin { end } else { begin + step };
-        let mut state = vec![0.0; self.stepper.program.size()];
         if !self.events.is_empty() {
             let mut low = 0.0;
             for sample in 1..=SAMPLES {
                 let high = sample as f64 / SAMPLES as f64;
-                if self.turns_true(begin, reached, high, &mut state) {
-                    let share = self.find(begin, reached, (low, high), &mut state);
+                if self.turns_true(begin, reached, high) {
+                    let share = self.find(begin, reached, (low, high));
                     let time = if share >= 1.0 { reached } else { begin + share * (reached - begin) };
                     self.write_between(begin, reached, time);
-                    self.stepper.between(share, &mut state);
-                    self.stepper.commit_between(time, &state);
+                    self.stepper.between(share, &mut self.within);
+                    self.stepper.commit_between(time, &self.within);
                     self.arrive()?;
                     return Ok(true);
                 }
@@ -101,34 +104,33 @@ impl<'c, 'a> Course<'c, 'a> {
     }
 
     /// Whether a trigger that did not hold does at a share of the step. Takes note of triggers that no longer hold.
-    fn turns_true(&mut self, begin: f64, reached: f64, share: f64, state: &mut [f64]) -> bool {
-        let now = self.triggers(begin, reached, share, state);
-        let turned = self.events.turns_true(&now);
+    fn turns_true(&mut self, begin: f64, reached: f64, share: f64) -> bool {
+        self.look(begin, reached, share);
+        let turned = self.events.turns_true(&self.now);
         if !turned {
-            self.events.note_falling(&now);
+            self.events.note_falling(&self.now);
         }
         turned
     }
 
-    fn triggers(&mut self, begin: f64, reached: f64, share: f64, state: &mut [f64]) -> Vec<f64> {
-        let mut now = Vec::new();
-        self.stepper.between(share, state);
+    /// Works out the triggers at a share of the step.
+    fn look(&mut self, begin: f64, reached: f64, share: f64) {
+        self.stepper.between(share, &mut self.within);
         let program = self.stepper.program;
         let time = if share >= 1.0 { reached } else { begin + share * (reached - begin) };
-        self.stepper.evaluate(&program.further[TRIGGERS], time, state, &mut now);
-        now
+        self.stepper.evaluate(&program.further[TRIGGERS], time, &self.within, &mut self.now);
     }
 
     /// The smallest share, to the last bit of the time, at which a trigger that did not hold does.
-    fn find(&mut self, begin: f64, reached: f64, (mut low, mut high): (f64, f64), state: &mut [f64]) -> f64 {
+    fn find(&mut self, begin: f64, reached: f64, (mut low, mut high): (f64, f64)) -> f64 {
         let close = f64::EPSILON.max(f64::EPSILON * reached.abs() / (reached - begin));
         while high - low > close {
             let middle = 0.5 * (low + high);
             if middle <= low || middle >= high {
                 break;
             }
-            let now = self.triggers(begin, reached, middle, state);
-            (low, high) = if self.events.turns_true(&now) { (low, middle) } else { (middle, high) };
+            self.look(begin, reached, middle);
+            (low, high) = if self.events.turns_true(&self.now) { (low, middle) } else { (middle, high) };
         }
         high
     }
