@@ -1,87 +1,11 @@
 //! What chemistry does to cells, and cells to chemistry, against what can be worked out by hand.
 
+mod coupled_scene;
+
+use coupled_scene::{Scene, one_cell, scene};
 use pseudopod::Vec3;
-use pseudopod::experiment::{Compiled, Document, compile};
 use pseudopod::sim::chemistry::next_exchange;
-use pseudopod::sim::{State, StepReport, Trouble, Workspace, begin_chemistry, step};
-
-/// A run of an experiment whose documents of equations are given with it.
-struct Scene {
-    compiled: Compiled,
-    ws: Workspace,
-}
-
-/// `documents` are pairs of a name and the text of its document; `text` is the rest of the experiment.
-fn scene(documents: &[(&str, &str)], text: &str) -> Scene {
-    let folder = tempfile::tempdir().unwrap();
-    let mut text = text.to_owned();
-    for (name, eml) in documents {
-        std::fs::write(folder.path().join(format!("{name}.eml")), eml).unwrap();
-        if !text.contains(&format!("[chemistry.{name}]")) {
-            text += &format!("\n[chemistry.{name}]\ndocument = \"{name}.eml\"\n");
-        }
-    }
-    let text = format!("title = \"coupling\"\n{text}");
-    let document = Document::parse("test.toml", &text, folder.path(), &[]).unwrap_or_else(|error| panic!("{error}"));
-    let compiled = compile(&document).unwrap_or_else(|error| panic!("{error}"));
-    let ws = Workspace::new(&compiled.model);
-    Scene { compiled, ws }
-}
-
-impl Scene {
-    fn step(&mut self) -> Result<StepReport, Trouble> {
-        step(&self.compiled.model, &mut self.compiled.state, &mut self.ws)
-    }
-
-    fn begin(&mut self) {
-        begin_chemistry(&self.compiled.model, &mut self.compiled.state, &mut self.ws).unwrap();
-    }
-
-    fn run(&mut self) {
-        while self.compiled.state.time < self.compiled.model.until {
-            self.step().unwrap();
-        }
-    }
-
-    fn state(&self) -> &State {
-        &self.compiled.state
-    }
-
-    /// The mean of a cell's atoms along an axis.
-    fn place(&self, cell: usize, axis: usize) -> f64 {
-        let kind = &self.compiled.model.kinds[0];
-        let atoms = self.state().kinds[0].cell(kind, cell);
-        atoms.iter().map(|p| p[axis]).sum::<f64>() / atoms.len() as f64
-    }
-
-    /// The value of a quantity of a system for one of its members.
-    fn value(&self, system: usize, quantity: &str, member: usize) -> f64 {
-        let reactor = &self.compiled.model.chemistry.reactors[system];
-        let number = reactor.program.names.iter().position(|name| name == quantity).unwrap();
-        let population = &self.state().chemistry.populations[system];
-        let mut values = vec![0.0; population.cells()];
-        let time = self.state().chemistry.times[system] / reactor.seconds;
-        population.observe(&reactor.program, number as u32, time, &mut values);
-        values[member]
-    }
-}
-
-/// A sphere of 42 atoms that has the system `own`; steps of a fixed size.
-fn one_cell(until: &str, step: &str) -> String {
-    format!(
-        r#"
-[run]
-until = "{until}"
-integrator = {{ step = "{step}" }}
-[output]
-every = "{until}"
-[cells.cell]
-mesh = {{ shape = "icosphere", radius = "5 um", level = 1 }}
-mechanics = {{ drag = "20 pN s/um", shape_memory = {{ shape_modulus = "10 pN/um" }} }}
-chemistry = ["own"]
-"#
-    )
-}
+use pseudopod::sim::{State, Trouble};
 
 #[test]
 fn an_atom_goes_where_its_system_puts_it_and_the_volume_stays() {
@@ -353,12 +277,7 @@ fn threads_and_scratch_do_not_matter_to_chemistry() {
 
 #[test]
 fn a_run_goes_on_from_its_checkpoint_as_if_it_had_not_stopped() {
-    let stopped = |scene: &mut Scene| {
-        let bytes = postcard::to_stdvec(scene.state()).unwrap();
-        scene.compiled.state = postcard::from_bytes(&bytes).unwrap();
-        scene.ws = Workspace::new(&scene.compiled.model);
-    };
-    assert_eq!(crowd_after(1, |_| ()), crowd_after(1, stopped));
+    assert_eq!(crowd_after(1, |_| ()), crowd_after(1, Scene::stop_and_resume));
 }
 
 #[test]

@@ -42,6 +42,8 @@ pub enum Trouble {
         variable: Option<String>,
         /// What is wrong.
         reason: Reason,
+        /// More words, or none.
+        detail: String,
     },
     /// A field could not be advanced.
     Field {
@@ -87,6 +89,9 @@ impl Trouble {
                 "the free atoms of the cell cannot hold its volume: fix fewer atoms, load it more slowly, shorten \
                  run.integrator.step if you set one, or use volume = { rule = \"compressible\", … }"
             }
+            Self::System { reason: Reason::EndlessEvents, .. } => {
+                "let each event change what triggers it, so that its trigger no longer holds after it"
+            }
             Self::System { .. } => {
                 "check the signs and sizes of its rates with `pseudopod eml solve`, choose scheme = \"rosenbrock\" if it is \
                  stiff, or give it tighter tolerances"
@@ -118,13 +123,14 @@ impl std::fmt::Display for Trouble {
                 f,
                 "the volume of cell {cell} of type `{kind}` is {error:.1e} (relative) off its target at t = {time:.6} s"
             ),
-            Self::System { system, owner, time, variable, reason } => {
+            Self::System { system, owner, time, variable, reason, detail } => {
                 write!(f, "the system `{system}`")?;
                 if let Some((kind, cell)) = owner {
                     write!(f, " of cell {cell} of type `{kind}`")?;
                 }
                 write!(f, " fails at t = {time:.6} s: {}", words_for(*reason))?;
-                variable.as_ref().map_or(Ok(()), |variable| write!(f, " (worst variable: `{variable}`)"))
+                variable.as_ref().map_or(Ok(()), |variable| write!(f, " (worst variable: `{variable}`)"))?;
+                if detail.is_empty() { Ok(()) } else { write!(f, " ({detail})") }
             }
             Self::Field { message } => f.write_str(message),
             Self::Link { link, owner, value, expected, time } => {

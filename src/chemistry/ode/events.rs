@@ -1,5 +1,7 @@
 //! Events as SBML means them: triggers, delays, priorities, and what is still to be executed.
 
+use serde::{Deserialize, Serialize};
+
 use super::stepper::Stepper;
 use super::{OdeTrouble, Reason};
 use crate::chemistry::program::Program;
@@ -16,7 +18,7 @@ pub const STOPS: usize = 2;
 const FIRST_EVENT: usize = 3;
 
 /// An event that has fired and waits.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Pending {
     event: usize,
     time: f64,
@@ -24,14 +26,73 @@ struct Pending {
     values: Option<Vec<f64>>,
 }
 
-/// The events of a system on its way.
-pub struct Events<'a> {
-    events: &'a [Event],
-    /// Whether each trigger holds.
-    pub holds: Vec<bool>,
+/// What a system knows of its events at a time: which triggers hold, and what has fired and waits.
+#[derive(Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct EventMemory {
+    holds: Vec<bool>,
     pending: Vec<Pending>,
+}
+
+impl Clone for EventMemory {
+    fn clone(&self) -> Self {
+        Self { holds: self.holds.clone(), pending: self.pending.clone() }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.holds.clone_from(&other.holds);
+        self.pending.clone_from(&other.pending);
+    }
+}
+
+impl EventMemory {
+    /// Whether another is of as many events.
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        let count = self.holds.len();
+        let known = |memory: &Self| memory.pending.iter().all(|pending| pending.event < count);
+        count == other.holds.len() && known(self) && known(other)
+    }
+}
+
+/// The events of a system beside its program.
+#[derive(Debug, Clone, Default)]
+pub struct EventPlan {
+    events: Vec<Event>,
     /// Slot of each assigned quantity, event by event.
     slots: Vec<Vec<usize>>,
+}
+
+impl EventPlan {
+    /// Compiles a system and its events for a start at a time. The parameters that events set are open in the program,
+    /// and what events need stands behind its rates.
+    ///
+    /// # Errors
+    /// As [`Program::with`].
+    pub fn compile(system: &System, start: f64) -> Result<(Program, Self), Vec<String>> {
+        let program = Program::with(system, start, &assigned_parameters(system), &groups(system))?;
+        let slot = |quantity: QuantityId| {
+            let variable = program.variable_place(quantity);
+            variable.or_else(|| program.open_place(quantity).map(|place| program.size() + place)).unwrap_or(usize::MAX)
+        };
+        let slots = |event: &Event| event.assignments.iter().map(|&(quantity, _)| slot(quantity)).collect();
+        let plan = Self { events: system.events.clone(), slots: system.events.iter().map(slots).collect() };
+        Ok((program, plan))
+    }
+
+    /// Whether there are no events.
+    pub fn is_empty(&self) -> bool {
+        self.events.is_empty()
+    }
+
+    /// What is known of the events before the start.
+    pub fn before_start(&self) -> EventMemory {
+        EventMemory { holds: self.events.iter().map(|event| event.true_before_start).collect(), pending: Vec::new() }
+    }
+}
+
+/// The events of a system on its way.
+pub struct Events<'a> {
+    plan: &'a EventPlan,
+    memory: EventMemory,
 }
 
 /// Parameters that events set; they must stay open in the program.
@@ -41,7 +102,7 @@ pub fn assigned_parameters(system: &System) -> Vec<QuantityId> {
 }
 
 /// The groups of expressions that events need in the program.
-pub fn groups(system: &System) -> Vec<Vec<Expr>> {
+fn groups(system: &System) -> Vec<Vec<Expr>> {
     let number = Expr::Number;
     let triggers = system.events.iter().map(|event| event.trigger.clone()).collect();
     let priority = |event: &Event| event.priority.clone().unwrap_or(number(f64::NEG_INFINITY));
@@ -113,29 +174,29 @@ fn is_steady(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>)
 }
 
 impl<'a> Events<'a> {
-    /// The events of a system before its start.
-    pub fn new(system: &'a System, program: &Program) -> Self {
-        let slot = |quantity: QuantityId| {
-            let variable = program.variable_place(quantity);
-            variable.or_else(|| program.open_place(quantity).map(|place| program.size() + place)).unwrap_or(usize::MAX)
-        };
-        let slots = |event: &Event| event.assignments.iter().map(|&(quantity, _)| slot(quantity)).collect();
-        Self {
-            events: &system.events,
-            holds: system.events.iter().map(|event| event.true_before_start).collect(),
-            pending: Vec::new(),
-            slots: system.events.iter().map(slots).collect(),
-        }
+    /// The events of a system with what is known of them.
+    pub fn new(plan: &'a EventPlan, memory: EventMemory) -> Self {
+        Self { plan, memory }
+    }
+
+    /// What is known of the events now.
+    pub fn into_memory(self) -> EventMemory {
+        self.memory
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.events.is_empty()
+        self.plan.is_empty()
+    }
+
+    /// Whether a trigger that does not hold turns true by these values of all triggers.
+    pub fn turns_true(&self, now: &[f64]) -> bool {
+        now.iter().zip(&self.memory.holds).any(|(now, held)| *now != 0.0 && !held)
     }
 
     /// When the next waiting event is due.
     pub fn next(&self) -> f64 {
-        self.pending.iter().map(|pending| pending.time).fold(f64::INFINITY, f64::min)
+        self.memory.pending.iter().map(|pending| pending.time).fold(f64::INFINITY, f64::min)
     }
 
     /// Takes note of the triggers now: fires those that turned true, drops what no longer persists.
@@ -147,18 +208,18 @@ impl<'a> Events<'a> {
     }
 
     fn note(&mut self, stepper: &mut Stepper, now: &[f64], state: &[f64]) {
-        for event in 0..self.events.len() {
-            let (held, holds) = (self.holds[event], now[event] != 0.0);
-            self.holds[event] = holds;
+        for event in 0..self.plan.events.len() {
+            let (held, holds) = (self.memory.holds[event], now[event] != 0.0);
+            self.memory.holds[event] = holds;
             if !held && holds {
                 let mut values = Vec::new();
                 let program = stepper.program;
                 stepper.evaluate(&program.further[FIRST_EVENT + event], stepper.time, state, &mut values);
                 let delay = values.remove(0).max(0.0);
-                let values = self.events[event].values_from_firing.then_some(values);
-                self.pending.push(Pending { event, time: stepper.time + delay, values });
-            } else if held && !holds && !self.events[event].persistent {
-                self.pending.retain(|pending| pending.event != event);
+                let values = self.plan.events[event].values_from_firing.then_some(values);
+                self.memory.pending.push(Pending { event, time: stepper.time + delay, values });
+            } else if held && !holds && !self.plan.events[event].persistent {
+                self.memory.pending.retain(|pending| pending.event != event);
             }
         }
     }
@@ -166,10 +227,10 @@ impl<'a> Events<'a> {
     /// Takes note of triggers that no longer hold, within a step in which none turns true.
     pub fn note_falling(&mut self, now: &[f64]) {
         for (event, _) in now.iter().enumerate().filter(|(_, now)| **now == 0.0) {
-            if self.holds[event] && !self.events[event].persistent {
-                self.pending.retain(|pending| pending.event != event);
+            if self.memory.holds[event] && !self.plan.events[event].persistent {
+                self.memory.pending.retain(|pending| pending.event != event);
             }
-            self.holds[event] = false;
+            self.memory.holds[event] = false;
         }
     }
 
@@ -181,12 +242,12 @@ impl<'a> Events<'a> {
         while self.next() <= stepper.time {
             let (state, program) = (present(stepper), stepper.program);
             stepper.evaluate(&program.further[PRIORITIES], stepper.time, &state, &mut priorities);
-            let due = self.pending.iter().enumerate().filter(|(_, pending)| pending.time <= stepper.time);
+            let due = self.memory.pending.iter().enumerate().filter(|(_, pending)| pending.time <= stepper.time);
             // The first of equals: the later one must be strictly larger.
             let first = due
                 .reduce(|best, other| if priorities[other.1.event] > priorities[best.1.event] { other } else { best });
             let Some((place, _)) = first else { break };
-            let pending = self.pending.remove(place);
+            let pending = self.memory.pending.remove(place);
             match pending.values {
                 Some(known) => values = known,
                 None => {
@@ -194,7 +255,7 @@ impl<'a> Events<'a> {
                     values.remove(0);
                 }
             }
-            for (&slot, &value) in self.slots[pending.event].iter().zip(&values) {
+            for (&slot, &value) in self.plan.slots[pending.event].iter().zip(&values) {
                 let n = program.size();
                 if slot < n {
                     stepper.set_state(slot, value);
@@ -206,7 +267,7 @@ impl<'a> Events<'a> {
             self.update(stepper);
             count += 1;
             if count > MOST_AT_ONCE {
-                let detail = format!("event '{}'", self.events[pending.event].id);
+                let detail = format!("event '{}'", self.plan.events[pending.event].id);
                 return Err(OdeTrouble { detail, variable: None, ..stepper.trouble(Reason::EndlessEvents) });
             }
         }

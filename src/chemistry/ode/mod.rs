@@ -4,6 +4,8 @@
 pub(in crate::chemistry) mod block;
 pub(in crate::chemistry) mod cells;
 mod control;
+mod course;
+mod eventful;
 mod events;
 mod explicit;
 mod lu;
@@ -17,6 +19,8 @@ pub mod tableau;
 mod wide;
 
 pub use control::Tolerances;
+pub use eventful::Eventful;
+pub use events::{EventMemory, EventPlan, assigned_parameters};
 pub use population::{LANES, Population};
 pub use solve::{Scheme, Solution, SolveOptions, solve, solve_each};
 

@@ -140,9 +140,24 @@ impl Population {
         self.steps[cell / LANES][cell % LANES]
     }
 
+    /// How the cells are advanced.
+    pub(super) fn method(&self) -> Method {
+        self.method
+    }
+
+    /// The step that a cell will try next, and the error of its last.
+    pub(super) fn pace(&self, cell: usize) -> (f64, f64) {
+        (self.steps[cell / LANES][cell % LANES], self.errors[cell / LANES][cell % LANES])
+    }
+
+    /// Sets the step that a cell will try next, and the error of its last.
+    pub(super) fn set_pace(&mut self, cell: usize, (step, error): (f64, f64)) {
+        (self.steps[cell / LANES][cell % LANES], self.errors[cell / LANES][cell % LANES]) = (step, error);
+    }
+
     /// Forgets a cell's step, after its state was set to something quite different.
     pub fn forget_step(&mut self, cell: usize) {
-        (self.steps[cell / LANES][cell % LANES], self.errors[cell / LANES][cell % LANES]) = (0.0, 1.0);
+        self.set_pace(cell, (0.0, 1.0));
     }
 
     /// Writes the value of any quantity of all cells at a time, one number a cell.

@@ -55,6 +55,30 @@ impl<'a> Stepper<'a> {
         }
     }
 
+    /// Goes on from a time with a state, values of the open quantities, and the next step with the error of the last.
+    pub fn resume(
+        &mut self,
+        time: f64,
+        state: impl Iterator<Item = f64>,
+        open: impl Iterator<Item = f64>,
+        pace: (f64, f64),
+    ) {
+        self.s.state.iter_mut().zip(state).for_each(|(to, from)| *to = [from]);
+        self.open.iter_mut().zip(open).for_each(|(to, from)| *to = from);
+        (self.step, self.error) = pace;
+        (self.time, self.taken, self.fresh, self.work) = (time, 0.0, true, Work::default());
+    }
+
+    /// The next step to try and the error of the last.
+    pub fn pace(&self) -> (f64, f64) {
+        (self.step, self.error)
+    }
+
+    /// Whether steps are all of a length that is given.
+    pub fn has_fixed_steps(&self) -> bool {
+        matches!(self.method, Method::Rk4 { .. } | Method::Euler { .. })
+    }
+
     /// The variable at a place of the state.
     pub fn state(&self, variable: usize) -> f64 {
         self.s.state[variable][0]

@@ -2,7 +2,7 @@
 
 use crate::cell::ends::{Reading, Sense};
 use crate::chemistry::field::{FieldSystem, Stepping};
-use crate::chemistry::ode::{Method, Tolerances};
+use crate::chemistry::ode::{EventPlan, Method, Tolerances};
 use crate::chemistry::program::Program;
 use crate::chemistry::tree::{Expr, QuantityId};
 
@@ -34,6 +34,8 @@ pub struct Reactor {
     pub name: String,
     /// The equations.
     pub program: Program,
+    /// Its events; empty where it has none.
+    pub events: EventPlan,
     /// Who has it.
     pub members: Members,
     /// Seconds in the system's unit of time.

@@ -7,20 +7,29 @@ use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
 use super::carry::carry_links;
 use super::model::{Members, Reactor};
-use crate::chemistry::ode::OdeTrouble;
+use crate::chemistry::ode::{Eventful, OdeTrouble};
 use crate::error::Error;
 
-/// Lets the links carry the numbers of the start, once.
+/// Lets the links carry the numbers of the start, once, and executes the events of the start.
 pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
     if model.chemistry.is_empty() || state.chemistry.carried {
         return Ok(());
     }
-    ws.chemistry.exchange_values(&mut state.chemistry, state.time);
-    let carried = carry_links(model, state.time, 0.0, true, state, ws);
-    ws.chemistry.exchange_values(&mut state.chemistry, state.time);
-    carried?;
+    let time = state.time;
+    ws.chemistry.remember(state);
+    ws.chemistry.exchange_values(&mut state.chemistry, time);
+    let result = carry_links(model, time, 0.0, true, state, ws).and_then(|()| {
+        // What events change at the start goes through the links at once, so that the start shows it.
+        let changed = begin_events(model, state)?;
+        if changed { carry_links(model, time, 0.0, true, state, ws) } else { Ok(()) }
+    });
+    ws.chemistry.exchange_values(&mut state.chemistry, time);
+    if result.is_err() {
+        ws.chemistry.restore(state);
+    }
+    result?;
     state.chemistry.carried = true;
-    impose(model, state.time, state, ws)
+    impose(model, time, state, ws)
 }
 
 /// Chemistry over a step of mechanics that has just been made, `dt` long: intracellular and scene systems, secretion, fields, then
@@ -62,19 +71,40 @@ pub(super) fn is_due(reactor: &Reactor, time: f64) -> bool {
 /// Advances all systems that are due, each from the time that it has reached.
 fn advance_systems(model: &Model, end: f64, state: &mut State) -> Result<(), Trouble> {
     let chemistry = &mut state.chemistry;
-    for ((reactor, population), time) in
-        model.chemistry.reactors.iter().zip(&mut chemistry.populations).zip(&mut chemistry.times)
-    {
-        if !is_due(reactor, end) || *time >= end {
+    for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
+        let from = chemistry.times[number];
+        if !is_due(reactor, end) || from >= end {
             continue;
         }
-        let window = (*time / reactor.seconds, end / reactor.seconds);
-        population
-            .advance(&reactor.program, window.0, window.1, &reactor.tolerances)
-            .map_err(|trouble| system_trouble(model, reactor, &trouble))?;
-        *time = end;
+        let population = &mut chemistry.populations[number];
+        let window = (from / reactor.seconds, end / reactor.seconds);
+        let advanced = match reactor.events.is_empty() {
+            true => population.advance(&reactor.program, window.0, window.1, &reactor.tolerances),
+            false => eventful(model, reactor).advance(population, &mut chemistry.events[number], window.0, window.1),
+        };
+        advanced.map_err(|trouble| system_trouble(model, reactor, &trouble))?;
+        chemistry.times[number] = end;
     }
     Ok(())
+}
+
+/// Executes the events of the start. Returns whether there were any.
+fn begin_events(model: &Model, state: &mut State) -> Result<bool, Trouble> {
+    let chemistry = &mut state.chemistry;
+    let mut any = false;
+    for (number, reactor) in model.chemistry.reactors.iter().enumerate().filter(|(_, r)| !r.events.is_empty()) {
+        let now = chemistry.times[number] / reactor.seconds;
+        let (population, memories) = (&mut chemistry.populations[number], &mut chemistry.events[number]);
+        let advanced = eventful(model, reactor).advance(population, memories, now, now);
+        any |= advanced.map_err(|trouble| system_trouble(model, reactor, &trouble))?.events > 0;
+    }
+    Ok(any)
+}
+
+/// A system with events, as it is advanced in a run.
+fn eventful<'a>(model: &Model, reactor: &'a Reactor) -> Eventful<'a> {
+    let span = model.until / reactor.seconds;
+    Eventful { program: &reactor.program, plan: &reactor.events, tolerances: reactor.tolerances, span }
 }
 
 /// Which cell of which type, when and in which variable.
@@ -93,6 +123,7 @@ fn system_trouble(model: &Model, reactor: &Reactor, trouble: &OdeTrouble) -> Tro
         time: trouble.time * reactor.seconds,
         variable: trouble.variable.clone(),
         reason: trouble.reason,
+        detail: trouble.detail.clone(),
     }
 }
 

@@ -3,15 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::model::Model;
-use super::model::{Control, Target};
+use super::model::{Control, Reactor, Target};
 use crate::chemistry::field::Fields;
-use crate::chemistry::ode::Population;
+use crate::chemistry::ode::{EventMemory, Population};
 
 /// Everything of chemistry that changes.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ChemistryState {
     /// One population a system; the scene is a population of one.
     pub populations: Vec<Population>,
+    /// What each member of a system knows of its events, one list a system; empty where a system has none.
+    pub events: Vec<Vec<EventMemory>>,
     /// Time that each system has reached, s.
     pub times: Vec<f64>,
     /// One entry a document of fields.
@@ -54,6 +56,10 @@ impl ChemistryState {
         let chemistry = &model.chemistry;
         let reactors = &chemistry.reactors;
         let populations = reactors.iter().map(|r| Population::new(&r.program, r.members.len(), r.method));
+        let events = |reactor: &Reactor| match reactor.events.is_empty() {
+            true => Vec::new(),
+            false => vec![reactor.events.before_start(); reactor.members.len()],
+        };
         let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
             values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
             pace: fields.pace(),
@@ -61,6 +67,7 @@ impl ChemistryState {
         };
         Self {
             populations: populations.collect(),
+            events: reactors.iter().map(events).collect(),
             times: vec![0.0; reactors.len()],
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
             controls: Controls::new(model),
@@ -71,6 +78,7 @@ impl ChemistryState {
     /// Copies another of the same shape without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.populations.clone_from(&other.populations);
+        self.events.clone_from(&other.events);
         self.times.clone_from(&other.times);
         if self.fields.len() != other.fields.len() {
             self.fields.clone_from(&other.fields);
@@ -87,9 +95,14 @@ impl ChemistryState {
     /// Whether a checkpoint has the shape of a fresh start.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let cells = |a: &Population, b: &Population| a.cells() == b.cells() && a.has_shape_of(b);
+        let knows = |a: &EventMemory, b: &EventMemory| a.has_shape_of(b);
+        let events =
+            |a: &[EventMemory], b: &[EventMemory]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| knows(a, b));
         self.populations.len() == other.populations.len()
+            && self.events.len() == other.events.len()
             && self.fields.len() == other.fields.len()
             && self.populations.iter().zip(&other.populations).all(|(a, b)| cells(a, b))
+            && self.events.iter().zip(&other.events).all(|(a, b)| events(a, b))
             && self.fields.iter().zip(&other.fields).all(|(a, b)| a.values.len() == b.values.len())
     }
 }

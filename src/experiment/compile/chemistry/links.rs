@@ -6,16 +6,20 @@ use super::order::order;
 use super::{Part, at, within};
 use crate::chemistry::eml::{self, Endpoint, LinkDescription, Root};
 use crate::chemistry::expression::Trouble;
-use crate::chemistry::tree::{Expr, Role, System};
+use crate::chemistry::ode::assigned_parameters;
+use crate::chemistry::tree::{Event, Expr, Role, System};
 use crate::error::{Fault, Place};
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, Control, Link, Owner, Target};
 
-/// Parameters that a link of the experiment sets become inputs.
+/// Parameters that a link of the experiment sets become inputs; those that events set do not.
 pub(super) fn open_linked_parameters(parts: &mut [Part]) {
     for part in parts {
+        let set_by_events = assigned_parameters(&part.document.system);
         for link in &part.entry.links {
-            if let Ok((Root::System(number), _)) = eml::read_end(&link.to, &part.document.system) {
+            if let Ok((Root::System(number), _)) = eml::read_end(&link.to, &part.document.system)
+                && !set_by_events.contains(&number)
+            {
                 let role = &mut part.document.system.quantities[number as usize].role;
                 if *role == Role::Parameter {
                     *role = Role::Input;
@@ -53,7 +57,7 @@ pub(super) fn links(
     let systems: Vec<&System> =
         parts.iter().filter(|part| !part.is_field()).map(|part| &part.document.system).collect();
     let (plain, places): (Vec<Link>, Vec<Place>) = links.into_iter().unzip();
-    match order(&plain, &systems) {
+    match order(&plain, &systems, &chemistry.reactors) {
         Ok(order) => {
             for &number in &order {
                 act(&plain[number], chemistry, kinds);
@@ -192,7 +196,12 @@ fn described(
         (Root::System(_), _) => {}
         (_, Root::System(number)) => {
             let quantity = &system.quantities[*number as usize];
-            if quantity.role != Role::Input {
+            let sets = |event: &&Event| event.assignments.iter().any(|(set, _)| set == number);
+            if let Some(event) = system.events.iter().find(sets) {
+                let message = format!("a link cannot set `{}`, which the event `{}` sets", quantity.id, event.id);
+                let fault = Fault::new(message).help("let it set a parameter that no event sets, or an <input>");
+                faults.push(at(document, &format!("{key}.to"), "set by an event", fault));
+            } else if quantity.role != Role::Input {
                 let fault = Fault::new(format!("a link cannot set `{}`, which the equations give", quantity.id))
                     .help("let it set a parameter or an <input>");
                 faults.push(at(document, &format!("{key}.to"), "not set from outside", fault));

@@ -10,7 +10,7 @@ mod read;
 use super::super::{Chemistry as Entry, Document, Scheme};
 use crate::chemistry::eml;
 use crate::chemistry::field::{FieldSystem, Fields, Placing};
-use crate::chemistry::ode::{Method, Tolerances};
+use crate::chemistry::ode::{EventPlan, Method, Tolerances, assigned_parameters};
 use crate::chemistry::program::{Program, initial_values};
 use crate::chemistry::tree::Role;
 use crate::error::{Error, Fault, Place};
@@ -101,16 +101,13 @@ fn tell(error: Error, faults: &mut Vec<Fault>) {
 
 fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fault>) -> Option<Reactor> {
     let (entry, eml) = (part.entry, &part.document);
-    if let Some(event) = eml.system.events.first() {
-        let message = format!("`{}` has an event (`{}`), which systems in a run cannot have yet", part.name, event.id);
-        let help =
-            "write what it does with piecewise() or heaviside(); `pseudopod eml solve` solves the document with it";
-        faults.push(at(document, &part.key("document"), "this document", Fault::new(message).help(help)));
-        return None;
-    }
     let method = method(document, part, faults)?;
-    let program = match Program::new(&eml.system) {
-        Ok(program) => program,
+    let compiled = match eml.system.events.is_empty() {
+        true => Program::new(&eml.system).map(|program| (program, EventPlan::default())),
+        false => EventPlan::compile(&eml.system, 0.0),
+    };
+    let (program, events) = match compiled {
+        Ok(compiled) => compiled,
         Err(circle) => {
             let message = format!("`{}` has a circle of definitions: {}", part.name, circle.join(" → "));
             let help = "let one of them be a variable";
@@ -127,11 +124,16 @@ fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fa
         }
     };
     let exchange = entry.exchange.map(|time| time.value()).or(eml.solver.step.map(|step| step * eml.seconds));
-    let kept = |role: &Role| matches!(role, Role::Variable { .. } | Role::Defined { .. } | Role::Input);
-    let quantities = eml.system.quantities.iter().enumerate().filter(|(_, quantity)| kept(&quantity.role));
+    let set_by_events = assigned_parameters(&eml.system);
+    let kept = |number: u32, role: &Role| match role {
+        Role::Variable { .. } | Role::Defined { .. } | Role::Input => true,
+        Role::Parameter => set_by_events.contains(&number),
+    };
+    let quantities = eml.system.quantities.iter().enumerate().filter(|(number, q)| kept(*number as u32, &q.role));
     Some(Reactor {
         name: part.name.to_owned(),
         program,
+        events,
         members,
         seconds: eml.seconds,
         method,

@@ -5,14 +5,14 @@
 
 use crate::cell::ends::Reading;
 use crate::chemistry::tree::{QuantityId, Role, System};
-use crate::sim::chemistry::{Control, Link, Owner, Source, Target};
+use crate::sim::chemistry::{Control, Link, Owner, Reactor, Source, Target};
 
 /// The numbers of the links in order.
 ///
 /// # Errors
 /// The numbers of links that close a loop.
-pub(super) fn order(links: &[Link], systems: &[&System]) -> Result<Vec<usize>, Vec<usize>> {
-    let after: Vec<Vec<usize>> = links.iter().map(|link| before(link, links, systems)).collect();
+pub(super) fn order(links: &[Link], systems: &[&System], reactors: &[Reactor]) -> Result<Vec<usize>, Vec<usize>> {
+    let after: Vec<Vec<usize>> = links.iter().map(|link| before(link, links, systems, reactors)).collect();
     let mut done: Vec<usize> = Vec::new();
     while done.len() < links.len() {
         let ready = |n: &usize| !done.contains(n) && after[*n].iter().all(|other| done.contains(other));
@@ -25,7 +25,7 @@ pub(super) fn order(links: &[Link], systems: &[&System]) -> Result<Vec<usize>, V
 }
 
 /// The links whose numbers a link uses in the same instant.
-fn before(link: &Link, links: &[Link], systems: &[&System]) -> Vec<usize> {
+fn before(link: &Link, links: &[Link], systems: &[&System], reactors: &[Reactor]) -> Vec<usize> {
     let mut used: Vec<(usize, QuantityId)> = Vec::new();
     if let Owner::Reactor(number) = link.owner {
         link.uses.iter().for_each(|&quantity| inputs(systems[number], quantity, number, &mut used));
@@ -34,21 +34,13 @@ fn before(link: &Link, links: &[Link], systems: &[&System]) -> Vec<usize> {
         inputs(systems[number], quantity, number, &mut used);
     }
     let feeds = |other: &Link| match (other.owner, other.to, link.from) {
-        (Owner::Reactor(number), Target::Own(open), _) => {
-            used.contains(&(number, open_quantity(systems[number], open)))
-        }
+        (Owner::Reactor(number), Target::Own(open), _) => used.contains(&(number, reactors[number].program.open[open])),
         (_, Target::Cell(_, Control::Atom(atom, axis)), Source::Cell(_, Reading::Atom(read, along))) => {
             (atom, axis) == (read, along)
         }
         _ => false,
     };
     (0..links.len()).filter(|&other| feeds(&links[other])).collect()
-}
-
-/// The input at a place among a system's open quantities.
-fn open_quantity(system: &System, open: usize) -> QuantityId {
-    let inputs = (0..system.quantities.len()).filter(|&q| matches!(system.quantities[q].role, Role::Input));
-    inputs.map(|q| q as QuantityId).nth(open).unwrap_or(QuantityId::MAX)
 }
 
 /// The inputs that a quantity depends on without a variable between.

@@ -1,0 +1,202 @@
+//! One system on its way from one time to another: its steps, cut where a trigger turns true or the clock switches.
+
+use super::OdeTrouble;
+use super::events::{Events, STOPS, TRIGGERS};
+use super::stepper::Stepper;
+
+/// Places within a step at which triggers are looked at.
+const SAMPLES: usize = 8;
+/// With events no step is longer than this share of the whole time.
+pub const LONGEST_SHARE: f64 = 0.02;
+
+/// A way from the stepper's present until a time.
+pub struct Course<'c, 'a> {
+    stepper: &'c mut Stepper<'a>,
+    events: &'c mut Events<'a>,
+    points: &'c [f64],
+    /// How many points have been handed over.
+    written: usize,
+    each: &'c mut dyn FnMut(f64, &[f64]),
+    until: f64,
+    /// The state within a step, and the triggers there.
+    within: Vec<f64>,
+    now: Vec<f64>,
+}
+
+impl<'c, 'a> Course<'c, 'a> {
+    /// The way until a time, with the values of all quantities handed to `each` at the points.
+    pub fn new(
+        stepper: &'c mut Stepper<'a>,
+        events: &'c mut Events<'a>,
+        until: f64,
+        points: &'c [f64],
+        each: &'c mut dyn FnMut(f64, &[f64]),
+    ) -> Self {
+        let within = vec![0.0; stepper.program.size()];
+        Self { stepper, events, points, written: 0, each, until, within, now: Vec::new() }
+    }
+
+    /// Goes all the way. What is triggered at its begin or exactly at its end is executed.
+    ///
+    /// # Errors
+    /// When the numbers fail, or events follow each other without end.
+    pub fn run(mut self) -> Result<(), OdeTrouble> {
+        let fixed = self.stepper.has_fixed_steps();
+        self.arrive()?;
+        while self.stepper.time < self.until {
+            let stop = self.next_stop();
+            let mut limit = self.until.min(self.events.next()).min(stop);
+            if let Some(&point) = self.points.get(self.written).filter(|_| fixed) {
+                limit = limit.min(point);
+            }
+            // Everything within the step happens before the stop; the stop itself is then met without a step.
+            let end = if limit == stop { before(limit) } else { limit };
+            if end > self.stepper.time {
+                let fired = self.one_step(end)?;
+                if fired || self.stepper.time < end {
+                    continue;
+                }
+            }
+            self.stepper.time = limit;
+            if limit == stop {
+                self.stepper.forget_rates();
+            }
+            self.arrive()?;
+        }
+        Ok(())
+    }
+
+    /// What happens at the present time: triggers, executions, values asked for.
+    fn arrive(&mut self) -> Result<(), OdeTrouble> {
+        self.events.update(self.stepper);
+        self.events.execute(self.stepper)?;
+        self.write_present();
+        Ok(())
+    }
+
+    /// One step, cut short where a trigger turns true. Returns whether one did.
+    fn one_step(&mut self, end: f64) -> Result<bool, OdeTrouble> {
+        let begin = self.stepper.time;
+        let step = self.stepper.step(end)?;
+        let reached = if step >= end - begin { end } else { begin + step };
+        if !self.events.is_empty() {
+            let mut low = 0.0;
+            for sample in 1..=SAMPLES {
+                let high = sample as f64 / SAMPLES as f64;
+                if self.turns_true(begin, reached, high) {
+                    let share = self.find(begin, reached, (low, high));
+                    let time = if share >= 1.0 { reached } else { begin + share * (reached - begin) };
+                    self.write_between(begin, reached, time);
+                    self.stepper.between(share, &mut self.within);
+                    self.stepper.commit_between(time, &self.within);
+                    self.arrive()?;
+                    return Ok(true);
+                }
+                low = high;
+            }
+        }
+        self.write_between(begin, reached, reached);
+        self.stepper.commit(reached);
+        if reached < end {
+            self.write_present();
+        }
+        Ok(false)
+    }
+
+    /// Whether a trigger that did not hold does at a share of the step. Takes note of triggers that no longer hold.
+    fn turns_true(&mut self, begin: f64, reached: f64, share: f64) -> bool {
+        self.look(begin, reached, share);
+        let turned = self.events.turns_true(&self.now);
+        if !turned {
+            self.events.note_falling(&self.now);
+        }
+        turned
+    }
+
+    /// Works out the triggers at a share of the step.
+    fn look(&mut self, begin: f64, reached: f64, share: f64) {
+        self.stepper.between(share, &mut self.within);
+        let program = self.stepper.program;
+        let time = if share >= 1.0 { reached } else { begin + share * (reached - begin) };
+        self.stepper.evaluate(&program.further[TRIGGERS], time, &self.within, &mut self.now);
+    }
+
+    /// The smallest share, to the last bit of the time, at which a trigger that did not hold does.
+    fn find(&mut self, begin: f64, reached: f64, (mut low, mut high): (f64, f64)) -> f64 {
+        let close = f64::EPSILON.max(f64::EPSILON * reached.abs() / (reached - begin));
+        while high - low > close {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            self.look(begin, reached, middle);
+            (low, high) = if self.events.turns_true(&self.now) { (low, middle) } else { (middle, high) };
+        }
+        high
+    }
+
+    /// The next time at which a comparison with the clock changes, if it runs evenly.
+    fn next_stop(&mut self) -> f64 {
+        let program = self.stepper.program;
+        let code = &program.further[STOPS];
+        if code.outputs.is_empty() {
+            return f64::INFINITY;
+        }
+        let time = self.stepper.time;
+        let state: Vec<f64> = (0..program.size()).map(|v| self.stepper.state(v)).collect();
+        let length = (self.until - time).max(1e-3 * self.until.abs());
+        let mut at = |time: f64| {
+            let mut results = Vec::new();
+            self.stepper.evaluate(code, time, &state, &mut results);
+            results
+        };
+        let (now, half, whole) = (at(time), at(time + 0.5 * length), at(time + length));
+        let mut next = f64::INFINITY;
+        for ((now, half), whole) in now.iter().zip(&half).zip(&whole) {
+            let (slope, size) = ((whole - now) / length, now.abs().max(whole.abs()));
+            let even = (half - 0.5 * (now + whole)).abs() <= 1e-12 * size;
+            let root = time - now / slope;
+            if even && slope != 0.0 && root > time + 16.0 * f64::EPSILON * time.abs() {
+                next = next.min(nice(root));
+            }
+        }
+        next
+    }
+
+    /// Writes the points before a time, from within the step.
+    fn write_between(&mut self, begin: f64, reached: f64, time: f64) {
+        let mut state = vec![0.0; self.stepper.program.size()];
+        while let Some(&point) = self.points.get(self.written).filter(|point| **point < time) {
+            self.stepper.between((point - begin) / (reached - begin), &mut state);
+            self.write(point, &state);
+        }
+    }
+
+    /// Writes the points at the present time.
+    fn write_present(&mut self) {
+        while let Some(&point) = self.points.get(self.written).filter(|point| **point <= self.stepper.time) {
+            let state: Vec<f64> = (0..self.stepper.program.size()).map(|v| self.stepper.state(v)).collect();
+            self.write(point, &state);
+        }
+    }
+
+    fn write(&mut self, point: f64, state: &[f64]) {
+        let mut values = Vec::new();
+        let program = self.stepper.program;
+        self.stepper.evaluate(&program.observe, point, state, &mut values);
+        self.written += 1;
+        (self.each)(point, &values);
+    }
+}
+
+/// A time a few units in the last place before another.
+fn before(time: f64) -> f64 {
+    time - 4.0 * f64::EPSILON * time.abs()
+}
+
+/// The number of few digits within round-off of a time, if there is one: 0.3 for 0.30000000000000004.
+fn nice(time: f64) -> f64 {
+    let scale = 10_f64.powi(12 - time.abs().log10().ceil() as i32);
+    let rounded = (time * scale).round() / scale;
+    if (rounded - time).abs() <= 8.0 * f64::EPSILON * time.abs() { rounded } else { time }
+}
