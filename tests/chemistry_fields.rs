@@ -318,6 +318,25 @@ fn releasing_is_conservative_wherever_it_happens() {
     }
 }
 
+#[test]
+fn releasing_together_is_releasing_one_after_the_other() {
+    for (cells, walls) in [([11, 13, 1], CLOSED), ([11, 13, 9], RING), ([11, 1, 1], CLOSED)] {
+        for range in [Range::NonNegative, Range::Free] {
+            let species = Species::new("s", 1.0, 0.0).with_walls(walls).with_range(range);
+            let mut together = one(cells, 0.7, species);
+            let mut apart = together.clone();
+            // Beyond the walls too, and some are taken up.
+            let place = |i: i32| Vec3::new(0.037, 0.041, 0.029) * f64::from(i) - Vec3::new(2.0, 3.0, 1.0);
+            let places: Vec<Vec3> = (0..501).map(place).collect();
+            let amounts: Vec<f64> = (0..501).map(|i| (0.7 * f64::from(i)).sin() + 0.3).collect();
+            let gained = together.deposit_all(0, &places, &amounts);
+            let sum: f64 = places.iter().zip(&amounts).map(|(place, amount)| apart.deposit(0, *place, *amount)).sum();
+            assert!(together.values(0) == apart.values(0), "{cells:?} {range:?}");
+            assert!((gained - sum).abs() < 1e-12 * sum.abs());
+        }
+    }
+}
+
 /// Largest error of the sensed value and gradient over a domain of 1, walls included, at a spacing of 1/n.
 fn sensing_errors(n: usize, flat: bool, walls: Walls, profile: impl Fn(Vec3) -> (f64, Vec3)) -> [f64; 2] {
     let grid = Grid::new([n, n, if flat { 1 } else { n }], [1.0 / n as f64; 3], Vec3::zeros()).unwrap();

@@ -3,6 +3,7 @@
 //! [`Fields`] holds the values of all species on one [`Grid`]. [`Fields::advance`] moves them in time, second order in
 //! time and space; [`Fields::deposit`] and [`Fields::sense`] are what cells do to them.
 
+mod axis;
 mod broken;
 mod factors;
 pub mod grid;
@@ -13,10 +14,13 @@ mod positions;
 mod profiles;
 mod react;
 mod reactor;
+mod release;
 mod rows;
+mod sense;
 mod species;
 mod state;
 mod steady;
+mod stencil;
 mod step;
 mod sweep;
 mod sweeps;
