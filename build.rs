@@ -1,9 +1,15 @@
-//! Notes the commit that the program is built from, so that every result file can name it.
+//! Notes the commit that the program is built from, so that every result file can name it. Who builds without git, or does
+//! not want to compile anew after each commit, names it in the variable PSEUDOPOD_COMMIT.
 
 use std::process::Command;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-env-changed=PSEUDOPOD_COMMIT");
+    if let Ok(named) = std::env::var("PSEUDOPOD_COMMIT") {
+        println!("cargo:rustc-env=PSEUDOPOD_COMMIT={named}");
+        return;
+    }
     for name in ["HEAD", "logs/HEAD"] {
         if let Some(path) = git(&["rev-parse", "--git-path", name])
             && std::path::Path::new(&path).exists()
