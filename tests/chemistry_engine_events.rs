@@ -5,7 +5,9 @@ mod ode_problems;
 use std::collections::HashMap;
 
 use ode_problems::{expression, system};
-use pseudopod::chemistry::ode::{Method, Reason, Scheme, SolveOptions, solve};
+use pseudopod::chemistry::ode::{
+    EventPlan, Eventful, Method, Population, Reason, Scheme, SolveOptions, Tolerances, solve,
+};
 use pseudopod::chemistry::tree::{Binary, Event, Expr, System};
 
 fn compare(function: Binary, a: Expr, b: Expr) -> Expr {
@@ -180,4 +182,29 @@ fn events_without_end_are_trouble_with_a_name() {
     let trouble = solve(&system, 0.0, 2.0, &[], &SolveOptions::default()).expect_err("they go on for ever");
     assert_eq!(trouble.reason, Reason::EndlessEvents, "{trouble}");
     assert!((trouble.time - 1.0).abs() < 1e-9, "{trouble}");
+}
+
+#[test]
+fn a_parameter_that_an_event_sets_stays_set_from_window_to_window() {
+    // k rises from its start to 1 at t = 1, and after x > 1.5 to 3.
+    let mut switched = system("switched", &[("x", 0.0, "k")], &[("k", 0.0)]);
+    switched.events.push(event(compare(Binary::Ge, Expr::Time, Expr::Number(1.0)), vec![(1, Expr::Number(1.0))]));
+    let high = compare(Binary::Gt, Expr::Quantity(0), Expr::Number(1.5));
+    switched.events.push(event(high, vec![(1, Expr::Number(3.0))]));
+    let (program, plan) = EventPlan::compile(&switched, 0.0).expect("a program");
+    for method in [Method::Rosenbrock, Method::Rk45, Method::Rk4 { step: 0.01 }] {
+        let mut cells = Population::new(&program, 2, method);
+        let mut memories = vec![plan.before_start(); 2];
+        cells.set_given(1, 0, 0.5);
+        let one = Eventful { program: &program, plan: &plan, tolerances: Tolerances::default(), span: 4.0 };
+        for window in 0..10 {
+            let (from, until) = (0.4 * f64::from(window), 0.4 * f64::from(window + 1));
+            one.advance(&mut cells, &mut memories, from, until).expect("straight lines");
+        }
+        // 1.5 at 2.5 and 3·1.5 after; with 0.5 at the start 1.5 at 2 and 3·2 after.
+        for (cell, end) in [(0, 6.0), (1, 7.5)] {
+            assert_eq!(cells.given(cell, 0), 3.0, "{method:?}");
+            assert!((cells.state(cell, 0) - end).abs() < 1e-9, "{method:?}: {}", cells.state(cell, 0));
+        }
+    }
 }

@@ -290,7 +290,7 @@ fn events_without_end_are_trouble_of_a_cell_and_the_state_stays() {
 }
 
 #[test]
-fn a_parameter_that_an_event_sets_is_recorded_and_stays_set() {
+fn what_an_event_of_a_model_sets_is_recorded_and_stays_set() {
     let sbml = r#"<?xml version="1.0" encoding="UTF-8"?>
         <sbml xmlns="http://www.sbml.org/sbml/level3/version1/core" level="3" version="1"><model id="m">
         <listOfParameters><parameter id="x" value="0" constant="false"/><parameter id="k" value="1" constant="false"/>
