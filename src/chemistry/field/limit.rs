@@ -6,8 +6,8 @@
 use super::factors::Line;
 use super::sweep::{WIDTH, section};
 
-/// Numbers of scratch that the limiter and the sweep before it need for lines of `n` boxes: values, Y, the values
-/// before the step, and three more for the limiter, each `[box][line]`.
+/// Numbers of scratch that the limiter and the sweep before it need for lines of `n` boxes: the values before the step,
+/// Y, the result, and three more for the limiter, each `[box][line]`.
 pub const fn scratch(n: usize) -> usize {
     6 * section(n)
 }
@@ -30,12 +30,12 @@ pub fn clear_specks(values: &mut [f64], least: f64) -> bool {
     true
 }
 
-/// Corrects the lines in scratch, whose third part holds the values before the step, none of them negative.
+/// Corrects the lines in scratch, whose first part holds the values before the step, none of them negative.
 pub fn limit(line: &Line, factor: f64, scratch: &mut [f64]) {
     let n = line.real.len();
     let mut parts = scratch.chunks_exact_mut(section(n)).map(|part| &mut part.as_chunks_mut::<WIDTH>().0[..n]);
     let mut next = || parts.next().expect("six sections");
-    let [values, y, before, low, safe, room] = std::array::from_fn(|_| next());
+    let [before, y, values, low, safe, room] = std::array::from_fn(|_| next());
     backward_euler(line, before, low);
     // What stays after the flows of backward Euler, and which part of the further outflow it can pay for.
     for i in 0..n {

@@ -5,6 +5,7 @@
 
 mod axis;
 mod broken;
+mod bundle;
 mod factors;
 pub mod grid;
 mod layout;
@@ -17,6 +18,7 @@ mod reactor;
 mod release;
 mod rows;
 mod sense;
+mod shared;
 mod species;
 mod state;
 mod steady;
@@ -27,6 +29,7 @@ mod sweeps;
 mod system;
 mod touch;
 mod transpose;
+mod turn;
 
 pub use grid::{Grid, Wall, Walls};
 pub use layout::Placing;

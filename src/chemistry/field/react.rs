@@ -49,7 +49,7 @@ pub fn react(
 ) {
     let (len, parts) = (grid.len(), rooms.len());
     let chunks = len.div_ceil(POINTS);
-    let shared = super::sweeps::Shared::new(values);
+    let shared = super::shared::Shared::new(values);
     let work = |(part, room): (usize, &mut Vec<f64>)| {
         for chunk in part * chunks / parts..(part + 1) * chunks / parts {
             let first = chunk * POINTS;

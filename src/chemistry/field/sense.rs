@@ -5,6 +5,7 @@ use pulp::{Simd, WithSimd};
 use super::axis::{Axis, SIDE};
 use super::stencil::{dot, sense_plainly, spline};
 use super::touch::Sensed;
+use super::turn::Turner;
 use crate::Vec3;
 
 /// Four numbers: of four boxes along x, or of four positions.
@@ -18,6 +19,7 @@ pub struct SenseAll<'a> {
     pub floor: f64,
     pub positions: &'a [Vec3],
     pub out: &'a mut [Sensed],
+    pub turner: Turner,
 }
 
 impl WithSimd for SenseAll<'_> {
@@ -64,7 +66,7 @@ fn four_positions<const FLAT: bool>(work: &SenseAll, positions: &[Vec3; SIDE], o
 /// The values and gradients at four positions; returns at which of them they are right because no wall is near.
 #[inline(always)]
 fn side_by_side<const FLAT: bool>(work: &SenseAll, positions: &[Vec3; SIDE], out: &mut [Sensed; SIDE]) -> [bool; SIDE] {
-    let axes = &work.axes;
+    let (axes, turner) = (&work.axes, work.turner);
     let mut inside = [true; SIDE];
     let along = |axis: usize| [positions[0][axis], positions[1][axis], positions[2][axis], positions[3][axis]];
     let x = axes[0].boxes(&along(0), 2.0, &mut inside);
@@ -91,20 +93,28 @@ fn side_by_side<const FLAT: bool>(work: &SenseAll, positions: &[Vec3; SIDE], out
             along_z[l] = sum(&sz, [&a[0], &b[0], &c[0]]);
         }
     }
-    let [level, along_y] = [turn(level), turn(along_y)];
+    let (level, along_y) = (turned(turner, &level), turned(turner, &along_y));
     let mut found = [across_x(&wx, &level), across_x(&sx, &level), across_x(&wx, &along_y), [0.0; SIDE]];
     if !FLAT {
-        found[3] = across_x(&wx, &turn(along_z));
+        found[3] = across_x(&wx, &turned(turner, &along_z));
     }
     for l in 0..SIDE {
         found[0][l] = if found[0][l] < work.floor { work.floor } else { found[0][l] };
     }
-    let found = turn(found);
+    let found = turned(turner, &found);
     for l in 0..SIDE {
         let [value, x, y, z] = found[l];
         out[l] = Sensed { value, gradient: Vec3::new(x, y, z) };
     }
     inside
+}
+
+/// Rows become columns.
+#[inline(always)]
+fn turned(turner: Turner, rows: &[Four; SIDE]) -> [Four; SIDE] {
+    let mut columns = [[0.0; SIDE]; SIDE];
+    turner.turn(rows.each_ref(), columns.each_mut());
+    columns
 }
 
 /// The splines of four positions: weights and slopes, `[box][position]`.
@@ -118,13 +128,6 @@ fn splines(parts: &Four, inverse: f64) -> ([Four; 3], [Four; 3]) {
         }
     }
     (weights, slopes)
-}
-
-/// Four rows of four numbers become columns.
-#[inline(always)]
-fn turn(from: [Four; SIDE]) -> [Four; SIDE] {
-    let [a, b, c, d] = from;
-    [[a[0], b[0], c[0], d[0]], [a[1], b[1], c[1], d[1]], [a[2], b[2], c[2], d[2]], [a[3], b[3], c[3], d[3]]]
 }
 
 /// A weighted sum of three runs of four numbers.

@@ -3,16 +3,16 @@
 //! With walls that hold zero, or none, the solves along the axes commute with each other and with the decay, so that
 //! one sweep along each is as exact as the solves themselves, eq. (field.2).
 
-use std::marker::PhantomData;
-
+use pulp::{Arch, Simd, WithSimd};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
+use super::bundle::Lines;
 use super::factors::Line;
 use super::grid::Grid;
 use super::limit::{clear_specks, limit, scratch};
+use super::shared::Shared;
 use super::species::{Range, Species};
 use super::sweep::{WIDTH, section, sweep};
-use super::transpose::{transpose_in, transpose_out};
 
 /// Fewest values for which threads are worth waking.
 const WORTH_THREADS: usize = 1 << 15;
@@ -50,98 +50,6 @@ impl Factors {
     }
 }
 
-/// The values of all species, shared among threads that write to parts of it that do not overlap.
-pub struct Shared<'a> {
-    first: *mut f64,
-    len: usize,
-    values: PhantomData<&'a mut [f64]>,
-}
-
-// SAFETY: the pointer is only reached through `part`, whose callers keep to parts of their own.
-unsafe impl Sync for Shared<'_> {}
-
-impl<'a> Shared<'a> {
-    /// Takes the values until it is dropped.
-    pub fn new(values: &'a mut [f64]) -> Self {
-        Self { first: values.as_mut_ptr(), len: values.len(), values: PhantomData }
-    }
-
-    /// A part of the values.
-    ///
-    /// # Safety
-    /// While the part is held nobody else holds one that overlaps it.
-    #[allow(clippy::mut_from_ref)] // that is what the caller answers for
-    pub unsafe fn part(&self, at: usize, len: usize) -> &mut [f64] {
-        assert!(at + len <= self.len);
-        // SAFETY: inside the values by the line above, and unshared by this function's contract.
-        unsafe { std::slice::from_raw_parts_mut(self.first.add(at), len) }
-    }
-}
-
-/// Sixteen lines or fewer, as they lie in memory.
-#[derive(Clone, Copy)]
-enum Lines {
-    /// `count` rows of `n` boxes along x, one after the other.
-    Rows { first: usize, n: usize, count: usize },
-    /// `count` columns side by side, whose boxes are `stride` apart.
-    Columns { first: usize, n: usize, stride: usize, count: usize },
-}
-
-impl Lines {
-    /// Copies the lines to `[box][line]`, and zeros into lanes without a line.
-    ///
-    /// # Safety
-    /// Nobody else holds a box of these lines.
-    unsafe fn gather(self, values: &Shared, to: &mut [f64]) {
-        let (rows, _) = to.as_chunks_mut::<WIDTH>();
-        match self {
-            Self::Rows { first, n, count } => {
-                // SAFETY: the boxes are the caller's alone.
-                let from = unsafe { values.part(first, n * count) };
-                transpose_in(from, [n, count], rows);
-            }
-            Self::Columns { first, n, stride, count } => {
-                for (i, row) in rows[..n].iter_mut().enumerate() {
-                    // SAFETY: the boxes are the caller's alone.
-                    let from = unsafe { values.part(first + i * stride, count) };
-                    if let Ok(from) = <&[f64; WIDTH]>::try_from(&*from) {
-                        *row = *from;
-                    } else {
-                        row[..count].copy_from_slice(from);
-                        row[count..].fill(0.0);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Copies the lines back.
-    ///
-    /// # Safety
-    /// Nobody else holds a box of these lines.
-    unsafe fn scatter(self, values: &Shared, from: &[f64]) {
-        let (rows, _) = from.as_chunks::<WIDTH>();
-        match self {
-            Self::Rows { first, n, count } => {
-                // SAFETY: the boxes are the caller's alone.
-                let to = unsafe { values.part(first, n * count) };
-                transpose_out(rows, [n, count], to);
-            }
-            Self::Columns { first, n, stride, count } => {
-                for (i, row) in rows[..n].iter().enumerate() {
-                    // SAFETY: the boxes are the caller's alone.
-                    let to = unsafe { values.part(first + i * stride, count) };
-                    if let Ok(to) = <&mut [f64; WIDTH]>::try_from(&mut *to) {
-                        *to = *row;
-                    } else {
-                        to.copy_from_slice(&row[..count]);
-                    }
-                }
-            }
-        }
-    }
-}
-
 /// What a task does to its lines.
 #[derive(Clone, Copy)]
 struct Task<'a> {
@@ -156,17 +64,48 @@ impl Task<'_> {
     /// # Safety
     /// Nobody else holds a box of these lines.
     unsafe fn solve(self, values: &Shared, lines: Lines, scratch: &mut [f64]) {
-        let n = self.line.real.len();
-        // SAFETY: this function's contract.
-        unsafe { lines.gather(values, scratch) };
-        let least = sweep(self.line, self.factor, scratch);
-        if least < 0.0 && self.range == Range::NonNegative && !clear_specks(&mut scratch[..n * WIDTH], least) {
-            // SAFETY: this function's contract.
-            unsafe { lines.gather(values, &mut scratch[2 * section(n)..3 * section(n)]) };
-            limit(self.line, self.factor, scratch);
+        Arch::new().dispatch(Solve { task: self, values, lines, scratch });
+    }
+}
+
+/// A task with its lines, which are its own, so that all of it is compiled for the widest registers.
+struct Solve<'a> {
+    task: Task<'a>,
+    values: &'a Shared<'a>,
+    lines: Lines,
+    scratch: &'a mut [f64],
+}
+
+impl WithSimd for Solve<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { task: Task { line, factor, range }, values, lines, scratch } = self;
+        let n = line.real.len();
+        // SAFETY: nobody else holds a box of these lines, as the caller of `Task::solve` answers for.
+        let columns = unsafe { lines.in_place(values) };
+        let direct = columns.is_some() && line.ring.is_none();
+        if columns.is_none() {
+            // SAFETY: as above.
+            unsafe { lines.gather(values, scratch) };
         }
-        // SAFETY: this function's contract.
-        unsafe { lines.scatter(values, scratch) };
+        let least = sweep(simd, line, factor, scratch, columns);
+        let result = 2 * section(n)..2 * section(n) + n * WIDTH;
+        let negative = least < 0.0 && range == Range::NonNegative;
+        if negative {
+            if direct {
+                // SAFETY: as above.
+                unsafe { lines.gather(values, &mut scratch[result.clone()]) };
+            }
+            if !clear_specks(&mut scratch[result.clone()], least) {
+                limit(line, factor, scratch);
+            }
+        }
+        if negative || !direct {
+            // SAFETY: as above.
+            unsafe { lines.scatter(values, &scratch[result]) };
+        }
     }
 }
 

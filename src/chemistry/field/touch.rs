@@ -7,6 +7,7 @@ use super::release::ReleaseAll;
 use super::sense::SenseAll;
 use super::species::Range;
 use super::state::Fields;
+use super::turn::Turner;
 use crate::Vec3;
 
 /// What is sensed at a position.
@@ -62,6 +63,6 @@ impl Fields {
         let axes = Axis::all(&self.grid, &self.species[species]);
         let values = self.values(species);
         let floor = if self.species[species].range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };
-        Arch::new().dispatch(SenseAll { axes, values, floor, positions, out });
+        Arch::new().dispatch(SenseAll { axes, values, floor, positions, out, turner: Turner::new() });
     }
 }

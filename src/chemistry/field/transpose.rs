@@ -1,73 +1,37 @@
 //! Lines along x, whose boxes lie one after the other, become lanes side by side, and back.
 
-use pulp::{Arch, Simd, WithSimd};
-
 use super::sweep::WIDTH;
+use super::turn::{Four, Turner};
+
+#[inline(always)]
+fn four(from: &[f64]) -> &Four {
+    from.first_chunk().expect("four numbers")
+}
+
+#[inline(always)]
+fn four_mut(to: &mut [f64]) -> &mut Four {
+    to.first_chunk_mut().expect("four numbers")
+}
 
 /// Copies lines of `n` boxes, `count` of them, to `[box][line]`, and zeros into lanes without a line.
-pub fn transpose_in(from: &[f64], size: [usize; 2], rows: &mut [[f64; WIDTH]]) {
-    Arch::new().dispatch(In { from, size, rows });
-}
-
-/// Copies the lines back.
-pub fn transpose_out(rows: &[[f64; WIDTH]], size: [usize; 2], to: &mut [f64]) {
-    Arch::new().dispatch(Out { rows, size, to });
-}
-
-struct In<'a> {
-    from: &'a [f64],
-    size: [usize; 2],
-    rows: &'a mut [[f64; WIDTH]],
-}
-
-impl WithSimd for In<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        turn_in(self.from, self.size, self.rows);
-    }
-}
-
-struct Out<'a> {
-    rows: &'a [[f64; WIDTH]],
-    size: [usize; 2],
-    to: &'a mut [f64],
-}
-
-impl WithSimd for Out<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        turn_out(self.rows, self.size, self.to);
-    }
-}
-
-/// Four lines of four boxes each become four boxes of four lines each.
 #[inline(always)]
-fn turn(from: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
-    std::array::from_fn(|i| from.map(|line| line[i]))
-}
-
-#[inline(always)]
-fn four(from: &[f64]) -> [f64; 4] {
-    *from.first_chunk().expect("four numbers")
-}
-
-#[inline(always)]
-fn turn_in(from: &[f64], [n, count]: [usize; 2], rows: &mut [[f64; WIDTH]]) {
-    let (wide, long) = (count / 4 * 4, n / 4 * 4);
+pub fn transpose_in(from: &[f64], [n, count]: [usize; 2], rows: &mut [[f64; WIDTH]]) {
+    let (wide, long, turner) = (count / 4 * 4, n / 4 * 4, Turner::new());
     for lane in (0..wide).step_by(4) {
-        let lines: [&[f64]; 4] = std::array::from_fn(|k| &from[(lane + k) * n..(lane + k + 1) * n]);
+        let line = |k: usize| &from[(lane + k) * n..(lane + k + 1) * n];
+        let [a, b, c, d] = [line(0), line(1), line(2), line(3)];
         for i in (0..long).step_by(4) {
-            let turned = turn(lines.map(|line| four(&line[i..])));
-            for (row, values) in rows[i..i + 4].iter_mut().zip(turned) {
-                row[lane..lane + 4].copy_from_slice(&values);
-            }
+            let [to_a, to_b, to_c, to_d] = rows[i..].first_chunk_mut().expect("four rows");
+            let to = [
+                four_mut(&mut to_a[lane..]),
+                four_mut(&mut to_b[lane..]),
+                four_mut(&mut to_c[lane..]),
+                four_mut(&mut to_d[lane..]),
+            ];
+            turner.turn([four(&a[i..]), four(&b[i..]), four(&c[i..]), four(&d[i..])], to);
         }
         for i in long..n {
-            rows[i][lane..lane + 4].copy_from_slice(&lines.map(|line| line[i]));
+            rows[i][lane..lane + 4].copy_from_slice(&[a[i], b[i], c[i], d[i]]);
         }
     }
     for (i, row) in rows[..n].iter_mut().enumerate() {
@@ -78,16 +42,23 @@ fn turn_in(from: &[f64], [n, count]: [usize; 2], rows: &mut [[f64; WIDTH]]) {
     }
 }
 
+/// Copies the lines back.
 #[inline(always)]
-fn turn_out(rows: &[[f64; WIDTH]], [n, count]: [usize; 2], to: &mut [f64]) {
-    let (wide, long) = (count / 4 * 4, n / 4 * 4);
+pub fn transpose_out(rows: &[[f64; WIDTH]], [n, count]: [usize; 2], to: &mut [f64]) {
+    let (wide, long, turner) = (count / 4 * 4, n / 4 * 4, Turner::new());
     for lane in (0..wide).step_by(4) {
+        let (line_a, rest) = to[lane * n..(lane + 4) * n].split_at_mut(n);
+        let (line_b, rest) = rest.split_at_mut(n);
+        let (line_c, line_d) = rest.split_at_mut(n);
         for i in (0..long).step_by(4) {
-            let turned = turn(std::array::from_fn(|k| four(&rows[i + k][lane..])));
-            for (k, values) in turned.into_iter().enumerate() {
-                let at = (lane + k) * n + i;
-                to[at..at + 4].copy_from_slice(&values);
-            }
+            let [a, b, c, d] = rows[i..].first_chunk().expect("four rows");
+            let to = [
+                four_mut(&mut line_a[i..]),
+                four_mut(&mut line_b[i..]),
+                four_mut(&mut line_c[i..]),
+                four_mut(&mut line_d[i..]),
+            ];
+            turner.turn([four(&a[lane..]), four(&b[lane..]), four(&c[lane..]), four(&d[lane..])], to);
         }
     }
     for (i, row) in rows[..n].iter().enumerate() {
