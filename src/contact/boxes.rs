@@ -76,16 +76,17 @@ impl Pack {
         }
     }
 
-    /// The lanes whose box meets another, one bit each.
-    fn meeting(&self, bounds: &Bounds) -> u32 {
-        let mut meets = [1u32; 8];
+    /// The lanes whose box meets another: the lowest bit of each byte.
+    #[inline]
+    fn meeting(&self, bounds: &Bounds) -> u64 {
+        let mut meets = [1u8; 8];
         for axis in 0..3 {
             let (low, high) = (bounds.low[axis], bounds.high[axis]);
             for lane in 0..8 {
-                meets[lane] &= u32::from(self.low[axis][lane] <= high) & u32::from(low <= self.high[axis][lane]);
+                meets[lane] &= u8::from(self.low[axis][lane] <= high) & u8::from(low <= self.high[axis][lane]);
             }
         }
-        (0..8).fold(0, |bits, lane| bits | meets[lane] << lane)
+        u64::from_le_bytes(meets)
     }
 }
 
@@ -161,7 +162,7 @@ impl Levels {
     ) {
         let mut lanes = packs[self.first[level] as usize + index].meeting(bounds);
         while lanes != 0 {
-            let child = 8 * index + lanes.trailing_zeros() as usize;
+            let child = 8 * index + lanes.trailing_zeros() as usize / 8;
             lanes &= lanes - 1;
             if level == 0 {
                 found(child);

@@ -84,6 +84,11 @@ impl Detector {
         Detection { collected, moved, pairs: self.lists.iter().map(Lists::words).sum() }
     }
 
+    /// Forgets the pairs, so that the next detection collects them anew. Contacts do not depend on it.
+    pub fn forget(&mut self) {
+        self.collected_at.clear();
+    }
+
     /// The largest displacement since the pairs were collected, rounding included, µm; infinite when there are none
     /// for this scene, NaN or infinite when a position is not finite.
     fn moved(&self, scene: &Scene, positions: &[Vec3]) -> f64 {

@@ -7,35 +7,42 @@ use super::scene::Scene;
 use super::shape::{NONE, Shape, Sides};
 use crate::Vec3;
 
-/// An edge and its two facets.
-#[derive(Clone, Copy)]
-struct Ridge {
+/// An edge with its two facets.
+struct Ridge<'a> {
+    positions: &'a [Vec3],
     start: Vec3,
     along: Vec3,
-    /// From the start to the atom across, in the facet that runs along the edge and in the one that runs against it;
-    /// zero where there is none.
-    flanks: [Vec3; 2],
-    /// Whether one of the facets is missing.
-    is_rim: bool,
+    /// The atoms across, in the facet that runs along the edge and in the one that runs against it, or `NONE`.
+    across: [u32; 2],
 }
 
-impl Ridge {
+impl<'a> Ridge<'a> {
     #[inline]
-    fn of(shape: &Shape, positions: &[Vec3], edge: u32) -> Self {
+    fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
         let [start, end] = shape.edges[edge as usize].map(|atom| positions[atom as usize]);
-        let across = shape.across[edge as usize];
-        let flank = |atom: u32| if atom == NONE { Vec3::zeros() } else { positions[atom as usize] - start };
-        Self { start, along: end - start, flanks: across.map(flank), is_rim: across.contains(&NONE) }
+        Self { positions, start, along: end - start, across: shape.across[edge as usize] }
+    }
+
+    /// From the start to the atoms across; zero where there is none.
+    #[inline]
+    fn flanks(&self) -> [Vec3; 2] {
+        self.across.map(|atom| if atom == NONE { Vec3::zeros() } else { self.positions[atom as usize] - self.start })
+    }
+
+    /// Whether one of the facets is missing.
+    fn is_rim(&self) -> bool {
+        self.across.contains(&NONE)
     }
 
     /// The normals of the two facets, µm², not scaled.
     fn normals(&self) -> [Vec3; 2] {
-        [self.along.cross(&self.flanks[0]), self.flanks[1].cross(&self.along)]
+        let [left, right] = self.flanks();
+        [self.along.cross(&left), right.cross(&self.along)]
     }
 
     /// Whether the surface bends away from its outside here.
     fn is_convex(&self) -> bool {
-        self.normals()[0].dot(&self.flanks[1]) < 0.0
+        self.normals()[0].dot(&self.flanks()[1]) < 0.0
     }
 }
 
@@ -53,7 +60,8 @@ pub(super) fn find_edge_contacts(
     }
     let shape = scene.shape(body);
     let first = Ridge::of(shape, scene.of_body(body, positions), edge);
-    let first_is_one_sided = shape.sides == Sides::Outer && !first.is_rim;
+    let flanks = first.flanks();
+    let first_is_one_sided = shape.sides == Sides::Outer && !first.is_rim();
     let first_is_convex = first.is_convex();
     for (other, edges) in by_body(list) {
         let (there, places) = (scene.shape(other), scene.of_body(other, positions));
@@ -63,8 +71,8 @@ pub(super) fn find_edge_contacts(
         }
         for &candidate in edges {
             let second = Ridge::of(there, places, candidate);
-            let one_sided = surfaces_are_one_sided && !second.is_rim;
-            let Some((along, gap, normal)) = cross(&first, &second, one_sided, scene) else { continue };
+            let one_sided = surfaces_are_one_sided && !second.is_rim();
+            let Some((along, gap, normal)) = cross(&first, &flanks, &second, one_sided, scene) else { continue };
             let number = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
             push(contacts, EdgeContact {
                 edges: [number(body, edge), number(other, candidate)],
@@ -79,7 +87,13 @@ pub(super) fn find_edge_contacts(
 
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
 #[inline]
-fn cross(first: &Ridge, second: &Ridge, one_sided: bool, scene: &Scene) -> Option<([f64; 2], f64, Vec3)> {
+fn cross(
+    first: &Ridge,
+    flanks: &[Vec3; 2],
+    second: &Ridge,
+    one_sided: bool,
+    scene: &Scene,
+) -> Option<([f64; 2], f64, Vec3)> {
     let normal = first.along.cross(&second.along);
     let squared = normal.norm_squared();
     let between = first.start - second.start;
@@ -90,21 +104,21 @@ fn cross(first: &Ridge, second: &Ridge, one_sided: bool, scene: &Scene) -> Optio
     }
     // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
     // or its opposite must do for all four.
-    let [a, b] = first.flanks.map(|flank| normal.dot(&flank));
+    let [a, b] = flanks.map(|flank| normal.dot(&flank));
     if a * b < 0.0 {
-        return None;
-    }
-    let [c, d] = second.flanks.map(|flank| -normal.dot(&flank));
-    let (lowest, highest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
-    if lowest < 0.0 && highest > 0.0 {
-        return None;
-    }
-    if squared <= LEAST_SINE_SQUARED * first.along.norm_squared() * second.along.norm_squared() {
         return None;
     }
     let on_first = -between.cross(&second.along).dot(&normal);
     let on_second = -between.cross(&first.along).dot(&normal);
     if on_first < 0.0 || on_first > squared || on_second < 0.0 || on_second > squared {
+        return None;
+    }
+    let [c, d] = second.flanks().map(|flank| -normal.dot(&flank));
+    let (lowest, highest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
+    if lowest < 0.0 && highest > 0.0 {
+        return None;
+    }
+    if squared <= LEAST_SINE_SQUARED * first.along.norm_squared() * second.along.norm_squared() {
         return None;
     }
     let facing = if highest > 0.0 {

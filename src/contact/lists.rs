@@ -6,7 +6,6 @@ use super::closest::{closest_on_facet, closest_on_segments};
 use super::found::push;
 use super::neighbours::Neighbours;
 use super::scene::Scene;
-use super::shape::NONE;
 use crate::Vec3;
 
 /// Marks a word of a list that names the body to which the facets or edges after it belong.
@@ -31,6 +30,8 @@ pub(super) struct Lists {
     facets: Vec<u32>,
     edges_first: Vec<u32>,
     edges: Vec<u32>,
+    /// Scratch: the facets near one facet, as words.
+    near: Vec<u32>,
 }
 
 impl Lists {
@@ -52,7 +53,7 @@ impl Lists {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         4 * (self.facets_first.capacity() + self.facets.capacity())
-            + 4 * (self.edges_first.capacity() + self.edges.capacity())
+            + 4 * (self.edges_first.capacity() + self.edges.capacity() + self.near.capacity())
     }
 
     /// Collects the pairs of a batch: all within the collected reach, eq. (contacts.5).
@@ -78,15 +79,8 @@ impl Lists {
                 }
                 push(&mut self.facets_first, self.facets.len() as u32);
             }
-            for edge in 0..shape.edges.len() {
-                let ends = shape.edges[edge].map(|atom| here[atom as usize]);
-                let bounds = Bounds::around(&ends, scene.reach.collected());
-                for &other in std::iter::once(&body).chain(&others[after..]) {
-                    if bounds.meets(&boxes.bounds[other as usize]) {
-                        self.collect_edges(scene, [body, other], edge, &bounds, positions, boxes);
-                    }
-                }
-                push(&mut self.edges_first, self.edges.len() as u32);
+            for facet in 0..shape.facets.len() as u32 {
+                self.collect_edges(scene, body, facet, &others[after..], positions, boxes);
             }
         }
     }
@@ -118,39 +112,64 @@ impl Lists {
         close(&mut self.facets, start);
     }
 
-    /// The edges of one other body (or later ones of its own) that an edge may touch.
+    /// The edges that the edges of one facet may touch: later ones of its own body and those of bodies after it.
     fn collect_edges(
         &mut self,
         scene: &Scene,
-        [body, other]: [u32; 2],
-        edge: usize,
-        bounds: &Bounds,
+        body: u32,
+        facet: u32,
+        after: &[u32],
         positions: &[Vec3],
         boxes: &Boxes,
     ) {
-        let (shape, there) = (scene.shape(other), scene.of_body(other, positions));
+        let shape = scene.shape(body);
+        let edges = shape.edges_of(facet);
+        if edges.is_empty() {
+            return;
+        }
         let here = scene.of_body(body, positions);
-        let ends = scene.shape(body).edges[edge].map(|atom| here[atom as usize]);
-        let (low, high) = (bounds.low.map(f64::from), bounds.high.map(f64::from));
-        let farthest = scene.reach.collected().powi(2);
-        let start = self.edges.len();
-        push(&mut self.edges, other | BODY);
-        visit(scene, other, boxes, bounds, &mut |facet| {
-            for candidate in shape.own_edges[facet as usize] {
-                if candidate == NONE || (other == body && candidate <= edge as u32) {
-                    continue;
+        let reach = scene.reach.collected();
+        let corners = shape.facets[facet as usize].map(|atom| here[atom as usize]);
+        let bounds = Bounds::around(&corners, reach);
+        self.near.clear();
+        for &other in std::iter::once(&body).chain(after) {
+            if bounds.meets(&boxes.bounds[other as usize]) {
+                let start = self.near.len();
+                push(&mut self.near, other | BODY);
+                visit(scene, other, boxes, &bounds, &mut |candidate| {
+                    if other != body || !shape.are_facets_near(facet, candidate) {
+                        push(&mut self.near, candidate);
+                    }
+                });
+                close(&mut self.near, start);
+            }
+        }
+        for edge in edges {
+            let ends = shape.edges[edge as usize].map(|atom| here[atom as usize]);
+            let (low, high) = (ends[0].inf(&ends[1]).add_scalar(-reach), ends[0].sup(&ends[1]).add_scalar(reach));
+            for (other, facets) in by_body(&self.near) {
+                let (shape, there) = (scene.shape(other), scene.of_body(other, positions));
+                let start = self.edges.len();
+                push(&mut self.edges, other | BODY);
+                for candidate in facets.iter().flat_map(|&facet| shape.edges_of(facet)) {
+                    let [a, b] = shape.edges[candidate as usize].map(|atom| there[atom as usize]);
+                    let apart = (0..3).any(|axis| {
+                        let (less, more) = if a[axis] < b[axis] { (a[axis], b[axis]) } else { (b[axis], a[axis]) };
+                        less > high[axis] || more < low[axis]
+                    });
+                    if apart || other == body && (candidate <= edge || shape.are_edges_near(edge, candidate)) {
+                        continue;
+                    }
+                    if closest_on_segments(ends, [a, b]).0 <= reach * reach {
+                        push(&mut self.edges, candidate);
+                    }
                 }
-                let [a, b] = shape.edges[candidate as usize].map(|atom| there[atom as usize]);
-                let apart = (0..3).any(|axis| a[axis].min(b[axis]) > high[axis] || a[axis].max(b[axis]) < low[axis]);
-                if !apart
-                    && closest_on_segments(ends, [a, b]).0 <= farthest
-                    && !(other == body && shape.are_edges_near(edge as u32, candidate))
-                {
-                    push(&mut self.edges, candidate);
+                if self.edges.len() == start + 1 {
+                    self.edges.pop();
                 }
             }
-        });
-        close(&mut self.edges, start);
+            push(&mut self.edges_first, self.edges.len() as u32);
+        }
     }
 }
 

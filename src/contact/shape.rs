@@ -23,7 +23,7 @@ pub struct Shape {
     pub atoms: usize,
     /// The three atoms of each facet.
     pub facets: Vec<[u32; 3]>,
-    /// The two atoms of each edge, smaller first, sorted.
+    /// The two atoms of each edge, smaller first, in the order of the first facets that have them.
     pub edges: Vec<[u32; 2]>,
     /// Which sides are outside.
     pub sides: Sides,
@@ -33,14 +33,20 @@ pub struct Shape {
     pub(super) beyond: Vec<[u32; 3]>,
     /// The atoms across each edge (a, b): in the facet that runs from a to b and in the one from b to a, or `NONE`.
     pub(super) across: Vec<[u32; 2]>,
-    /// The edges of each facet that no facet before it has; `NONE` where there are fewer than three.
-    pub(super) own_edges: Vec<[u32; 3]>,
+    /// The edges of each facet that no facet before it has: those from `first_edge[facet]` to before that of the next.
+    first_edge: Vec<u32>,
     /// The facets around each atom, sorted: `around[around_first[atom]..around_first[atom + 1]]`.
     around_first: Vec<u32>,
     around: Vec<u32>,
     /// The facets that are too near each atom at rest to touch it, sorted, in the same form.
     near_first: Vec<u32>,
     near: Vec<u32>,
+    /// The edges that are too near each edge at rest to touch it, sorted, in the same form.
+    near_edges_first: Vec<u32>,
+    near_edges: Vec<u32>,
+    /// The facets whose every edge is too near every edge of a facet, sorted, in the same form.
+    near_facets_first: Vec<u32>,
+    near_facets: Vec<u32>,
     /// Facets in an order in which each eight in a row are neighbours at rest.
     pub(super) order: Vec<u32>,
 }
@@ -54,52 +60,81 @@ impl Shape {
     /// When a facet names an atom that the surface does not have.
     pub fn new(rest: &Surface, sides: Sides, clearance: f64) -> Self {
         let topology = Topology::of(rest);
-        let edge_number = |a: u32, b: u32| topology.edges.binary_search(&[a.min(b), a.max(b)]).expect("a side is an edge");
+        let sorted_number = |a: u32, b: u32| topology.edges.binary_search(&[a.min(b), a.max(b)]).expect("a side");
         let mut beyond = vec![[NONE; 3]; rest.facets.len()];
-        let mut across = vec![[NONE; 2]; topology.edges.len()];
-        let mut own_edges = vec![[NONE; 3]; rest.facets.len()];
-        let mut first_facet = vec![NONE; topology.edges.len()];
+        let (mut edges, mut across, mut first_edge) = (Vec::new(), Vec::new(), vec![0]);
+        // For each edge in sorted order: its number, its first facet and the side it is of that.
+        let mut known = vec![(NONE, NONE, 0); topology.edges.len()];
         for (number, facet) in rest.facets.iter().enumerate() {
             for side in 0..3 {
                 let (from, to) = (facet[side], facet[(side + 1) % 3]);
-                let edge = edge_number(from, to);
-                across[edge][usize::from(from > to)] = facet[(side + 2) % 3];
-                if first_facet[edge] == NONE {
-                    first_facet[edge] = number as u32;
-                    own_edges[number][side] = edge as u32;
+                let (edge, first, its_side) = &mut known[sorted_number(from, to)];
+                if *first == NONE {
+                    (*edge, *first, *its_side) = (edges.len() as u32, number as u32, side);
+                    edges.push([from.min(to), from.max(to)]);
+                    across.push([NONE; 2]);
                 } else {
-                    let other = first_facet[edge] as usize;
-                    beyond[number][side] = other as u32;
-                    let [a, b] = topology.edges[edge];
-                    let side_of_other = (0..3).find(|&k| {
-                        let ends = [rest.facets[other][k], rest.facets[other][(k + 1) % 3]];
-                        ends == [a, b] || ends == [b, a]
-                    });
-                    beyond[other][side_of_other.expect("the other facet has the edge")] = number as u32;
+                    beyond[number][side] = *first;
+                    beyond[*first as usize][*its_side] = number as u32;
                 }
+                across[*edge as usize][usize::from(from > to)] = facet[(side + 2) % 3];
             }
+            first_edge.push(edges.len() as u32);
         }
+        let edge_number = |a: u32, b: u32| known[sorted_number(a, b)].0 as usize;
         let mut around = vec![Vec::new(); rest.positions.len()];
         for (number, facet) in rest.facets.iter().enumerate() {
             facet.iter().for_each(|&atom| around[atom as usize].push(number as u32));
         }
         let near: Vec<Vec<u32>> =
             (0..rest.positions.len()).map(|atom| near_at_rest(rest, &around, atom, clearance)).collect();
+        let mut near_edges = vec![Vec::new(); edges.len()];
+        for (number, edge) in edges.iter().enumerate() {
+            for &facet in edge.iter().flat_map(|&end| &near[end as usize]) {
+                let [a, b, c] = rest.facets[facet as usize];
+                for other in [edge_number(a, b), edge_number(b, c), edge_number(c, a)] {
+                    near_edges[number].push(other as u32);
+                    near_edges[other].push(number as u32);
+                }
+            }
+        }
+        for list in &mut near_edges {
+            list.sort_unstable();
+            list.dedup();
+        }
+        let edges_of = |facet: u32| {
+            let [a, b, c] = rest.facets[facet as usize];
+            [edge_number(a, b), edge_number(b, c), edge_number(c, a)]
+        };
+        let all_near = |one: u32, other: u32| {
+            edges_of(one).iter().all(|&edge| {
+                edges_of(other).iter().all(|&other| near_edges[edge].binary_search(&(other as u32)).is_ok())
+            })
+        };
+        let near_facets: Vec<Vec<u32>> = (0..rest.facets.len() as u32)
+            .map(|one| near[rest.facets[one as usize][0] as usize].iter().copied().filter(|&f| all_near(one, f)).collect())
+            .collect();
+        let (near_facets_first, near_facets) = joined(&near_facets);
+        let (near_edges_first, near_edges) = joined(&near_edges);
         let (around_first, around) = joined(&around);
         let (near_first, near) = joined(&near);
         Self {
             atoms: rest.positions.len(),
             facets: rest.facets.clone(),
             closed: topology.is_closed(),
-            edges: topology.edges,
+            edges,
             sides,
             beyond,
             across,
-            own_edges,
+            first_edge,
             around_first,
             around,
             near_first,
             near,
+            near_edges_first,
+            near_edges,
+            near_facets_first,
+            near_facets,
             order: order_by_place(rest),
         }
     }
@@ -107,6 +142,11 @@ impl Shape {
     /// The facets around an atom, sorted.
     pub(super) fn around(&self, atom: usize) -> &[u32] {
         &self.around[self.around_first[atom] as usize..self.around_first[atom + 1] as usize]
+    }
+
+    /// The edges of a facet that no facet before it has.
+    pub(super) fn edges_of(&self, facet: u32) -> std::ops::Range<u32> {
+        self.first_edge[facet as usize]..self.first_edge[facet as usize + 1]
     }
 
     /// The facets of its own surface that an atom never touches, sorted.
@@ -119,15 +159,17 @@ impl Shape {
         self.near(atom as usize).binary_search(&facet).is_ok()
     }
 
-    /// Whether two edges of the same surface are too near each other at rest to touch: a facet around an end of one is
-    /// near an end of the other.
+    /// Whether no edge of one facet can touch an edge of the other, both of the same surface: see `are_edges_near`.
+    pub(super) fn are_facets_near(&self, first: u32, second: u32) -> bool {
+        let [start, end] = [first, first + 1].map(|facet| self.near_facets_first[facet as usize] as usize);
+        self.near_facets[start..end].binary_search(&second).is_ok()
+    }
+
+    /// Whether two edges of the same surface are too near each other at rest to touch: a facet with one of them is near
+    /// an end of the other.
     pub(super) fn are_edges_near(&self, first: u32, second: u32) -> bool {
-        let [first, second] = [self.edges[first as usize], self.edges[second as usize]];
-        let facets_of = |[a, b]: [u32; 2]| {
-            self.around(a as usize).iter().filter(move |&&facet| self.facets[facet as usize].contains(&b))
-        };
-        let near = |ends: [u32; 2], other| facets_of(other).any(|&facet| ends.iter().any(|&end| self.is_near(end, facet)));
-        near(first, second) || near(second, first)
+        let range = self.near_edges_first[first as usize] as usize..self.near_edges_first[first as usize + 1] as usize;
+        self.near_edges[range].binary_search(&second).is_ok()
     }
 }
 

@@ -50,7 +50,7 @@ fn first_meeting(
     let mut halvings = 0;
     while let Some((from, to, cubic, depth)) = parts.pop() {
         // The volume of four points within `touching` of each other's plane is less than this.
-        let least = 4.0 * touching * size * size + 1e-13 * largest;
+        let least = 16.0 * touching * size * size + 1e-13 * largest;
         if cubic.iter().all(|value| *value > least) || cubic.iter().all(|value| *value < -least) {
             continue;
         }
@@ -60,8 +60,7 @@ fn first_meeting(
             continue;
         }
         halvings += 1;
-        if depth == HALVINGS || halvings > MOST_HALVINGS || (depth > 0 && apart <= touching && distance(at(from)) <= touching)
-        {
+        if depth == HALVINGS || halvings > MOST_HALVINGS || distance(at(from)) <= touching {
             return Some(from);
         }
         let [first, second] = halves(cubic);
