@@ -7,8 +7,8 @@ use pseudopod::Vec3;
 use pseudopod::contact::{Contacts, Detector, Reach, Scene, Shape, Sides, detect_all_pairs};
 use pseudopod::geometry::icosphere;
 
-/// A tenth of the mean edge, and twice that as margin.
-const REACH: Reach = Reach { proximity: 0.055, depth: 0.055, margin: 0.11 };
+/// A tenth of the mean edge for all three.
+const REACH: Reach = Reach { proximity: 0.055, depth: 0.055, margin: 0.055 };
 
 /// Half of the distance of cells of radius 1: they are flattened where they meet, and one in three atoms touches.
 const HALF_DISTANCE: f64 = 0.82;
