@@ -137,7 +137,8 @@ fn parallel_edges_and_collapsed_facets_give_numbers() {
     let stage = stage(&bodies, Vec::new(), REACH);
     let contacts = detect(&stage);
     assert!(contacts.atoms.len() > 10);
-    let normals = contacts.atoms.iter().map(|c| (c.gap, c.normal)).chain(contacts.edges.iter().map(|c| (c.gap, c.normal)));
+    let normals =
+        contacts.atoms.iter().map(|c| (c.gap, c.normal)).chain(contacts.edges.iter().map(|c| (c.gap, c.normal)));
     for (gap, normal) in normals {
         assert!(gap.is_finite() && (normal.norm() - 1.0).abs() < 1e-9, "{gap} {normal}");
     }
@@ -162,7 +163,8 @@ fn sheets_have_one_outside_or_two_and_none_beyond_their_rim() {
     let tip = |place: Vec3, sides: Sides| {
         let needle = needle(place);
         let places = (flat.positions.clone(), needle.positions.clone());
-        let contacts = detect(&stage(&[(&flat, sides, places.0), (&needle, Sides::Outer, places.1)], Vec::new(), REACH));
+        let contacts =
+            detect(&stage(&[(&flat, sides, places.0), (&needle, Sides::Outer, places.1)], Vec::new(), REACH));
         contacts.atoms.iter().find(|contact| contact.atom == 9).map(|contact| (contact.gap, contact.normal.z))
     };
     assert_eq!(tip(Vec3::new(0.7, 0.6, -0.1), Sides::Outer), Some((-0.1, 1.0)));

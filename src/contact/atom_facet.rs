@@ -1,7 +1,7 @@
 //! Atoms on facets: the places where the distance from an atom to a surface is least, with a sign that is right at
 //! edges and corners.
 
-use super::closest::{Feature, FacetPoint, closest_on_facet};
+use super::closest::{FacetPoint, Feature, closest_on_facet};
 use super::found::{AtomContact, push};
 use super::lists::by_body;
 use super::scene::Scene;
@@ -51,15 +51,18 @@ pub(super) fn find_atom_contacts(
         let first_facet = scene.bodies[other as usize].first_facet;
         let mut add = |low: &Low, inside: bool| {
             let (gap, normal) = surface.gap(low, inside);
-            push(contacts, AtomContact {
-                atom: number,
-                facet: first_facet + low.facet,
-                body: other,
-                feature: low.point.feature,
-                second_weights: low.point.weights,
-                gap,
-                normal,
-            });
+            push(
+                contacts,
+                AtomContact {
+                    atom: number,
+                    facet: first_facet + low.facet,
+                    body: other,
+                    feature: low.point.feature,
+                    second_weights: low.point.weights,
+                    gap,
+                    normal,
+                },
+            );
         };
         if surface.is_inside(&nearest) {
             if nearest.squared <= scene.reach.depth.powi(2) {
@@ -67,7 +70,9 @@ pub(super) fn find_atom_contacts(
             }
         } else {
             let proximity = scene.reach.proximity.powi(2);
-            lows.iter().filter(|low| low.squared < proximity && !surface.is_inside(low)).for_each(|low| add(low, false));
+            lows.iter()
+                .filter(|low| low.squared < proximity && !surface.is_inside(low))
+                .for_each(|low| add(low, false));
         }
     }
 }
@@ -114,7 +119,7 @@ impl Other<'_> {
         self.own.is_none_or(|atom| !self.shape.is_near(atom, facet))
     }
 
-    /// Whether the distance rises in all directions along the surface, and this is the first of the facets with that
+    /// Whether the distance rises in all directions along the surface, eq. (contacts.2), and this is the first of the facets with that
     /// point.
     fn is_lowest(&self, place: Vec3, low: &Low) -> bool {
         let offset = low.point.offset;
@@ -160,7 +165,7 @@ impl Other<'_> {
     }
 
     /// The normal that tells the sides apart: that of the face, the mean over an edge, the mean weighted with angles
-    /// around a corner (Bærentzen & Aanæs 2005). None on the rim of an open surface.
+    /// around a corner (Bærentzen & Aanæs 2005), eq. (contacts.3). None on the rim of an open surface.
     fn pseudonormal(&self, low: &Low) -> Option<Vec3> {
         let unit = |facet: u32| {
             let [a, b, c] = self.corners(facet);

@@ -152,14 +152,7 @@ impl Levels {
         }
     }
 
-    fn visit_pack(
-        &self,
-        packs: &[Pack],
-        level: usize,
-        index: usize,
-        bounds: &Bounds,
-        found: &mut impl FnMut(usize),
-    ) {
+    fn visit_pack(&self, packs: &[Pack], level: usize, index: usize, bounds: &Bounds, found: &mut impl FnMut(usize)) {
         let mut lanes = packs[self.first[level] as usize + index].meeting(bounds);
         while lanes != 0 {
             let child = 8 * index + lanes.trailing_zeros() as usize / 8;

@@ -111,8 +111,11 @@ pub fn closest_on_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> (f64, [f64; 
     let (ff, ss) = (first.norm_squared(), second.norm_squared());
     let (fs, fb, sb) = (first.dot(&second), first.dot(&between), second.dot(&between));
     let sine_squared = ff * ss - fs * fs;
-    let mut on_first =
-        if sine_squared > LEAST_SINE_SQUARED * ff * ss { ((fs * sb - fb * ss) / sine_squared).clamp(0.0, 1.0) } else { 0.0 };
+    let mut on_first = if sine_squared > LEAST_SINE_SQUARED * ff * ss {
+        ((fs * sb - fb * ss) / sine_squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     // The best point on one segment for the point on the other, twice: exact once one parameter is clamped.
     let mut on_second = if ss > 0.0 { ((fs * on_first + sb) / ss).clamp(0.0, 1.0) } else { 0.0 };
     if ff > 0.0 {

@@ -32,6 +32,7 @@ pub struct Detector {
     collected_at: Vec<[f32; 3]>,
     /// One per batch: what several threads find before it is put in order, and scratch.
     found: Vec<Found>,
+    lows: Vec<Low>,
 }
 
 /// What is found in one batch.
@@ -46,7 +47,8 @@ struct Found {
 const ROUNDING: f64 = 1.1e-7;
 
 impl Detector {
-    /// Finds all contacts at these positions (µm, one per atom of the scene) and writes them over `contacts`.
+    /// Finds all contacts at these positions (µm, one per atom of the scene) and writes them over `contacts`. For a
+    /// scene that is not that of the last call, [`forget`](Self::forget) the pairs first.
     ///
     /// The same positions give the same contacts in the same order, bit by bit, whatever was detected before and with
     /// any number of threads. Nothing is allocated once the lists have grown to their size.
@@ -56,19 +58,14 @@ impl Detector {
     pub fn detect(&mut self, scene: &Scene, positions: &[Vec3], contacts: &mut Contacts) -> Detection {
         assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
         let moved = self.moved(scene, positions);
-        let collected = !(moved <= 0.5 * scene.reach.margin);
+        let collected = moved.is_nan() || moved > 0.5 * scene.reach.margin;
         if collected {
             self.collect(scene, positions);
         }
-        self.found.resize_with(self.lists.len(), Found::default);
         contacts.clear();
         if rayon::current_num_threads() == 1 {
-            let lows = &mut self.found[..].first_mut().map(|found| std::mem::take(&mut found.lows)).unwrap_or_default();
             for (batch, lists) in self.lists.iter().enumerate() {
-                look(scene, positions, batch, lists, lows, contacts);
-            }
-            if let Some(found) = self.found.first_mut() {
-                found.lows = std::mem::take(lows);
+                look(scene, positions, batch, lists, &mut self.lows, contacts);
             }
         } else {
             self.found.par_iter_mut().zip(&self.lists).enumerate().for_each(|(batch, (found, lists))| {
@@ -89,9 +86,14 @@ impl Detector {
         self.collected_at.clear();
     }
 
+    /// The lists of pairs, one per batch.
+    pub(super) fn lists(&self) -> &[Lists] {
+        &self.lists
+    }
+
     /// The largest displacement since the pairs were collected, rounding included, µm; infinite when there are none
     /// for this scene, NaN or infinite when a position is not finite.
-    fn moved(&self, scene: &Scene, positions: &[Vec3]) -> f64 {
+    pub(super) fn moved(&self, scene: &Scene, positions: &[Vec3]) -> f64 {
         if self.collected_at.len() != positions.len() || self.lists.len() + 1 != scene.batches.len() {
             return f64::INFINITY;
         }
@@ -109,9 +111,12 @@ impl Detector {
             }
             farthest
         };
-        let squared = (0..self.lists.len()).into_par_iter().map(farthest).reduce(|| 0.0, |one: f64, other| {
-            if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
-        });
+        let squared = (0..self.lists.len()).into_par_iter().map(farthest).reduce(
+            || 0.0,
+            |one: f64, other| {
+                if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
+            },
+        );
         squared.sqrt()
     }
 
@@ -124,7 +129,8 @@ impl Detector {
         self.boxes.packs.par_iter_mut().zip(&mut self.found).enumerate().for_each(|(batch, (packs, found))| {
             found.bounds.clear();
             let bodies = &scene.bodies[scene.batches[batch] as usize..scene.batches[batch + 1] as usize];
-            let count = bodies.last().map_or(0, |last| last.first_pack as usize + scene.levels[last.shape as usize].packs());
+            let count =
+                bodies.last().map_or(0, |last| last.first_pack as usize + scene.levels[last.shape as usize].packs());
             packs.resize(count, Pack::EMPTY);
             for (body, number) in bodies.iter().zip(scene.bodies_of(batch)) {
                 let levels = &scene.levels[body.shape as usize];
@@ -145,10 +151,7 @@ impl Detector {
             self.boxes.bounds.extend_from_slice(&found.bounds);
         }
         let boxes = &self.boxes;
-        self.lists
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes));
+        self.lists.par_iter_mut().enumerate().for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes));
         self.collected_at.clear();
         self.collected_at.extend(positions.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32]));
     }
@@ -169,14 +172,7 @@ impl Detector {
 }
 
 /// Looks at the pairs of a batch and adds its contacts.
-fn look(
-    scene: &Scene,
-    positions: &[Vec3],
-    batch: usize,
-    lists: &Lists,
-    lows: &mut Vec<Low>,
-    contacts: &mut Contacts,
-) {
+fn look(scene: &Scene, positions: &[Vec3], batch: usize, lists: &Lists, lows: &mut Vec<Low>, contacts: &mut Contacts) {
     let (mut atom_of_batch, mut edge_of_batch) = (0, 0);
     for body in scene.bodies_of(batch) {
         let shape = scene.shape(body);

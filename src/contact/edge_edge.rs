@@ -74,13 +74,16 @@ pub(super) fn find_edge_contacts(
             let one_sided = surfaces_are_one_sided && !second.is_rim();
             let Some((along, gap, normal)) = cross(&first, &flanks, &second, one_sided, scene) else { continue };
             let number = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
-            push(contacts, EdgeContact {
-                edges: [number(body, edge), number(other, candidate)],
-                bodies: [body, other],
-                along,
-                gap,
-                normal,
-            });
+            push(
+                contacts,
+                EdgeContact {
+                    edges: [number(body, edge), number(other, candidate)],
+                    bodies: [body, other],
+                    along,
+                    gap,
+                    normal,
+                },
+            );
         }
     }
 }

@@ -62,6 +62,23 @@ fn contacts_are_the_same_bits_for_any_number_of_threads_and_any_past() {
 }
 
 #[test]
+fn nothing_grows_once_warmed_up() {
+    let mut stage = packed_stage(30, REACH, 2);
+    let rest = stage.positions.clone();
+    let (mut detector, mut contacts) = (Detector::default(), Contacts::default());
+    let mut held = Vec::new();
+    for _ in 0..3 {
+        let mut dice = Dice(7);
+        for _ in 0..6 {
+            stage.positions = rest.iter().map(|x| x + dice.vector() * 0.06).collect();
+            detector.detect(&stage.scene, &stage.positions, &mut contacts);
+        }
+        held.push(detector.bytes() + contacts.bytes());
+    }
+    assert_eq!(held[1], held[2]);
+}
+
+#[test]
 fn a_contact_is_a_point_of_the_facet_and_a_gap_along_a_unit_normal() {
     for seed in 0..40 {
         let stage = random_stage(seed);

@@ -62,7 +62,8 @@ pub fn find_overlaps(scene: &Scene, positions: &[Vec3]) -> Vec<Overlap> {
     for first in 0..scene.bodies.len() as u32 {
         for &second in neighbours.of(first).iter().filter(|&&second| second > first) {
             let inside = |inner: u32, outer: u32| atoms_inside(scene, positions, inner, outer, &bounds[outer as usize]);
-            let through = |edges: u32, facets: u32| crossings(scene, positions, edges, facets, &bounds[facets as usize]);
+            let through =
+                |edges: u32, facets: u32| crossings(scene, positions, edges, facets, &bounds[facets as usize]);
             let overlap = Overlap {
                 bodies: [first, second],
                 atoms_inside: [inside(first, second), inside(second, first)],

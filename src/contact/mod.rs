@@ -13,15 +13,17 @@ mod found;
 mod inside;
 mod lists;
 mod neighbours;
+mod passages;
 mod reference;
 mod scene;
 mod shape;
 mod swept;
 
-pub use closest::{Feature, FacetPoint, closest_on_facet, closest_on_segments};
+pub use closest::{FacetPoint, Feature, closest_on_facet, closest_on_segments};
 pub use detect::{Detection, Detector};
 pub use found::{AtomContact, Contacts, EdgeContact, PlaneContact};
 pub use inside::{Overlap, find_overlaps, winding_number};
+pub use passages::{Coverage, Pair, Passage};
 pub use reference::detect_all_pairs;
 pub use scene::{Body, Plane, Reach, Scene};
 pub use shape::{Shape, Sides};

@@ -112,7 +112,9 @@ impl Shape {
             })
         };
         let near_facets: Vec<Vec<u32>> = (0..rest.facets.len() as u32)
-            .map(|one| near[rest.facets[one as usize][0] as usize].iter().copied().filter(|&f| all_near(one, f)).collect())
+            .map(|one| {
+                near[rest.facets[one as usize][0] as usize].iter().copied().filter(|&f| all_near(one, f)).collect()
+            })
             .collect();
         let (near_facets_first, near_facets) = joined(&near_facets);
         let (near_edges_first, near_edges) = joined(&near_edges);

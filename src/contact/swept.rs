@@ -46,9 +46,12 @@ fn first_meeting(
     let cubic = bernstein(start, end);
     let largest = size * size * size;
     let at = |share: f64| [0, 1, 2, 3].map(|k| start[k] + (end[k] - start[k]) * share);
-    let mut parts = vec![(0.0, 1.0, cubic, 0)];
-    let mut halvings = 0;
-    while let Some((from, to, cubic, depth)) = parts.pop() {
+    // Depth first: of each halving one part waits while the other is looked at.
+    let mut parts = [(0.0, 1.0, cubic, 0); HALVINGS as usize + 2];
+    let (mut waiting, mut halvings) = (1, 0);
+    while waiting > 0 {
+        waiting -= 1;
+        let (from, to, cubic, depth) = parts[waiting];
         // The volume of four points within `touching` of each other's plane is less than this.
         let least = 16.0 * touching * size * size + 1e-13 * largest;
         if cubic.iter().all(|value| *value > least) || cubic.iter().all(|value| *value < -least) {
@@ -64,8 +67,9 @@ fn first_meeting(
             return Some(from);
         }
         let [first, second] = halves(cubic);
-        parts.push((middle, to, second, depth + 1));
-        parts.push((from, middle, first, depth + 1));
+        parts[waiting] = (middle, to, second, depth + 1);
+        parts[waiting + 1] = (from, middle, first, depth + 1);
+        waiting += 2;
     }
     None
 }

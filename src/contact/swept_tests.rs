@@ -1,7 +1,10 @@
 //! What passes through in a step is never missed.
 
 use super::test_scenes::Dice;
-use super::{Contacts, Detector, Reach, Sides, atom_meets_facet, closest_on_facet, closest_on_segments, edges_meet};
+use super::{
+    Contacts, Coverage, Detector, Pair, Reach, Sides, atom_meets_facet, closest_on_facet, closest_on_segments,
+    edges_meet,
+};
 use crate::Vec3;
 use crate::geometry::icosphere;
 
@@ -68,6 +71,35 @@ fn no_meeting_of_random_motions_is_missed_and_few_are_made_up() {
         }
     }
     assert!(met > 300 && made_up < 40, "{met} {made_up}");
+}
+
+#[test]
+fn a_cell_that_flies_through_a_sheet_in_one_step_is_seen_to_pass() {
+    let flat = crate::geometry::sheet(3.0, 3.0, 3, 3);
+    let rest = icosphere(0.5, 1);
+    let above: Vec<Vec3> = rest.positions.iter().map(|x| x + Vec3::new(0.1, 0.2, 0.55)).collect();
+    let reach = Reach { proximity: 0.1, depth: 0.05, margin: 2.5 };
+    let bodies = [(&flat, Sides::Both, flat.positions.clone()), (&rest, Sides::Outer, above)];
+    let stage = super::test_scenes::stage(&bodies, Vec::new(), reach);
+    let (mut detector, mut contacts) = (Detector::default(), Contacts::default());
+    detector.detect(&stage.scene, &stage.positions, &mut contacts);
+    let moved = |way: f64| -> Vec<Vec3> {
+        let fall = |(atom, x): (usize, &Vec3)| if atom < 16 { *x } else { x - Vec3::z() * way };
+        stage.positions.iter().enumerate().map(fall).collect()
+    };
+    let mut passages = Vec::new();
+    let mut pass = |way: f64| {
+        let coverage = detector.find_passages(&stage.scene, &stage.positions, &moved(way), 1e-9, &mut passages);
+        (coverage, passages.clone())
+    };
+    assert_eq!(pass(0.02), (Coverage::Complete, vec![]));
+    let (coverage, through) = pass(1.2);
+    assert_eq!(coverage, Coverage::Complete);
+    let atoms = through.iter().filter(|passage| matches!(passage.pair, Pair::AtomFacet { .. })).count();
+    // Each of the 42 atoms passes a facet, or two on their common side.
+    assert!((42..60).contains(&atoms), "{atoms} of 42 atoms pass");
+    assert!(through.iter().all(|passage| passage.bodies.contains(&0) && passage.bodies.contains(&1)));
+    assert_eq!(pass(1.5).0, Coverage::Partial, "farther than half of the margin");
 }
 
 #[test]
