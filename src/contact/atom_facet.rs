@@ -79,7 +79,7 @@ pub(super) fn find_atom_contacts(
 
 impl Other<'_> {
     fn corners(&self, facet: u32) -> [Vec3; 3] {
-        self.shape.facets[facet as usize].map(|atom| self.positions[atom as usize])
+        self.shape.corners(facet, self.positions)
     }
 
     /// Finds the places where the distance is least, within `range` µm, in the order of facets; the nearest comes back.

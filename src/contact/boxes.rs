@@ -34,12 +34,16 @@ impl Bounds {
         for point in &points[1..] {
             (low, high) = (low.inf(point), high.sup(point));
         }
-        Self { low: [0, 1, 2].map(|axis| down(low[axis] - reach)), high: [0, 1, 2].map(|axis| up(high[axis] + reach)) }
+        Self {
+            low: [down(low.x - reach), down(low.y - reach), down(low.z - reach)],
+            high: [up(high.x + reach), up(high.y + reach), up(high.z + reach)],
+        }
     }
 
     /// Whether two boxes share a point.
     pub fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+        let meets = |axis: usize| (self.low[axis] <= other.high[axis]) & (other.low[axis] <= self.high[axis]);
+        meets(0) & meets(1) & meets(2)
     }
 
     /// The box grown by `reach` µm.
@@ -128,8 +132,7 @@ impl Levels {
     pub fn measure(&self, shape: &Shape, positions: &[Vec3], packs: &mut [Pack]) -> Bounds {
         packs.fill(Pack::EMPTY);
         for (slot, &facet) in shape.order.iter().enumerate() {
-            let corners = shape.facets[facet as usize].map(|atom| positions[atom as usize]);
-            packs[slot / 8].set(slot % 8, &Bounds::around(&corners, 0.0));
+            packs[slot / 8].set(slot % 8, &Bounds::around(&shape.corners(facet, positions), 0.0));
         }
         for level in 1..self.count {
             let (below, here) = packs.split_at_mut(self.first[level] as usize);

@@ -32,6 +32,7 @@ pub struct FacetPoint {
 ///
 /// The regions around a triangle are told apart as by Ericson, Real-Time Collision Detection (2005), 5.1.5. A facet
 /// without area is treated as its three sides, a facet shrunk to a point as that point.
+#[inline]
 pub fn closest_on_facet(point: Vec3, [a, b, c]: [Vec3; 3]) -> FacetPoint {
     let (ab, ac, ap) = (b - a, c - a, point - a);
     let at = |second: f64, third: f64, feature| FacetPoint {
@@ -106,6 +107,7 @@ fn share_along(from_start: Vec3, along: Vec3) -> f64 {
 /// The squared distance between two segments, µm²; the parameters along both come with it.
 ///
 /// Ericson 2005, 5.1.9; parallel segments and segments without length included.
+#[inline]
 pub fn closest_on_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> (f64, [f64; 2]) {
     let (first, second, between) = (b - a, d - c, a - c);
     let (ff, ss) = (first.norm_squared(), second.norm_squared());

@@ -19,14 +19,15 @@ struct Ridge<'a> {
 impl<'a> Ridge<'a> {
     #[inline]
     fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
-        let [start, end] = shape.edges[edge as usize].map(|atom| positions[atom as usize]);
+        let [start, end] = shape.ends(edge, positions);
         Self { positions, start, along: end - start, across: shape.across[edge as usize] }
     }
 
     /// From the start to the atoms across; zero where there is none.
     #[inline]
     fn flanks(&self) -> [Vec3; 2] {
-        self.across.map(|atom| if atom == NONE { Vec3::zeros() } else { self.positions[atom as usize] - self.start })
+        let flank = |atom: u32| if atom == NONE { Vec3::zeros() } else { self.positions[atom as usize] - self.start };
+        [flank(self.across[0]), flank(self.across[1])]
     }
 
     /// Whether one of the facets is missing.
@@ -107,7 +108,7 @@ fn cross(
     }
     // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
     // or its opposite must do for all four.
-    let [a, b] = flanks.map(|flank| normal.dot(&flank));
+    let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
     if a * b < 0.0 {
         return None;
     }
@@ -116,7 +117,8 @@ fn cross(
     if on_first < 0.0 || on_first > squared || on_second < 0.0 || on_second > squared {
         return None;
     }
-    let [c, d] = second.flanks().map(|flank| -normal.dot(&flank));
+    let [left, right] = second.flanks();
+    let (c, d) = (-normal.dot(&left), -normal.dot(&right));
     let (lowest, highest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
     if lowest < 0.0 && highest > 0.0 {
         return None;

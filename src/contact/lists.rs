@@ -104,8 +104,7 @@ impl Lists {
             if other == body && shape.is_near(atom as u32, facet) {
                 return;
             }
-            let corners = shape.facets[facet as usize].map(|corner| there[corner as usize]);
-            if closest_on_facet(place, corners).offset.norm_squared() <= farthest {
+            if closest_on_facet(place, shape.corners(facet, there)).offset.norm_squared() <= farthest {
                 push(&mut self.facets, facet);
             }
         });
@@ -129,8 +128,7 @@ impl Lists {
         }
         let here = scene.of_body(body, positions);
         let reach = scene.reach.collected();
-        let corners = shape.facets[facet as usize].map(|atom| here[atom as usize]);
-        let bounds = Bounds::around(&corners, reach);
+        let bounds = Bounds::around(&shape.corners(facet, here), reach);
         self.near.clear();
         for &other in std::iter::once(&body).chain(after) {
             if bounds.meets(&boxes.bounds[other as usize]) {
@@ -145,18 +143,19 @@ impl Lists {
             }
         }
         for edge in edges {
-            let ends = shape.edges[edge as usize].map(|atom| here[atom as usize]);
+            let ends = shape.ends(edge, here);
             let (low, high) = (ends[0].inf(&ends[1]).add_scalar(-reach), ends[0].sup(&ends[1]).add_scalar(reach));
             for (other, facets) in by_body(&self.near) {
                 let (shape, there) = (scene.shape(other), scene.of_body(other, positions));
                 let start = self.edges.len();
                 push(&mut self.edges, other | BODY);
                 for candidate in facets.iter().flat_map(|&facet| shape.edges_of(facet)) {
-                    let [a, b] = shape.edges[candidate as usize].map(|atom| there[atom as usize]);
-                    let apart = (0..3).any(|axis| {
+                    let [a, b] = shape.ends(candidate, there);
+                    let apart = |axis: usize| {
                         let (less, more) = if a[axis] < b[axis] { (a[axis], b[axis]) } else { (b[axis], a[axis]) };
-                        less > high[axis] || more < low[axis]
-                    });
+                        (less > high[axis]) | (more < low[axis])
+                    };
+                    let apart = apart(0) | apart(1) | apart(2);
                     if apart || other == body && (candidate <= edge || shape.are_edges_near(edge, candidate)) {
                         continue;
                     }

@@ -146,6 +146,21 @@ impl Shape {
         &self.around[self.around_first[atom] as usize..self.around_first[atom + 1] as usize]
     }
 
+    /// The positions of a facet's corners, of the positions of the body's atoms. (Written out: `map` over an array is
+    /// not inlined here, and this is the innermost loop.)
+    #[inline]
+    pub(super) fn corners(&self, facet: u32, positions: &[Vec3]) -> [Vec3; 3] {
+        let [a, b, c] = self.facets[facet as usize];
+        [positions[a as usize], positions[b as usize], positions[c as usize]]
+    }
+
+    /// The positions of an edge's ends.
+    #[inline]
+    pub(super) fn ends(&self, edge: u32, positions: &[Vec3]) -> [Vec3; 2] {
+        let [a, b] = self.edges[edge as usize];
+        [positions[a as usize], positions[b as usize]]
+    }
+
     /// The edges of a facet that no facet before it has.
     pub(super) fn edges_of(&self, facet: u32) -> std::ops::Range<u32> {
         self.first_edge[facet as usize]..self.first_edge[facet as usize + 1]
