@@ -10,6 +10,7 @@ pub mod analysis;
 pub mod cell;
 pub mod chemistry;
 pub mod cli;
+pub mod contact;
 pub mod error;
 pub mod experiment;
 pub mod geometry;

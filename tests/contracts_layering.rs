@@ -12,6 +12,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ("geometry", &[]),
     ("mechanics", &["geometry"]),
     ("chemistry", &[]),
+    ("contact", &["geometry"]),
     ("cell", &["mechanics", "chemistry", "geometry"]),
     ("sim", &["cell", "mechanics", "chemistry", "geometry"]),
     ("experiment", &["sim", "cell", "mechanics", "chemistry", "geometry"]),
@@ -28,7 +29,7 @@ const TABLE: &[(&str, &[&str])] = &[
 const GROUND: [&str; 3] = ["error", "units", "random"];
 
 /// Rooms that must not touch files or clocks, and the words that would show it.
-const PURE: [&str; 6] = ["geometry", "mechanics", "cell", "sim", "units", "random"];
+const PURE: [&str; 7] = ["geometry", "mechanics", "contact", "cell", "sim", "units", "random"];
 const WORLD: [&str; 4] = ["std::fs", "std::time", "hdf5", "std::env"];
 /// The two pages of geometry that are about files.
 const FILES_OF_GEOMETRY: [&str; 2] = ["geometry/import", "geometry/export"];

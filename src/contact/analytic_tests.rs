@@ -1,0 +1,219 @@
+//! Contacts whose answer is known without computing.
+
+use super::test_scenes::{Stage, stage};
+use super::{
+    Contacts, Detector, Feature, Plane, Reach, Scene, Shape, Sides, detect_all_pairs, find_overlaps, winding_number,
+};
+use crate::Vec3;
+use crate::geometry::{Surface, icosphere, sheet, translate};
+
+const REACH: Reach = Reach { proximity: 0.2, depth: 0.2, margin: 0.1 };
+
+fn detect(stage: &Stage) -> Contacts {
+    let mut contacts = Contacts::default();
+    Detector::default().detect(&stage.scene, &stage.positions, &mut contacts);
+    contacts
+}
+
+/// Two surfaces where they are.
+fn pair(first: &Surface, second: &Surface, reach: Reach) -> Stage {
+    let bodies = [first, second].map(|surface| (surface, Sides::Outer, surface.positions.clone()));
+    stage(&bodies, Vec::new(), reach)
+}
+
+/// A tetrahedron that stands on the atom `tip`, 1 high.
+fn needle(tip: Vec3) -> Surface {
+    let top = |x: f64, y: f64| tip + Vec3::new(x, y, 1.0);
+    let positions = vec![tip, top(0.3, 0.0), top(-0.15, 0.26), top(-0.15, -0.26)];
+    Surface { positions, facets: vec![[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]] }
+}
+
+/// A box of two squares of facets a side, from −1 to 1 along x and y and from −2 to 0 along z.
+fn block() -> Surface {
+    let mut block = crate::geometry::box_surface([2.0, 2.0, 2.0], [2, 2, 2]);
+    let middle = block.positions.iter().sum::<Vec3>() / block.positions.len() as f64;
+    translate(&mut block, -middle - Vec3::z());
+    block
+}
+
+#[test]
+fn two_spheres_at_a_known_gap_touch_at_their_facing_atoms() {
+    // Atoms of the octasphere lie on the axes, so that two of them face each other.
+    let first = crate::geometry::octasphere(1.0, 4);
+    for gap in [0.15, 0.01, -0.05] {
+        let mut second = first.clone();
+        translate(&mut second, Vec3::z() * (2.0 + gap));
+        let contacts = detect(&pair(&first, &second, REACH));
+        if gap > 0.0 {
+            assert!((contacts.smallest_gap() - gap).abs() < 1e-12, "{gap}: {}", contacts.smallest_gap());
+        }
+        let nearest = contacts.atoms.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).expect("a contact");
+        if gap > 0.0 {
+            assert!((nearest.normal.z.abs() - 1.0).abs() < 1e-12, "{nearest:?}");
+        } else {
+            // The facets around the facing atom lean by 15°, and the way out is the shortest: through one of them.
+            assert!(nearest.normal.z.abs() > 0.95 && (-0.05..-0.045).contains(&nearest.gap), "{nearest:?}");
+        }
+    }
+}
+
+#[test]
+fn an_atom_over_a_face_an_edge_and_a_corner_is_told_once_each() {
+    let block = block();
+    let cases = [
+        (Vec3::new(0.6, 0.3, 0.1), 0.1, Vec3::z()),
+        // In the plane of two facets, over the edge between them: a gap, one contact, normal up.
+        (Vec3::new(0.0, 0.5, 0.1), 0.1, Vec3::z()),
+        (Vec3::new(0.0, 0.0, 0.1), 0.1, Vec3::z()),
+        // Beside the block's edge and its corner.
+        (Vec3::new(1.08, 0.5, 0.06), 0.1, Vec3::new(0.8, 0.0, 0.6)),
+        (Vec3::new(1.02, 1.06, 0.09), 0.11, Vec3::new(2.0, 6.0, 9.0) / 11.0),
+        // Inside, under the top and nearest to it.
+        (Vec3::new(0.3, 0.4, -0.07), -0.07, Vec3::z()),
+        (Vec3::new(0.95, 0.2, -0.12), -0.05, Vec3::x()),
+    ];
+    for (tip, gap, normal) in cases {
+        let contacts = detect(&pair(&block, &needle(tip), REACH));
+        let of_tip: Vec<_> = contacts.atoms.iter().filter(|contact| contact.atom == 26).collect();
+        assert_eq!(of_tip.len(), 1, "{tip:?}: {of_tip:?}");
+        assert!((of_tip[0].gap - gap).abs() < 1e-12, "{tip:?}: {of_tip:?}");
+        assert!((of_tip[0].normal - normal).norm() < 1e-9, "{tip:?}: {of_tip:?}");
+    }
+}
+
+#[test]
+fn an_atom_in_a_groove_touches_both_of_its_walls() {
+    // A sheet folded upwards along x = 0, its outside above.
+    let mut groove = sheet(2.0, 2.0, 2, 2);
+    let middle = groove.positions.iter().sum::<Vec3>() / 9.0;
+    translate(&mut groove, -middle);
+    groove.positions.iter_mut().for_each(|x| x.z = x.x.abs());
+    let contacts = detect(&pair(&groove, &needle(Vec3::new(0.0, 0.3, 0.1)), REACH));
+    let of_tip: Vec<_> = contacts.atoms.iter().filter(|contact| contact.atom == 9).collect();
+    assert_eq!(of_tip.len(), 2, "{of_tip:?}");
+    for contact in of_tip {
+        assert!((contact.gap - 0.1 / 2f64.sqrt()).abs() < 1e-12 && contact.feature == Feature::Face, "{contact:?}");
+    }
+}
+
+/// A ridge along x at height `top`, pointing up (`up` = 1) or down (−1): two facets of a long tent.
+fn tent(direction: Vec3, top: f64, up: f64) -> Surface {
+    let side = Vec3::z().cross(&direction);
+    let (near, far) = (direction * -1.0 + Vec3::z() * top, direction + Vec3::z() * top);
+    let low = Vec3::z() * (-up);
+    let positions = vec![near, far, Vec3::z() * top + low + side, Vec3::z() * top + low - side];
+    let mut surface = Surface { positions, facets: vec![[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]] };
+    if crate::geometry::volume(&surface) < 0.0 {
+        surface.facets.iter_mut().for_each(|facet| facet.swap(1, 2));
+    }
+    surface
+}
+
+#[test]
+fn two_crossing_ridges_touch_by_their_edges_with_a_signed_gap() {
+    for gap in [0.1, 0.02, -0.05] {
+        let stage = pair(&tent(Vec3::x(), 0.0, 1.0), &tent(Vec3::new(0.6, 0.8, 0.0), gap, -1.0), REACH);
+        let contacts = detect(&stage);
+        assert_eq!(contacts.edges.len(), 1, "gap {gap}: {:?}", contacts.edges);
+        let contact = contacts.edges[0];
+        assert!((contact.gap - gap).abs() < 1e-12 && contact.along == [0.5, 0.5], "{contact:?}");
+        // From the second to the first, towards the outside of the second: down.
+        assert!((contact.normal + Vec3::z()).norm() < 1e-12, "{contact:?}");
+    }
+}
+
+#[test]
+fn parallel_edges_and_collapsed_facets_give_numbers() {
+    let parallel = detect(&pair(&tent(Vec3::x(), 0.0, 1.0), &tent(Vec3::x(), 0.1, -1.0), REACH));
+    assert!((parallel.smallest_gap() - 0.1).abs() < 1e-12, "the ends of parallel ridges face each other");
+    // All atoms of a facet in one point, all of a cell in one line, all of a cell in one point.
+    let rest = icosphere(1.0, 1);
+    let mut broken = rest.clone();
+    let [a, b, c] = rest.facets[7].map(|atom| atom as usize);
+    (broken.positions[b], broken.positions[c]) = (broken.positions[a], broken.positions[a]);
+    let line: Vec<Vec3> = rest.positions.iter().map(|x| Vec3::x() * x.x + Vec3::z() * 1.05).collect();
+    let point = vec![Vec3::new(0.1, 0.9, 0.3); 42];
+    let bodies = [(&rest, Sides::Outer, broken.positions), (&rest, Sides::Outer, line), (&rest, Sides::Outer, point)];
+    let stage = stage(&bodies, Vec::new(), REACH);
+    let contacts = detect(&stage);
+    assert!(contacts.atoms.len() > 10);
+    let normals =
+        contacts.atoms.iter().map(|c| (c.gap, c.normal)).chain(contacts.edges.iter().map(|c| (c.gap, c.normal)));
+    for (gap, normal) in normals {
+        assert!(gap.is_finite() && (normal.norm() - 1.0).abs() < 1e-9, "{gap} {normal}");
+    }
+    assert!(contacts.atoms.iter().all(|contact| contact.weights().iter().all(|weight| weight.is_finite())));
+}
+
+#[test]
+fn a_folded_sheet_touches_itself_and_a_flat_one_does_not() {
+    let flat = sheet(4.0, 1.0, 8, 2);
+    let of = |positions: Vec<Vec3>| detect(&stage(&[(&flat, Sides::Both, positions)], Vec::new(), REACH));
+    assert_eq!(of(flat.positions.clone()), Contacts::default());
+    // Folded over along x = 0, with a space of 0.1 between the halves.
+    let fold = |x: &Vec3| if x.x <= 0.0 { *x } else { Vec3::new(-x.x, x.y, 0.1) };
+    let folded = of(flat.positions.iter().map(fold).collect());
+    assert!(folded.atoms.len() > 10, "{folded:?}");
+    assert!(folded.atoms.iter().all(|contact| (contact.gap - 0.1).abs() < 1e-12 && contact.body == 0));
+}
+
+#[test]
+fn sheets_have_one_outside_or_two_and_none_beyond_their_rim() {
+    let flat = sheet(2.0, 2.0, 2, 2);
+    let tip = |place: Vec3, sides: Sides| {
+        let needle = needle(place);
+        let places = (flat.positions.clone(), needle.positions.clone());
+        let contacts =
+            detect(&stage(&[(&flat, sides, places.0), (&needle, Sides::Outer, places.1)], Vec::new(), REACH));
+        contacts.atoms.iter().find(|contact| contact.atom == 9).map(|contact| (contact.gap, contact.normal.z))
+    };
+    assert_eq!(tip(Vec3::new(0.7, 0.6, -0.1), Sides::Outer), Some((-0.1, 1.0)));
+    assert_eq!(tip(Vec3::new(0.7, 0.6, -0.1), Sides::Both), Some((0.1, -1.0)));
+    let (gap, up) = tip(Vec3::new(1.1, 0.6, -0.01), Sides::Outer).expect("a contact with the rim");
+    assert!(gap > 0.1 && gap < 0.102 && up < 0.0, "an atom beside a sheet is not behind it");
+}
+
+#[test]
+fn atoms_behind_a_plane_are_found_however_deep() {
+    let sphere = icosphere(1.0, 1);
+    let plane = Plane { point: Vec3::z() * 5.0, normal: Vec3::z() };
+    let stage = stage(&[(&sphere, Sides::Outer, sphere.positions.clone())], vec![plane], REACH);
+    let contacts = detect(&stage);
+    assert_eq!(contacts.planes.len(), 42);
+    assert!((contacts.smallest_gap() + 6.0).abs() < 0.2);
+}
+
+#[test]
+fn overlaps_at_the_start_are_told_apart() {
+    let small = icosphere(0.4, 1);
+    let large = icosphere(1.0, 1);
+    let mut aside = icosphere(1.0, 1);
+    translate(&mut aside, Vec3::x() * 1.7);
+    let mut away = icosphere(1.0, 1);
+    translate(&mut away, Vec3::y() * 2.5);
+    let bodies: Vec<_> =
+        [&small, &large, &aside, &away].map(|surface| (surface, Sides::Outer, surface.positions.clone())).into();
+    let stage = stage(&bodies, Vec::new(), REACH);
+    let overlaps = find_overlaps(&stage.scene, &stage.positions);
+    assert_eq!(overlaps.len(), 2, "{overlaps:?}");
+    assert_eq!((overlaps[0].bodies, overlaps[0].atoms_inside, overlaps[0].nested()), ([0, 1], [42, 0], Some(0)));
+    assert_eq!((overlaps[1].bodies, overlaps[1].nested()), ([1, 2], None));
+    assert!(overlaps[1].crossings > 0 && overlaps[1].atoms_inside[0] > 0);
+    let winding = winding_number(Vec3::new(0.2, 0.1, 0.3), &large.positions, &large.facets);
+    assert!((winding - 1.0).abs() < 1e-14);
+    assert!(winding_number(Vec3::x() * 1.2, &large.positions, &large.facets).abs() < 1e-14);
+}
+
+#[test]
+fn an_empty_scene_and_a_body_without_facets_are_no_trouble() {
+    let mut contacts = Contacts::default();
+    let empty = Scene::new(Vec::new(), &[], Vec::new(), REACH);
+    assert_eq!(Detector::default().detect(&empty, &[], &mut contacts).pairs, 0);
+    let lone = Surface { positions: vec![Vec3::zeros(), Vec3::x()], facets: Vec::new() };
+    let scene = Scene::new(vec![Shape::new(&lone, Sides::Both, 0.1)], &[0, 0], Vec::new(), REACH);
+    let positions = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+    Detector::default().detect(&scene, &positions, &mut contacts);
+    let mut all = contacts.clone();
+    detect_all_pairs(&scene, &positions, &mut all);
+    assert_eq!(contacts, all);
+}

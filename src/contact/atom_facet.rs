@@ -1,0 +1,217 @@
+//! Atoms on facets: the places where the distance from an atom to a surface is least, with a sign that is right at
+//! edges and corners.
+
+use super::closest::{FacetPoint, Feature, closest_on_facet};
+use super::found::{AtomContact, push};
+use super::lists::by_body;
+use super::scene::Scene;
+use super::shape::{NONE, Shape, Sides};
+use crate::Vec3;
+
+/// Cosine by which a closest point on an edge or a corner may miss being the lowest around: round-off, so that a point
+/// between two facets is never refused by both.
+const COSINE_ROUND_OFF: f64 = 1e-9;
+
+/// A place on a surface where the distance to an atom is least.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Low {
+    facet: u32,
+    point: FacetPoint,
+    squared: f64,
+}
+
+/// The other surface, as an atom sees it.
+struct Other<'a> {
+    shape: &'a Shape,
+    positions: &'a [Vec3],
+    /// The atom, when this is its own surface.
+    own: Option<u32>,
+}
+
+/// Adds the contacts of an atom (numbered in its body) with the facets of a list, eq. (contacts.1) to (contacts.3).
+pub(super) fn find_atom_contacts(
+    scene: &Scene,
+    positions: &[Vec3],
+    body: u32,
+    atom: u32,
+    list: &[u32],
+    lows: &mut Vec<Low>,
+    contacts: &mut Vec<AtomContact>,
+) {
+    let number = scene.bodies[body as usize].first_atom + atom;
+    let place = positions[number as usize];
+    for (other, facets) in by_body(list) {
+        let surface = Other {
+            shape: scene.shape(other),
+            positions: scene.of_body(other, positions),
+            own: (other == body).then_some(atom),
+        };
+        lows.clear();
+        let Some(nearest) = surface.find_lows(place, facets, scene.reach.range(), lows) else { continue };
+        let first_facet = scene.bodies[other as usize].first_facet;
+        let mut add = |low: &Low, inside: bool| {
+            let (gap, normal) = surface.gap(low, inside);
+            push(
+                contacts,
+                AtomContact {
+                    atom: number,
+                    facet: first_facet + low.facet,
+                    body: other,
+                    feature: low.point.feature,
+                    second_weights: low.point.weights,
+                    gap,
+                    normal,
+                },
+            );
+        };
+        if surface.is_inside(&nearest) {
+            if nearest.squared <= scene.reach.depth.powi(2) {
+                add(&nearest, true);
+            }
+        } else {
+            let proximity = scene.reach.proximity.powi(2);
+            lows.iter()
+                .filter(|low| low.squared < proximity && !surface.is_inside(low))
+                .for_each(|low| add(low, false));
+        }
+    }
+}
+
+impl Other<'_> {
+    fn corners(&self, facet: u32) -> [Vec3; 3] {
+        self.shape.corners(facet, self.positions)
+    }
+
+    /// Finds the places where the distance is least, within `range` µm, in the order of facets; the nearest comes back.
+    fn find_lows(&self, place: Vec3, facets: &[u32], range: f64, lows: &mut Vec<Low>) -> Option<Low> {
+        let farthest = range * range;
+        let mut nearest: Option<Low> = None;
+        for &facet in facets {
+            let corners = self.corners(facet);
+            let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+            let height = normal.dot(&(place - corners[0]));
+            if height * height > farthest * normal.norm_squared() {
+                continue;
+            }
+            let point = closest_on_facet(place, corners);
+            let low = Low { facet, point, squared: point.offset.norm_squared() };
+            if low.squared > farthest {
+                continue;
+            }
+            if nearest.is_none_or(|nearest| low.squared < nearest.squared) {
+                nearest = Some(low);
+            }
+            if self.is_lowest(place, &low) {
+                push(lows, low);
+            }
+        }
+        // The nearest is a low place by definition; should round-off have refused it, it is put where it belongs.
+        let nearest = nearest?;
+        if lows.iter().all(|low| low.squared > nearest.squared * (1.0 + COSINE_ROUND_OFF)) {
+            let after = lows.partition_point(|low| low.facet < nearest.facet);
+            lows.insert(after, nearest);
+        }
+        Some(nearest)
+    }
+
+    /// Whether this facet may speak for a point: one that the atom does not skip as its own neighbourhood.
+    fn speaks(&self, facet: u32) -> bool {
+        self.own.is_none_or(|atom| !self.shape.is_near(atom, facet))
+    }
+
+    /// Whether the distance rises in all directions along the surface, eq. (contacts.2), and this is the first of the facets with that
+    /// point.
+    fn is_lowest(&self, place: Vec3, low: &Low) -> bool {
+        let offset = low.point.offset;
+        let falls_towards = |atom: u32| {
+            let way = self.positions[atom as usize] - (place - offset);
+            let along = offset.dot(&way);
+            along > 0.0 && along * along > COSINE_ROUND_OFF.powi(2) * way.norm_squared() * low.squared
+        };
+        let facet = self.shape.facets[low.facet as usize];
+        match low.point.feature {
+            Feature::Face => true,
+            Feature::Side(side) => {
+                let other = self.shape.beyond[low.facet as usize][side as usize];
+                if other == NONE {
+                    return true;
+                }
+                if other < low.facet && self.speaks(other) {
+                    return false;
+                }
+                let ends = [facet[side as usize], facet[(side as usize + 1) % 3]];
+                let across = self.shape.facets[other as usize].into_iter().find(|atom| !ends.contains(atom));
+                !across.is_some_and(falls_towards)
+            }
+            Feature::Corner(corner) => {
+                let centre = facet[corner as usize];
+                let around = self.shape.around(centre as usize);
+                let speaker = around.iter().copied().find(|&facet| self.speaks(facet));
+                speaker == Some(low.facet)
+                    && around.iter().all(|&facet| {
+                        self.shape.facets[facet as usize].iter().all(|&atom| atom == centre || !falls_towards(atom))
+                    })
+            }
+        }
+    }
+
+    /// Whether the atom is behind the surface there. Never on its own surface, where both sides have two outsides, nor
+    /// beyond the rim of an open one.
+    fn is_inside(&self, low: &Low) -> bool {
+        if self.own.is_some() || self.shape.sides == Sides::Both {
+            return false;
+        }
+        self.pseudonormal(low).is_some_and(|normal| low.point.offset.dot(&normal) < 0.0)
+    }
+
+    /// The normal that tells the sides apart: that of the face, the mean over an edge, the mean weighted with angles
+    /// around a corner (Bærentzen & Aanæs 2005), eq. (contacts.3). None on the rim of an open surface.
+    fn pseudonormal(&self, low: &Low) -> Option<Vec3> {
+        let unit = |facet: u32| {
+            let [a, b, c] = self.corners(facet);
+            (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
+        };
+        let facet = self.shape.facets[low.facet as usize];
+        match low.point.feature {
+            Feature::Face => Some(unit(low.facet)),
+            Feature::Side(side) => {
+                let other = self.shape.beyond[low.facet as usize][side as usize];
+                (other != NONE).then(|| unit(low.facet) + unit(other))
+            }
+            Feature::Corner(corner) => {
+                let centre = facet[corner as usize];
+                let mut sum = Vec3::zeros();
+                for &facet in self.shape.around(centre as usize) {
+                    let atoms = self.shape.facets[facet as usize];
+                    let here = atoms.iter().position(|&atom| atom == centre).unwrap_or_default();
+                    let beyond = self.shape.beyond[facet as usize];
+                    if beyond[here] == NONE || beyond[(here + 2) % 3] == NONE {
+                        return None;
+                    }
+                    let [from, to] = [1, 2].map(|step| {
+                        self.positions[atoms[(here + step) % 3] as usize] - self.positions[centre as usize]
+                    });
+                    sum += unit(facet) * from.angle(&to);
+                }
+                Some(sum)
+            }
+        }
+    }
+
+    /// The signed gap (µm) and the unit normal towards the outside.
+    fn gap(&self, low: &Low, inside: bool) -> (f64, Vec3) {
+        let offset = low.point.offset;
+        let sign = if inside { -1.0 } else { 1.0 };
+        let distance = low.squared.sqrt();
+        let corners = self.corners(low.facet);
+        let size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
+        if low.point.feature == Feature::Face || distance <= COSINE_ROUND_OFF * size {
+            // The offset is too short for a direction here, or less exact than the facet's own normal.
+            let normal = self.pseudonormal(low).and_then(|normal| normal.try_normalize(0.0));
+            let normal = normal.or_else(|| offset.try_normalize(0.0).map(|way| way * sign)).unwrap_or(Vec3::z());
+            let height = offset.dot(&normal);
+            return if (height < 0.0) == inside { (height, normal) } else { (-height, -normal) };
+        }
+        (sign * distance, offset * (sign / distance))
+    }
+}

@@ -1,0 +1,208 @@
+//! Finding all contacts of a scene: pairs are collected when something has moved far enough, and looked at each time.
+
+use rayon::prelude::*;
+
+use super::atom_facet::{Low, find_atom_contacts};
+use super::boxes::{Bounds, Pack};
+use super::edge_edge::find_edge_contacts;
+use super::found::{Contacts, PlaneContact, push};
+use super::lists::{Boxes, Lists};
+use super::scene::Scene;
+use crate::Vec3;
+
+/// What a detection did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detection {
+    /// Whether the pairs were collected anew.
+    pub collected: bool,
+    /// The largest displacement of an atom since the pairs were collected, before this detection, µm; infinite at
+    /// first.
+    pub moved: f64,
+    /// Number of pairs kept.
+    pub pairs: usize,
+}
+
+/// The scratch of detection: boxes and pairs, kept from step to step. Nothing in it changes what is found: contacts
+/// depend on the positions alone.
+#[derive(Debug, Clone, Default)]
+pub struct Detector {
+    boxes: Boxes,
+    lists: Vec<Lists>,
+    /// Where the atoms were when the pairs were collected, µm.
+    collected_at: Vec<[f32; 3]>,
+    /// One per batch: what several threads find before it is put in order, and scratch.
+    found: Vec<Found>,
+    lows: Vec<Low>,
+}
+
+/// What is found in one batch.
+#[derive(Debug, Clone, Default)]
+struct Found {
+    contacts: Contacts,
+    lows: Vec<Low>,
+    bounds: Vec<Bounds>,
+}
+
+/// A position rounded to four bytes an axis is off by less than this share of its coordinates.
+const ROUNDING: f64 = 1.1e-7;
+
+impl Detector {
+    /// Finds all contacts at these positions (µm, one per atom of the scene) and writes them over `contacts`. For a
+    /// scene that is not that of the last call, [`forget`](Self::forget) the pairs first.
+    ///
+    /// The same positions give the same contacts in the same order, bit by bit, whatever was detected before and with
+    /// any number of threads. Nothing is allocated once the lists have grown to their size.
+    ///
+    /// # Panics
+    /// When there are not as many positions as atoms.
+    pub fn detect(&mut self, scene: &Scene, positions: &[Vec3], contacts: &mut Contacts) -> Detection {
+        assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
+        let moved = self.moved(scene, positions);
+        let collected = moved.is_nan() || moved > 0.5 * scene.reach.margin;
+        if collected {
+            self.collect(scene, positions);
+        }
+        contacts.clear();
+        if rayon::current_num_threads() == 1 {
+            for (batch, lists) in self.lists.iter().enumerate() {
+                look(scene, positions, batch, lists, &mut self.lows, contacts);
+            }
+        } else {
+            self.found.par_iter_mut().zip(&self.lists).enumerate().for_each(|(batch, (found, lists))| {
+                found.contacts.clear();
+                look(scene, positions, batch, lists, &mut found.lows, &mut found.contacts);
+            });
+            for Found { contacts: found, .. } in &self.found {
+                contacts.atoms.extend_from_slice(&found.atoms);
+                contacts.edges.extend_from_slice(&found.edges);
+                contacts.planes.extend_from_slice(&found.planes);
+            }
+        }
+        Detection { collected, moved, pairs: self.lists.iter().map(Lists::words).sum() }
+    }
+
+    /// Forgets the pairs, so that the next detection collects them anew. Contacts do not depend on it.
+    pub fn forget(&mut self) {
+        self.collected_at.clear();
+    }
+
+    /// The lists of pairs, one per batch.
+    pub(super) fn lists(&self) -> &[Lists] {
+        &self.lists
+    }
+
+    /// The largest displacement since the pairs were collected, rounding included, µm; infinite when there are none
+    /// for this scene, NaN or infinite when a position is not finite.
+    pub(super) fn moved(&self, scene: &Scene, positions: &[Vec3]) -> f64 {
+        if self.collected_at.len() != positions.len() || self.lists.len() + 1 != scene.batches.len() {
+            return f64::INFINITY;
+        }
+        let farthest = |batch: usize| {
+            let atoms = scene.atoms_of(batch);
+            let mut farthest = 0.0;
+            for (now, then) in positions[atoms.clone()].iter().zip(&self.collected_at[atoms]) {
+                let mut squared = 0.0;
+                for axis in 0..3 {
+                    let way = (now[axis] - f64::from(then[axis])).abs() + ROUNDING * now[axis].abs();
+                    squared += way * way;
+                }
+                // A comparison that NaN fails.
+                farthest = if squared <= farthest { farthest } else { squared };
+            }
+            farthest
+        };
+        let squared = (0..self.lists.len()).into_par_iter().map(farthest).reduce(
+            || 0.0,
+            |one: f64, other| {
+                if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
+            },
+        );
+        squared.sqrt()
+    }
+
+    /// Collects the pairs of all batches.
+    fn collect(&mut self, scene: &Scene, positions: &[Vec3]) {
+        let batches = scene.batches.len() - 1;
+        self.lists.resize_with(batches, Lists::default);
+        self.found.resize_with(batches, Found::default);
+        self.boxes.packs.resize_with(batches, Vec::new);
+        self.boxes.packs.par_iter_mut().zip(&mut self.found).enumerate().for_each(|(batch, (packs, found))| {
+            found.bounds.clear();
+            let bodies = &scene.bodies[scene.batches[batch] as usize..scene.batches[batch + 1] as usize];
+            let count =
+                bodies.last().map_or(0, |last| last.first_pack as usize + scene.levels[last.shape as usize].packs());
+            packs.resize(count, Pack::EMPTY);
+            for (body, number) in bodies.iter().zip(scene.bodies_of(batch)) {
+                let levels = &scene.levels[body.shape as usize];
+                let packs = &mut packs[body.first_pack as usize..][..levels.packs()];
+                let here = scene.of_body(number, positions);
+                found.bounds.push(levels.measure(&scene.shapes[body.shape as usize], here, packs));
+            }
+        });
+        // Bodies may touch when the boxes grown by half of the reach meet.
+        let half = 0.5 * scene.reach.collected();
+        self.boxes.bounds.clear();
+        for found in &self.found {
+            self.boxes.bounds.extend(found.bounds.iter().map(|bounds| bounds.grown(half)));
+        }
+        self.boxes.neighbours.find(&self.boxes.bounds);
+        self.boxes.bounds.clear();
+        for found in &self.found {
+            self.boxes.bounds.extend_from_slice(&found.bounds);
+        }
+        let boxes = &self.boxes;
+        self.lists.par_iter_mut().enumerate().for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes));
+        self.collected_at.clear();
+        self.collected_at.extend(positions.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32]));
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let packs: usize = self.boxes.packs.iter().map(|packs| size_of::<Pack>() * packs.capacity()).sum();
+        let lists: usize = self.lists.iter().map(Lists::bytes).sum();
+        let of_found = |found: &Found| {
+            found.contacts.bytes()
+                + size_of::<Low>() * found.lows.capacity()
+                + size_of::<Bounds>() * found.bounds.capacity()
+        };
+        let found: usize = self.found.iter().map(of_found).sum();
+        let bounds = size_of::<Bounds>() * self.boxes.bounds.capacity();
+        packs + lists + found + bounds + self.boxes.neighbours.bytes() + 12 * self.collected_at.capacity()
+    }
+}
+
+/// Looks at the pairs of a batch and adds its contacts.
+fn look(scene: &Scene, positions: &[Vec3], batch: usize, lists: &Lists, lows: &mut Vec<Low>, contacts: &mut Contacts) {
+    let (mut atom_of_batch, mut edge_of_batch) = (0, 0);
+    for body in scene.bodies_of(batch) {
+        let shape = scene.shape(body);
+        for atom in 0..shape.atoms {
+            let list = lists.facets(atom_of_batch);
+            atom_of_batch += 1;
+            if !list.is_empty() {
+                find_atom_contacts(scene, positions, body, atom as u32, list, lows, &mut contacts.atoms);
+            }
+        }
+        for edge in 0..shape.edges.len() {
+            find_edge_contacts(scene, positions, body, edge as u32, lists.edges(edge_of_batch), &mut contacts.edges);
+            edge_of_batch += 1;
+        }
+        find_plane_contacts(scene, positions, body, &mut contacts.planes);
+    }
+}
+
+/// Adds the atoms of a body that are near a plane or behind it.
+pub(super) fn find_plane_contacts(scene: &Scene, positions: &[Vec3], body: u32, contacts: &mut Vec<PlaneContact>) {
+    if scene.planes.is_empty() {
+        return;
+    }
+    let first = scene.bodies[body as usize].first_atom;
+    for (place, atom) in scene.of_body(body, positions).iter().zip(first..) {
+        for (plane, number) in scene.planes.iter().zip(0..) {
+            let gap = (place - plane.point).dot(&plane.normal);
+            if gap < scene.reach.proximity {
+                push(contacts, PlaneContact { atom, plane: number, gap });
+            }
+        }
+    }
+}

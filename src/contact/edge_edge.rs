@@ -1,0 +1,154 @@
+//! Edges on edges: two ridges that cross, each with its facets falling away from the other.
+
+use super::closest::LEAST_SINE_SQUARED;
+use super::found::{EdgeContact, push};
+use super::lists::by_body;
+use super::scene::Scene;
+use super::shape::{NONE, Shape, Sides};
+use crate::Vec3;
+
+/// An edge with its two facets.
+struct Ridge<'a> {
+    positions: &'a [Vec3],
+    start: Vec3,
+    along: Vec3,
+    /// The atoms across, in the facet that runs along the edge and in the one that runs against it, or `NONE`.
+    across: [u32; 2],
+}
+
+impl<'a> Ridge<'a> {
+    #[inline]
+    fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
+        let [start, end] = shape.ends(edge, positions);
+        Self { positions, start, along: end - start, across: shape.across[edge as usize] }
+    }
+
+    /// From the start to the atoms across; zero where there is none.
+    #[inline]
+    fn flanks(&self) -> [Vec3; 2] {
+        let flank = |atom: u32| if atom == NONE { Vec3::zeros() } else { self.positions[atom as usize] - self.start };
+        [flank(self.across[0]), flank(self.across[1])]
+    }
+
+    /// Whether one of the facets is missing.
+    fn is_rim(&self) -> bool {
+        self.across.contains(&NONE)
+    }
+
+    /// The normals of the two facets, µm², not scaled.
+    fn normals(&self) -> [Vec3; 2] {
+        let [left, right] = self.flanks();
+        [self.along.cross(&left), right.cross(&self.along)]
+    }
+
+    /// Whether the surface bends away from its outside here.
+    fn is_convex(&self) -> bool {
+        self.normals()[0].dot(&self.flanks()[1]) < 0.0
+    }
+}
+
+/// Adds the contacts of an edge (numbered in its body) with the edges of a list, eq. (contacts.4).
+pub(super) fn find_edge_contacts(
+    scene: &Scene,
+    positions: &[Vec3],
+    body: u32,
+    edge: u32,
+    list: &[u32],
+    contacts: &mut Vec<EdgeContact>,
+) {
+    if list.is_empty() {
+        return;
+    }
+    let shape = scene.shape(body);
+    let first = Ridge::of(shape, scene.of_body(body, positions), edge);
+    let flanks = first.flanks();
+    let first_is_one_sided = shape.sides == Sides::Outer && !first.is_rim();
+    let first_is_convex = first.is_convex();
+    for (other, edges) in by_body(list) {
+        let (there, places) = (scene.shape(other), scene.of_body(other, positions));
+        let surfaces_are_one_sided = first_is_one_sided && there.sides == Sides::Outer && other != body;
+        if surfaces_are_one_sided && !first_is_convex && there.closed {
+            continue;
+        }
+        for &candidate in edges {
+            let second = Ridge::of(there, places, candidate);
+            let one_sided = surfaces_are_one_sided && !second.is_rim();
+            let Some((along, gap, normal)) = cross(&first, &flanks, &second, one_sided, scene) else { continue };
+            let number = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
+            push(
+                contacts,
+                EdgeContact {
+                    edges: [number(body, edge), number(other, candidate)],
+                    bodies: [body, other],
+                    along,
+                    gap,
+                    normal,
+                },
+            );
+        }
+    }
+}
+
+/// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
+#[inline]
+fn cross(
+    first: &Ridge,
+    flanks: &[Vec3; 2],
+    second: &Ridge,
+    one_sided: bool,
+    scene: &Scene,
+) -> Option<([f64; 2], f64, Vec3)> {
+    let normal = first.along.cross(&second.along);
+    let squared = normal.norm_squared();
+    let between = first.start - second.start;
+    let height = normal.dot(&between);
+    let range = scene.reach.range();
+    if height * height > range * range * squared {
+        return None;
+    }
+    // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
+    // or its opposite must do for all four.
+    let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
+    if a * b < 0.0 {
+        return None;
+    }
+    let on_first = -between.cross(&second.along).dot(&normal);
+    let on_second = -between.cross(&first.along).dot(&normal);
+    if on_first < 0.0 || on_first > squared || on_second < 0.0 || on_second > squared {
+        return None;
+    }
+    let [left, right] = second.flanks();
+    let (c, d) = (-normal.dot(&left), -normal.dot(&right));
+    let (lowest, highest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
+    if lowest < 0.0 && highest > 0.0 {
+        return None;
+    }
+    if squared <= LEAST_SINE_SQUARED * first.along.norm_squared() * second.along.norm_squared() {
+        return None;
+    }
+    let facing = if highest > 0.0 {
+        1.0
+    } else if lowest < 0.0 {
+        -1.0
+    } else {
+        1f64.copysign(height)
+    };
+    let length = squared.sqrt();
+    let (gap, normal) = (facing * height / length, normal * (facing / length));
+    if gap >= scene.reach.proximity || gap < -scene.reach.depth {
+        return None;
+    }
+    let fits = if one_sided {
+        first.is_convex() && second.is_convex() && (gap >= 0.0 || is_really_inside(first, second, normal))
+    } else {
+        gap >= 0.0
+    };
+    fits.then(|| ([on_first / squared, on_second / squared], gap, normal))
+}
+
+/// Whether each edge is behind both facets of the other: on ridges sharper than a right angle an edge may be below the
+/// other's crest and yet beside it.
+fn is_really_inside(first: &Ridge, second: &Ridge, normal: Vec3) -> bool {
+    first.normals().iter().all(|facet| facet.dot(&normal) < 0.0)
+        && second.normals().iter().all(|facet| facet.dot(&normal) > 0.0)
+}

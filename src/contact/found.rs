@@ -1,0 +1,102 @@
+//! What detection finds: atoms on facets, edges on edges, atoms on planes.
+
+use super::closest::Feature;
+use crate::Vec3;
+
+/// An atom that touches a facet, or is inside the facet's surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtomContact {
+    /// The atom, numbered through the scene.
+    pub atom: u32,
+    /// The facet, numbered through the scene.
+    pub facet: u32,
+    /// The body of the facet; the atom's own in self-contact.
+    pub body: u32,
+    /// Where on the facet the closest point lies. A point on a side or a corner is told once, for one of its facets.
+    pub feature: Feature,
+    /// Barycentric weights of the facet's second and third atom; see [`AtomContact::weights`].
+    pub second_weights: [f64; 2],
+    /// Distance along the normal, µm; negative inside.
+    pub gap: f64,
+    /// Unit normal from the facet to the outside: atom = closest point + gap × normal.
+    pub normal: Vec3,
+}
+
+impl AtomContact {
+    /// The barycentric weights of the closest point on the three atoms of the facet; their sum is 1.
+    pub fn weights(&self) -> [f64; 3] {
+        let [second, third] = self.second_weights;
+        [1.0 - second - third, second, third]
+    }
+}
+
+/// Two edges that touch or have passed each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeContact {
+    /// The two edges, numbered through the scene; the first has the smaller number.
+    pub edges: [u32; 2],
+    /// Their bodies; twice the same in self-contact.
+    pub bodies: [u32; 2],
+    /// Where along each edge the closest points lie, from 0 at its first atom to 1.
+    pub along: [f64; 2],
+    /// Distance along the normal, µm; negative inside.
+    pub gap: f64,
+    /// Unit normal from the second edge to the first: point on first = point on second + gap × normal.
+    pub normal: Vec3,
+}
+
+/// An atom near a rigid plane or behind it, however far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaneContact {
+    /// The atom, numbered through the scene.
+    pub atom: u32,
+    /// The plane, as numbered in the scene; it has the normal.
+    pub plane: u32,
+    /// Distance, µm; negative behind the plane.
+    pub gap: f64,
+}
+
+/// All contacts, each list ordered by its first number, then its second.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Contacts {
+    /// Atoms on facets, ordered by atom, then facet.
+    pub atoms: Vec<AtomContact>,
+    /// Edges on edges, ordered by first edge, then second.
+    pub edges: Vec<EdgeContact>,
+    /// Atoms on planes, ordered by atom, then plane.
+    pub planes: Vec<PlaneContact>,
+}
+
+impl Contacts {
+    /// The smallest gap, µm; infinite without contacts.
+    pub fn smallest_gap(&self) -> f64 {
+        let of_atoms = self.atoms.iter().map(|contact| contact.gap);
+        let of_edges = self.edges.iter().map(|contact| contact.gap);
+        let of_planes = self.planes.iter().map(|contact| contact.gap);
+        of_atoms.chain(of_edges).chain(of_planes).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Forgets all contacts and keeps the memory.
+    pub fn clear(&mut self) {
+        self.atoms.clear();
+        self.edges.clear();
+        self.planes.clear();
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of::<AtomContact>() * self.atoms.capacity()
+            + size_of::<EdgeContact>() * self.edges.capacity()
+            + size_of::<PlaneContact>() * self.planes.capacity()
+    }
+}
+
+/// Appends to a list that grows by an eighth where a `Vec` would double: contacts are most of the memory of a packed
+/// population, and they hardly grow once it is packed.
+#[inline]
+pub(super) fn push<T>(list: &mut Vec<T>, item: T) {
+    if list.len() == list.capacity() {
+        list.reserve_exact((list.len() / 8).max(32));
+    }
+    list.push(item);
+}

@@ -1,0 +1,119 @@
+//! Exact answers for the start of a run: whether a point is inside a closed surface, and which surfaces overlap.
+
+use super::boxes::Bounds;
+use super::neighbours::Neighbours;
+use super::scene::Scene;
+use super::shape::Sides;
+use crate::Vec3;
+
+/// How often a closed surface winds around a point: 1 inside, 0 outside, for a surface that faces outwards.
+///
+/// The sum of the solid angles of the facets over 4π (van Oosterom & Strackee 1983), eq. (contacts.7). It needs no
+/// direction and no tolerance, and facets without area count nothing.
+pub fn winding_number(point: Vec3, positions: &[Vec3], facets: &[[u32; 3]]) -> f64 {
+    let solid_angle = |facet: &[u32; 3]| {
+        let [a, b, c] = facet.map(|atom| positions[atom as usize] - point);
+        let [la, lb, lc] = [a.norm(), b.norm(), c.norm()];
+        let volume = a.dot(&b.cross(&c));
+        2.0 * volume.atan2(la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb)
+    };
+    facets.iter().map(solid_angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
+}
+
+/// Two surfaces that overlap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Overlap {
+    /// The two bodies, the smaller number first.
+    pub bodies: [u32; 2],
+    /// How many atoms of each are inside the other.
+    pub atoms_inside: [u32; 2],
+    /// How often an edge of one passes through a facet of the other.
+    pub crossings: u32,
+}
+
+impl Overlap {
+    /// The body that is wholly inside the other, if one is.
+    pub fn nested(&self) -> Option<u32> {
+        let [first, second] = self.atoms_inside;
+        match self.crossings {
+            0 if first > 0 => Some(self.bodies[0]),
+            0 if second > 0 => Some(self.bodies[1]),
+            _ => None,
+        }
+    }
+}
+
+/// All pairs of surfaces that overlap or cross, however deep, by the order of bodies. Exact and slow where boxes meet:
+/// for the start of a run.
+///
+/// # Panics
+/// When there are not as many positions as atoms.
+pub fn find_overlaps(scene: &Scene, positions: &[Vec3]) -> Vec<Overlap> {
+    assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
+    let bounds: Vec<Bounds> = (0..scene.bodies.len() as u32)
+        .map(|body| match scene.of_body(body, positions) {
+            [] => Bounds::EMPTY,
+            atoms => Bounds::around(atoms, 0.0),
+        })
+        .collect();
+    let mut neighbours = Neighbours::default();
+    neighbours.find(&bounds);
+    let mut overlaps = Vec::new();
+    for first in 0..scene.bodies.len() as u32 {
+        for &second in neighbours.of(first).iter().filter(|&&second| second > first) {
+            let inside = |inner: u32, outer: u32| atoms_inside(scene, positions, inner, outer, &bounds[outer as usize]);
+            let through =
+                |edges: u32, facets: u32| crossings(scene, positions, edges, facets, &bounds[facets as usize]);
+            let overlap = Overlap {
+                bodies: [first, second],
+                atoms_inside: [inside(first, second), inside(second, first)],
+                crossings: through(first, second) + through(second, first),
+            };
+            if overlap.atoms_inside != [0, 0] || overlap.crossings > 0 {
+                overlaps.push(overlap);
+            }
+        }
+    }
+    overlaps
+}
+
+/// How many atoms of a body are inside another; none when that is open.
+fn atoms_inside(scene: &Scene, positions: &[Vec3], inner: u32, outer: u32, bounds: &Bounds) -> u32 {
+    let shape = scene.shape(outer);
+    if !shape.closed || shape.sides == Sides::Both {
+        return 0;
+    }
+    let there = scene.of_body(outer, positions);
+    let is_inside = |place: &&Vec3| {
+        Bounds::around(std::slice::from_ref(*place), 0.0).meets(bounds)
+            && winding_number(**place, there, &shape.facets).abs() > 0.5
+    };
+    scene.of_body(inner, positions).iter().filter(is_inside).count() as u32
+}
+
+/// How often edges of one body pass through facets of another.
+fn crossings(scene: &Scene, positions: &[Vec3], with_edges: u32, with_facets: u32, bounds: &Bounds) -> u32 {
+    let (here, there) = (scene.of_body(with_edges, positions), scene.of_body(with_facets, positions));
+    let mut count = 0;
+    for &[a, b] in &scene.shape(with_edges).edges {
+        let [from, to] = [here[a as usize], here[b as usize]];
+        if Bounds::around(&[from, to], 0.0).meets(bounds) {
+            let passes = |facet: &&[u32; 3]| passes_through(from, to, facet.map(|atom| there[atom as usize]));
+            count += scene.shape(with_facets).facets.iter().filter(passes).count() as u32;
+        }
+    }
+    count
+}
+
+/// Whether a segment passes through a facet: its ends on different sides of the plane, and the line on the same side of
+/// all three sides of the facet.
+fn passes_through(from: Vec3, to: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
+    let height = |point: Vec3| (b - a).cross(&(c - a)).dot(&(point - a));
+    if height(from) * height(to) >= 0.0 {
+        return false;
+    }
+    let way = to - from;
+    let turn = |one: Vec3, other: Vec3| way.dot(&(one - from).cross(&(other - from)));
+    let turns = [turn(a, b), turn(b, c), turn(c, a)];
+    turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0)
+}

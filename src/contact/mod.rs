@@ -1,0 +1,39 @@
+//! Who touches whom: finding the atoms, facets and edges of cells, sheets and rigid bodies that are near each other or
+//! inside each other. It knows shapes and positions only; what contacts do is for others.
+//!
+//! A [`Scene`] says what can touch and from how far, a [`Detector`] keeps pairs from step to step and writes
+//! [`Contacts`]; [`find_overlaps`] answers for the start of a run, [`atom_meets_facet`] and [`edges_meet`] check a step.
+
+mod atom_facet;
+mod boxes;
+mod closest;
+mod detect;
+mod edge_edge;
+mod found;
+mod inside;
+mod lists;
+mod neighbours;
+mod passages;
+mod reference;
+mod scene;
+mod shape;
+mod swept;
+
+pub use closest::{FacetPoint, Feature, closest_on_facet, closest_on_segments};
+pub use detect::{Detection, Detector};
+pub use found::{AtomContact, Contacts, EdgeContact, PlaneContact};
+pub use inside::{Overlap, find_overlaps, winding_number};
+pub use passages::{Coverage, Pair, Passage};
+pub use reference::detect_all_pairs;
+pub use scene::{Body, Plane, Reach, Scene};
+pub use shape::{Shape, Sides};
+pub use swept::{atom_meets_facet, edges_meet};
+
+#[cfg(test)]
+mod analytic_tests;
+#[cfg(test)]
+mod fuzz_tests;
+#[cfg(test)]
+mod swept_tests;
+#[cfg(test)]
+mod test_scenes;

@@ -1,0 +1,104 @@
+//! Which bodies may touch: a grid of boxes as wide as a typical body, and the bodies that share one.
+
+use super::boxes::Bounds;
+
+/// A body takes no more places in the grid than this on average; a wider grid is taken where large bodies would.
+const PLACES_PER_BODY: usize = 32;
+
+/// For every body the bodies whose boxes meet its own, in ascending order, and the scratch to find them. What is large
+/// (a sheet) takes many places of the grid, what is small takes one to eight, so the cost is linear in the bodies.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Neighbours {
+    first: Vec<u32>,
+    bodies: Vec<u32>,
+    places: Vec<(u64, u32)>,
+    pairs: Vec<(u32, u32)>,
+    widths: Vec<f32>,
+}
+
+/// The place of the grid along each axis. Places wrap at 2²¹: bodies that far apart are told apart by their boxes.
+fn place(point: [f32; 3], width: f32) -> [i64; 3] {
+    point.map(|x| (f64::from(x) / f64::from(width)).floor().clamp(-1e6, 1e6) as i64)
+}
+
+fn key(place: [i64; 3]) -> u64 {
+    place.iter().fold(0, |key, &index| key << 21 | (index + (1 << 20)) as u64)
+}
+
+fn places_of(bounds: &Bounds, width: f32) -> [std::ops::RangeInclusive<i64>; 3] {
+    let (low, high) = (place(bounds.low, width), place(bounds.high, width));
+    [0, 1, 2].map(|axis| low[axis]..=high[axis])
+}
+
+impl Neighbours {
+    /// The bodies whose boxes meet that of a body, ascending, itself not among them.
+    pub fn of(&self, body: u32) -> &[u32] {
+        &self.bodies[self.first[body as usize] as usize..self.first[body as usize + 1] as usize]
+    }
+
+    /// Finds all neighbours of the bodies with these boxes.
+    pub fn find(&mut self, bounds: &[Bounds]) {
+        let width = self.width(bounds);
+        self.places.clear();
+        for (body, bounds) in bounds.iter().enumerate() {
+            let [x, y, z] = places_of(bounds, width);
+            for i in x {
+                for j in y.clone() {
+                    self.places.extend(z.clone().map(|k| (key([i, j, k]), body as u32)));
+                }
+            }
+        }
+        self.places.sort_unstable();
+        self.pairs.clear();
+        for together in self.places.chunk_by(|left, right| left.0 == right.0) {
+            for (index, &(here, first)) in together.iter().enumerate() {
+                for &(_, second) in &together[index + 1..] {
+                    let (one, other) = (&bounds[first as usize], &bounds[second as usize]);
+                    // Two boxes may share many places: the lowest corner of what they share lies in one only.
+                    let corner = [0, 1, 2].map(|axis| one.low[axis].max(other.low[axis]));
+                    if one.meets(other) && key(place(corner, width)) == here {
+                        self.pairs.extend([(first, second), (second, first)]);
+                    }
+                }
+            }
+        }
+        self.pairs.sort_unstable();
+        self.bodies.clear();
+        self.bodies.extend(self.pairs.iter().map(|pair| pair.1));
+        self.first.clear();
+        let mut next = 0;
+        for body in 0..=bounds.len() as u32 {
+            while next < self.pairs.len() && self.pairs[next].0 < body {
+                next += 1;
+            }
+            self.first.push(next as u32);
+        }
+    }
+
+    /// The median of the longest extents of bodies, doubled until large bodies do not fill the grid.
+    fn width(&mut self, bounds: &[Bounds]) -> f32 {
+        let extent = |bounds: &Bounds| (0..3).map(|axis| bounds.high[axis] - bounds.low[axis]).fold(0.0, f32::max);
+        self.widths.clear();
+        self.widths.extend(bounds.iter().map(extent).filter(|width| width.is_finite() && *width > 0.0));
+        if self.widths.is_empty() {
+            return 1.0;
+        }
+        let middle = self.widths.len() / 2;
+        let mut width = *self.widths.select_nth_unstable_by(middle, f32::total_cmp).1;
+        let places = |width: f32| -> f64 {
+            let count = |along: &std::ops::RangeInclusive<i64>| (along.end() - along.start() + 1).max(0) as f64;
+            bounds.iter().map(|bounds| places_of(bounds, width).iter().map(count).product::<f64>()).sum()
+        };
+        while places(width) > (PLACES_PER_BODY * bounds.len() + 64) as f64 {
+            width *= 2.0;
+        }
+        width
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        4 * (self.first.capacity() + self.bodies.capacity() + self.widths.capacity())
+            + 16 * self.places.capacity()
+            + 8 * self.pairs.capacity()
+    }
+}

@@ -1,0 +1,103 @@
+//! A check after a step: what passed through what, among the pairs kept.
+
+use super::detect::Detector;
+use super::lists::by_body;
+use super::scene::Scene;
+use super::swept::{atom_meets_facet, edges_meet};
+use crate::Vec3;
+
+/// Two things that met on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pair {
+    /// An atom and a facet, numbered through the scene.
+    AtomFacet {
+        /// The atom.
+        atom: u32,
+        /// The facet.
+        facet: u32,
+    },
+    /// Two edges, numbered through the scene.
+    Edges([u32; 2]),
+}
+
+/// A meeting during a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passage {
+    /// What met.
+    pub pair: Pair,
+    /// The bodies of the two.
+    pub bodies: [u32; 2],
+    /// The share of the step until which they surely have not met.
+    pub share: f64,
+}
+
+/// Whether the pairs kept are all that could meet in a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coverage {
+    /// No atom was farther than half of the margin from where the pairs were collected.
+    Complete,
+    /// Some atom was: meetings may be missing.
+    Partial,
+}
+
+impl Detector {
+    /// Finds all pairs that meet while every atom moves along a straight line from `before` to `after` (µm), and writes
+    /// them over `passages`: atoms and facets first, by atom, then edges, for one batch of bodies after the other. What
+    /// is nearer than `thickness` (µm) counts as meeting. A check for tests and diagnosis: it costs some times more than
+    /// a detection, and pairs that touch before the step meet in it.
+    ///
+    /// # Panics
+    /// When there are not as many positions as atoms, before or after.
+    pub fn find_passages(
+        &self,
+        scene: &Scene,
+        before: &[Vec3],
+        after: &[Vec3],
+        thickness: f64,
+        passages: &mut Vec<Passage>,
+    ) -> Coverage {
+        assert_eq!([before.len(), after.len()], [scene.atoms; 2], "one position per atom of the scene");
+        passages.clear();
+        let half = 0.5 * scene.reach.margin;
+        if self.moved(scene, before).is_infinite() {
+            return Coverage::Partial;
+        }
+        for (batch, lists) in self.lists().iter().enumerate() {
+            let (mut atom_of_batch, mut edge_of_batch) = (0, 0);
+            for body in scene.bodies_of(batch) {
+                for _ in 0..scene.shape(body).atoms {
+                    let atom = scene.atoms_of(batch).start + atom_of_batch;
+                    for (other, facets) in by_body(lists.facets(atom_of_batch)) {
+                        for facet in facets.iter().map(|facet| facet + scene.bodies[other as usize].first_facet) {
+                            let corners = scene.facet_atoms(other, facet);
+                            let facet_at = [before, after].map(|at| corners.map(|corner| at[corner as usize]));
+                            if let Some(share) = atom_meets_facet([before[atom], after[atom]], facet_at, thickness) {
+                                let pair = Pair::AtomFacet { atom: atom as u32, facet };
+                                passages.push(Passage { pair, bodies: [body, other], share });
+                            }
+                        }
+                    }
+                    atom_of_batch += 1;
+                }
+                for edge in 0..scene.shape(body).edges.len() as u32 {
+                    let edge = edge + scene.bodies[body as usize].first_edge;
+                    let ends = |body: u32, edge: u32| {
+                        let atoms = scene.edge_atoms(body, edge);
+                        [before, after].map(|at| atoms.map(|atom| at[atom as usize]))
+                    };
+                    for (other, edges) in by_body(lists.edges(edge_of_batch)) {
+                        for second in edges.iter().map(|second| second + scene.bodies[other as usize].first_edge) {
+                            if let Some(share) = edges_meet(ends(body, edge), ends(other, second), thickness) {
+                                let pair = Pair::Edges([edge, second]);
+                                passages.push(Passage { pair, bodies: [body, other], share });
+                            }
+                        }
+                    }
+                    edge_of_batch += 1;
+                }
+            }
+        }
+        let covered = [before, after].iter().all(|positions| self.moved(scene, positions) <= half);
+        if covered { Coverage::Complete } else { Coverage::Partial }
+    }
+}
