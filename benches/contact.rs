@@ -31,6 +31,7 @@ impl Dice {
         ((bits ^ bits >> 31) >> 11) as f64 * 2f64.powi(-52) - 1.0
     }
 
+    /// Three of them.
     pub fn vector(&mut self) -> Vec3 {
         Vec3::new(self.roll(), self.roll(), self.roll())
     }
