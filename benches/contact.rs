@@ -6,6 +6,7 @@ use divan::counter::ItemsCount;
 use pseudopod::Vec3;
 use pseudopod::contact::{Contacts, Detector, Reach, Scene, Shape, Sides, detect_all_pairs};
 use pseudopod::geometry::icosphere;
+use pseudopod::random::{Purpose, Stream};
 
 /// A tenth of the mean edge for all three.
 const REACH: Reach = Reach { proximity: 0.055, depth: 0.055, margin: 0.055 };
@@ -19,27 +20,15 @@ fn main() {
     divan::main();
 }
 
-/// Numbers uniform in [−1, 1) (splitmix64).
-pub struct Dice(pub u64);
-
-impl Dice {
-    fn roll(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut bits = self.0;
-        bits = (bits ^ bits >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        bits = (bits ^ bits >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((bits ^ bits >> 31) >> 11) as f64 * 2f64.powi(-52) - 1.0
-    }
-
-    /// Three of them.
-    pub fn vector(&mut self) -> Vec3 {
-        Vec3::new(self.roll(), self.roll(), self.roll())
-    }
+/// Three numbers uniform in [−1, 1).
+fn vector(dice: &mut Stream) -> Vec3 {
+    let ([x, y], [z, _]) = (dice.uniform_pair(), dice.uniform_pair());
+    Vec3::new(x, y, z) * 2.0 - Vec3::repeat(1.0)
 }
 
 /// Cells on an fcc lattice, each turned at random and flattened against its neighbours, with noise.
 pub fn packed(count: usize) -> (Scene, Vec<Vec3>) {
-    let mut dice = Dice(1);
+    let mut dice = Stream::new(1, Purpose::Placement, 0, 0);
     let rest = icosphere(1.0, 1);
     let shape = Shape::new(&rest, Sides::Outer, 1.5 * REACH.proximity);
     let side = (1..).find(|side: &usize| side.pow(3).div_ceil(2) >= count).expect("a cube large enough");
@@ -49,14 +38,14 @@ pub fn packed(count: usize) -> (Scene, Vec<Vec3>) {
     let mut positions = Vec::with_capacity(42 * count);
     for site in cube.filter(|site| site.iter().sum::<usize>() % 2 == 0).take(count) {
         let centre = Vec3::from(site.map(|index| index as f64)) * (2f64.sqrt() * HALF_DISTANCE);
-        let turn = turning(dice.vector());
+        let turn = turning(vector(&mut dice));
         for x in &rest.positions {
             let mut place = turn(x);
             for way in ways {
                 let height = place.dot(&way);
                 place -= way * (height - height.clamp(0.02 - HALF_DISTANCE, HALF_DISTANCE - 0.02));
             }
-            positions.push(centre + place + dice.vector() * 0.01);
+            positions.push(centre + place + vector(&mut dice) * 0.01);
         }
     }
     (Scene::new(vec![shape], &vec![0; count], Vec::new(), REACH), positions)
@@ -85,8 +74,8 @@ fn detect(bencher: Bencher, cells: usize, prepare: impl Fn(&mut Detector)) {
     // Cells that stir by a hundredth of an edge, so that no branch is learnt by heart; the pairs stay valid.
     let stirred: Vec<Vec<Vec3>> = (0..8)
         .map(|seed| {
-            let mut dice = Dice(seed);
-            positions.iter().map(|x| x + dice.vector() * 0.005).collect()
+            let mut dice = Stream::new(seed, Purpose::Motility, 0, 0);
+            positions.iter().map(|x| x + vector(&mut dice) * 0.005).collect()
         })
         .collect();
     let mut turn = 0;

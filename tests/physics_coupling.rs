@@ -2,7 +2,7 @@
 
 mod coupled_scene;
 
-use coupled_scene::{Scene, one_cell, scene};
+use coupled_scene::{Scene, crowd, one_cell, scene};
 use pseudopod::Vec3;
 use pseudopod::sim::chemistry::next_exchange;
 use pseudopod::sim::{State, Trouble};
@@ -224,8 +224,8 @@ fn a_link_that_carries_nonsense_is_named() {
     );
 }
 
-/// Cells that wander, secrete and climb what they secrete; the field has boxes enough that threads share its reactions.
-fn crowd() -> Scene {
+/// Cells that secrete and climb what they secrete, after 20 steps; the field has boxes enough that threads share its reactions.
+fn crowd_after(threads: usize, before: impl Fn(&mut Scene) + Sync) -> State {
     let field = r#"<eml name="field"><grid dimension="2" spacing="1.5" origin="-60 -60" size="120 120"/>
         <field id="c" diffusion="40" decay="0.05" initial="1 + 0.01*x"><reaction>-0.02*c^2</reaction></field></eml>"#;
     let own = r#"<eml name="own" level="cell"><input id="c" default="0"/><input id="gx" default="0"/>
@@ -234,35 +234,7 @@ fn crowd() -> Scene {
         <link from="field[c]" to="system.c"/><link from="field[c].gradient.x" to="system.gx"/>
         <link from="system.gx" to="cell.motility.bias.x" gain="5"/><link from="system.w" to="cell.secretion[c]" gain="10"/>
         <link from="system.u" to="cell.stiffness" transfer="1 + 0.5*tanh(value)"/></eml>"#;
-    let text = r#"
-seed = 4
-[run]
-until = "40 s"
-integrator = { max_step = "1 s" }
-[output]
-every = "10 s"
-[cells.cell]
-number = 37
-mesh = { shape = "icosphere", radius = "5 um", level = 1 }
-placement = { random_from = ["-50 um", "-50 um", "0 um"], random_to = ["50 um", "50 um", "0 um"] }
-mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
-motility = { brownian = { speed = "5 um/min", persistence = "5 s" } }
-chemistry = ["own"]
-"#;
-    scene(&[("field", field), ("own", own)], text)
-}
-
-/// The crowd after 20 steps; `before` each step something may be done to it.
-fn crowd_after(threads: usize, before: impl Fn(&mut Scene) + Sync) -> State {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| {
-        let mut scene = crowd();
-        for _ in 0..20 {
-            before(&mut scene);
-            scene.step().unwrap();
-        }
-        scene.compiled.state
-    })
+    crowd(threads, &[("field", field), ("own", own)], 20, before).compiled.state
 }
 
 #[test]

@@ -3,7 +3,7 @@
 mod coupled_scene;
 mod sbml_suite;
 
-use coupled_scene::{Scene, one_cell, scene};
+use coupled_scene::{Scene, crowd, one_cell, scene};
 use pseudopod::chemistry::ode::{Reason, SolveOptions, solve};
 use pseudopod::sim::{State, Trouble};
 use sbml_suite::{Case, Solved, suite};
@@ -59,12 +59,7 @@ fn ball(time: f64) -> [f64; 3] {
 fn a_ball_bounces_in_windows_of_any_length_when_it_should() {
     for step in ["0.0037 s", "0.037 s", "0.41 s", "3 s"] {
         let mut scene = alone(BALL, "3 s", step);
-        let (mut times, mut rows) = (Vec::new(), Vec::new());
-        while scene.state().time < 3.0 {
-            scene.step().unwrap();
-            times.push(scene.state().time);
-            rows.push(values(&scene));
-        }
+        let (times, rows): (Vec<f64>, Vec<_>) = scene.rows_until(3.0, values).into_iter().unzip();
         for ((time, row), single) in times.iter().zip(&rows).zip(solved(BALL, &times)) {
             for (place, exact) in ball(*time).into_iter().enumerate() {
                 // Parabolas are exact for the method; only the times of the bounces have an error, of round-off.
@@ -91,12 +86,8 @@ fn drug(hours: f64) -> f64 {
 fn doses_are_given_late_and_decay_as_in_a_single_solve() {
     for step in ["1.1 min", "7 min", "23 min", "2 h"] {
         let mut scene = alone(DOSES, "6 h", step);
-        let (mut times, mut rows) = (Vec::new(), Vec::new());
-        while scene.state().time < 21600.0 {
-            scene.step().unwrap();
-            times.push(scene.state().time / 3600.0);
-            rows.push(scene.value(0, "drug", 0));
-        }
+        let rows = scene.rows_until(21600.0, |scene| scene.value(0, "drug", 0));
+        let (times, rows): (Vec<f64>, Vec<f64>) = rows.into_iter().map(|(time, drug)| (time / 3600.0, drug)).unzip();
         assert_eq!(scene.value(0, "given", 0), 6.0, "{step}");
         let single = solved(DOSES, &times);
         for ((time, found), single) in times.iter().zip(&rows).zip(single) {
@@ -223,47 +214,25 @@ fn what_events_set_at_the_start_is_carried_at_the_start() {
 }
 
 /// Cells at places of their own, whose clocks run and whose events come as their places say.
-fn crowd(threads: usize, before: impl Fn(&mut Scene) + Sync) -> State {
+fn crowd_after(threads: usize, before: impl Fn(&mut Scene) + Sync) -> State {
     let own = r#"<eml name="own" level="cell"><input id="x" default="0"/><variable id="u" initial="0" rate="1+0.01*x-0.3*u"/>
         <variable id="n" initial="0" rate="0"/><variable id="w" initial="1" rate="0.2*n-w"/>
         <event id="reset" when="u gt 1.5" delay="0.4+0.003*x"><set id="u">0.1*u</set><set id="n">n+1</set></event>
         <event id="tick" when="time ge 3*(n+1)" priority="2"><set id="w">w+0.5</set></event>
         <link from="cell.position.x" to="system.x"/><link from="system.w" to="cell.motility.bias.y" gain="0.2"/></eml>"#;
-    let text = r#"
-seed = 4
-[run]
-until = "40 s"
-integrator = { max_step = "1 s" }
-[output]
-every = "10 s"
-[cells.cell]
-number = 37
-mesh = { shape = "icosphere", radius = "5 um", level = 1 }
-placement = { random_from = ["-50 um", "-50 um", "0 um"], random_to = ["50 um", "50 um", "0 um"] }
-mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
-motility = { brownian = { speed = "5 um/min", persistence = "5 s" } }
-chemistry = ["own"]
-"#;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| {
-        let mut scene = scene(&[("own", own)], text);
-        for _ in 0..24 {
-            before(&mut scene);
-            scene.step().unwrap();
-        }
-        let counts: Vec<f64> = (0..37).map(|cell| scene.value(0, "n", cell)).collect();
-        assert!(counts.iter().any(|n| *n > counts[0]) && counts.iter().all(|n| *n > 0.0), "{counts:?}");
-        scene.compiled.state
-    })
+    let scene = crowd(threads, &[("own", own)], 24, before);
+    let counts: Vec<f64> = (0..37).map(|cell| scene.value(0, "n", cell)).collect();
+    assert!(counts.iter().any(|n| *n > counts[0]) && counts.iter().all(|n| *n > 0.0), "{counts:?}");
+    scene.compiled.state
 }
 
 #[test]
 fn threads_scratch_and_checkpoints_do_not_matter_to_cells_with_events() {
-    let plain = crowd(1, |_| ());
-    assert_eq!(plain, crowd(2, |_| ()), "threads");
-    assert_eq!(plain, crowd(3, |_| ()), "threads");
-    assert_eq!(plain, crowd(1, |scene| scene.ws.poison(&scene.compiled.model)), "scratch");
-    assert_eq!(plain, crowd(2, Scene::stop_and_resume), "checkpoints");
+    let plain = crowd_after(1, |_| ());
+    assert_eq!(plain, crowd_after(2, |_| ()), "threads");
+    assert_eq!(plain, crowd_after(3, |_| ()), "threads");
+    assert_eq!(plain, crowd_after(1, |scene| scene.ws.poison(&scene.compiled.model)), "scratch");
+    assert_eq!(plain, crowd_after(2, Scene::stop_and_resume), "checkpoints");
 }
 
 #[test]

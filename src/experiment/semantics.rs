@@ -75,7 +75,10 @@ impl Check<'_> {
         if file.is_file() || self.document.equations.contains_key(text) {
             return;
         }
-        let (message, help) = match (file.is_dir(), near_file(&file)) {
+        // The experiment itself is never the file that it names.
+        let own = Path::new(&self.document.source.name).file_name();
+        let near = near_file(&file).filter(|near| near.file_name() != own);
+        let (message, help) = match (file.is_dir(), near) {
             (true, _) => (format!("`{path}`: {text} is a folder"), "name a file in it".to_owned()),
             (false, Some(near)) => {
                 let near = Path::new(text).with_file_name(near.file_name().unwrap_or_default());

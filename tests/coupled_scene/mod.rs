@@ -45,6 +45,16 @@ impl Scene {
         }
     }
 
+    /// Steps until a time, with what is asked of the run after each: (time in s, answer).
+    pub fn rows_until<T>(&mut self, until: f64, row: impl Fn(&Self) -> T) -> Vec<(f64, T)> {
+        let mut rows = Vec::new();
+        while self.state().time < until {
+            self.step().unwrap();
+            rows.push((self.state().time, row(self)));
+        }
+        rows
+    }
+
     /// Where the run is.
     pub fn state(&self) -> &State {
         &self.compiled.state
@@ -91,4 +101,34 @@ mechanics = {{ drag = "20 pN s/um", shape_memory = {{ shape_modulus = "10 pN/um"
 chemistry = ["own"]
 "#
     )
+}
+
+/// Cells that wander, each with the system `own`.
+const CROWD: &str = r#"
+seed = 4
+[run]
+until = "40 s"
+integrator = { max_step = "1 s" }
+[output]
+every = "10 s"
+[cells.cell]
+number = 37
+mesh = { shape = "icosphere", radius = "5 um", level = 1 }
+placement = { random_from = ["-50 um", "-50 um", "0 um"], random_to = ["50 um", "50 um", "0 um"] }
+mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
+motility = { brownian = { speed = "5 um/min", persistence = "5 s" } }
+chemistry = ["own"]
+"#;
+
+/// A crowd of 37 cells after some steps on some threads; before each step something may be done to it.
+pub fn crowd(threads: usize, documents: &[(&str, &str)], steps: usize, before: impl Fn(&mut Scene) + Sync) -> Scene {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| {
+        let mut scene = scene(documents, CROWD);
+        for _ in 0..steps {
+            before(&mut scene);
+            scene.step().unwrap();
+        }
+        scene
+    })
 }

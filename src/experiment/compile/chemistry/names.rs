@@ -24,8 +24,15 @@ fn series(chemistry: &Chemistry, path: &str, text: &str) -> Option<(String, Faul
     let (system, quantity) = stored.split_once('.').filter(|(system, _)| *system != "load")?;
     if let Some(reactor) = chemistry.reactors.iter().find(|reactor| reactor.name == system) {
         let known = || reactor.recorded.iter().map(|(_, id, _)| id.as_str());
+        let is_there = reactor.program.names.iter().any(|name| name == quantity);
         return match known().any(|id| id == quantity) {
             true => None,
+            false if is_there => {
+                let fault =
+                    Fault::new(format!("`{path}`: `{quantity}` of `{system}` keeps its value and is not recorded"));
+                let help = format!("its value stands in the document; recorded are {}", words::all_of(known()));
+                Some(("is constant".into(), fault.help(help)))
+            }
             false => Some(missing(path, &format!("`{system}`"), "quantity", quantity, known)),
         };
     }
