@@ -251,7 +251,7 @@ impl Population {
         let Self { states, steps, errors, given, rates, known, rooms, .. } = self;
         let (method, cells, open) = (self.method, self.cells, self.open);
         let blocks = blocks_a_task(steps.len(), threads);
-        let one = |(task, (((states, steps), errors), kept)): (usize, (((&mut [_], &mut [_]), &mut [_]), _))| {
+        let one = |(task, (((states, steps), errors), kept)): (usize, Part)| {
             let room = &rooms[rayon::current_thread_index().unwrap_or(0)];
             let mut room = room.lock().unwrap_or_else(PoisonError::into_inner);
             let scratch = room.get_or_insert_with(|| Box::new(Scratch::new(program, method == Method::Rosenbrock)));
@@ -287,6 +287,9 @@ impl Population {
         file[1 + n..1 + n + m].copy_from_slice(&self.given[block * m..(block + 1) * m]);
     }
 }
+
+/// What a task changes: states, steps, errors and kept rates.
+type Part<'a> = (((&'a mut [Lanes<LANES>], &'a mut [Lanes<LANES>]), &'a mut [Lanes<LANES>]), Option<Kept<'a, LANES>>);
 
 /// Tasks of so many blocks have enough cells to fill lanes that are done early.
 const MOST_BLOCKS: usize = 256;
