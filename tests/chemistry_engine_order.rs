@@ -149,3 +149,56 @@ fn inputs_differ_between_cells() {
     (0..33)
         .for_each(|cell| assert!((population.state(cell, 0) - 2.0 * cell as f64).abs() < 1e-12 * (1.0 + cell as f64)));
 }
+
+#[test]
+fn rates_kept_between_windows_change_no_bit() {
+    use pseudopod::chemistry::tree::Role;
+    // Driven by an input, and by the clock.
+    let driven = |rate: &str| {
+        let mut system = system("driven", &[("x", 1.0, "y"), ("y", 0.0, rate)], &[("k", 1.0)]);
+        system.quantities[2] = ode_problems::quantity("k", Role::Input, 1.0);
+        system
+    };
+    for (rate, keeps) in [("k*(1-x^2)*y-x", true), ("k*cos(3*t)-x", false)] {
+        let program = Program::new(&driven(rate)).expect("no circles");
+        let mut kept = Population::new(&program, 37, Method::Rk45);
+        (0..37).for_each(|cell| kept.set_state(cell, 1, 0.1 * cell as f64));
+        let mut anew = kept.clone();
+        let (mut work, mut all) = (0, 0);
+        for window in 0..12 {
+            let (from, until) = (0.3 * f64::from(window), 0.3 * f64::from(window + 1));
+            for cell in 0..37 {
+                // Some inputs and states change, most are set to what they are.
+                let input = if cell % 5 == 0 { 1.0 + 0.1 * f64::from(window) } else { 1.0 };
+                let jump = if (cell + window as usize) % 9 == 0 { 0.5 } else { 0.0 };
+                for population in [&mut kept, &mut anew] {
+                    population.set_given(cell, 0, input);
+                    population.set_state(cell, 0, population.state(cell, 0) + jump);
+                }
+                // There and back: nothing is known of the rates, and all else is the same.
+                let state = anew.state(cell, 1);
+                anew.set_state(cell, 1, state + 1.0);
+                anew.set_state(cell, 1, state);
+            }
+            work += kept.advance(&program, from, until, &Tolerances::default()).expect("it stays small").rates;
+            all += anew.advance(&program, from, until, &Tolerances::default()).expect("it stays small").rates;
+            for (cell, v) in (0..37).flat_map(|cell| [(cell, 0), (cell, 1)]) {
+                let (a, b) = (kept.state(cell, v), anew.state(cell, v));
+                assert_eq!(a.to_bits(), b.to_bits(), "{rate}, window {window}, cell {cell}: {a} and {b}");
+            }
+            assert!(kept == anew);
+        }
+        assert_eq!(work < all, keeps, "{rate}: {work} and {all} evaluations");
+    }
+}
+
+#[test]
+fn rates_of_another_program_do_not_count() {
+    let [slow, fast] =
+        ["0-x", "0-2*x"].map(|rate| Program::new(&system("decay", &[("x", 1.0, rate)], &[])).expect("no circles"));
+    let mut cells = Population::new(&slow, 3, Method::Rk45);
+    cells.advance(&slow, 0.0, 1.0, &Tolerances::default()).expect("a decay");
+    cells.advance(&fast, 1.0, 2.0, &Tolerances::default()).expect("a decay");
+    // Twenty tolerances.
+    assert!((cells.state(1, 0) - (-3.0_f64).exp()).abs() < 2e-5, "{}", cells.state(1, 0));
+}

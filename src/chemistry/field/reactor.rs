@@ -166,7 +166,7 @@ impl Reactor {
         given.copy_from_slice(&scratch.file[open..open + many]);
         // The splitting has chosen its step for these reactions: it is tried in one piece.
         let (mut steps, mut errors) = ([[window.1 - window.0; WIDTH]], [[1.0; WIDTH]]);
-        let mut cells = Cells { count: WIDTH, states, given, steps: &mut steps, errors: &mut errors };
+        let mut cells = Cells { count: WIDTH, states, given, steps: &mut steps, errors: &mut errors, kept: None };
         before.copy_from_slice(&scratch.state);
         let result = block::advance(simd, &self.program, method, scratch, &mut cells, window, &self.tolerances);
         scratch.proposal.copy_from_slice(states);

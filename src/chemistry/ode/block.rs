@@ -3,7 +3,8 @@
 use pulp::Simd;
 
 use super::cells::{Cells, Seats};
-use super::control::{self, EXPLICIT, LEAST, STIFF, Tolerances};
+use super::control::{self, Controller, EXPLICIT, LEAST, STIFF, Tolerances};
+use super::mask::{self, Mask, YES, both, choose, pick, when};
 use super::scratch::Scratch;
 use super::{Method, Reason, Work, explicit, rosenbrock};
 use crate::chemistry::program::{Lanes, Program};
@@ -50,16 +51,21 @@ const SAFE_SHRINK: f64 = 0.9;
 /// Lanes wait for each other until one in so many is free: that costs less than to change cells more often.
 const FREE_SHARE: usize = 2;
 
-/// What is known of each lane on its way through the window.
+/// What is known of each lane on its way through the window, beside what goes with its cell.
 struct Way<const L: usize> {
     time: Lanes<L>,
-    step: Lanes<L>,
-    error: Lanes<L>,
     /// Rounds since the cell took its seat.
-    rounds: [u32; L],
-    refused: [bool; L],
-    /// Whether the rates at the state are not known.
-    fresh: [bool; L],
+    rounds: Lanes<L>,
+    refused: Mask<L>,
+}
+
+/// The steps of a round.
+struct Round<const L: usize> {
+    step: Lanes<L>,
+    /// Those that end with the window.
+    last: Mask<L>,
+    /// Those that would else have been longer than half of what is left.
+    cut: Mask<L>,
 }
 
 #[inline(always)]
@@ -71,102 +77,146 @@ fn adaptive<S: Simd, const L: usize, const STIFFLY: bool>(
     (from, until): (f64, f64),
     tolerances: &Tolerances,
 ) -> Result<Work, CellTrouble> {
-    let n = s.state.len();
     let controller = if STIFFLY { STIFF } else { EXPLICIT };
     let (mut work, mut trouble) = (Work::default(), None);
     let mut seats = Seats::<L>::new();
-    let mut way =
-        Way { time: [from; L], step: [0.0; L], error: [1.0; L], rounds: [0; L], refused: [false; L], fresh: [true; L] };
+    let mut way = Way { time: [from; L], rounds: [0.0; L], refused: [0; L] };
     let shortest = 4.0 * f64::EPSILON * from.abs().max(until.abs());
     let open = program.first_open();
     loop {
         sit(&mut seats, &mut way, cells, open, s, from);
-        let left = seats.active.iter().filter(|active| **active).count();
+        let left = mask::count(&seats.active);
         if left == 0 {
             break;
         }
-        begin::<L, STIFFLY>(program, s, &seats, &mut way, until - from, tolerances, &mut work);
-        let (mut step, mut last, mut cut) = ([0.0; L], [false; L], [false; L]);
-        for l in 0..L {
-            let (rest, wanted) = (until - way.time[l], way.step[l]);
-            last[l] = wanted >= rest * (1.0 - 1e-10);
-            cut[l] = wanted > 0.5 * rest;
-            let within = if cut[l] { 0.5 * rest } else { wanted };
-            let within = if last[l] { rest } else { within };
-            step[l] = if seats.active[l] { within } else { until - from };
-        }
+        begin::<L, STIFFLY>(program, s, &mut seats, &way.time, until - from, tolerances, &mut work);
+        let round = plan(&seats, &way, (from, until));
         if STIFFLY {
-            rosenbrock::step(simd, program, s, &way.time, &step);
+            rosenbrock::step(simd, program, s, &way.time, &round.step);
             work.jacobians += left as u64;
         } else {
-            explicit::tsitouras(simd, program, s, &way.time, &step);
+            explicit::tsitouras(simd, program, s, &way.time, &round.step);
         }
         work.rates += 6 * left as u64;
         let error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
-        let mut factor = [1.0; L];
-        for l in 0..L {
-            factor[l] = controller.factor(error[l], way.error[l]);
-        }
-        let (mut accepted, mut leaving, mut any_leaves, mut all_leave) = ([false; L], [false; L], false, true);
-        for l in 0..L {
-            // A norm that is not a number compares false and is refused.
-            accepted[l] = seats.active[l] & (error[l] <= 1.0);
-            let most = if way.refused[l] { 1.0 } else { controller.most };
-            let grown = if factor[l] < most { factor[l] } else { most };
-            let next = step[l] * grown;
-            // A step cut by the window that was good enough says nothing against the longer one.
-            let keeps = (cut[l] | last[l]) & (grown >= most) & (next < way.step[l]);
-            let next = if keeps { way.step[l] } else { next };
-            let known = if factor[l] < SAFE_SHRINK { factor[l] } else { SAFE_SHRINK };
-            let shrunk = step[l] * if error[l] < f64::INFINITY { known } else { LEAST };
-            let end = if last[l] { until } else { way.time[l] + step[l] };
-            way.time[l] = if accepted[l] { end } else { way.time[l] };
-            way.step[l] = if accepted[l] { next } else { shrunk };
-            way.error[l] = if accepted[l] { error[l] } else { way.error[l] };
-            way.refused[l] = !accepted[l];
-            way.rounds[l] += u32::from(seats.active[l]);
-            let short = !accepted[l] & (way.step[l] <= shortest);
-            let endless = way.rounds[l] >= tolerances.max_steps;
-            leaving[l] = seats.active[l] & (short | endless | (way.time[l] >= until));
-            any_leaves |= leaving[l];
-            all_leave &= leaving[l];
-        }
-        let steps = accepted.iter().filter(|accepted| **accepted).count();
+        let accepted = judge(&mut seats, &mut way, &round, &error, &controller, until);
+        let steps = mask::count(&accepted);
         work.steps += steps as u64;
         work.rejected += (left - steps) as u64;
-        for (state, proposal) in s.state.iter_mut().zip(&s.proposal) {
-            choose(state, proposal, &accepted);
-        }
-        if !STIFFLY {
-            let (first, others) = s.stages.split_at_mut(n);
-            for (first, last) in first.iter_mut().zip(&others[5 * n..]) {
-                choose(first, last, &accepted);
-            }
-        }
-        if !any_leaves {
+        advance_state::<L, STIFFLY>(s, &accepted, steps);
+        let (arrived, leaving) = leaving(&seats, &way, until, shortest, f64::from(tolerances.max_steps));
+        let leave = mask::count(&leaving);
+        if leave == 0 {
             continue;
         }
-        for l in (0..L).filter(|&l| leaving[l] && way.time[l] < until) {
-            let known = explain(program, s, &way, l, (seats.cell[l], error[l], shortest));
-            if trouble.is_none_or(|first: CellTrouble| known.cell < first.cell) {
-                trouble = Some(known);
-            }
-        }
-        if all_leave && seats.leave_block(cells, s, &way.step, &way.error) {
+        if mask::count(&arrived) == L && seats.leave_block(cells, s) {
             continue;
         }
-        for l in (0..L).filter(|&l| leaving[l]) {
-            seats.leave(l, cells, s, &way.step, &way.error);
+        for l in (0..L).filter(|&l| leaving[l] != 0) {
+            if arrived[l] == 0 {
+                let known = explain(program, s, (way.time, seats.step), l, (seats.cell[l], error[l], shortest));
+                if trouble.is_none_or(|first: CellTrouble| known.cell < first.cell) {
+                    trouble = Some(known);
+                }
+            }
+            seats.leave(l, cells, s, arrived[l] != 0);
         }
     }
     trouble.map_or(Ok(work), Err)
 }
 
-/// Takes over some lanes of another.
+/// The steps that lanes take next: as wanted, or into what is left of the window.
 #[inline(always)]
-fn choose<const L: usize>(to: &mut Lanes<L>, from: &Lanes<L>, lanes: &[bool; L]) {
+fn plan<const L: usize>(seats: &Seats<L>, way: &Way<L>, (from, until): (f64, f64)) -> Round<L> {
+    let mut round = Round { step: [0.0; L], last: [0; L], cut: [0; L] };
     for l in 0..L {
-        to[l] = if lanes[l] { from[l] } else { to[l] };
+        let (rest, wanted) = (until - way.time[l], seats.step[l]);
+        let (last, cut) = (when(wanted >= rest * (1.0 - 1e-10)), when(wanted > 0.5 * rest));
+        let within = pick(last, rest, pick(cut, 0.5 * rest, wanted));
+        round.step[l] = pick(seats.active[l], within, until - from);
+        (round.last[l], round.cut[l]) = (last, cut);
+    }
+    round
+}
+
+/// Looks at the errors of a round: lanes whose step is good enough move on, and all get their next step. Returns the
+/// lanes that have moved on.
+#[inline(always)]
+fn judge<const L: usize>(
+    seats: &mut Seats<L>,
+    way: &mut Way<L>,
+    round: &Round<L>,
+    error: &Lanes<L>,
+    controller: &Controller,
+    until: f64,
+) -> Mask<L> {
+    let (mut factor, mut accepted) = ([1.0; L], [0; L]);
+    for l in 0..L {
+        factor[l] = controller.factor(error[l], seats.error[l]);
+    }
+    for l in 0..L {
+        // A norm that is not a number compares false and is refused.
+        accepted[l] = seats.active[l] & when(error[l] <= 1.0);
+    }
+    for l in 0..L {
+        let (step, wanted) = (round.step[l], seats.step[l]);
+        let most = pick(way.refused[l], 1.0, controller.most);
+        let grown = if factor[l] < most { factor[l] } else { most };
+        let next = step * grown;
+        // A step cut by the window that was good enough says nothing against the longer one.
+        let keeps = (round.cut[l] | round.last[l]) & when(grown >= most) & when(next < wanted);
+        let known = if factor[l] < SAFE_SHRINK { factor[l] } else { SAFE_SHRINK };
+        let shrunk = step * if error[l] < f64::INFINITY { known } else { LEAST };
+        seats.step[l] = pick(accepted[l], pick(keeps, wanted, next), shrunk);
+    }
+    for l in 0..L {
+        let end = pick(round.last[l], until, way.time[l] + round.step[l]);
+        way.time[l] = pick(accepted[l], end, way.time[l]);
+        seats.error[l] = pick(accepted[l], error[l], seats.error[l]);
+        way.refused[l] = !accepted[l];
+        way.rounds[l] += pick(seats.active[l], 1.0, 0.0);
+    }
+    accepted
+}
+
+/// The lanes that have arrived, and all whose cell leaves: these, and those in trouble.
+#[inline(always)]
+fn leaving<const L: usize>(
+    seats: &Seats<L>,
+    way: &Way<L>,
+    until: f64,
+    shortest: f64,
+    max_rounds: f64,
+) -> (Mask<L>, Mask<L>) {
+    let (mut arrived, mut leaving) = ([0; L], [0; L]);
+    for l in 0..L {
+        let short = way.refused[l] & when(seats.step[l] <= shortest);
+        let endless = when(way.rounds[l] >= max_rounds);
+        arrived[l] = seats.active[l] & when(way.time[l] >= until);
+        leaving[l] = arrived[l] | (seats.active[l] & (short | endless));
+    }
+    (arrived, leaving)
+}
+
+/// Makes proposals that were accepted the state, and with the explicit pair the rates there the first stage.
+#[inline(always)]
+fn advance_state<const L: usize, const STIFFLY: bool>(s: &mut Scratch<L>, accepted: &Mask<L>, steps: usize) {
+    let n = s.state.len();
+    if steps == L {
+        std::mem::swap(&mut s.state, &mut s.proposal);
+        if !STIFFLY {
+            s.stages.copy_within(6 * n.., 0);
+        }
+        return;
+    }
+    for (state, proposal) in s.state.iter_mut().zip(&s.proposal) {
+        choose(state, proposal, accepted);
+    }
+    if !STIFFLY {
+        let (first, others) = s.stages.split_at_mut(n);
+        for (first, last) in first.iter_mut().zip(&others[5 * n..]) {
+            choose(first, last, accepted);
+        }
     }
 }
 
@@ -180,17 +230,17 @@ fn sit<const L: usize>(
     s: &mut Scratch<L>,
     from: f64,
 ) {
-    let free = seats.active.iter().filter(|active| !**active).count();
+    let free = L - mask::count(&seats.active);
     if free * FREE_SHARE < L || !seats.waiting(cells) {
         return;
     }
-    if seats.take_block(cells, open, s, (&mut way.step, &mut way.error)) {
-        (way.time, way.rounds, way.refused, way.fresh) = ([from; L], [0; L], [false; L], [true; L]);
+    if free == L && seats.take_block(cells, open, s) {
+        (way.time, way.rounds, way.refused) = ([from; L], [0.0; L], [0; L]);
         return;
     }
     for l in 0..L {
-        if !seats.active[l] && seats.take(l, cells, open, s, (&mut way.step, &mut way.error)) {
-            (way.time[l], way.rounds[l], way.refused[l], way.fresh[l]) = (from, 0, false, true);
+        if seats.active[l] == 0 && seats.take(l, cells, open, s) {
+            (way.time[l], way.rounds[l], way.refused[l]) = (from, 0.0, 0);
         }
     }
 }
@@ -200,31 +250,33 @@ fn sit<const L: usize>(
 fn begin<const L: usize, const STIFFLY: bool>(
     program: &Program,
     s: &mut Scratch<L>,
-    seats: &Seats<L>,
-    way: &mut Way<L>,
+    seats: &mut Seats<L>,
+    time: &Lanes<L>,
     window: f64,
     tolerances: &Tolerances,
     work: &mut Work,
 ) {
-    let (mut fresh, mut unknown) = (0, false);
+    let mut unknown = [0; L];
     for l in 0..L {
-        fresh += u64::from(way.fresh[l] & seats.active[l]);
-        unknown |= seats.active[l] & (way.step[l] <= 0.0);
+        unknown[l] = seats.active[l] & when(seats.step[l] <= 0.0);
     }
-    if fresh == 0 || (STIFFLY && !unknown) {
-        way.fresh = [false; L];
+    let fresh = mask::count(&both(&seats.fresh, &seats.active));
+    let unknown = mask::count(&unknown) > 0;
+    seats.fresh = [0; L];
+    if !unknown && (fresh == 0 || STIFFLY) {
         return;
     }
-    // Those of the others come out as they are: the same code at the same time and state.
-    s.rates_at_state(program, way.time);
-    work.rates += fresh;
+    if fresh > 0 {
+        // Those of the others come out as they are: the same code at the same time and state.
+        s.rates_at_state(program, *time);
+        work.rates += fresh as u64;
+    }
     if unknown {
         let guess = control::first_step(&s.state, &s.stages[..s.state.len()], &program.sizes, window, tolerances);
         for l in 0..L {
-            way.step[l] = if way.step[l] > 0.0 { way.step[l] } else { guess[l] };
+            seats.step[l] = if seats.step[l] > 0.0 { seats.step[l] } else { guess[l] };
         }
     }
-    way.fresh = [false; L];
 }
 
 /// What is wrong with the cell of a lane.
@@ -232,17 +284,17 @@ fn begin<const L: usize, const STIFFLY: bool>(
 fn explain<const L: usize>(
     program: &Program,
     s: &mut Scratch<L>,
-    way: &Way<L>,
+    (time, step): (Lanes<L>, Lanes<L>),
     l: usize,
     (cell, error, shortest): (usize, f64, f64),
 ) -> CellTrouble {
-    let (variable, finite) = s.worst_variable(program, way.time, l);
-    let reason = match (way.step[l] <= shortest, finite && error.is_finite()) {
+    let (variable, finite) = s.worst_variable(program, time, l);
+    let reason = match (step[l] <= shortest, finite && error.is_finite()) {
         (false, _) => Reason::TooManySteps,
         (true, true) => Reason::StepUnderflow,
         (true, false) => Reason::NotFinite,
     };
-    CellTrouble { cell, time: way.time[l], variable, reason }
+    CellTrouble { cell, time: time[l], variable, reason }
 }
 
 /// Equal inner steps no longer than `longest`.
@@ -263,7 +315,7 @@ fn fixed<const L: usize, const CLASSICAL: bool>(
     for block in 0..cells.steps.len() {
         s.state.copy_from_slice(&cells.states[block * n..(block + 1) * n]);
         s.file[open..open + numbers].copy_from_slice(&cells.given[block * numbers..(block + 1) * numbers]);
-        let mut going = [true; L];
+        let mut going = [YES; L];
         for number in 0..count as u64 {
             let time = from + number as f64 * step;
             if CLASSICAL {
@@ -273,8 +325,8 @@ fn fixed<const L: usize, const CLASSICAL: bool>(
             }
             for l in 0..L {
                 let broken = (0..n).find(|&v| !s.proposal[v][l].is_finite());
-                if broken.is_some() && going[l] {
-                    going[l] = false;
+                if broken.is_some() && going[l] != 0 {
+                    going[l] = 0;
                     let cell = block * L + l;
                     if cell < cells.count && trouble.is_none_or(|known| cell < known.cell) {
                         trouble = Some(CellTrouble { cell, time, variable: broken, reason: Reason::NotFinite });

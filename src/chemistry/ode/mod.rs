@@ -9,6 +9,7 @@ mod eventful;
 mod events;
 mod explicit;
 mod lu;
+mod mask;
 mod multistep;
 mod population;
 mod rosenbrock;

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::block::{self, CellTrouble};
-use super::cells::Cells;
+use super::cells::{Cells, Kept};
+use super::mask::Mask;
 use super::scratch::Scratch;
 use super::{Method, OdeTrouble, Tolerances, Work};
 use crate::chemistry::program::{Lanes, Program, run};
@@ -28,6 +29,15 @@ pub struct Population {
     given: Vec<Lanes<LANES>>,
     steps: Vec<Lanes<LANES>>,
     errors: Vec<Lanes<LANES>>,
+    /// Rates at the states for the explicit pair, where `known`: what comes out of them again, so that nothing depends on
+    /// whether they are kept.
+    #[serde(skip)]
+    rates: Vec<Lanes<LANES>>,
+    #[serde(skip)]
+    known: Vec<Mask<LANES>>,
+    /// The program that they and the scratch are of.
+    #[serde(skip)]
+    mark: u64,
     #[serde(skip)]
     rooms: Vec<Mutex<Option<Box<Scratch<LANES>>>>>,
 }
@@ -44,6 +54,9 @@ impl Clone for Population {
             given: self.given.clone(),
             steps: self.steps.clone(),
             errors: self.errors.clone(),
+            rates: self.rates.clone(),
+            known: self.known.clone(),
+            mark: self.mark,
             rooms: Vec::new(),
         }
     }
@@ -54,6 +67,9 @@ impl Clone for Population {
         self.given.clone_from(&other.given);
         self.steps.clone_from(&other.steps);
         self.errors.clone_from(&other.errors);
+        self.rates.clone_from(&other.rates);
+        self.known.clone_from(&other.known);
+        self.mark = other.mark;
     }
 }
 
@@ -90,6 +106,9 @@ impl Population {
             given: initial(&program.open),
             steps: vec![[0.0; LANES]; blocks],
             errors: vec![[1.0; LANES]; blocks],
+            rates: Vec::new(),
+            known: Vec::new(),
+            mark: 0,
             rooms: Vec::new(),
         }
     }
@@ -114,7 +133,9 @@ impl Population {
     /// When there is no such cell or variable.
     pub fn set_state(&mut self, cell: usize, variable: usize, value: f64) {
         assert!(variable < self.variables, "variable {variable} of {}", self.variables);
-        self.states[cell / LANES * self.variables + variable][cell % LANES] = value;
+        let place = cell / LANES * self.variables + variable;
+        let old = std::mem::replace(&mut self.states[place][cell % LANES], value);
+        self.forget_rates_unless(old.to_bits() == value.to_bits(), cell);
     }
 
     /// A cell's value of the open quantity at a place of [`Program::open`].
@@ -132,7 +153,30 @@ impl Population {
     /// When there is no such cell or open quantity.
     pub fn set_given(&mut self, cell: usize, open: usize, value: f64) {
         assert!(open < self.open, "open quantity {open} of {}", self.open);
-        self.given[cell / LANES * self.open + open][cell % LANES] = value;
+        let old = std::mem::replace(&mut self.given[cell / LANES * self.open + open][cell % LANES], value);
+        self.forget_rates_unless(old.to_bits() == value.to_bits(), cell);
+    }
+
+    fn forget_rates_unless(&mut self, same: bool, cell: usize) {
+        if let (false, Some(known)) = (same, self.known.get_mut(cell / LANES)) {
+            known[cell % LANES] = 0;
+        }
+    }
+
+    /// Makes sure that rates are kept where they can be, and that they and the scratch are the program's.
+    fn keep_rates(&mut self, program: &Program) {
+        if self.mark != program.mark {
+            self.mark = program.mark;
+            self.rooms.clear();
+            self.known.clear();
+        }
+        if self.method != Method::Rk45 || !program.rates_stand_still {
+            self.known.clear();
+            self.rates.clear();
+        } else if self.known.is_empty() {
+            self.known.resize(self.steps.len(), [0; LANES]);
+            self.rates.resize(self.states.len(), [0.0; LANES]);
+        }
     }
 
     /// The step that a cell will try next; 0 before its first window and for methods with fixed steps.
@@ -199,14 +243,15 @@ impl Population {
         if n == 0 || self.cells == 0 {
             return Ok(Work::default());
         }
+        self.keep_rates(program);
         let threads = rayon::current_num_threads();
         while self.rooms.len() < threads {
             self.rooms.push(Mutex::new(None));
         }
-        let Self { states, steps, errors, given, rooms, .. } = self;
+        let Self { states, steps, errors, given, rates, known, rooms, .. } = self;
         let (method, cells, open) = (self.method, self.cells, self.open);
         let blocks = blocks_a_task(steps.len(), threads);
-        let one = |(task, ((states, steps), errors)): (usize, ((&mut [_], &mut [_]), &mut [_]))| {
+        let one = |(task, (((states, steps), errors), kept)): (usize, Part)| {
             let room = &rooms[rayon::current_thread_index().unwrap_or(0)];
             let mut room = room.lock().unwrap_or_else(PoisonError::into_inner);
             let scratch = room.get_or_insert_with(|| Box::new(Scratch::new(program, method == Method::Rosenbrock)));
@@ -214,13 +259,17 @@ impl Population {
             let first = task * blocks;
             let given = &given[first * open..(first + steps.len()) * open];
             let count = (cells - first * LANES).min(steps.len() * LANES);
-            let cells = Cells { count, states, given, steps, errors };
+            let cells = Cells { count, states, given, steps, errors, kept };
             let result =
                 Arch::new().dispatch(Task { program, method, scratch, cells, window: (from, until), tolerances });
             result.map_err(|trouble| CellTrouble { cell: first * LANES + trouble.cell, ..trouble })
         };
         let tasks = states.par_chunks_mut(n * blocks).zip(steps.par_chunks_mut(blocks));
-        let result = tasks.zip(errors.par_chunks_mut(blocks)).enumerate().map(one);
+        let kept = rates.par_chunks_mut(n * blocks).zip(known.par_chunks_mut(blocks));
+        let kept = kept.map(|(rates, known)| Some(Kept { rates, known }));
+        let unkept = if kept.len() > 0 { 0 } else { tasks.len() };
+        let kept = kept.chain((0..unkept).into_par_iter().map(|_| None));
+        let result = tasks.zip(errors.par_chunks_mut(blocks)).zip(kept).enumerate().map(one);
         result.reduce(|| Ok(Work::default()), first_trouble).map_err(|trouble| OdeTrouble {
             system: program.name.clone(),
             cell: Some(trouble.cell),
@@ -238,6 +287,9 @@ impl Population {
         file[1 + n..1 + n + m].copy_from_slice(&self.given[block * m..(block + 1) * m]);
     }
 }
+
+/// What a task changes: states, steps, errors and kept rates.
+type Part<'a> = (((&'a mut [Lanes<LANES>], &'a mut [Lanes<LANES>]), &'a mut [Lanes<LANES>]), Option<Kept<'a, LANES>>);
 
 /// Tasks of so many blocks have enough cells to fill lanes that are done early.
 const MOST_BLOCKS: usize = 256;

@@ -7,7 +7,7 @@ use crate::chemistry::tree::{Binary, Unary};
 pub type Register = u32;
 
 /// What an operation does.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Hash)]
 pub enum Action {
     /// A function of `a`.
     Unary(Unary),
@@ -24,7 +24,7 @@ pub enum Action {
 }
 
 /// One operation over all lanes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Hash)]
 pub struct Op {
     /// What is done.
     pub action: Action,
@@ -39,7 +39,7 @@ pub struct Op {
 }
 
 /// Register code with the registers of its results.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Hash)]
 pub struct Code {
     /// Operations in order.
     pub ops: Vec<Op>,
@@ -76,6 +76,11 @@ impl Constants {
 }
 
 impl Code {
+    /// Whether an operation or a result is that register's value.
+    pub fn reads(&self, register: Register) -> bool {
+        self.outputs.contains(&register) || self.ops.iter().any(|op| [op.a, op.b, op.c].contains(&register))
+    }
+
     /// Code for some nodes. All their constants must have been collected, since they stand between slots and results.
     pub fn of(graph: &Graph, roots: &[NodeId], slots: usize, constants: &Constants) -> Self {
         let needed = graph.needed(roots);

@@ -14,6 +14,8 @@ mod run;
 pub use initial::initial_values;
 pub use run::{Lanes, run};
 
+use std::hash::{Hash, Hasher};
+
 use crate::chemistry::tree::{Binary, Expr, QuantityId, Role, System};
 use code::{Code, Constants};
 use graph::{Graph, NodeId};
@@ -39,6 +41,10 @@ pub struct Program {
     pub linear: Code,
     /// Whether the rates do not depend on time.
     pub timeless: bool,
+    /// Whether the rates never read the clock, not even for a switch: at the same state and open values they are the same.
+    pub rates_stand_still: bool,
+    /// A number that programs with other rates or registers do not share.
+    pub mark: u64,
     /// Row and column of the Jacobian's entries that are not always zero, row after row.
     pub pattern: Vec<(u32, u32)>,
     /// All quantities.
@@ -93,7 +99,8 @@ impl Program {
         let code = |roots: &[NodeId]| Code::of(&graph, roots, slots, &constants);
         let (rates, linear, observe) = (code(&rates), code(&linear), code(&nodes));
         let further: Vec<Code> = further.iter().map(|group| code(group)).collect();
-        let registers = [&rates, &linear, &observe].into_iter().chain(&further).map(|code| code.registers).max();
+        let registers =
+            [&rates, &linear, &observe].into_iter().chain(&further).map(|code| code.registers).max().unwrap_or(0);
         Ok(Self {
             name: system.name.clone(),
             variables,
@@ -101,13 +108,15 @@ impl Program {
             names: system.quantities.iter().map(|quantity| quantity.id.clone()).collect(),
             sizes: sizes(system, &initial),
             initial,
+            rates_stand_still: !rates.reads(0),
+            mark: mark(&rates, &constants.values, registers),
             rates,
             linear,
             timeless,
             pattern,
             observe,
             further,
-            registers: registers.unwrap_or(0),
+            registers,
             constants: constants.values,
         })
     }
@@ -151,6 +160,14 @@ impl Program {
         }
         file
     }
+}
+
+/// A number made of the rates' operations, the constants and the number of registers.
+fn mark(rates: &Code, constants: &[f64], registers: usize) -> u64 {
+    let mut hasher = std::hash::DefaultHasher::new();
+    (rates, registers).hash(&mut hasher);
+    constants.iter().for_each(|constant| constant.to_bits().hash(&mut hasher));
+    hasher.finish()
 }
 
 /// The sizes of all variables, in order.

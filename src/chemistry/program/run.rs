@@ -8,7 +8,7 @@ use crate::chemistry::tree::{Binary, Unary};
 pub type Lanes<const L: usize> = [f64; L];
 
 #[inline(always)]
-fn map<const L: usize>(a: Lanes<L>, function: impl Fn(f64) -> f64) -> Lanes<L> {
+fn map<const L: usize>(a: &Lanes<L>, function: impl Fn(f64) -> f64) -> Lanes<L> {
     let mut result = [0.0; L];
     for l in 0..L {
         result[l] = function(a[l]);
@@ -17,10 +17,19 @@ fn map<const L: usize>(a: Lanes<L>, function: impl Fn(f64) -> f64) -> Lanes<L> {
 }
 
 #[inline(always)]
-fn zip<const L: usize>(a: Lanes<L>, b: Lanes<L>, function: impl Fn(f64, f64) -> f64) -> Lanes<L> {
+fn zip<const L: usize>(a: &Lanes<L>, b: &Lanes<L>, function: impl Fn(f64, f64) -> f64) -> Lanes<L> {
     let mut result = [0.0; L];
     for l in 0..L {
         result[l] = function(a[l], b[l]);
+    }
+    result
+}
+
+#[inline(always)]
+fn zip3<const L: usize>(a: &Lanes<L>, b: &Lanes<L>, c: &Lanes<L>, function: impl Fn(f64, f64, f64) -> f64) -> Lanes<L> {
+    let mut result = [0.0; L];
+    for l in 0..L {
+        result[l] = function(a[l], b[l], c[l]);
     }
     result
 }
@@ -45,33 +54,31 @@ fn pairs(function: Binary, a: &mut [f64], b: &[f64]) {
 #[inline(always)]
 pub fn run<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
     for op in &code.ops {
-        let a = file[op.a as usize];
+        // Operands stay where they are: copied, they would go through the stack.
+        let (a, b) = (&file[op.a as usize], &file[op.b as usize]);
         let value = match op.action {
-            Action::Binary(function) => {
-                let b = file[op.b as usize];
-                match function {
-                    Binary::Add => zip(a, b, |a, b| a + b),
-                    Binary::Sub => zip(a, b, |a, b| a - b),
-                    Binary::Mul => zip(a, b, |a, b| a * b),
-                    Binary::Div => zip(a, b, |a, b| a / b),
-                    Binary::Min => zip(a, b, f64::min),
-                    Binary::Max => zip(a, b, f64::max),
-                    Binary::Lt => zip(a, b, |a, b| truth(a < b)),
-                    Binary::Le => zip(a, b, |a, b| truth(a <= b)),
-                    Binary::Gt => zip(a, b, |a, b| truth(a > b)),
-                    Binary::Ge => zip(a, b, |a, b| truth(a >= b)),
-                    Binary::Eq => zip(a, b, |a, b| truth(a == b)),
-                    Binary::Ne => zip(a, b, |a, b| truth(a != b)),
-                    Binary::And => zip(a, b, |a, b| truth((a != 0.0) & (b != 0.0))),
-                    Binary::Or => zip(a, b, |a, b| truth((a != 0.0) | (b != 0.0))),
-                    Binary::Xor => zip(a, b, |a, b| truth((a != 0.0) != (b != 0.0))),
-                    Binary::Pow | Binary::Rem | Binary::Quotient => {
-                        let mut result = a;
-                        pairs(function, &mut result, &b);
-                        result
-                    }
+            Action::Binary(function) => match function {
+                Binary::Add => zip(a, b, |a, b| a + b),
+                Binary::Sub => zip(a, b, |a, b| a - b),
+                Binary::Mul => zip(a, b, |a, b| a * b),
+                Binary::Div => zip(a, b, |a, b| a / b),
+                Binary::Min => zip(a, b, f64::min),
+                Binary::Max => zip(a, b, f64::max),
+                Binary::Lt => zip(a, b, |a, b| truth(a < b)),
+                Binary::Le => zip(a, b, |a, b| truth(a <= b)),
+                Binary::Gt => zip(a, b, |a, b| truth(a > b)),
+                Binary::Ge => zip(a, b, |a, b| truth(a >= b)),
+                Binary::Eq => zip(a, b, |a, b| truth(a == b)),
+                Binary::Ne => zip(a, b, |a, b| truth(a != b)),
+                Binary::And => zip(a, b, |a, b| truth((a != 0.0) & (b != 0.0))),
+                Binary::Or => zip(a, b, |a, b| truth((a != 0.0) | (b != 0.0))),
+                Binary::Xor => zip(a, b, |a, b| truth((a != 0.0) != (b != 0.0))),
+                Binary::Pow | Binary::Rem | Binary::Quotient => {
+                    let mut result = *a;
+                    pairs(function, &mut result, b);
+                    result
                 }
-            }
+            },
             Action::Unary(function) => match function {
                 Unary::Neg => map(a, |a| -a),
                 Unary::Not => map(a, |a| truth(a == 0.0)),
@@ -82,22 +89,15 @@ pub fn run<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
                 Unary::Exp => map(a, math::exp),
                 Unary::Ln => map(a, math::ln),
                 _ => {
-                    let mut result = a;
+                    let mut result = *a;
                     one_by_one(|value| function.apply(value), &mut result);
                     result
                 }
             },
-            Action::MulAdd => zip(zip(a, file[op.b as usize], |a, b| a * b), file[op.c as usize], |ab, c| ab + c),
-            Action::MulSub => zip(zip(a, file[op.b as usize], |a, b| a * b), file[op.c as usize], |ab, c| ab - c),
-            Action::SubMul => zip(zip(a, file[op.b as usize], |a, b| a * b), file[op.c as usize], |ab, c| c - ab),
-            Action::Select => {
-                let (yes, no) = (file[op.b as usize], file[op.c as usize]);
-                let mut result = [0.0; L];
-                for l in 0..L {
-                    result[l] = if a[l] != 0.0 { yes[l] } else { no[l] };
-                }
-                result
-            }
+            Action::MulAdd => zip3(a, b, &file[op.c as usize], |a, b, c| a * b + c),
+            Action::MulSub => zip3(a, b, &file[op.c as usize], |a, b, c| a * b - c),
+            Action::SubMul => zip3(a, b, &file[op.c as usize], |a, b, c| c - a * b),
+            Action::Select => zip3(a, b, &file[op.c as usize], |a, b, c| if a != 0.0 { b } else { c }),
         };
         file[op.to as usize] = value;
     }
