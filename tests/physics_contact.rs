@@ -9,7 +9,7 @@ use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::random::{Purpose, Stream};
-use pseudopod::sim::contact::{ContactModel, Strength};
+use pseudopod::sim::contact::{ContactModel, Pull, Row, Strength};
 use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::{Attraction, Kind, Load, Model, State, VolumeRule, Workspace, step};
 
@@ -86,15 +86,11 @@ fn run<T>(model: &Model, state: &mut State, mut row: impl FnMut(&State, &Workspa
 
 /// Force of all contacts on the cells from atom `first` on, pN.
 fn force_from(ws: &Workspace, first: u32) -> Vec3 {
-    let of_row = |row: &pseudopod::sim::contact::Row| -> Vec3 {
-        row.atoms
-            .iter()
-            .zip(row.weights)
-            .filter(|(atom, _)| **atom >= first)
-            .map(|(_, weight)| weight * row.force)
-            .sum()
+    let of_row = |(row, pull): (&Row, &Pull)| -> Vec3 {
+        let own = row.atoms.iter().zip(row.weights).filter(|(atom, _)| **atom >= first);
+        own.map(|(_, weight)| weight * pull.force()).sum()
     };
-    ws.contact.rows.iter().map(of_row).sum()
+    ws.contact.rows.iter().zip(&ws.contact.pulls).map(of_row).sum()
 }
 
 const GLUE: Strength = Strength { tensile: 1e3, shear: 1e3 };
@@ -169,7 +165,7 @@ fn parting(tensile: f64, largest: f64) -> (f64, f64) {
     let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
     let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
     let rows = run(&model, &mut state, |_, ws| {
-        let bears: f64 = ws.contact.rows.iter().map(|row| row.least * row.normal.x.abs()).sum();
+        let bears: f64 = ws.contact.rows.iter().map(|row| f64::from(row.least) * row.normal().x.abs()).sum();
         (-force_from(ws, 42).x, -bears)
     });
     assert_eq!(rows.last().unwrap().1.0, 0.0, "they are apart in the end");

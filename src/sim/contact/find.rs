@@ -2,7 +2,7 @@
 
 use super::gather::gather;
 use super::model::ContactModel;
-use super::rows::write_rows;
+use super::rows::{Pull, write_rows};
 use super::scratch::ContactScratch;
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
@@ -17,22 +17,19 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     let s = &mut ws.contact;
     s.start.resize(contact.scene.atoms, Vec3::zeros());
     for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
-        gather(kind, &now.positions, &mut s.start[contact.atoms_of(number)]);
+        gather(kind, &now.positions, &mut s.start[contact.atoms_of(number)], |x| x);
     }
     s.detector.detect(&contact.scene, &s.start, &mut s.found);
     keep_edges(contact, &state.contact, &s.start, &mut s.found);
-    write_rows(contact, &s.found, &state.contact, &mut s.rows);
+    write_rows(contact, &s.found, &state.contact, &mut s.rows, &mut s.pulls);
     s.force.clear();
     s.force.resize(contact.scene.atoms, Vec3::zeros());
-    s.carried.clear();
-    let inertial = model.integrator.method.is_inertial();
-    for row in &mut s.rows {
-        if inertial {
-            row.force = Vec3::zeros();
-        }
-        s.carried.push(row.force);
+    if model.integrator.method.is_inertial() {
+        s.pulls.fill(Pull::default());
+    }
+    for (row, pull) in s.rows.iter().zip(&s.pulls) {
         for (atom, weight) in row.atoms.iter().zip(row.weights) {
-            s.force[*atom as usize] += weight * row.force;
+            s.force[*atom as usize] += weight * pull.force();
         }
     }
 }
@@ -70,20 +67,20 @@ pub fn keep_contacts(model: &Model, state: &mut State, ws: &Workspace) {
         return;
     }
     let (s, ContactState { atoms, edges, planes }) = (&ws.contact, &mut state.contact);
-    let (of_atoms, others) = s.rows.split_at(s.found.atoms.len());
+    let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
+    let (of_atoms, others) = s.pulls.split_at(s.found.atoms.len());
     let (of_edges, of_planes) = others.split_at(s.found.edges.len());
     atoms.clear();
-    for (row, contact) in of_atoms.iter().zip(&s.found.atoms) {
-        let force = row.force.into();
-        atoms.push(AtomBond { atom: contact.atom, body: contact.body, facet: contact.facet, force });
+    for (pull, contact) in of_atoms.iter().zip(&s.found.atoms) {
+        atoms.push(AtomBond { atom: contact.atom, body: contact.body, facet: contact.facet, force: xyz(pull) });
     }
     edges.clear();
-    for (row, contact) in of_edges.iter().zip(&s.found.edges) {
-        let (normal, force) = (row.normal.into(), row.force.into());
-        edges.push(EdgeBond { edges: contact.edges, bodies: contact.bodies, normal, force });
+    for (pull, contact) in of_edges.iter().zip(&s.found.edges) {
+        let normal = contact.normal.into();
+        edges.push(EdgeBond { edges: contact.edges, bodies: contact.bodies, normal, force: xyz(pull) });
     }
     planes.clear();
-    for (row, contact) in of_planes.iter().zip(&s.found.planes) {
-        planes.push(PlaneBond { atom: contact.atom, plane: contact.plane, force: row.force.into() });
+    for (pull, contact) in of_planes.iter().zip(&s.found.planes) {
+        planes.push(PlaneBond { atom: contact.atom, plane: contact.plane, force: xyz(pull) });
     }
 }

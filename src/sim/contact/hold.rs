@@ -2,6 +2,7 @@
 
 use super::gather::{gather, scatter};
 use super::model::ContactModel;
+use super::rows::Pull;
 use super::scratch::ContactScratch;
 use super::sweep::{Change, VolumeRow, sweep_contacts, sweep_depths, sweep_volumes};
 use crate::Vec3;
@@ -32,13 +33,16 @@ pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspa
     }
     prepare(model, contact, dt, state, s, kinds);
     let left = sweep(contact, s);
-    if s.rows.iter().any(|row| row.gap < 0.0) {
+    if s.rows.iter().any(|row| row.gap() < 0.0) {
         mend(contact, s);
     }
     for (number, (kind, now)) in model.kinds.iter().zip(&mut state.kinds).enumerate() {
-        let range = contact.atoms_of(number);
-        s.moved[range.clone()].iter_mut().zip(&s.start[range.clone()]).for_each(|(d, start)| *d += start);
-        scatter(kind, &s.moved[range], &mut now.positions);
+        let first = contact.atoms_of(number).start;
+        let place = |atom: usize| {
+            let [x, y, z, _] = s.moved[first + atom];
+            s.start[first + atom] + Vec3::new(x, y, z)
+        };
+        scatter(kind, place, &mut now.positions);
     }
     if left.largest <= contact.tolerance {
         return Ok(());
@@ -57,32 +61,31 @@ fn prepare(
     s: &mut ContactScratch,
     kinds: &mut [KindScratch],
 ) {
-    s.moved.resize(contact.scene.atoms, Vec3::zeros());
-    s.gradient.resize(contact.scene.atoms, Vec3::zeros());
-    s.mobility.resize(contact.scene.atoms, 0.0);
+    s.moved.resize(contact.scene.atoms, [0.0; 4]);
+    s.gradient.resize(contact.scene.atoms, [0.0; 4]);
     s.volumes.clear();
     s.held.clear();
     for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
         let range = contact.atoms_of(number);
-        gather(kind, &now.positions, &mut s.moved[range.clone()]);
-        s.moved[range.clone()].iter_mut().zip(&s.start[range.clone()]).for_each(|(d, start)| *d -= start);
         let mobility = match model.integrator.method {
             Method::Implicit { .. } | Method::Explicit => dt / kind.drag,
             _ => dt * dt / kind.mass,
         };
-        s.mobility[range.clone()].fill(mobility);
+        gather(kind, &now.positions, &mut s.moved[range.clone()], |x| [x.x, x.y, x.z, mobility]);
+        for (d, start) in s.moved[range.clone()].iter_mut().zip(&s.start[range.clone()]) {
+            (0..3).for_each(|axis| d[axis] -= start[axis]);
+        }
         hold_atoms(kind, range.start, s);
         if matches!(kind.volume, VolumeRule::Exact(_)) {
             add_volumes(kind, &now.positions, range.start, mobility, s, w);
         }
     }
-    for (row, carried) in s.rows.iter_mut().zip(&s.carried) {
-        row.force = *carried;
+    for (row, pull) in s.rows.iter_mut().zip(&mut s.pulls) {
+        *pull = Pull { force: pull.carried, carried: pull.carried, ..Pull::default() };
         let gives =
-            row.atoms.iter().zip(row.weights).map(|(atom, weight)| weight * weight * s.mobility[*atom as usize]);
-        let give: f64 = gives.sum();
-        // What cannot move is left alone.
-        row.stiffness = if give > 0.0 { 1.0 / give } else { 0.0 };
+            row.atoms.iter().zip(row.weights).map(|(atom, weight)| weight * weight * s.moved[*atom as usize][3]);
+        row.give = gives.sum::<f64>() as f32;
+        row.stiffness = 1.0 / row.give;
     }
 }
 
@@ -92,7 +95,7 @@ fn hold_atoms(kind: &Kind, first: usize, s: &mut ContactScratch) {
         for (atom, factors) in kind.held.chunks_exact(3).enumerate() {
             let number = first + cell * kind.atoms() + atom;
             if factors.iter().all(|factor| *factor == 0.0) {
-                s.mobility[number] = 0.0;
+                s.moved[number][3] = 0.0;
             } else {
                 let held = (0..3).filter(|axis| factors[*axis as usize] == 0.0);
                 s.held.extend(held.map(|axis| (number as u32, axis)));
@@ -109,12 +112,16 @@ fn add_volumes(kind: &Kind, x: &[f64], first: usize, mobility: f64, s: &mut Cont
     {
         volume::measure_block(&kind.rest.facets, x, &kind.held, gradient, volumes);
     }
-    gather(kind, &w.spare, &mut s.gradient[first..first + kind.cells * kind.atoms()]);
+    let own = &mut s.gradient[first..first + kind.cells * kind.atoms()];
+    gather(kind, &w.spare, own, |g| [g.x, g.y, g.z, 0.0]);
     for cell in 0..kind.cells {
         let first = first + cell * kind.atoms();
         let end = first + kind.atoms();
-        let along: f64 = s.gradient[first..end].iter().zip(&s.moved[first..end]).map(|(g, d)| g.dot(d)).sum();
-        let squared: f64 = s.gradient[first..end].iter().map(Vec3::norm_squared).sum();
+        let (mut along, mut squared) = (0.0, 0.0);
+        for (g, d) in s.gradient[first..end].iter().zip(&s.moved[first..end]) {
+            along += (0..3).map(|axis| g[axis] * d[axis]).sum::<f64>();
+            squared += (0..3).map(|axis| g[axis] * g[axis]).sum::<f64>();
+        }
         let offset = w.left[cell] - w.target[cell] - along;
         s.volumes.push(VolumeRow { first, end, offset, inverse: 1.0 / squared, mobility });
     }
@@ -122,15 +129,13 @@ fn add_volumes(kind: &Kind, x: &[f64], first: usize, mobility: f64, s: &mut Cont
 
 /// Sweeps until nothing moves any more; returns what the last sweep changed.
 fn sweep(contact: &ContactModel, s: &mut ContactScratch) -> Change {
-    s.momentum.begin(s.moved.len(), s.rows.len());
-    let mut change = Change::default();
+    s.momentum.begin(&s.moved);
+    let (mut change, mut share) = (Change::default(), 0.0);
     for number in 1..=contact.most_sweeps {
-        s.momentum.before(&s.moved, &s.rows);
         change = Change::default();
-        sweep_contacts(&mut s.rows, &s.carried, &mut s.moved, &s.mobility, &mut change);
-        let free = &s.momentum;
+        sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, share, &mut change);
         for &(atom, axis) in &s.held {
-            s.moved[atom as usize][axis as usize] = free.displacement(atom)[axis as usize];
+            s.moved[atom as usize][axis as usize] = s.momentum.displacement(atom)[axis as usize];
         }
         sweep_volumes(&s.volumes, &s.gradient, &mut s.moved, &mut change);
         s.sweeps = number;
@@ -138,7 +143,7 @@ fn sweep(contact: &ContactModel, s: &mut ContactScratch) -> Change {
         if change.largest <= contact.tolerance || number == contact.most_sweeps {
             break;
         }
-        s.momentum.go_on(change.work, &mut s.moved, &mut s.rows);
+        share = s.momentum.go_on(change.work, &mut s.moved);
     }
     change
 }
@@ -148,7 +153,7 @@ fn mend(contact: &ContactModel, s: &mut ContactScratch) {
     s.push.clear();
     s.push.resize(s.rows.len(), 0.0);
     for _ in 0..MENDING {
-        sweep_depths(&s.rows, &mut s.push, &mut s.moved, &s.mobility, MENDED * contact.scene.safe_travel());
+        sweep_depths(&s.rows, &mut s.push, &mut s.moved, MENDED * contact.scene.safe_travel());
         sweep_volumes(&s.volumes, &s.gradient, &mut s.moved, &mut Change::default());
     }
 }

@@ -5,33 +5,62 @@ use super::state::ContactState;
 use crate::Vec3;
 use crate::contact::Contacts;
 
-/// One contact. The gap changes by `normal · Σ weights[i] D[atoms[i]]` when atoms are displaced by D.
+/// One contact as it stands in a step. The gap changes by `normal · Σ weights[i] D[atoms[i]]` when atoms are displaced by
+/// D. A packed population has almost as many contacts as atoms, and every sweep reads them all: what need not be exact to
+/// more than seven digits has four bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// Its atoms; those that are not there have weight 0.
     pub atoms: [u32; 4],
-    /// Their weights: positive on the first side of the contact, negative on the other; each side sums to ±1.
+    /// Their weights: positive on the first side of the contact, negative on the other; each side sums to ±1 exactly.
     pub weights: [f64; 4],
-    /// From the other side to the first.
-    pub normal: Vec3,
-    /// Gap where the step began, µm.
-    pub gap: f64,
+    /// From the other side to the first, and the gap where the step began, µm.
+    pub normal_and_gap: [f32; 4],
     /// Least normal force, pN: minus the pull at which the contact parts.
-    pub least: f64,
+    pub least: f32,
     /// Largest tangential force, pN.
-    pub shear: f64,
-    /// Force on the first side, pN.
-    pub force: Vec3,
+    pub shear: f32,
+    /// Displacement over force, µm/pN; 0 where nothing can move.
+    pub give: f32,
     /// Force over displacement, pN/µm.
-    pub stiffness: f64,
+    pub stiffness: f32,
+}
+
+/// What a contact carries; forces on the first side, pN.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pull {
+    /// Now.
+    pub force: [f32; 4],
+    /// Where the step began.
+    pub carried: [f32; 4],
+    /// What the last sweep changed.
+    pub(super) change: [f32; 4],
+    /// The direction that speeds the sweeps up.
+    pub(super) way: [f32; 4],
 }
 
 /// Both sides of an interface have atoms that touch the other: each carries half of its strength.
 const SHARE: f64 = 0.5;
 
 /// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them.
-pub fn write_rows(model: &ContactModel, found: &Contacts, before: &ContactState, rows: &mut Vec<Row>) {
+pub fn write_rows(
+    model: &ContactModel,
+    found: &Contacts,
+    before: &ContactState,
+    rows: &mut Vec<Row>,
+    pulls: &mut Vec<Pull>,
+) {
     rows.clear();
+    pulls.clear();
+    let mut add = |atoms, weights, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], force: [f32; 3]| {
+        let normal_and_gap = [normal.x as f32, normal.y as f32, normal.z as f32, gap as f32];
+        let row =
+            Row { atoms, weights, normal_and_gap, least: least as f32, shear: shear as f32, give: 0.0, stiffness: 0.0 };
+        let force = row.bound(Vec3::from(force.map(f64::from)));
+        let force = [force.x as f32, force.y as f32, force.z as f32, 0.0];
+        rows.push(row);
+        pulls.push(Pull { force, carried: force, ..Pull::default() });
+    };
     let scene = &model.scene;
     let (mut body, mut first) = (0, 0);
     for contact in &found.atoms {
@@ -56,18 +85,14 @@ pub fn write_rows(model: &ContactModel, found: &Contacts, before: &ContactState,
         let (kind, other) = (model.kind_of(body as u32), model.kind_of(contact.body));
         let strength = if own { Strength::default() } else { model.between[kind * model.areas.len() + other] };
         let area = SHARE * model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
-        let mut row = Row {
-            atoms: [contact.atom, i, j, k],
-            weights: [1.0, -u, -v, -w],
-            normal: contact.normal,
-            gap: contact.gap,
-            least: -strength.tensile * area,
-            shear: strength.shear * area,
-            force: Vec3::from(force),
-            stiffness: 0.0,
-        };
-        row.bound();
-        rows.push(row);
+        add(
+            [contact.atom, i, j, k],
+            [1.0, -u, -v, -w],
+            &contact.normal,
+            contact.gap,
+            [-strength.tensile * area, strength.shear * area],
+            force,
+        );
     }
     let mut first = 0;
     for contact in &found.edges {
@@ -77,18 +102,14 @@ pub fn write_rows(model: &ContactModel, found: &Contacts, before: &ContactState,
         let same = before.edges.get(first).filter(|bond| bond.edges == contact.edges);
         let [[a, b], [c, d]] = [0, 1].map(|side| scene.edge_atoms(contact.bodies[side], contact.edges[side]));
         let [s, t] = contact.along;
-        let mut row = Row {
-            atoms: [a, b, c, d],
-            weights: [1.0 - s, s, t - 1.0, -t],
-            normal: contact.normal,
-            gap: contact.gap,
-            least: 0.0,
-            shear: 0.0,
-            force: Vec3::from(same.map_or([0.0; 3], |bond| bond.force)),
-            stiffness: 0.0,
-        };
-        row.bound();
-        rows.push(row);
+        add(
+            [a, b, c, d],
+            [1.0 - s, s, t - 1.0, -t],
+            &contact.normal,
+            contact.gap,
+            [0.0, 0.0],
+            same.map_or([0.0; 3], |bond| bond.force),
+        );
     }
     let (mut body, mut first) = (0, 0);
     for contact in &found.planes {
@@ -103,28 +124,44 @@ pub fn write_rows(model: &ContactModel, found: &Contacts, before: &ContactState,
         let kind = model.kind_of(body as u32);
         let strength = model.on_planes[kind * scene.planes.len() + contact.plane as usize];
         let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
-        let mut row = Row {
-            atoms: [contact.atom; 4],
-            weights: [1.0, 0.0, 0.0, 0.0],
-            normal: scene.planes[contact.plane as usize].normal,
-            gap: contact.gap,
-            least: -strength.tensile * area,
-            shear: strength.shear * area,
-            force: Vec3::from(same.map_or([0.0; 3], |bond| bond.force)),
-            stiffness: 0.0,
-        };
-        row.bound();
-        rows.push(row);
+        add(
+            [contact.atom; 4],
+            [1.0, 0.0, 0.0, 0.0],
+            &scene.planes[contact.plane as usize].normal,
+            contact.gap,
+            [-strength.tensile * area, strength.shear * area],
+            same.map_or([0.0; 3], |bond| bond.force),
+        );
     }
 }
 
 impl Row {
-    /// Cuts the force to what the contact bears along its present normal.
-    fn bound(&mut self) {
-        let along = self.force.dot(&self.normal);
-        let across = self.force - along * self.normal;
+    /// Unit vector from the other side to the first.
+    pub fn normal(&self) -> Vec3 {
+        let [x, y, z, _] = self.normal_and_gap.map(f64::from);
+        Vec3::new(x, y, z)
+    }
+
+    /// Gap where the step began, µm.
+    pub fn gap(&self) -> f64 {
+        f64::from(self.normal_and_gap[3])
+    }
+
+    /// Cuts a force to what the contact bears along its present normal.
+    fn bound(&self, force: Vec3) -> Vec3 {
+        let (normal, shear) = (self.normal(), f64::from(self.shear));
+        let along = force.dot(&normal);
+        let across = force - along * normal;
         let size = across.norm();
-        let kept = if size > self.shear { self.shear / size } else { 1.0 };
-        self.force = along.max(self.least) * self.normal + kept * across;
+        let kept = if size > shear { shear / size } else { 1.0 };
+        along.max(f64::from(self.least)) * normal + kept * across
+    }
+}
+
+impl Pull {
+    /// The force on the first side, pN.
+    pub fn force(&self) -> Vec3 {
+        let [x, y, z, _] = self.force.map(f64::from);
+        Vec3::new(x, y, z)
     }
 }

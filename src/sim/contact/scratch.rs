@@ -1,7 +1,8 @@
 //! Scratch of the contacts.
 
-use super::rows::Row;
-use super::sweep::{Momentum, VolumeRow};
+use super::momentum::Momentum;
+use super::rows::{Pull, Row};
+use super::sweep::{V4, VolumeRow};
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
 
@@ -18,14 +19,12 @@ pub struct ContactScratch {
     pub force: Vec<Vec3>,
     /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on planes.
     pub rows: Vec<Row>,
-    /// The force that each row carried where the step began, pN.
-    pub(super) carried: Vec<Vec3>,
-    /// Displacement of the atoms over the step, µm.
-    pub(super) moved: Vec<Vec3>,
-    /// Gradients of the volumes, µm².
-    pub(super) gradient: Vec<Vec3>,
-    /// Displacement over force of each atom in this step, µm/pN.
-    pub(super) mobility: Vec<f64>,
+    /// What each row carries.
+    pub pulls: Vec<Pull>,
+    /// Displacement of the atoms over the step, µm, and their displacement over force, µm/pN.
+    pub(super) moved: Vec<V4>,
+    /// Gradients of the volumes, µm², and 0.
+    pub(super) gradient: Vec<V4>,
     /// Volumes to keep.
     pub(super) volumes: Vec<VolumeRow>,
     /// Atoms and axes that are held.
@@ -43,12 +42,13 @@ impl ContactScratch {
         self.detector.forget();
         self.found.clear();
         self.rows.clear();
+        self.pulls.clear();
         self.volumes.clear();
         self.held.clear();
-        for array in [&mut self.start, &mut self.force, &mut self.carried, &mut self.moved, &mut self.gradient] {
-            array.fill(Vec3::repeat(f64::NAN));
-        }
-        self.mobility.fill(f64::NAN);
+        self.start.fill(Vec3::repeat(f64::NAN));
+        self.force.fill(Vec3::repeat(f64::NAN));
+        self.moved.fill([f64::NAN; 4]);
+        self.gradient.fill([f64::NAN; 4]);
         self.push.fill(f64::NAN);
         self.momentum.poison();
         self.sweeps = u32::MAX;

@@ -12,7 +12,7 @@ pub struct AtomBond {
     /// The facet, numbered through all cells.
     pub facet: u32,
     /// Force on the atom, pN; the facet's atoms feel the opposite.
-    pub force: [f64; 3],
+    pub force: [f32; 3],
 }
 
 /// Two edges that touch; they do not stick.
@@ -25,7 +25,7 @@ pub struct EdgeBond {
     /// Unit normal from the second to the first.
     pub normal: [f64; 3],
     /// Force on the first, pN; the second feels the opposite.
-    pub force: [f64; 3],
+    pub force: [f32; 3],
 }
 
 /// An atom that touches a plane.
@@ -36,7 +36,7 @@ pub struct PlaneBond {
     /// The plane.
     pub plane: u32,
     /// Force on the atom, pN.
-    pub force: [f64; 3],
+    pub force: [f32; 3],
 }
 
 /// All contacts that carry a force, in the order in which they are found.

@@ -1,12 +1,19 @@
-//! Projected Gauss–Seidel over contacts and volumes, in a fixed order, and what makes it fast.
+//! Projected Gauss–Seidel over contacts and volumes, in a fixed order.
+//!
+//! Vectors have four numbers, so that they fill a register; the fourth of a displacement is the mobility of its atom. The
+//! sweeps are compiled for wide registers and give the same bits in narrow ones.
 
-use super::rows::Row;
-use crate::Vec3;
+use pulp::{Arch, NullaryFnOnce};
+
+use super::rows::{Pull, Row};
 
 /// A contact that holds gives way by this share of what a free one would, for each change of its force in the step,
 /// eq. (adhesion.5). Where many contacts hold the same atoms their forces are not determined; this picks some, and at
 /// rest, when forces do not change, nothing gives way.
 const GIVE: f64 = 0.2;
+
+/// x, y, z and one number more.
+pub type V4 = [f64; 4];
 
 /// A volume that is kept while contacts move atoms.
 #[derive(Debug, Clone, Copy)]
@@ -34,166 +41,173 @@ pub struct Change {
     pub work: f64,
 }
 
-impl Row {
-    /// How much farther apart displacements bring the two sides, µm.
-    #[inline(always)]
-    fn apart(&self, moved: &[Vec3]) -> Vec3 {
-        let mut apart = Vec3::zeros();
-        for (atom, weight) in self.atoms.iter().zip(self.weights) {
-            apart += weight * moved[*atom as usize];
-        }
-        apart
-    }
+#[inline(always)]
+fn map(f: impl Fn(usize) -> f64) -> V4 {
+    [f(0), f(1), f(2), f(3)]
+}
 
-    /// Moves its atoms as a change of its force does.
-    #[inline(always)]
-    fn push(&self, change: &Vec3, moved: &mut [Vec3], mobility: &[f64]) {
-        for (atom, weight) in self.atoms.iter().zip(self.weights) {
-            let atom = *atom as usize;
-            moved[atom] += (mobility[atom] * weight) * change;
-        }
-    }
+/// Scalar product of the first three numbers.
+#[inline(always)]
+fn dot(a: &V4, b: &V4) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
+}
 
-    /// The normal force that this contact should carry, eq. (adhesion.3): it pushes where the gap would close, and pulls, as far
-    /// as it can, where the gap would grow.
-    #[inline(always)]
-    fn normal_force(&self, opened: f64, along: f64, carried: f64) -> f64 {
-        // Where the gap would be if the contact carried nothing.
-        let free = self.gap + opened - along / self.stiffness;
-        let (low, high) = (self.gap.min(0.0), self.gap.max(0.0));
-        if free < low {
-            (low - free) * self.stiffness
-        } else {
-            let held = ((high - free) * self.stiffness + GIVE * carried.min(0.0)) / (1.0 + GIVE);
-            held.min(0.0).max(self.least)
-        }
-    }
+#[inline(always)]
+fn wide(narrow: &[f32; 4]) -> V4 {
+    map(|i| f64::from(narrow[i]))
+}
 
-    /// The tangential force that this contact should carry, eq. (adhesion.4): it keeps the sides from sliding as far as it can.
-    #[inline(always)]
-    fn tangential_force(&self, slid: &Vec3, across: &Vec3, carried: &Vec3) -> Vec3 {
-        let carried = carried - carried.dot(&self.normal) * self.normal;
-        let stuck = (across - self.stiffness * slid + GIVE * carried) / (1.0 + GIVE);
-        let size = stuck.norm();
-        if size > self.shear { stuck * (self.shear / size) } else { stuck }
+#[inline(always)]
+fn narrow(wide: &V4) -> [f32; 4] {
+    [wide[0] as f32, wide[1] as f32, wide[2] as f32, 0.0]
+}
+
+/// How much farther apart displacements bring the two sides of a row, µm. The fourth number means nothing.
+#[inline(always)]
+fn apart(row: &Row, moved: &[V4]) -> V4 {
+    let [a, b, c, d] = row.atoms.map(|atom| &moved[atom as usize]);
+    let [p, q, r, s] = row.weights;
+    map(|i| (a[i] * p + b[i] * q) + (c[i] * r + d[i] * s))
+}
+
+/// Moves the atoms of a row as a change of its force does; the fourth number of that is 0.
+#[inline(always)]
+fn push(row: &Row, change: &V4, moved: &mut [V4]) {
+    for (atom, weight) in row.atoms.iter().zip(row.weights) {
+        let slot = &mut moved[*atom as usize];
+        let share = slot[3] * weight;
+        *slot = map(|i| slot[i] + share * change[i]);
     }
 }
 
-/// One sweep over all contacts.
-pub fn sweep_contacts(rows: &mut [Row], carried: &[Vec3], moved: &mut [Vec3], mobility: &[f64], change: &mut Change) {
-    let mut largest = 0.0;
-    for (number, (row, carried)) in rows.iter_mut().zip(carried).enumerate() {
-        if row.stiffness == 0.0 {
-            continue;
-        }
-        let apart = row.apart(moved);
-        let (opened, along) = (apart.dot(&row.normal), row.force.dot(&row.normal));
-        let wanted = row.normal_force(opened, along, carried.dot(&row.normal));
-        let mut step = (wanted - along) * row.normal;
-        if row.shear > 0.0 {
-            let (slid, across) = (apart - opened * row.normal, row.force - along * row.normal);
-            step += row.tangential_force(&slid, &across, carried) - across;
-        }
-        row.force += step;
-        row.push(&step, moved, mobility);
-        let size = step.norm_squared() / row.stiffness;
-        change.work += size;
-        if size > largest * row.stiffness {
-            (largest, change.worst) = (size / row.stiffness, number);
-        }
-    }
-    change.largest = change.largest.max(largest.sqrt());
+/// The normal force that a contact should carry, eq. (adhesion.3): it pushes where the gap would close, and pulls, as far
+/// as it can, where the gap would grow. `free` is where the gap would be if it carried nothing.
+#[inline(always)]
+fn normal_force(row: &Row, free: f64, carried: f64) -> f64 {
+    let (gap, stiffness) = (row.gap(), f64::from(row.stiffness));
+    let (low, high) = (gap.min(0.0), gap.max(0.0));
+    let pushed = (low - free) * stiffness;
+    let held = ((high - free) * stiffness + GIVE * carried.min(0.0)) * (1.0 / (1.0 + GIVE));
+    let pulled = held.min(0.0).max(f64::from(row.least));
+    if free < low { pushed } else { pulled }
 }
 
-/// Puts all volumes back to first order, eq. (adhesion.6).
-pub fn sweep_volumes(volumes: &[VolumeRow], gradient: &[Vec3], moved: &mut [Vec3], change: &mut Change) {
-    for volume in volumes {
-        let (gradient, moved) = (&gradient[volume.first..volume.end], &mut moved[volume.first..volume.end]);
-        let along: f64 = gradient.iter().zip(&*moved).map(|(g, d)| g.dot(d)).sum();
-        let back = -(volume.offset + along) * volume.inverse;
-        moved.iter_mut().zip(gradient).for_each(|(d, g)| *d += back * g);
-        // As far as all atoms move along a gradient that is the same for all.
-        let squared = back * back / volume.inverse;
-        change.largest = change.largest.max((squared / moved.len() as f64).sqrt());
-        change.work += squared / volume.mobility;
+/// The force of a row after its turn: normal by [`normal_force`]; the tangential part keeps the sides from sliding as far
+/// as it can, eq. (adhesion.4).
+#[inline(always)]
+fn turn(row: &Row, force: &V4, carried: &V4, moved: &[V4]) -> V4 {
+    let apart = apart(row, moved);
+    let mut normal = wide(&row.normal_and_gap);
+    normal[3] = 0.0;
+    let (opened, along, carried_along) = (dot(&apart, &normal), dot(force, &normal), dot(carried, &normal));
+    let free = (row.gap() + opened) - along * f64::from(row.give);
+    let wanted = normal_force(row, free, carried_along);
+    if row.shear == 0.0 {
+        return map(|i| wanted * normal[i]);
+    }
+    let stiffness = f64::from(row.stiffness);
+    let stuck = map(|i| {
+        let (slid, across) = (apart[i] - opened * normal[i], force[i] - along * normal[i]);
+        let carried = carried[i] - carried_along * normal[i];
+        ((across - stiffness * slid) + GIVE * carried) * (1.0 / (1.0 + GIVE))
+    });
+    let (squared, shear) = (dot(&stuck, &stuck), f64::from(row.shear));
+    let kept = if squared > shear * shear { shear / squared.sqrt() } else { 1.0 };
+    map(|i| wanted * normal[i] + kept * stuck[i])
+}
+
+/// One sweep over all contacts, each of which first goes on along its last direction by `share`, as the displacements did.
+pub fn sweep_contacts(rows: &[Row], pulls: &mut [Pull], moved: &mut [V4], share: f64, change: &mut Change) {
+    Arch::new().dispatch(Sweep { rows, pulls, moved, share, change });
+}
+
+struct Sweep<'a> {
+    rows: &'a [Row],
+    pulls: &'a mut [Pull],
+    moved: &'a mut [V4],
+    share: f64,
+    change: &'a mut Change,
+}
+
+impl NullaryFnOnce for Sweep<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { rows, pulls, moved, share, change } = self;
+        let mut largest = 0.0;
+        for (number, (row, pull)) in rows.iter().zip(pulls).enumerate() {
+            if row.give == 0.0 {
+                continue;
+            }
+            let (way, last) = (wide(&pull.way), wide(&pull.change));
+            // As the numbers are kept, so that force and displacement go the same way.
+            let force = wide(&pull.force);
+            let force = wide(&narrow(&map(|i| force[i] + share * way[i])));
+            let new = narrow(&turn(row, &force, &wide(&pull.carried), moved));
+            let step = map(|i| f64::from(new[i]) - force[i]);
+            push(row, &step, moved);
+            pull.way = narrow(&map(|i| share * way[i] + last[i]));
+            pull.change = narrow(&step);
+            pull.force = new;
+            let give = f64::from(row.give);
+            let size = dot(&step, &step) * give;
+            change.work += size;
+            if size * give > largest {
+                (largest, change.worst) = (size * give, number);
+            }
+        }
+        change.largest = change.largest.max(largest.sqrt());
+    }
+}
+
+/// Puts all volumes back to first order, eq. (adhesion.6). The fourth number of gradients is 0.
+pub fn sweep_volumes(volumes: &[VolumeRow], gradient: &[V4], moved: &mut [V4], change: &mut Change) {
+    Arch::new().dispatch(SweepVolumes { volumes, gradient, moved, change });
+}
+
+struct SweepVolumes<'a> {
+    volumes: &'a [VolumeRow],
+    gradient: &'a [V4],
+    moved: &'a mut [V4],
+    change: &'a mut Change,
+}
+
+impl NullaryFnOnce for SweepVolumes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let change = self.change;
+        for volume in self.volumes {
+            let gradient = &self.gradient[volume.first..volume.end];
+            let moved = &mut self.moved[volume.first..volume.end];
+            let mut along = [0.0; 4];
+            for (g, d) in gradient.iter().zip(&*moved) {
+                along = map(|i| along[i] + g[i] * d[i]);
+            }
+            let back = -(volume.offset + ((along[0] + along[1]) + along[2])) * volume.inverse;
+            for (d, g) in moved.iter_mut().zip(gradient) {
+                *d = map(|i| d[i] + back * g[i]);
+            }
+            // As far as all atoms move along a gradient that is the same for all.
+            let squared = back * back / volume.inverse;
+            change.largest = change.largest.max((squared / moved.len() as f64).sqrt());
+            change.work += squared / volume.mobility;
+        }
     }
 }
 
 /// Pushes out what is inside, by no more than `most` (µm), and leaves no force behind: what curved ways let slip is
-/// mended by place, not by force, eq. (adhesion.7). `push` is the force of each row that would do it, zero at first.
-pub fn sweep_depths(rows: &[Row], push: &mut [f64], moved: &mut [Vec3], mobility: &[f64], most: f64) {
-    for (row, push) in rows.iter().zip(push).filter(|(row, _)| row.stiffness > 0.0 && row.gap < 0.0) {
-        let wanted = (row.gap + most).min(0.0);
-        let missing = wanted - row.gap - row.apart(moved).dot(&row.normal);
-        let pushed = (*push + missing * row.stiffness).max(0.0);
-        row.push(&((pushed - *push) * row.normal), moved, mobility);
-        *push = pushed;
+/// mended by place, not by force, eq. (adhesion.7). `pushes` is the force of each row that would do it, zero at first.
+pub fn sweep_depths(rows: &[Row], pushes: &mut [f64], moved: &mut [V4], most: f64) {
+    for (row, pushed) in rows.iter().zip(pushes).filter(|(row, _)| row.give > 0.0 && row.gap() < 0.0) {
+        let mut normal = wide(&row.normal_and_gap);
+        normal[3] = 0.0;
+        let wanted = (row.gap() + most).min(0.0);
+        let missing = wanted - row.gap() - dot(&apart(row, moved), &normal);
+        let new = (*pushed + missing * f64::from(row.stiffness)).max(0.0);
+        push(row, &normal.map(|n| (new - *pushed) * n), moved);
+        *pushed = new;
     }
-}
-
-/// The conjugate directions that speed the sweeps up (Silcowitz-Hansen, Niebe and Erleben 2010): what a sweep changes
-/// is taken for a gradient, and part of the last direction is added to it.
-#[derive(Debug, Clone, Default)]
-pub struct Momentum {
-    /// Displacements and forces before the sweep.
-    before: (Vec<Vec3>, Vec<Vec3>),
-    /// The last direction.
-    way: (Vec<Vec3>, Vec<Vec3>),
-    /// The work of the last sweep.
-    work: f64,
-}
-
-impl Momentum {
-    /// Forgets the directions of the last projection.
-    pub fn begin(&mut self, atoms: usize, rows: usize) {
-        for (list, count) in [(&mut self.way.0, atoms), (&mut self.way.1, rows)] {
-            list.clear();
-            list.resize(count, Vec3::zeros());
-        }
-        self.work = 0.0;
-    }
-
-    /// Remembers where a sweep begins.
-    pub fn before(&mut self, moved: &[Vec3], rows: &[Row]) {
-        self.before.0.clear();
-        self.before.0.extend_from_slice(moved);
-        self.before.1.clear();
-        self.before.1.extend(rows.iter().map(|row| row.force));
-    }
-
-    /// The displacement of an atom before the sweep.
-    pub fn displacement(&self, atom: u32) -> &Vec3 {
-        &self.before.0[atom as usize]
-    }
-
-    /// Goes on along the last direction after a sweep that did this work.
-    pub fn go_on(&mut self, work: f64, moved: &mut [Vec3], rows: &mut [Row]) {
-        let share = if self.work > 0.0 { work / self.work } else { 0.0 };
-        // A sweep that changed more than the one before: start again.
-        let share = if share > 1.0 { 0.0 } else { share };
-        self.work = work;
-        let forces = rows.iter_mut().map(|row| &mut row.force);
-        for (now, (before, way)) in moved.iter_mut().zip(self.before.0.iter().zip(&mut self.way.0)) {
-            advance(now, before, way, share);
-        }
-        for (now, (before, way)) in forces.zip(self.before.1.iter().zip(&mut self.way.1)) {
-            advance(now, before, way, share);
-        }
-    }
-
-    /// Writes NaN over all numbers.
-    pub fn poison(&mut self) {
-        for list in [&mut self.before.0, &mut self.before.1, &mut self.way.0, &mut self.way.1] {
-            list.fill(Vec3::repeat(f64::NAN));
-        }
-        self.work = f64::NAN;
-    }
-}
-
-#[inline(always)]
-fn advance(now: &mut Vec3, before: &Vec3, way: &mut Vec3, share: f64) {
-    let change = *now - before;
-    let old = share * *way;
-    *now += old;
-    *way = old + change;
 }
