@@ -4,7 +4,7 @@ use crate::contact::{self, Reach, Scene, Shape, Sides};
 use crate::geometry;
 use crate::sim::model::{Kind, Plane};
 
-/// How strongly two surfaces stick. It depends neither on the step nor on the mesh.
+/// How strongly two surfaces stick, eq. (adhesion.2). It depends neither on the step nor on the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Strength {
     /// The pull at which they part, pN/µm².

@@ -5,7 +5,7 @@ use super::state::ContactState;
 use crate::Vec3;
 use crate::contact::Contacts;
 
-/// One contact as it stands in a step. The gap changes by `normal · Σ weights[i] D[atoms[i]]` when atoms are displaced by
+/// One contact as it stands in a step, eq. (adhesion.1). The gap changes by `normal · Σ weights[i] D[atoms[i]]` when atoms are displaced by
 /// D. A packed population has almost as many contacts as atoms, and every sweep reads them all: what need not be exact to
 /// more than seven digits has four bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
