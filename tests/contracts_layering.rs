@@ -14,8 +14,8 @@ const TABLE: &[(&str, &[&str])] = &[
     ("chemistry", &[]),
     ("contact", &["geometry"]),
     ("cell", &["mechanics", "chemistry", "geometry"]),
-    ("sim", &["cell", "mechanics", "chemistry", "geometry"]),
-    ("experiment", &["sim", "cell", "mechanics", "chemistry", "geometry"]),
+    ("sim", &["cell", "mechanics", "chemistry", "contact", "geometry"]),
+    ("experiment", &["sim", "cell", "mechanics", "chemistry", "contact", "geometry"]),
     // The result file knows no simulator: it is given frames.
     ("output", &[]),
     // Numbers and plots come from a finished file; the kinds of measures are words of the document.

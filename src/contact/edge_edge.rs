@@ -152,3 +152,47 @@ fn is_really_inside(first: &Ridge, second: &Ridge, normal: Vec3) -> bool {
     first.normals().iter().all(|facet| facet.dot(&normal) < 0.0)
         && second.normals().iter().all(|facet| facet.dot(&normal) > 0.0)
 }
+
+/// How far facets may rise towards the other edge, as a sine, before a contact that was there is let go.
+const SLACK: f64 = 0.35;
+
+/// Looks again at a contact of two edges that was there before with this normal. Between nearly flat surfaces the facets of
+/// one edge rise a little towards the other in one moment and fall away in the next; a contact that carries a force must
+/// not come and go with that. Nothing when the edges have slid off each other, are farther apart than the proximity, or
+/// their facets have really turned.
+pub fn edges_still_touch(
+    scene: &Scene,
+    positions: &[Vec3],
+    edges: [u32; 2],
+    bodies: [u32; 2],
+    normal: &Vec3,
+) -> Option<EdgeContact> {
+    let [first, second] = [0, 1].map(|side| {
+        let (shape, own) = (scene.shape(bodies[side]), edges[side] - scene.bodies[bodies[side] as usize].first_edge);
+        Ridge::of(shape, scene.of_body(bodies[side], positions), own)
+    });
+    let across = first.along.cross(&second.along);
+    let squared = across.norm_squared();
+    if squared <= LEAST_SINE_SQUARED * first.along.norm_squared() * second.along.norm_squared() {
+        return None;
+    }
+    let between = first.start - second.start;
+    let on_first = -between.cross(&second.along).dot(&across);
+    let on_second = -between.cross(&first.along).dot(&across);
+    if on_first < 0.0 || on_first > squared || on_second < 0.0 || on_second > squared {
+        return None;
+    }
+    let normal = across * (1f64.copysign(across.dot(normal)) / squared.sqrt());
+    let gap = normal.dot(&between);
+    let rises = |flank: &Vec3, along: f64| along < -SLACK * flank.norm();
+    let turned = first.flanks().iter().any(|flank| rises(flank, normal.dot(flank)))
+        || second.flanks().iter().any(|flank| rises(flank, -normal.dot(flank)));
+    let near = gap < scene.reach.proximity && gap >= -scene.reach.depth;
+    (near && !turned).then(|| EdgeContact {
+        edges,
+        bodies,
+        along: [on_first / squared, on_second / squared],
+        gap,
+        normal,
+    })
+}

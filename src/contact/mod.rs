@@ -21,6 +21,7 @@ mod swept;
 
 pub use closest::{FacetPoint, Feature, closest_on_facet, closest_on_segments};
 pub use detect::{Detection, Detector};
+pub use edge_edge::edges_still_touch;
 pub use found::{AtomContact, Contacts, EdgeContact, PlaneContact};
 pub use inside::{Overlap, find_overlaps, winding_number};
 pub use passages::{Coverage, Pair, Passage};

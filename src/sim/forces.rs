@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::chemistry::Controls;
+use super::contact::add_contact_forces;
 use super::model::{Kind, Model, VolumeRule};
 use super::state::State;
 use super::workspace::Workspace;
@@ -12,7 +13,7 @@ use crate::mechanics::volume;
 /// Sets `force` of every kind to the sum of all forces at time `time` (pN), drag not included, and `energy` to the
 /// elastic energy of every cell. Motility enters as the drag that its velocity overcomes.
 pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
-    for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&mut ws.kinds) {
+    for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(&mut ws.kinds).enumerate() {
         let cells = kind.first_cell..kind.first_cell + kind.cells;
         let drive = &ws.drive[cells];
         let controls = &state.chemistry.controls;
@@ -33,6 +34,7 @@ pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
                 add_attraction(kind, x, f, energy);
                 add_drive(kind, drive, block, f);
                 add_pressure(kind, time, x, rest, spare, f, energy);
+                add_contact_forces(model, number, block, &ws.contact, f);
             });
     }
 }

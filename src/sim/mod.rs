@@ -2,6 +2,7 @@
 
 pub mod chemistry;
 pub mod constraints;
+pub mod contact;
 pub mod forces;
 pub mod implicit;
 pub mod inertial;

@@ -1,6 +1,7 @@
 //! What an experiment means: kinds of cells, loads and planes in µm, s and pN. Nothing here changes during a run.
 
 use super::chemistry::Chemistry;
+use super::contact::ContactModel;
 use crate::Vec3;
 use crate::cell::motility::BrownianMotility;
 use crate::geometry::{self, Surface, Topology};
@@ -26,6 +27,8 @@ pub struct Model {
     pub kinds: Vec<Kind>,
     /// Rigid planes that no atom passes.
     pub planes: Vec<Plane>,
+    /// Contacts between cells, with themselves and with planes; none where cells pass through each other.
+    pub contact: Option<ContactModel>,
     /// Acceleration of gravity, µm/s².
     pub gravity: Vec3,
     /// Systems of equations, fields, and what joins them to cells.
@@ -265,6 +268,7 @@ impl Model {
             seed: 1,
             kinds,
             planes: Vec::new(),
+            contact: None,
             gravity: Vec3::zeros(),
             chemistry: Chemistry::default(),
             integrator,

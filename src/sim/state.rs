@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::chemistry::ChemistryState;
+use super::contact::ContactState;
 use super::model::{Kind, Model};
 use crate::Vec3;
 use crate::cell::motility::Walk;
@@ -24,6 +25,8 @@ pub struct State {
     pub ended_runs: Vec<(u32, f64, f64)>,
     /// Systems and fields; empty in a model without chemistry.
     pub chemistry: ChemistryState,
+    /// What contacts carry; empty in a model without contacts.
+    pub contact: ContactState,
 }
 
 /// The cells of a kind, in blocks of lanes.
@@ -104,6 +107,7 @@ impl State {
             }
         }
         let chemistry = ChemistryState::new(model, &[]);
-        Self { time: 0.0, step: 0, next_step: 0.0, kinds, walks, ended_runs: Vec::new(), chemistry }
+        let contact = ContactState::default();
+        Self { time: 0.0, step: 0, next_step: 0.0, kinds, walks, ended_runs: Vec::new(), chemistry, contact }
     }
 }

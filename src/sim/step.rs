@@ -2,6 +2,7 @@
 
 use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::enforce_constraints;
+use super::contact::{find_contacts, hold_contacts, keep_contacts, travel};
 use super::forces::add_forces;
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
@@ -35,6 +36,7 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
         cover_stiffening(model, state, ws);
     }
     remember(state, ws);
+    find_contacts(model, state, ws);
     let mut dt = plan_step(model, state);
     for refused in 0..TRIES {
         let dt_now = end_at_kinks(model, state.time, dt);
@@ -55,6 +57,7 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
                 return Err(trouble);
             }
             state.next_step = next_step;
+            keep_contacts(model, state, ws);
             advance_clock(model, dt_now, state, ws);
             return Ok(StepReport { dt: dt_now, refused, error });
         }
@@ -78,12 +81,23 @@ fn try_step(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Re
     };
     keep_free_positions(state, ws);
     check_finite(model, end, state)?;
+    hold_contacts(model, dt, state, ws)?;
     enforce_constraints(model, state, ws).map_err(|failure| Trouble::of_volume(model, end, failure))?;
     if model.integrator.method.is_inertial() {
         correct_velocities(model, dt, state, ws);
     }
     check_finite(model, end, state)?;
-    Ok(error)
+    limit_travel(model, dt, error, state, ws)
+}
+
+/// The error with what contacts say about the step: one in which an atom moves too far counts as one over the tolerance.
+fn limit_travel(model: &Model, dt: f64, error: f64, state: &State, ws: &Workspace) -> Result<f64, Trouble> {
+    let share = travel(model, state, ws);
+    match model.integrator.size {
+        StepSize::Adaptive { tolerance, .. } => Ok(error.max(tolerance * share * share)),
+        StepSize::Fixed(_) if share > 1.0 => Err(Trouble::TooFast { time: state.time + dt, share }),
+        StepSize::Fixed(_) => Ok(error),
+    }
 }
 
 /// Stages of the linearly implicit schemes.

@@ -63,6 +63,24 @@ pub enum Trouble {
         /// When, s.
         time: f64,
     },
+    /// Contacts and volumes could not be held together.
+    Contact {
+        /// Type and number of the two cells that moved most.
+        cells: [(String, usize); 2],
+        /// End of the step, s.
+        time: f64,
+        /// What the last sweep still moved, µm.
+        left: f64,
+        /// Sweeps made.
+        sweeps: u32,
+    },
+    /// An atom moved farther in a fixed step than contacts allow.
+    TooFast {
+        /// End of the step, s.
+        time: f64,
+        /// How far over what is allowed.
+        share: f64,
+    },
     /// No step was small enough for the tolerance.
     StepTooSmall {
         /// Start of the step, s.
@@ -102,6 +120,11 @@ impl Trouble {
             Self::Link { .. } => {
                 "bound the number in the link's transfer, such as transfer=\"max(value, 0)\", or mend the equations behind it"
             }
+            Self::Contact { .. } => {
+                "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
+                 shorten run.integrator.step if you set one"
+            }
+            Self::TooFast { .. } => "shorten run.integrator.step, or leave it out so that steps limit themselves",
             Self::StepTooSmall { .. } => {
                 "the cell changes shape faster than any step can follow: look at its last state for folded or \
                  collapsed facets, lower the load, or raise run.integrator.tolerance"
@@ -139,6 +162,17 @@ impl std::fmt::Display for Trouble {
                     write!(f, " for cell {cell} of type `{kind}`")?;
                 }
                 write!(f, " at t = {time:.6} s; {expected} was expected")
+            }
+            Self::Contact { cells: [(kind, cell), other], time, left, sweeps } => {
+                write!(f, "contacts and volumes do not come to rest at t = {time:.6} s: after {sweeps} sweeps ")?;
+                write!(f, "atoms of cell {cell} of type `{kind}`")?;
+                if (kind, cell) != (&other.0, &other.1) {
+                    write!(f, " and of cell {} of type `{}`, which touch,", other.1, other.0)?;
+                }
+                write!(f, " still move by {left:.1e} um")
+            }
+            Self::TooFast { time, share } => {
+                write!(f, "an atom moves {share:.2} times as far as contacts allow in the step to t = {time:.6} s")
             }
             Self::StepTooSmall { time, dt } => {
                 write!(f, "at t = {time:.6} s no step was small enough: {dt:.1e} s still misses the tolerance")

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::chemistry::ChemistryScratch;
+use super::contact::ContactScratch;
 use super::model::{Kind, Model};
 use super::planes::TouchScratch;
 use super::projection::ProjectScratch;
@@ -23,6 +24,8 @@ pub struct Workspace {
     pub drive: Vec<[f64; 3]>,
     /// Scratch of chemistry.
     pub chemistry: ChemistryScratch,
+    /// Scratch of contacts.
+    pub contact: ContactScratch,
 }
 
 /// Scratch of a kind; arrays have the shape of the positions unless said otherwise.
@@ -197,12 +200,14 @@ impl Workspace {
             ended_runs: Vec::new(),
             drive: vec![[0.0; 3]; model.cells()],
             chemistry: ChemistryScratch::new(model),
+            contact: ContactScratch::default(),
         }
     }
 
     /// Writes NaN over all scratch numbers: a step must not notice.
     pub fn poison(&mut self, model: &Model) {
         self.chemistry.poison(model);
+        self.contact.poison();
         self.kinds.iter_mut().for_each(KindScratch::poison);
         self.drive.fill([f64::NAN; 3]);
         self.walks.clear();

@@ -1,0 +1,86 @@
+//! What touches where a step begins, and what it carried in the step before.
+
+use super::gather::gather;
+use super::model::ContactModel;
+use super::rows::{Pull, write_rows};
+use super::scratch::ContactScratch;
+use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
+use crate::Vec3;
+use crate::contact::{Contacts, edges_still_touch};
+use crate::sim::model::Model;
+use crate::sim::state::State;
+use crate::sim::workspace::Workspace;
+
+/// Finds the contacts of a step. Those that were there before go on carrying what they carried.
+pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
+    let Some(contact) = &model.contact else { return };
+    let s = &mut ws.contact;
+    s.start.resize(contact.scene.atoms, Vec3::zeros());
+    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+        gather(kind, &now.positions, &mut s.start[contact.atoms_of(number)], |x| x);
+    }
+    s.detector.detect(&contact.scene, &s.start, &mut s.found);
+    keep_edges(contact, &state.contact, &s.start, &mut s.found);
+    write_rows(contact, &s.found, &state.contact, &mut s.rows, &mut s.pulls);
+    s.force.clear();
+    s.force.resize(contact.scene.atoms, Vec3::zeros());
+    if model.integrator.method.is_inertial() {
+        s.pulls.fill(Pull::default());
+    }
+    for (row, pull) in s.rows.iter().zip(&s.pulls) {
+        for (atom, weight) in row.atoms.iter().zip(row.weights) {
+            s.force[*atom as usize] += weight * pull.force();
+        }
+    }
+}
+
+/// Adds edges that carried a force and still touch to those found: between surfaces that are nearly flat they come and
+/// go with every tremor.
+fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3], found: &mut Contacts) {
+    let count = found.edges.len();
+    for bond in before.edges.iter().filter(|bond| bond.force != [0.0; 3]) {
+        if found.edges[..count].binary_search_by(|edge| edge.edges.cmp(&bond.edges)).is_err() {
+            let normal = Vec3::from(bond.normal);
+            found.edges.extend(edges_still_touch(&contact.scene, positions, bond.edges, bond.bodies, &normal));
+        }
+    }
+    found.edges.sort_unstable_by_key(|edge| edge.edges);
+}
+
+/// Adds the force that contacts carried to the forces of a block of a kind.
+pub fn add_contact_forces(model: &Model, number: usize, block: usize, scratch: &ContactScratch, f: &mut [f64]) {
+    let (Some(contact), kind) = (&model.contact, &model.kinds[number]) else { return };
+    let forces = &scratch.force[contact.atoms_of(number)];
+    for lane in 0..kind.lanes {
+        let cell = (block * kind.lanes + lane).min(kind.cells - 1);
+        for (atom, force) in forces[cell * kind.atoms()..(cell + 1) * kind.atoms()].iter().enumerate() {
+            for axis in 0..3 {
+                f[(3 * atom + axis) * kind.lanes + lane] += force[axis];
+            }
+        }
+    }
+}
+
+/// Keeps what contacts carry for the next step.
+pub fn keep_contacts(model: &Model, state: &mut State, ws: &Workspace) {
+    if model.contact.is_none() {
+        return;
+    }
+    let (s, ContactState { atoms, edges, planes }) = (&ws.contact, &mut state.contact);
+    let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
+    let (of_atoms, others) = s.pulls.split_at(s.found.atoms.len());
+    let (of_edges, of_planes) = others.split_at(s.found.edges.len());
+    atoms.clear();
+    for (pull, contact) in of_atoms.iter().zip(&s.found.atoms) {
+        atoms.push(AtomBond { atom: contact.atom, body: contact.body, facet: contact.facet, force: xyz(pull) });
+    }
+    edges.clear();
+    for (pull, contact) in of_edges.iter().zip(&s.found.edges) {
+        let normal = contact.normal.into();
+        edges.push(EdgeBond { edges: contact.edges, bodies: contact.bodies, normal, force: xyz(pull) });
+    }
+    planes.clear();
+    for (pull, contact) in of_planes.iter().zip(&s.found.planes) {
+        planes.push(PlaneBond { atom: contact.atom, plane: contact.plane, force: xyz(pull) });
+    }
+}

@@ -1,0 +1,29 @@
+//! Between the blocks of lanes of the kinds and one list of all atoms.
+
+use crate::Vec3;
+use crate::sim::model::Kind;
+use crate::sim::state::index;
+
+/// Takes the vectors of a kind in the order of its cells, and what `make` makes of each.
+pub fn gather<T>(kind: &Kind, values: &[f64], to: &mut [T], make: impl Fn(Vec3) -> T) {
+    for (cell, to) in to.chunks_exact_mut(kind.atoms()).enumerate() {
+        let first = index(kind, cell, 0, 0);
+        for (atom, to) in to.iter_mut().enumerate() {
+            let at = first + 3 * atom * kind.lanes;
+            *to = make(Vec3::new(values[at], values[at + kind.lanes], values[at + 2 * kind.lanes]));
+        }
+    }
+}
+
+/// Puts the vectors of a kind back, `from` their numbers within it; lanes beyond the last cell repeat it.
+pub fn scatter(kind: &Kind, from: impl Fn(usize) -> Vec3, values: &mut [f64]) {
+    for slot in 0..kind.blocks() * kind.lanes {
+        let cell = slot.min(kind.cells - 1);
+        let first = index(kind, slot, 0, 0);
+        for atom in 0..kind.atoms() {
+            let x = from(cell * kind.atoms() + atom);
+            let at = first + 3 * atom * kind.lanes;
+            (values[at], values[at + kind.lanes], values[at + 2 * kind.lanes]) = (x.x, x.y, x.z);
+        }
+    }
+}

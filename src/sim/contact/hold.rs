@@ -1,0 +1,176 @@
+//! The projection: atoms are moved so that contacts and volumes hold.
+
+use super::gather::{gather, scatter};
+use super::model::ContactModel;
+use super::rows::Pull;
+use super::scratch::ContactScratch;
+use super::sweep::{Change, VolumeRow, sweep_contacts, sweep_depths, sweep_volumes};
+use crate::Vec3;
+use crate::mechanics::integrator::Method;
+use crate::mechanics::volume;
+use crate::sim::model::{Kind, Model, VolumeRule};
+use crate::sim::state::{State, index};
+use crate::sim::trouble::Trouble;
+use crate::sim::workspace::{KindScratch, Workspace};
+
+/// Sweeps that mend depths. They need not come to rest: what is left is mended in the next step.
+const MENDING: usize = 8;
+
+/// What a step mends of a depth at most, over the travel that is safe.
+const MENDED: f64 = 0.25;
+
+/// Moves the atoms from where they went freely so that contacts and volumes hold, to first order in what they are
+/// moved; the exact volumes are for the stage after this.
+///
+/// # Errors
+/// When the sweeps do not come to rest.
+pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+    let Some(contact) = &model.contact else { return Ok(()) };
+    let Workspace { contact: s, kinds, .. } = ws;
+    s.sweeps = 0;
+    if s.rows.is_empty() {
+        return Ok(());
+    }
+    prepare(model, contact, dt, state, s, kinds);
+    let left = sweep(contact, s);
+    if s.rows.iter().any(|row| row.gap() < 0.0) {
+        mend(contact, s);
+    }
+    for (number, (kind, now)) in model.kinds.iter().zip(&mut state.kinds).enumerate() {
+        let first = contact.atoms_of(number).start;
+        let place = |atom: usize| {
+            let [x, y, z, _] = s.moved[first + atom];
+            s.start[first + atom] + Vec3::new(x, y, z)
+        };
+        scatter(kind, place, &mut now.positions);
+    }
+    if left.largest <= contact.tolerance {
+        return Ok(());
+    }
+    let owners = s.rows[left.worst].atoms.map(|atom| contact.owner(atom));
+    let cells = [owners[0], owners[3]].map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
+    Err(Trouble::Contact { cells, time: state.time + dt, left: left.largest, sweeps: s.sweeps })
+}
+
+/// Displacements, mobilities, volumes and stiffnesses before the first sweep.
+fn prepare(
+    model: &Model,
+    contact: &ContactModel,
+    dt: f64,
+    state: &State,
+    s: &mut ContactScratch,
+    kinds: &mut [KindScratch],
+) {
+    s.moved.resize(contact.scene.atoms, [0.0; 4]);
+    s.gradient.resize(contact.scene.atoms, [0.0; 4]);
+    s.volumes.clear();
+    s.held.clear();
+    for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
+        let range = contact.atoms_of(number);
+        let mobility = match model.integrator.method {
+            Method::Implicit { .. } | Method::Explicit => dt / kind.drag,
+            _ => dt * dt / kind.mass,
+        };
+        gather(kind, &now.positions, &mut s.moved[range.clone()], |x| [x.x, x.y, x.z, mobility]);
+        for (d, start) in s.moved[range.clone()].iter_mut().zip(&s.start[range.clone()]) {
+            (0..3).for_each(|axis| d[axis] -= start[axis]);
+        }
+        hold_atoms(kind, range.start, s);
+        if matches!(kind.volume, VolumeRule::Exact(_)) {
+            add_volumes(kind, &now.positions, range.start, mobility, s, w);
+        }
+    }
+    for (row, pull) in s.rows.iter_mut().zip(&mut s.pulls) {
+        *pull = Pull { force: pull.carried, carried: pull.carried, ..Pull::default() };
+        let gives =
+            row.atoms.iter().zip(row.weights).map(|(atom, weight)| weight * weight * s.moved[*atom as usize][3]);
+        row.give = gives.sum::<f64>() as f32;
+        row.stiffness = 1.0 / row.give;
+    }
+}
+
+/// Lists what is held of a kind; atoms that are held along every axis get no mobility.
+fn hold_atoms(kind: &Kind, first: usize, s: &mut ContactScratch) {
+    for cell in 0..kind.cells {
+        for (atom, factors) in kind.held.chunks_exact(3).enumerate() {
+            let number = first + cell * kind.atoms() + atom;
+            if factors.iter().all(|factor| *factor == 0.0) {
+                s.moved[number][3] = 0.0;
+            } else {
+                let held = (0..3).filter(|axis| factors[*axis as usize] == 0.0);
+                s.held.extend(held.map(|axis| (number as u32, axis)));
+            }
+        }
+    }
+}
+
+/// The volumes of a kind and their gradients where the atoms went freely.
+fn add_volumes(kind: &Kind, x: &[f64], first: usize, mobility: f64, s: &mut ContactScratch, w: &mut KindScratch) {
+    for ((gradient, x), volumes) in (w.spare.chunks_exact_mut(kind.block_len()))
+        .zip(x.chunks_exact(kind.block_len()))
+        .zip(w.left.chunks_exact_mut(kind.lanes))
+    {
+        volume::measure_block(&kind.rest.facets, x, &kind.held, gradient, volumes);
+    }
+    let own = &mut s.gradient[first..first + kind.cells * kind.atoms()];
+    gather(kind, &w.spare, own, |g| [g.x, g.y, g.z, 0.0]);
+    for cell in 0..kind.cells {
+        let first = first + cell * kind.atoms();
+        let end = first + kind.atoms();
+        let (mut along, mut squared) = (0.0, 0.0);
+        for (g, d) in s.gradient[first..end].iter().zip(&s.moved[first..end]) {
+            along += (0..3).map(|axis| g[axis] * d[axis]).sum::<f64>();
+            squared += (0..3).map(|axis| g[axis] * g[axis]).sum::<f64>();
+        }
+        let offset = w.left[cell] - w.target[cell] - along;
+        s.volumes.push(VolumeRow { first, end, offset, inverse: 1.0 / squared, mobility });
+    }
+}
+
+/// Sweeps until nothing moves any more; returns what the last sweep changed.
+fn sweep(contact: &ContactModel, s: &mut ContactScratch) -> Change {
+    s.momentum.begin(&s.moved);
+    let (mut change, mut share) = (Change::default(), 0.0);
+    for number in 1..=contact.most_sweeps {
+        change = Change::default();
+        sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, share, &mut change);
+        for &(atom, axis) in &s.held {
+            s.moved[atom as usize][axis as usize] = s.momentum.displacement(atom)[axis as usize];
+        }
+        sweep_volumes(&s.volumes, &s.gradient, &mut s.moved, &mut change);
+        s.sweeps = number;
+        // A change that is not a number is no rest either.
+        if change.largest <= contact.tolerance || number == contact.most_sweeps {
+            break;
+        }
+        share = s.momentum.go_on(change.work, &mut s.moved);
+    }
+    change
+}
+
+/// Pushes out what is inside.
+fn mend(contact: &ContactModel, s: &mut ContactScratch) {
+    s.push.clear();
+    s.push.resize(s.rows.len(), 0.0);
+    for _ in 0..MENDING {
+        sweep_depths(&s.rows, &mut s.push, &mut s.moved, MENDED * contact.scene.safe_travel());
+        sweep_volumes(&s.volumes, &s.gradient, &mut s.moved, &mut Change::default());
+    }
+}
+
+/// The farthest that an atom moved in the step over what contacts allow; 0 without contacts.
+pub fn travel(model: &Model, state: &State, ws: &Workspace) -> f64 {
+    let Some(contact) = &model.contact else { return 0.0 };
+    let mut farthest: f64 = 0.0;
+    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+        for (cell, start) in ws.contact.start[contact.atoms_of(number)].chunks_exact(kind.atoms()).enumerate() {
+            let first = index(kind, cell, 0, 0);
+            for (atom, start) in start.iter().enumerate() {
+                let at = first + 3 * atom * kind.lanes;
+                let x = [0, 1, 2].map(|axis| now.positions[at + axis * kind.lanes]);
+                farthest = farthest.max((Vec3::from(x) - start).norm_squared());
+            }
+        }
+    }
+    farthest.sqrt() / contact.scene.safe_travel()
+}

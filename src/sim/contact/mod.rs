@@ -1,0 +1,22 @@
+//! Contacts in the step: cells do not pass each other, stick with a strength, and keep their volumes meanwhile.
+//!
+//! Contacts are found where the step begins. What they carried in the last step acts as a force while the cells move
+//! freely; then a projection finds what is missing, by projected Gauss–Seidel over all contacts and all volumes in a fixed
+//! order, eq. (adhesion.3). At rest nothing is missing, and the force is the true one, whatever the step.
+
+mod find;
+mod gather;
+mod hold;
+mod model;
+mod momentum;
+mod rows;
+mod scratch;
+mod state;
+mod sweep;
+
+pub use find::{add_contact_forces, find_contacts, keep_contacts};
+pub use hold::{hold_contacts, travel};
+pub use model::{ContactModel, Strength};
+pub use rows::{Pull, Row};
+pub use scratch::ContactScratch;
+pub use state::{AtomBond, ContactState, EdgeBond, PlaneBond};

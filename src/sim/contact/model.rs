@@ -1,0 +1,94 @@
+//! Who can touch whom, and how strongly they stick.
+
+use crate::contact::{self, Reach, Scene, Shape, Sides};
+use crate::geometry;
+use crate::sim::model::{Kind, Plane};
+
+/// How strongly two surfaces stick, eq. (adhesion.2). It depends neither on the step nor on the mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Strength {
+    /// The pull at which they part, pN/µm².
+    pub tensile: f64,
+    /// The shear at which they slide, pN/µm².
+    pub shear: f64,
+}
+
+/// Contacts of a model.
+#[derive(Debug, Clone)]
+pub struct ContactModel {
+    /// All surfaces and planes: body `i` is cell `i`, shape `i` is kind `i`.
+    pub scene: Scene,
+    /// Strength between kinds: `between[kind * kinds + other]`, symmetric.
+    pub between: Vec<Strength>,
+    /// Strength between kinds and planes: `on_planes[kind * planes + plane]`.
+    pub on_planes: Vec<Strength>,
+    /// What a sweep may still move at the end, µm.
+    pub tolerance: f64,
+    /// Sweeps after which a step is given up.
+    pub most_sweeps: u32,
+    /// Area at rest of each atom of each kind, µm².
+    pub(super) areas: Vec<Vec<f64>>,
+    /// Number of the first atom of each kind among all atoms.
+    pub(super) first_atom: Vec<usize>,
+}
+
+/// Sweeps over the contacts after which a step is given up.
+const MOST_SWEEPS: u32 = 200;
+
+/// What a sweep may still move, over the mean edge.
+const TOLERANCE: f64 = 1e-4;
+
+impl ContactModel {
+    /// Contacts of all cells of these kinds with each other, with themselves and with planes, without any strength.
+    pub fn new(kinds: &[Kind], planes: &[Plane], reach: Reach) -> Self {
+        let sides = |kind: &Kind| if kind.closed { Sides::Outer } else { Sides::Both };
+        let shapes = kinds.iter().map(|kind| Shape::new(&kind.rest, sides(kind), 1.5 * reach.proximity)).collect();
+        let shape_of_body: Vec<usize> =
+            kinds.iter().enumerate().flat_map(|(number, kind)| std::iter::repeat_n(number, kind.cells)).collect();
+        let plane = |plane: &Plane| contact::Plane { point: plane.point, normal: plane.normal };
+        let scene = Scene::new(shapes, &shape_of_body, planes.iter().map(plane).collect(), reach);
+        let edge = kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
+        let mut first_atom = vec![0];
+        for kind in kinds {
+            first_atom.push(first_atom[first_atom.len() - 1] + kind.cells * kind.atoms());
+        }
+        Self {
+            scene,
+            between: vec![Strength::default(); kinds.len() * kinds.len()],
+            on_planes: vec![Strength::default(); kinds.len() * planes.len()],
+            tolerance: TOLERANCE * edge,
+            most_sweeps: MOST_SWEEPS,
+            areas: kinds.iter().map(|kind| geometry::atom_areas(&kind.rest)).collect(),
+            first_atom,
+        }
+    }
+
+    /// Sets the strength between two kinds, both ways.
+    pub fn stick(&mut self, kind: usize, other: usize, strength: Strength) {
+        let kinds = self.areas.len();
+        self.between[kind * kinds + other] = strength;
+        self.between[other * kinds + kind] = strength;
+    }
+
+    /// Sets the strength between a kind and a plane.
+    pub fn stick_to_plane(&mut self, kind: usize, plane: usize, strength: Strength) {
+        let planes = self.scene.planes.len();
+        self.on_planes[kind * planes + plane] = strength;
+    }
+
+    /// The numbers of the atoms of a kind.
+    pub(super) fn atoms_of(&self, kind: usize) -> std::ops::Range<usize> {
+        self.first_atom[kind]..self.first_atom[kind + 1]
+    }
+
+    /// The kind of an atom and the number of its cell within that.
+    pub(super) fn owner(&self, atom: u32) -> (usize, usize) {
+        let kind = self.first_atom.partition_point(|first| *first <= atom as usize) - 1;
+        (kind, (atom as usize - self.first_atom[kind]) / self.areas[kind].len())
+    }
+
+    /// The kind of a body.
+    pub(super) fn kind_of(&self, body: u32) -> usize {
+        self.scene.bodies[body as usize].shape as usize
+    }
+}

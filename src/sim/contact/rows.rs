@@ -1,0 +1,167 @@
+//! Contacts as rows of the system that the sweeps solve.
+
+use super::model::{ContactModel, Strength};
+use super::state::ContactState;
+use crate::Vec3;
+use crate::contact::Contacts;
+
+/// One contact as it stands in a step, eq. (adhesion.1). The gap changes by `normal · Σ weights[i] D[atoms[i]]` when atoms are displaced by
+/// D. A packed population has almost as many contacts as atoms, and every sweep reads them all: what need not be exact to
+/// more than seven digits has four bytes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Its atoms; those that are not there have weight 0.
+    pub atoms: [u32; 4],
+    /// Their weights: positive on the first side of the contact, negative on the other; each side sums to ±1 exactly.
+    pub weights: [f64; 4],
+    /// From the other side to the first, and the gap where the step began, µm.
+    pub normal_and_gap: [f32; 4],
+    /// Least normal force, pN: minus the pull at which the contact parts.
+    pub least: f32,
+    /// Largest tangential force, pN.
+    pub shear: f32,
+    /// Displacement over force, µm/pN; 0 where nothing can move.
+    pub give: f32,
+    /// Force over displacement, pN/µm.
+    pub stiffness: f32,
+}
+
+/// What a contact carries; forces on the first side, pN.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pull {
+    /// Now.
+    pub force: [f32; 4],
+    /// Where the step began.
+    pub carried: [f32; 4],
+    /// What the last sweep changed.
+    pub(super) change: [f32; 4],
+    /// The direction that speeds the sweeps up.
+    pub(super) way: [f32; 4],
+}
+
+/// Both sides of an interface have atoms that touch the other: each carries half of its strength.
+const SHARE: f64 = 0.5;
+
+/// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them.
+pub fn write_rows(
+    model: &ContactModel,
+    found: &Contacts,
+    before: &ContactState,
+    rows: &mut Vec<Row>,
+    pulls: &mut Vec<Pull>,
+) {
+    rows.clear();
+    pulls.clear();
+    let mut add = |atoms, weights, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], force: [f32; 3]| {
+        let normal_and_gap = [normal.x as f32, normal.y as f32, normal.z as f32, gap as f32];
+        let row =
+            Row { atoms, weights, normal_and_gap, least: least as f32, shear: shear as f32, give: 0.0, stiffness: 0.0 };
+        let force = row.bound(Vec3::from(force.map(f64::from)));
+        let force = [force.x as f32, force.y as f32, force.z as f32, 0.0];
+        rows.push(row);
+        pulls.push(Pull { force, carried: force, ..Pull::default() });
+    };
+    let scene = &model.scene;
+    let (mut body, mut first) = (0, 0);
+    for contact in &found.atoms {
+        while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= contact.atom) {
+            body += 1;
+        }
+        while before.atoms.get(first).is_some_and(|bond| bond.atom < contact.atom) {
+            first += 1;
+        }
+        // The same facet, or else another of the same body: the atom has slid.
+        let of_atom = || before.atoms[first..].iter().take_while(|bond| bond.atom == contact.atom);
+        let same = of_atom().find(|bond| bond.facet == contact.facet);
+        let is_free = |facet: u32| {
+            let near = found.atoms.partition_point(|other| (other.atom, other.facet) < (contact.atom, facet));
+            found.atoms.get(near).is_none_or(|other| (other.atom, other.facet) != (contact.atom, facet))
+        };
+        let slid = || of_atom().find(|bond| bond.body == contact.body && is_free(bond.facet));
+        let force = same.or_else(slid).map_or([0.0; 3], |bond| bond.force);
+        let [i, j, k] = scene.facet_atoms(contact.body, contact.facet);
+        let [u, v, w] = contact.weights();
+        let own = contact.body as usize == body;
+        let (kind, other) = (model.kind_of(body as u32), model.kind_of(contact.body));
+        let strength = if own { Strength::default() } else { model.between[kind * model.areas.len() + other] };
+        let area = SHARE * model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
+        add(
+            [contact.atom, i, j, k],
+            [1.0, -u, -v, -w],
+            &contact.normal,
+            contact.gap,
+            [-strength.tensile * area, strength.shear * area],
+            force,
+        );
+    }
+    let mut first = 0;
+    for contact in &found.edges {
+        while before.edges.get(first).is_some_and(|bond| bond.edges < contact.edges) {
+            first += 1;
+        }
+        let same = before.edges.get(first).filter(|bond| bond.edges == contact.edges);
+        let [[a, b], [c, d]] = [0, 1].map(|side| scene.edge_atoms(contact.bodies[side], contact.edges[side]));
+        let [s, t] = contact.along;
+        add(
+            [a, b, c, d],
+            [1.0 - s, s, t - 1.0, -t],
+            &contact.normal,
+            contact.gap,
+            [0.0, 0.0],
+            same.map_or([0.0; 3], |bond| bond.force),
+        );
+    }
+    let (mut body, mut first) = (0, 0);
+    for contact in &found.planes {
+        while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= contact.atom) {
+            body += 1;
+        }
+        let key = (contact.atom, contact.plane);
+        while before.planes.get(first).is_some_and(|bond| (bond.atom, bond.plane) < key) {
+            first += 1;
+        }
+        let same = before.planes.get(first).filter(|bond| (bond.atom, bond.plane) == key);
+        let kind = model.kind_of(body as u32);
+        let strength = model.on_planes[kind * scene.planes.len() + contact.plane as usize];
+        let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
+        add(
+            [contact.atom; 4],
+            [1.0, 0.0, 0.0, 0.0],
+            &scene.planes[contact.plane as usize].normal,
+            contact.gap,
+            [-strength.tensile * area, strength.shear * area],
+            same.map_or([0.0; 3], |bond| bond.force),
+        );
+    }
+}
+
+impl Row {
+    /// Unit vector from the other side to the first.
+    pub fn normal(&self) -> Vec3 {
+        let [x, y, z, _] = self.normal_and_gap.map(f64::from);
+        Vec3::new(x, y, z)
+    }
+
+    /// Gap where the step began, µm.
+    pub fn gap(&self) -> f64 {
+        f64::from(self.normal_and_gap[3])
+    }
+
+    /// Cuts a force to what the contact bears along its present normal.
+    fn bound(&self, force: Vec3) -> Vec3 {
+        let (normal, shear) = (self.normal(), f64::from(self.shear));
+        let along = force.dot(&normal);
+        let across = force - along * normal;
+        let size = across.norm();
+        let kept = if size > shear { shear / size } else { 1.0 };
+        along.max(f64::from(self.least)) * normal + kept * across
+    }
+}
+
+impl Pull {
+    /// The force on the first side, pN.
+    pub fn force(&self) -> Vec3 {
+        let [x, y, z, _] = self.force.map(f64::from);
+        Vec3::new(x, y, z)
+    }
+}

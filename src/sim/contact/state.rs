@@ -1,0 +1,51 @@
+//! What contacts carry from one step to the next.
+
+use serde::{Deserialize, Serialize};
+
+/// An atom that touches a facet of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AtomBond {
+    /// The atom, numbered through all cells.
+    pub atom: u32,
+    /// The body of the facet.
+    pub body: u32,
+    /// The facet, numbered through all cells.
+    pub facet: u32,
+    /// Force on the atom, pN; the facet's atoms feel the opposite.
+    pub force: [f32; 3],
+}
+
+/// Two edges that touch; they do not stick.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EdgeBond {
+    /// The edges, numbered through all cells.
+    pub edges: [u32; 2],
+    /// Their bodies.
+    pub bodies: [u32; 2],
+    /// Unit normal from the second to the first.
+    pub normal: [f64; 3],
+    /// Force on the first, pN; the second feels the opposite.
+    pub force: [f32; 3],
+}
+
+/// An atom that touches a plane.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PlaneBond {
+    /// The atom, numbered through all cells.
+    pub atom: u32,
+    /// The plane.
+    pub plane: u32,
+    /// Force on the atom, pN.
+    pub force: [f32; 3],
+}
+
+/// All contacts that carry a force, in the order in which they are found.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ContactState {
+    /// Atoms on facets.
+    pub atoms: Vec<AtomBond>,
+    /// Edges on edges.
+    pub edges: Vec<EdgeBond>,
+    /// Atoms on planes.
+    pub planes: Vec<PlaneBond>,
+}

@@ -1,0 +1,213 @@
+//! Projected Gauss–Seidel over contacts and volumes, in a fixed order.
+//!
+//! Vectors have four numbers, so that they fill a register; the fourth of a displacement is the mobility of its atom. The
+//! sweeps are compiled for wide registers and give the same bits in narrow ones.
+
+use pulp::{Arch, NullaryFnOnce};
+
+use super::rows::{Pull, Row};
+
+/// A contact that holds gives way by this share of what a free one would, for each change of its force in the step,
+/// eq. (adhesion.5). Where many contacts hold the same atoms their forces are not determined; this picks some, and at
+/// rest, when forces do not change, nothing gives way.
+const GIVE: f64 = 0.2;
+
+/// x, y, z and one number more.
+pub type V4 = [f64; 4];
+
+/// A volume that is kept while contacts move atoms.
+#[derive(Debug, Clone, Copy)]
+pub struct VolumeRow {
+    /// Its first atom.
+    pub first: usize,
+    /// One behind its last atom.
+    pub end: usize,
+    /// Volume less target before the first sweep, less what the gradient makes of the displacement then, µm³.
+    pub offset: f64,
+    /// One over the squared gradient, 1/µm⁴.
+    pub inverse: f64,
+    /// Displacement over force of its atoms, µm/pN.
+    pub mobility: f64,
+}
+
+/// What a sweep changed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Change {
+    /// The largest correction, µm.
+    pub largest: f64,
+    /// The row with the largest correction of a contact.
+    pub worst: usize,
+    /// The work of all corrections, pN·µm.
+    pub work: f64,
+}
+
+#[inline(always)]
+fn map(f: impl Fn(usize) -> f64) -> V4 {
+    [f(0), f(1), f(2), f(3)]
+}
+
+/// Scalar product of the first three numbers.
+#[inline(always)]
+fn dot(a: &V4, b: &V4) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
+}
+
+#[inline(always)]
+fn wide(narrow: &[f32; 4]) -> V4 {
+    map(|i| f64::from(narrow[i]))
+}
+
+#[inline(always)]
+fn narrow(wide: &V4) -> [f32; 4] {
+    [wide[0] as f32, wide[1] as f32, wide[2] as f32, 0.0]
+}
+
+/// How much farther apart displacements bring the two sides of a row, µm. The fourth number means nothing.
+#[inline(always)]
+fn apart(row: &Row, moved: &[V4]) -> V4 {
+    let [a, b, c, d] = row.atoms.map(|atom| &moved[atom as usize]);
+    let [p, q, r, s] = row.weights;
+    map(|i| (a[i] * p + b[i] * q) + (c[i] * r + d[i] * s))
+}
+
+/// Moves the atoms of a row as a change of its force does; the fourth number of that is 0.
+#[inline(always)]
+fn push(row: &Row, change: &V4, moved: &mut [V4]) {
+    for (atom, weight) in row.atoms.iter().zip(row.weights) {
+        let slot = &mut moved[*atom as usize];
+        let share = slot[3] * weight;
+        *slot = map(|i| slot[i] + share * change[i]);
+    }
+}
+
+/// The normal force that a contact should carry, eq. (adhesion.3): it pushes where the gap would close, and pulls, as far
+/// as it can, where the gap would grow. `free` is where the gap would be if it carried nothing.
+#[inline(always)]
+fn normal_force(row: &Row, free: f64, carried: f64) -> f64 {
+    let (gap, stiffness) = (row.gap(), f64::from(row.stiffness));
+    let (low, high) = (gap.min(0.0), gap.max(0.0));
+    let pushed = (low - free) * stiffness;
+    let held = ((high - free) * stiffness + GIVE * carried.min(0.0)) * (1.0 / (1.0 + GIVE));
+    let pulled = held.min(0.0).max(f64::from(row.least));
+    if free < low { pushed } else { pulled }
+}
+
+/// The force of a row after its turn: normal by [`normal_force`]; the tangential part keeps the sides from sliding as far
+/// as it can, eq. (adhesion.4).
+#[inline(always)]
+fn turn(row: &Row, force: &V4, carried: &V4, moved: &[V4]) -> V4 {
+    let apart = apart(row, moved);
+    let mut normal = wide(&row.normal_and_gap);
+    normal[3] = 0.0;
+    let (opened, along, carried_along) = (dot(&apart, &normal), dot(force, &normal), dot(carried, &normal));
+    let free = (row.gap() + opened) - along * f64::from(row.give);
+    let wanted = normal_force(row, free, carried_along);
+    if row.shear == 0.0 {
+        return map(|i| wanted * normal[i]);
+    }
+    let stiffness = f64::from(row.stiffness);
+    let stuck = map(|i| {
+        let (slid, across) = (apart[i] - opened * normal[i], force[i] - along * normal[i]);
+        let carried = carried[i] - carried_along * normal[i];
+        ((across - stiffness * slid) + GIVE * carried) * (1.0 / (1.0 + GIVE))
+    });
+    let (squared, shear) = (dot(&stuck, &stuck), f64::from(row.shear));
+    let kept = if squared > shear * shear { shear / squared.sqrt() } else { 1.0 };
+    map(|i| wanted * normal[i] + kept * stuck[i])
+}
+
+/// One sweep over all contacts, each of which first goes on along its last direction by `share`, as the displacements did.
+pub fn sweep_contacts(rows: &[Row], pulls: &mut [Pull], moved: &mut [V4], share: f64, change: &mut Change) {
+    Arch::new().dispatch(Sweep { rows, pulls, moved, share, change });
+}
+
+struct Sweep<'a> {
+    rows: &'a [Row],
+    pulls: &'a mut [Pull],
+    moved: &'a mut [V4],
+    share: f64,
+    change: &'a mut Change,
+}
+
+impl NullaryFnOnce for Sweep<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { rows, pulls, moved, share, change } = self;
+        let mut largest = 0.0;
+        for (number, (row, pull)) in rows.iter().zip(pulls).enumerate() {
+            if row.give == 0.0 {
+                continue;
+            }
+            let (way, last) = (wide(&pull.way), wide(&pull.change));
+            // As the numbers are kept, so that force and displacement go the same way.
+            let force = wide(&pull.force);
+            let force = wide(&narrow(&map(|i| force[i] + share * way[i])));
+            let new = narrow(&turn(row, &force, &wide(&pull.carried), moved));
+            let step = map(|i| f64::from(new[i]) - force[i]);
+            push(row, &step, moved);
+            pull.way = narrow(&map(|i| share * way[i] + last[i]));
+            pull.change = narrow(&step);
+            pull.force = new;
+            let give = f64::from(row.give);
+            let size = dot(&step, &step) * give;
+            change.work += size;
+            if size * give > largest {
+                (largest, change.worst) = (size * give, number);
+            }
+        }
+        change.largest = change.largest.max(largest.sqrt());
+    }
+}
+
+/// Puts all volumes back to first order, eq. (adhesion.6). The fourth number of gradients is 0.
+pub fn sweep_volumes(volumes: &[VolumeRow], gradient: &[V4], moved: &mut [V4], change: &mut Change) {
+    Arch::new().dispatch(SweepVolumes { volumes, gradient, moved, change });
+}
+
+struct SweepVolumes<'a> {
+    volumes: &'a [VolumeRow],
+    gradient: &'a [V4],
+    moved: &'a mut [V4],
+    change: &'a mut Change,
+}
+
+impl NullaryFnOnce for SweepVolumes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let change = self.change;
+        for volume in self.volumes {
+            let gradient = &self.gradient[volume.first..volume.end];
+            let moved = &mut self.moved[volume.first..volume.end];
+            let mut along = [0.0; 4];
+            for (g, d) in gradient.iter().zip(&*moved) {
+                along = map(|i| along[i] + g[i] * d[i]);
+            }
+            let back = -(volume.offset + ((along[0] + along[1]) + along[2])) * volume.inverse;
+            for (d, g) in moved.iter_mut().zip(gradient) {
+                *d = map(|i| d[i] + back * g[i]);
+            }
+            // As far as all atoms move along a gradient that is the same for all.
+            let squared = back * back / volume.inverse;
+            change.largest = change.largest.max((squared / moved.len() as f64).sqrt());
+            change.work += squared / volume.mobility;
+        }
+    }
+}
+
+/// Pushes out what is inside, by no more than `most` (µm), and leaves no force behind: what curved ways let slip is
+/// mended by place, not by force, eq. (adhesion.7). `pushes` is the force of each row that would do it, zero at first.
+pub fn sweep_depths(rows: &[Row], pushes: &mut [f64], moved: &mut [V4], most: f64) {
+    for (row, pushed) in rows.iter().zip(pushes).filter(|(row, _)| row.give > 0.0 && row.gap() < 0.0) {
+        let mut normal = wide(&row.normal_and_gap);
+        normal[3] = 0.0;
+        let wanted = (row.gap() + most).min(0.0);
+        let missing = wanted - row.gap() - dot(&apart(row, moved), &normal);
+        let new = (*pushed + missing * f64::from(row.stiffness)).max(0.0);
+        push(row, &normal.map(|n| (new - *pushed) * n), moved);
+        *pushed = new;
+    }
+}
