@@ -16,6 +16,7 @@ const CELL_SERIES: [&str; 18] = [
 
 mod cells;
 mod chemistry;
+mod contact;
 mod measures;
 mod scene;
 
@@ -44,6 +45,7 @@ pub(super) fn check(document: &Document) -> Vec<Fault> {
     }
     check.chemistry();
     check.scene();
+    check.contact();
     check.measures();
     check.faults
 }

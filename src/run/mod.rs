@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Compiled, Document, compile};
+use crate::experiment::{Compiled, Document, check_start, compile};
 use crate::output::{Frame, Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
 use crate::sim::{State, Trouble, Workspace, begin_chemistry, step};
 
@@ -50,6 +50,7 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
     let pool = pool_of(options.threads)?;
     let document = &document.with_equations();
     let compiled = compile(document)?;
+    check_start(document, &compiled)?;
     let (source, title) = (&document.source, &document.experiment.title);
     let header = Header {
         equations: document.equations.clone().into_iter().collect(),
