@@ -4,16 +4,20 @@ use crate::units::{Length, Stress};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Series of the scene that a run with contacts records, in the order of the result: sweeps of the last step over contacts,
+/// the deepest penetration over the smallest mean edge, contacts, aggregates (a cell alone is one), cells of the largest.
+pub const CONTACT_SERIES: [&str; 5] =
+    ["contact.sweeps", "contact.deepest", "contact.count", "aggregates", "largest_aggregate"];
+
 /// Contacts of cells with each other, with themselves and with planes. Without this table cells pass through each other.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contact {
-    /// Gap below which surfaces touch; a tenth of the smallest mean edge of all types when absent.
+    /// Gap below which surfaces touch; a tenth of the smallest mean edge when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub proximity: Option<Length>,
-    /// Pull over area of contact at which cells part, for all pairs of types that `between` does not name; nothing
-    /// sticks when absent.
+    /// Pull over area of contact at which cells of any two types part; nothing sticks when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub strength: Option<Stress>,

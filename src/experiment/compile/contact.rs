@@ -17,16 +17,9 @@ const LARGEST: f64 = 0.5;
 /// How near is a contact, in an experiment that has contacts.
 ///
 /// # Errors
-/// A mesh without facets, or a proximity that does not fit the meshes.
+/// A proximity that does not fit the meshes.
 pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
     let Some(text) = &document.experiment.contact else { return Ok(None) };
-    let bare = |kind: &&Kind| kind.rest.facets.is_empty() || kind.edge.is_nan() || kind.edge <= 0.0;
-    if let Some(kind) = kinds.iter().find(bare) {
-        let fault = Fault::new(format!("the mesh of type `{}` has no facets that could touch anything", kind.name))
-            .help("give it a mesh with facets, or remove [contact]");
-        let place = document.place(&format!("cells.{}.mesh", kind.name), "no surface");
-        return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
-    }
     let smallest = kinds.iter().min_by(|one, other| one.edge.total_cmp(&other.edge));
     let edge = smallest.map_or(1.0, |kind| kind.edge);
     let proximity = text.proximity.map_or(PROXIMITY * edge, |proximity| proximity.value());

@@ -8,6 +8,10 @@ impl Check<'_> {
     pub(super) fn contact(&mut self) {
         let experiment = &self.document.experiment;
         let Some(contact) = &experiment.contact else { return };
+        if experiment.chemistry.contains_key("contact") {
+            let message = "`chemistry.contact` has the name under which contacts are recorded".to_owned();
+            self.fault("chemistry.contact", "taken", message, "give the system another name");
+        }
         if contact.shear_strength.is_some() && contact.strength.is_none() {
             let message = "`contact.shear_strength` is given without `strength`".to_owned();
             let help = "add `strength`; \"0 Pa\" for surfaces that resist sliding but not parting";
