@@ -45,6 +45,9 @@ fn frame(cells: usize) -> Frame {
         size: [2.0, 2.0 + noise(i), 2.0],
         principal: [2.0, 2.0 + noise(i), 2.0],
         smallest_facet: 0.9,
+        smallest_cosine: 0.8,
+        contact_share: 0.3,
+        aggregate: 0.0,
     };
     Frame {
         positions: vectors(10.0).collect(),

@@ -26,7 +26,7 @@ pub enum Reading {
     AreaStrain,
     /// Extent of the bounding box along an axis, µm.
     Size(usize),
-    /// Part of the atoms that touch a plane.
+    /// Part of the atoms that touch a plane, or are near another cell where the experiment has contacts.
     ContactShare,
 }
 

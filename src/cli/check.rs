@@ -2,7 +2,7 @@
 
 use super::report::{Report, path_text};
 use crate::error::{Error, Result};
-use crate::experiment::{Document, compile};
+use crate::experiment::{Document, check_start, compile};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -30,7 +30,10 @@ pub fn run(args: &CheckArgs) -> Result<Report> {
     let (mut words, mut good, mut faults) = (String::new(), Vec::<Value>::new(), Vec::new());
     for path in &args.documents {
         // Faults of meshes and steps show only once the cells are built.
-        let checked = Document::read(path, &args.sets).and_then(|document| compile(&document).map(|_| document));
+        let checked = Document::read(path, &args.sets).and_then(|document| {
+            compile(&document).and_then(|compiled| check_start(&document, &compiled))?;
+            Ok(document)
+        });
         match checked {
             Ok(document) => {
                 let cells: usize = document.experiment.cells.values().map(|cell| cell.count()).sum();

@@ -114,14 +114,17 @@ pub fn reporter(how: &How) -> Box<dyn run::Report> {
 /// # Errors
 /// As [`crate::picture::make_defaults`].
 pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<Report> {
-    let made = if how.no_pictures { Vec::new() } else { crate::picture::make_defaults(result)? };
+    let files = if how.no_pictures { Vec::new() } else { crate::picture::make_defaults(result)? };
     let summary = crate::output::ResultFile::open(result)?.summary()?;
     let mut words = String::new();
     // Writing to a text cannot fail.
     if !how.quiet {
-        let (name, Outcome { steps, frames, wall_time }) = (result.display(), outcome);
+        let (name, Outcome { steps, frames, made, limited, wall_time }) = (result.display(), outcome);
         let _ = writeln!(words, "{name}: {steps} steps, {frames} frames, {wall_time:.1} s");
-        for path in &made {
+        if *limited > 0 {
+            let _ = writeln!(words, "contacts limited {limited} of {made} steps");
+        }
+        for path in &files {
             let _ = writeln!(words, "{}", path.display());
         }
         for measure in &summary {
@@ -131,10 +134,11 @@ pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<Report> {
         }
     }
     let measures = summary.into_iter().map(|m| (m.name, serde_json::json!({ "value": m.value, "unit": m.unit })));
-    let report = Report { words, ..Report::default() }.fact("result", path_text(result)).fact("files", paths(&made));
+    let report = Report { words, ..Report::default() }.fact("result", path_text(result)).fact("files", paths(&files));
     Ok(report
         .fact("steps", outcome.steps)
         .fact("frames", outcome.frames)
+        .fact("steps_limited_by_contacts", outcome.limited)
         .fact("wall_time_s", outcome.wall_time)
         .fact("summary", measures.collect::<serde_json::Map<_, _>>()))
 }

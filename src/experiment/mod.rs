@@ -34,6 +34,7 @@ mod cells;
 mod check;
 mod chemistry;
 mod compile;
+mod contact;
 mod document;
 mod loads;
 mod measures;
@@ -47,7 +48,8 @@ mod values;
 
 pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
-pub use compile::{Compiled, Schedule, compile};
+pub use compile::{Compiled, Schedule, check_start, compile};
+pub use contact::{Between, CONTACT_SERIES, Contact};
 pub use document::Document;
 pub(crate) use document::near_file;
 pub use loads::{Cap, CapExtent, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
@@ -100,6 +102,9 @@ pub struct Experiment {
     /// Rigid planes that no cell passes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planes: Vec<Plane>,
+    /// Contacts between cells; without it they pass through each other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Contact>,
     /// What is recorded, and how often.
     #[serde(default)]
     pub output: Output,
@@ -127,6 +132,7 @@ impl Experiment {
             chemistry: IndexMap::new(),
             environment: Environment::default(),
             planes: Vec::new(),
+            contact: None,
             output: Output::default(),
             measure: IndexMap::new(),
             picture: Picture::default(),

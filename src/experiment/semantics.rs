@@ -1,6 +1,7 @@
 //! Checks that need more than one key: what requires, excludes or names what.
 
 use super::check::Reference;
+use super::contact::CONTACT_SERIES;
 use super::document::{Document, near_file};
 use crate::error::Fault;
 use crate::error::words;
@@ -8,14 +9,15 @@ use std::path::Path;
 
 /// Series of every cell that the result holds, besides those of the scene (`load.NAME`, `time`).
 #[rustfmt::skip] // a table
-const CELL_SERIES: [&str; 18] = [
+const CELL_SERIES: [&str; 21] = [
     "position_x", "position_y", "position_z", "velocity_x", "velocity_y", "velocity_z", "speed", "volume",
     "volume_error", "area", "energy", "size_x", "size_y", "size_z", "principal_1", "principal_2", "principal_3",
-    "smallest_facet",
+    "smallest_facet", "smallest_cosine", "contact_share", "aggregate",
 ];
 
 mod cells;
 mod chemistry;
+mod contact;
 mod measures;
 mod scene;
 
@@ -44,6 +46,7 @@ pub(super) fn check(document: &Document) -> Vec<Fault> {
     }
     check.chemistry();
     check.scene();
+    check.contact();
     check.measures();
     check.faults
 }
@@ -106,13 +109,26 @@ impl Check<'_> {
     fn series(&mut self, path: &str, text: &str) {
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> = cells.flat_map(|cell| &cell.loads).map(|load| format!("load.{}", load.name)).collect();
-        let known = || CELL_SERIES.into_iter().chain(["time"]).chain(loads.iter().map(String::as_str));
+        let contacts = self.document.experiment.contact.is_some();
+        let of_contacts = CONTACT_SERIES.into_iter().filter(|_| contacts);
+        let known = || {
+            CELL_SERIES.into_iter().chain(of_contacts.clone()).chain(["time"]).chain(loads.iter().map(String::as_str))
+        };
         if known().any(|name| name == text) {
             return;
         }
+        if CONTACT_SERIES.contains(&text) && !self.document.experiment.chemistry.contains_key("contact") {
+            let message = format!("`{path}`: there is no series \"{text}\" without contacts");
+            return self.fault(path, "not recorded", message, "add [contact] to the document");
+        }
         // Quantities of chemistry are SYSTEM.QUANTITY; which there are is known once their documents are read.
         let stored = text.strip_prefix("chemistry.").unwrap_or(text);
-        if let Some((system, _)) = stored.split_once('.').filter(|(system, _)| words::meant(system, ["load"]).is_none())
+        let systems = &self.document.experiment.chemistry;
+        let is_own = |word: &str| {
+            words::meant(word, ["load"]).is_some() || contacts && words::meant(word, ["contact"]).is_some()
+        };
+        if let Some((system, _)) =
+            stored.split_once('.').filter(|(word, _)| systems.contains_key(*word) || !is_own(word))
         {
             return self.system(path, system);
         }

@@ -142,6 +142,9 @@ pub const CATALOGUE: &[Entry] = &[
     row("/cells/size", "um", "frame, cell, 3", CellVector(|c| c.size, XYZ), "Extents of the box along the axes."),
     row("/cells/principal", "um", "frame, cell, 3", CellVector(|c| c.principal, LONGEST_FIRST), "Extents along the principal axes of the atoms, longest first."),
     row("/cells/smallest_facet", "1", "frame, cell", Cell(|c| c.smallest_facet), "Smallest area of a facet over its area at rest."),
+    row("/cells/smallest_cosine", "1", "frame, cell", Cell(|c| c.smallest_cosine), "Smallest cosine between the normal of a facet and the direction from the centre; below 0 where a facet has folded over, 0 for an open surface."),
+    row("/cells/contact_share", "1", "frame, cell", Cell(|c| c.contact_share), "Share of the atoms that are near another cell; 0 without contacts."),
+    row("/cells/aggregate", "1", "frame, cell", Cell(|c| c.aggregate), "Aggregate of a cell: the number of the smallest cell of those that it touches, and that these touch; its own where it is alone."),
     // Rigid planes, for pictures.
     row("/planes/names", "1", "plane", OnceTexts, "Names of the rigid planes."),
     row("/planes/point", "um", "plane, 3", OnceFloats, "A point of a plane."),

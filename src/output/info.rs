@@ -55,6 +55,17 @@ pub fn describe(result: &ResultFile) -> Result<String> {
             steps[steps.len() - 1]
         ),
     );
+    let last = |name: &str| -> Result<Option<f64>> {
+        let there = layout.scene_series.iter().any(|(known, _)| known == name);
+        Ok(if there { result.scene_series(name)?.last().copied() } else { None })
+    };
+    if let (Some(aggregates), Some(largest), Some(deepest)) =
+        (last("aggregates")?, last("largest_aggregate")?, last("contact.deepest")?)
+    {
+        let number = if aggregates == 1.0 { "1 aggregate".to_owned() } else { format!("{aggregates} aggregates") };
+        let depth = format!("deepest {:.2} % of an edge", 100.0 * deepest);
+        line("contacts", format!("{number} in the last frame, the largest of {largest}; {depth}"));
+    }
     let state = match (ending.finished, ending.wall_time) {
         (true, Some(seconds)) => format!("finished in {seconds:.1} s"),
         (true, None) => "finished".into(),

@@ -120,4 +120,10 @@ pub struct CellRecord {
     pub principal: [f64; 3],
     /// Smallest area of a facet over its area at rest.
     pub smallest_facet: f64,
+    /// Smallest cosine between the normal of a facet and the direction from the cell's centre; 0 for an open surface.
+    pub smallest_cosine: f64,
+    /// Share of the atoms that are near another cell; 0 without contacts.
+    pub contact_share: f64,
+    /// Number of the aggregate: of its smallest cell; the cell's own where it touches no other.
+    pub aggregate: f64,
 }

@@ -16,7 +16,7 @@ use crate::output::ResultFile;
 const MEASURED: Colour = Colour([0x33, 0x33, 0x33]);
 
 /// Names of series as a reader would say them.
-const READABLE: [(&str, &str); 12] = [
+const READABLE: [(&str, &str); 18] = [
     ("size_x", "extent along x"),
     ("size_y", "extent along y"),
     ("size_z", "extent along z"),
@@ -29,6 +29,12 @@ const READABLE: [(&str, &str); 12] = [
     ("volume_error", "volume error"),
     ("smallest_facet", "smallest facet over rest"),
     ("energy", "elastic energy"),
+    ("smallest_cosine", "smallest cosine of normal and radius"),
+    ("contact_share", "share of atoms in contact"),
+    ("largest_aggregate", "cells of the largest aggregate"),
+    ("contact.count", "contacts"),
+    ("contact.deepest", "deepest penetration over edge"),
+    ("contact.sweeps", "sweeps over contacts"),
 ];
 
 /// A series' name as a reader would say it, with its unit.

@@ -2,6 +2,7 @@
 
 mod progress;
 mod record;
+mod touch;
 
 pub use progress::{Progress, Quiet, Report};
 pub use record::{frame_of, layout_of};
@@ -11,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Compiled, Document, compile};
+use crate::experiment::{Compiled, Document, check_start, compile};
 use crate::output::{Frame, Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
 use crate::sim::{State, Trouble, Workspace, begin_chemistry, step};
 
@@ -33,6 +34,10 @@ pub struct Outcome {
     pub steps: u64,
     /// Frames in the result.
     pub frames: usize,
+    /// Steps of this call alone.
+    pub made: u64,
+    /// Those among them that contacts shortened.
+    pub limited: u64,
     /// Wall-clock seconds of this call.
     pub wall_time: f64,
 }
@@ -50,6 +55,7 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
     let pool = pool_of(options.threads)?;
     let document = &document.with_equations();
     let compiled = compile(document)?;
+    check_start(document, &compiled)?;
     let (source, title) = (&document.source, &document.experiment.title);
     let header = Header {
         equations: document.equations.clone().into_iter().collect(),
@@ -72,7 +78,7 @@ pub fn finished_already(result: &Path) -> Result<Option<Outcome>> {
     }
     let file = ResultFile::open(result)?;
     let steps = file.steps()?.last().copied().unwrap_or(0);
-    Ok(file.ending().finished.then_some(Outcome { steps, frames: file.frames(), wall_time: 0.0 }))
+    Ok(file.ending().finished.then_some(Outcome { steps, frames: file.frames(), made: 0, limited: 0, wall_time: 0.0 }))
 }
 
 /// Goes on with a run that was stopped or killed, from its last checkpoint. A finished run stays as it is.
@@ -181,7 +187,7 @@ fn drive(
     let began = Instant::now();
     let mut ws = Workspace::new(&model);
     let mut recorder = record::Recorder::new(&model, &schedule);
-    let mut recorded = state.step;
+    let (mut recorded, first, mut limited) = (state.step, state.step, 0);
     if let Err(trouble) = begin_chemistry(&model, &mut state, &mut ws) {
         return Err(failed(trouble, writer, &state, None, result));
     }
@@ -194,6 +200,7 @@ fn drive(
         let before = state.time;
         match step(&model, &mut state, &mut ws) {
             Ok(done) => {
+                limited += u64::from(done.limited);
                 let last = state.time >= model.until;
                 if last || passed(before, state.time, schedule.every) {
                     writer.append(&recorder.record(&model, &mut state, &ws, done.dt))?;
@@ -222,7 +229,7 @@ fn drive(
     let wall_time = began.elapsed().as_secs_f64();
     let frames = writer.frames();
     finish(writer, result, wall_time)?;
-    Ok(Outcome { steps: state.step, frames, wall_time })
+    Ok(Outcome { steps: state.step, frames, made: state.step - first, limited, wall_time })
 }
 
 /// Whether a multiple of `interval` lies in (before, after].

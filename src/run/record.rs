@@ -1,6 +1,7 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
-use crate::experiment::Schedule;
+use super::touch::Touch;
+use crate::experiment::{CONTACT_SERIES, Schedule};
 use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
 use crate::sim::chemistry::Members;
 use crate::sim::observe::{mean_velocities, measure_cells};
@@ -25,6 +26,9 @@ pub fn layout_of(model: &Model) -> Layout {
         }
     }
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
+    if model.contact.is_some() {
+        layout.scene_series.extend(CONTACT_SERIES.map(|name| (name.to_owned(), "1".to_owned())));
+    }
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
     layout.planes = model.planes.iter().map(plane).collect();
     add_chemistry(model, &mut layout);
@@ -89,19 +93,24 @@ fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
 /// Makes frames; has scratch of its own, so that looking changes nothing.
 pub struct Recorder {
     loads: Vec<(String, usize, usize)>,
+    touch: Touch,
     force_scratch: Option<Workspace>,
 }
 
 impl Recorder {
     /// A recorder for a run.
     pub fn new(model: &Model, schedule: &Schedule) -> Self {
-        Self { loads: load_names(model), force_scratch: schedule.forces.then(|| Workspace::new(model)) }
+        let force_scratch = schedule.forces.then(|| Workspace::new(model));
+        Self { loads: load_names(model), touch: Touch::default(), force_scratch }
     }
 
     /// The frame of this instant; takes the ended runs from the state, since they are recorded now.
     pub fn record(&mut self, model: &Model, state: &mut State, ws: &Workspace, dt: f64) -> Frame {
         let mut frame = frame_of(model, state, ws, dt);
         frame.scene = self.loads.iter().map(|&(_, k, l)| model.kinds[k].loads[l].force.at(state.time)).collect();
+        if let Some(contact) = &model.contact {
+            self.touch.look(model, contact, ws, dt, &mut frame);
+        }
         if let Some(scratch) = &mut self.force_scratch {
             forces::add_forces(model, state.time, state, scratch);
             for (kind, w) in model.kinds.iter().zip(&scratch.kinds) {
@@ -115,11 +124,11 @@ impl Recorder {
     }
 }
 
-/// Positions and measures of all cells at this instant; `dt` is the size of the last step, s.
+/// Positions and measures of all cells at this instant, as if they did not touch; `dt` is the size of the last step, s.
 pub fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
     let velocities = mean_velocities(model, state, ws, dt);
     let mut frame = Frame { time: state.time, step: state.step, ..Frame::default() };
-    for (cell, velocity) in measure_cells(model, state).into_iter().zip(velocities) {
+    for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
         frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));
         frame.cells.push(CellRecord {
             position: cell.centre.into(),
@@ -131,6 +140,9 @@ pub fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame 
             size: cell.size.into(),
             principal: cell.principal,
             smallest_facet: cell.smallest_facet,
+            smallest_cosine: cell.smallest_cosine,
+            contact_share: 0.0,
+            aggregate: number as f64,
         });
     }
     record_chemistry(model, state, &mut frame);

@@ -30,6 +30,8 @@ pub struct CellMeasure {
     pub principal: [f64; 3],
     /// Smallest area of a facet over its area at rest.
     pub smallest_facet: f64,
+    /// Smallest cosine between the normal of a facet and the direction to it from the centre; 0 for an open surface.
+    pub smallest_cosine: f64,
 }
 
 /// Measures every cell, in the order of cells.
@@ -63,12 +65,13 @@ fn measure_cell(kind: &Kind, positions: Vec<Vec3>, target: f64, energy: f64, res
     let (low, high) = geometry::bounding_box(&surface.positions).unwrap_or_default();
     let volume = if kind.closed { geometry::volume(&surface) } else { 0.0 };
     let smallest = areas.iter().zip(rest_areas).map(|(now, rest)| now / rest).fold(f64::INFINITY, f64::min);
+    let centre = if kind.closed {
+        geometry::centre_of_volume(&surface)
+    } else {
+        surface.positions.iter().sum::<Vec3>() / surface.positions.len() as f64
+    };
     CellMeasure {
-        centre: if kind.closed {
-            geometry::centre_of_volume(&surface)
-        } else {
-            surface.positions.iter().sum::<Vec3>() / surface.positions.len() as f64
-        },
+        centre,
         volume,
         volume_error: if kind.closed { (volume - target) / target } else { 0.0 },
         area: areas.iter().sum(),
@@ -76,8 +79,20 @@ fn measure_cell(kind: &Kind, positions: Vec<Vec3>, target: f64, energy: f64, res
         size: high - low,
         principal: geometry::principal_extents(&surface.positions),
         smallest_facet: smallest,
+        smallest_cosine: if kind.closed { smallest_cosine(&surface, &centre) } else { 0.0 },
         positions: surface.positions,
     }
+}
+
+/// The smallest cosine between the normal of a facet and the direction from a centre to its middle; facets without area
+/// have no normal and do not count.
+fn smallest_cosine(surface: &Surface, centre: &Vec3) -> f64 {
+    let cosine = |facet: &[u32; 3]| {
+        let [a, b, c] = surface.corners(*facet);
+        let (normal, out) = ((b - a).cross(&(c - a)), (a + b + c) / 3.0 - centre);
+        normal.dot(&out) / (normal.norm() * out.norm())
+    };
+    surface.facets.iter().map(cosine).fold(1.0, f64::min)
 }
 
 /// Mean velocity of the atoms of every cell over the last step, µm/s; zero before the first.

@@ -23,6 +23,16 @@ pub struct StepReport {
     pub refused: u32,
     /// Error estimate over the mean edge, 0 for schemes without one.
     pub error: f64,
+    /// Whether contacts made this step or the one planned after it shorter than the error estimate would have.
+    pub limited: bool,
+}
+
+/// What a try says about its step.
+struct Estimate {
+    /// Error over the mean edge.
+    error: f64,
+    /// The same with what contacts say: a step in which an atom moves too far counts as one over the tolerance.
+    with_contacts: f64,
 }
 
 /// Tries before a step is given up; each is at least 0.3 times the one before, so that 60 shrink it by 30 decades.
@@ -37,18 +47,20 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
     }
     remember(state, ws);
     find_contacts(model, state, ws);
-    let mut dt = plan_step(model, state);
+    let (mut dt, mut limited) = (plan_step(model, state), false);
     for refused in 0..TRIES {
         let dt_now = end_at_kinks(model, state.time, dt);
-        let error = match try_step(model, dt_now, state, ws) {
-            Ok(error) => error,
+        let Estimate { error, with_contacts } = match try_step(model, dt_now, state, ws) {
+            Ok(estimate) => estimate,
             Err(trouble) if matches!(model.integrator.size, StepSize::Fixed(_)) || refused + 1 == TRIES => {
                 restore(state, ws);
                 return Err(trouble);
             }
-            Err(_) => f64::INFINITY,
+            Err(Trouble::Contact { .. }) => Estimate { error: 0.0, with_contacts: f64::INFINITY },
+            Err(_) => Estimate { error: f64::INFINITY, with_contacts: f64::INFINITY },
         };
-        let (accepted, next) = judge(model, dt_now, error);
+        let (accepted, next) = judge(model, dt_now, with_contacts);
+        limited |= next < judge(model, dt_now, error).1;
         if accepted {
             // A step cut short by a kink says nothing against the step planned before it.
             let next_step = if dt_now < dt { dt.max(next) } else { next };
@@ -59,7 +71,7 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
             state.next_step = next_step;
             keep_contacts(model, state, ws);
             advance_clock(model, dt_now, state, ws);
-            return Ok(StepReport { dt: dt_now, refused, error });
+            return Ok(StepReport { dt: dt_now, refused, error: with_contacts, limited });
         }
         restore(state, ws);
         dt = next;
@@ -67,8 +79,8 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
     Err(Trouble::StepTooSmall { time: state.time, dt })
 }
 
-/// The stages of a step; returns the error estimate over the mean edge.
-fn try_step(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<f64, Trouble> {
+/// The stages of a step.
+fn try_step(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<Estimate, Trouble> {
     let end = state.time + dt;
     advance_motility(model, dt, state, ws);
     measure_volumes(model, end, state, ws);
@@ -90,13 +102,15 @@ fn try_step(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Re
     limit_travel(model, dt, error, state, ws)
 }
 
-/// The error with what contacts say about the step: one in which an atom moves too far counts as one over the tolerance.
-fn limit_travel(model: &Model, dt: f64, error: f64, state: &State, ws: &Workspace) -> Result<f64, Trouble> {
+/// Adds what contacts say about the step.
+fn limit_travel(model: &Model, dt: f64, error: f64, state: &State, ws: &Workspace) -> Result<Estimate, Trouble> {
     let share = travel(model, state, ws);
     match model.integrator.size {
-        StepSize::Adaptive { tolerance, .. } => Ok(error.max(tolerance * share * share)),
+        StepSize::Adaptive { tolerance, .. } => {
+            Ok(Estimate { error, with_contacts: error.max(tolerance * share * share) })
+        }
         StepSize::Fixed(_) if share > 1.0 => Err(Trouble::TooFast { time: state.time + dt, share }),
-        StepSize::Fixed(_) => Ok(error),
+        StepSize::Fixed(_) => Ok(Estimate { error, with_contacts: error }),
     }
 }
 

@@ -49,6 +49,9 @@ pub fn frame(layout: &Layout, number: usize) -> Frame {
                 size: [2.0, 2.0, 2.5],
                 principal: [2.5, 2.0, 1.0 + cell as f64],
                 smallest_facet: 0.9,
+                smallest_cosine: 0.8,
+                contact_share: 0.25,
+                aggregate: f64::from(cell as u32),
             })
             .collect(),
         scene: vec![10.0 - time, 2.0 * time],

@@ -1,11 +1,16 @@
 //! From what the user wrote to what it means: a [`Model`] in µm, s and pN, and the [`State`] it starts from.
 
 mod chemistry;
+mod contact;
 mod elasticity;
 mod mesh;
+mod overlap;
 mod place;
+mod room;
 mod select;
 mod steps;
+
+pub use overlap::check_start;
 
 use super::{CellType, Document, Experiment, Space, Spread, VolumeRule as Rule};
 use crate::Vec3;
@@ -45,7 +50,7 @@ pub struct Compiled {
 /// not exist, a step that is not stable.
 pub fn compile(document: &Document) -> Result<Compiled> {
     let experiment = &document.experiment;
-    let (mut kinds, mut places, mut faults) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut kinds, mut faults) = (Vec::new(), Vec::new());
     let mut first_cell = 0;
     for (name, cell) in &experiment.cells {
         let before = faults.len();
@@ -56,7 +61,6 @@ pub fn compile(document: &Document) -> Result<Compiled> {
         }
         let kind = kind.with_cells(first_cell, cell.count());
         first_cell += cell.count();
-        places.push(place::place(experiment, cell, &kind));
         kinds.push(kind);
     }
     // Atoms that do not exist have been told; links look at kinds and must see them all.
@@ -66,13 +70,19 @@ pub fn compile(document: &Document) -> Result<Compiled> {
     if !faults.is_empty() {
         return Err(Error::Input(faults));
     }
+    let (reach, planes) = (contact::reach(document, &kinds)?, planes(experiment));
+    let places = match reach {
+        Some(reach) => room::place_apart(document, &kinds, &planes, reach.proximity)?,
+        None => place::place(experiment, &kinds),
+    };
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),
         integrator: steps::integrator(document, &mut kinds)?,
+        contact: reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach)),
         kinds,
         chemistry,
-        planes: planes(experiment),
+        planes,
         gravity: vector(experiment.environment.gravity.map_or([0.0; 3], |g| g.map(|a| a.value()))),
         until: experiment.run.until.value(),
     };

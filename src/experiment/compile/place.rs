@@ -9,10 +9,22 @@ use crate::sim::Kind;
 /// Distance of neighbours on the default grid over the cell's largest extent.
 const GRID_SPACING: f64 = 1.5;
 
-/// Positions of all atoms of all cells of a kind: `[cell][atom]`.
-pub fn place(experiment: &Experiment, cell: &CellType, kind: &Kind) -> Vec<Vec<Vec3>> {
+/// Positions of all atoms of all cells of all kinds: `[kind][cell][atom]`.
+pub fn place(experiment: &Experiment, kinds: &[Kind]) -> Vec<Vec<Vec<Vec3>>> {
+    let cells = experiment.cells.values().zip(kinds);
+    cells.map(|(cell, kind)| atoms_at(kind, &centres(experiment, cell, kind))).collect()
+}
+
+/// Cells of a kind at these centres: `[cell][atom]`.
+pub fn atoms_at(kind: &Kind, centres: &[Vec3]) -> Vec<Vec<Vec3>> {
+    let at = |centre: &Vec3| kind.rest.positions.iter().map(|p| p + centre).collect();
+    centres.iter().map(at).collect()
+}
+
+/// The centres of all cells of a kind.
+pub fn centres(experiment: &Experiment, cell: &CellType, kind: &Kind) -> Vec<Vec3> {
     let number = cell.count();
-    let centres: Vec<Vec3> = match &cell.placement {
+    let mut centres: Vec<Vec3> = match &cell.placement {
         Some(Placement::At { at }) => at.iter().map(|x| vector(x.map(|x| x.value()))).collect(),
         Some(Placement::Grid { grid, spacing, origin }) => {
             grid_places(*grid, spacing.value(), vector(origin.map(|x| x.value())))
@@ -27,8 +39,8 @@ pub fn place(experiment: &Experiment, cell: &CellType, kind: &Kind) -> Vec<Vec<V
             grid_places([side, side, 1], GRID_SPACING * extent, Vec3::zeros())
         }
     };
-    let at = |centre: &Vec3| kind.rest.positions.iter().map(|p| p + centre).collect();
-    centres.iter().take(number).map(at).collect()
+    centres.truncate(number);
+    centres
 }
 
 fn grid_places(grid: [u32; 3], spacing: f64, origin: Vec3) -> Vec<Vec3> {
@@ -45,7 +57,11 @@ fn grid_places(grid: [u32; 3], spacing: f64, origin: Vec3) -> Vec<Vec3> {
 }
 
 fn random_place(seed: u64, cell: u32, low: Vec3, high: Vec3) -> Vec3 {
-    let mut stream = Stream::new(seed, Purpose::Placement, cell, 0);
+    draw(&mut Stream::new(seed, Purpose::Placement, cell, 0), low, high)
+}
+
+/// A place in a box.
+pub fn draw(stream: &mut Stream, low: Vec3, high: Vec3) -> Vec3 {
     let ([x, y], [z, _]) = (stream.uniform_pair(), stream.uniform_pair());
     low + (high - low).component_mul(&Vec3::new(x, y, z))
 }

@@ -29,7 +29,7 @@ pub(super) fn carry_links(
 ) -> Result<(), Trouble> {
     let chemistry = &model.chemistry;
     if chemistry.measures_cells {
-        measure_cells(model, state, &ws.kinds, dt, &mut ws.chemistry.cells);
+        measure_cells(model, state, ws, dt);
     }
     sense_fields(model, state, &mut ws.chemistry);
     for link in &chemistry.links {

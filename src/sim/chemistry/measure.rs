@@ -4,9 +4,10 @@ use rayon::prelude::*;
 
 use super::super::model::{Kind, Model};
 use super::super::state::{State, vector};
-use super::super::workspace::KindScratch;
+use super::super::workspace::Workspace;
 use crate::Vec3;
 use crate::cell::ends::Reading;
+use crate::contact::AtomContact;
 
 /// An atom touches a plane when it is nearer to it than this part of the mean edge: planes put atoms exactly on them.
 const TOUCHING: f64 = 1e-6;
@@ -24,7 +25,7 @@ pub struct CellNumbers {
     area: f64,
     /// Extents of the bounding box, µm.
     size: Vec3,
-    /// Part of the atoms on a plane.
+    /// Part of the atoms on a plane or near another cell.
     contact_share: f64,
     /// Volume and area of the mesh at rest.
     rest: [f64; 2],
@@ -54,13 +55,19 @@ impl CellNumbers {
     }
 }
 
-/// Measures all cells; `dt` is the step just made, s, 0 before the first.
-pub(super) fn measure_cells(model: &Model, state: &State, kinds: &[KindScratch], dt: f64, out: &mut [CellNumbers]) {
-    let rest = &model.chemistry.rest;
-    for (((kind, now), w), rest) in model.kinds.iter().zip(&state.kinds).zip(kinds).zip(rest) {
-        let out = &mut out[kind.first_cell..kind.first_cell + kind.cells];
+/// Measures all cells; `dt` is the step just made, s, 0 before the first. What touches is what was found where the step
+/// began.
+pub(super) fn measure_cells(model: &Model, state: &State, ws: &mut Workspace, dt: f64) {
+    let (rest, found) = (&model.chemistry.rest, &ws.contact.found.atoms);
+    for (((kind, now), w), rest) in model.kinds.iter().zip(&state.kinds).zip(&ws.kinds).zip(rest) {
+        let out = &mut ws.chemistry.cells[kind.first_cell..kind.first_cell + kind.cells];
         out.par_iter_mut().enumerate().for_each(|(cell, out)| {
-            *out = measure(model, kind, &now.positions, cell);
+            let (first, near) = near_cell(model, found, kind.first_cell + cell);
+            *out = measure(model, kind, &now.positions, cell, |atom| {
+                let at = near.partition_point(|contact| contact.atom < first + atom);
+                let own = (kind.first_cell + cell) as u32;
+                near[at..].iter().take_while(|contact| contact.atom == first + atom).any(|contact| contact.body != own)
+            });
             out.rest = *rest;
             if dt > 0.0 {
                 let mean = |x: &[f64]| (0..kind.atoms()).map(|atom| vector(kind, x, cell, atom)).sum::<Vec3>();
@@ -70,7 +77,16 @@ pub(super) fn measure_cells(model: &Model, state: &State, kinds: &[KindScratch],
     }
 }
 
-fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize) -> CellNumbers {
+/// The number of the first atom of a cell among all, and the contacts of its atoms.
+fn near_cell<'a>(model: &Model, found: &'a [AtomContact], cell: usize) -> (u32, &'a [AtomContact]) {
+    let Some(contact) = &model.contact else { return (0, &[]) };
+    let bodies = &contact.scene.bodies;
+    let begin = |cell: usize| bodies.get(cell).map_or(contact.scene.atoms as u32, |body| body.first_atom);
+    let of_cell = [begin(cell), begin(cell + 1)].map(|atom| found.partition_point(|contact| contact.atom < atom));
+    (begin(cell), &found[of_cell[0]..of_cell[1]])
+}
+
+fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(u32) -> bool) -> CellNumbers {
     let place = |atom: usize| vector(kind, x, cell, atom);
     let base = place(0);
     let (mut low, mut high, mut sum, mut touching) = (base, base, Vec3::zeros(), 0_usize);
@@ -78,7 +94,7 @@ fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize) -> CellNumbers {
         let p = place(atom);
         (low, high, sum) = (low.inf(&p), high.sup(&p), sum + (p - base));
         let near = |plane: &super::super::Plane| (p - plane.point).dot(&plane.normal) < TOUCHING * kind.edge;
-        touching += usize::from(model.planes.iter().any(near));
+        touching += usize::from(model.planes.iter().any(near) || is_near(atom as u32));
     }
     let (mut area, mut volume, mut moment) = (0.0, 0.0, Vec3::zeros());
     for facet in &kind.rest.facets {

@@ -1,6 +1,7 @@
 //! The stages of chemistry in a step, and when systems exchange numbers with the model.
 
 use super::super::constraints::enforce_constraints;
+use super::super::contact::find_contacts;
 use super::super::model::Model;
 use super::super::state::{State, vector};
 use super::super::trouble::Trouble;
@@ -16,6 +17,8 @@ pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> 
         return Ok(());
     }
     let time = state.time;
+    // Links read what touches; no step has looked for it yet.
+    find_contacts(model, state, ws);
     ws.chemistry.remember(state);
     ws.chemistry.exchange_values(&mut state.chemistry, time);
     let result = carry_links(model, time, 0.0, true, state, ws).and_then(|()| {

@@ -1,0 +1,63 @@
+//! Contacts as the step knows them.
+
+use super::super::contact::Pair;
+use super::super::{Document, Experiment};
+use crate::contact::Reach;
+use crate::error::{Error, Fault, Result, short};
+use crate::sim::contact::{ContactModel, Strength};
+use crate::sim::{Kind, Plane};
+use crate::units::Stress;
+
+/// The proximity over the smallest mean edge where the user names none.
+const PROXIMITY: f64 = 0.1;
+
+/// The largest proximity over the smallest mean edge: above it an atom is near everything around it.
+const LARGEST: f64 = 0.5;
+
+/// How near is a contact, in an experiment that has contacts.
+///
+/// # Errors
+/// A proximity that does not fit the meshes.
+pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
+    let Some(text) = &document.experiment.contact else { return Ok(None) };
+    let smallest = kinds.iter().min_by(|one, other| one.edge.total_cmp(&other.edge));
+    let edge = smallest.map_or(1.0, |kind| kind.edge);
+    let proximity = text.proximity.map_or(PROXIMITY * edge, |proximity| proximity.value());
+    if let Some(kind) = smallest.filter(|_| proximity > LARGEST * edge) {
+        let fault = Fault::new(format!(
+            "a proximity of {} um is too large for the mesh of type `{}`, whose mean edge is {} um",
+            short(proximity),
+            kind.name,
+            short(edge)
+        ))
+        .help(format!("give at most {} um, or leave it out: then it is a tenth of the edge", short(LARGEST * edge)));
+        let place = document.place("contact.proximity", "above half of the mean edge");
+        return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
+    }
+    Ok(Some(Reach { proximity, depth: proximity, margin: proximity }))
+}
+
+/// Contacts with the strengths of the document.
+pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach: Reach) -> Option<ContactModel> {
+    let text = experiment.contact.as_ref()?;
+    let mut model = ContactModel::new(kinds, planes, reach);
+    if let Some(strength) = text.strength {
+        let strength = strength_of(strength, text.shear_strength);
+        for kind in 0..kinds.len() {
+            (kind..kinds.len()).for_each(|other| model.stick(kind, other, strength));
+        }
+    }
+    for between in &text.between {
+        let strength = strength_of(between.strength, between.shear_strength);
+        match between.pair(experiment) {
+            Some(Pair::Types(one, other)) => model.stick(one, other, strength),
+            Some(Pair::OnPlane(kind, plane)) => model.stick_to_plane(kind, plane, strength),
+            None => {}
+        }
+    }
+    Some(model)
+}
+
+fn strength_of(strength: Stress, shear: Option<Stress>) -> Strength {
+    Strength { tensile: strength.value(), shear: shear.unwrap_or(strength).value() }
+}

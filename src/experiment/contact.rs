@@ -1,0 +1,70 @@
+//! Contacts between cells: how near is a contact, and how strongly which surfaces stick.
+
+use crate::units::{Length, Stress};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Series of the scene that a run with contacts records, in the order of the result: sweeps of the last step over contacts,
+/// the deepest penetration over the smallest mean edge, contacts, aggregates (a cell alone is one), cells of the largest.
+pub const CONTACT_SERIES: [&str; 5] =
+    ["contact.sweeps", "contact.deepest", "contact.count", "aggregates", "largest_aggregate"];
+
+/// Contacts of cells with each other, with themselves and with planes. Without this table cells pass through each other.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Contact {
+    /// Gap below which surfaces touch; a tenth of the smallest mean edge when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub proximity: Option<Length>,
+    /// Pull over area of contact at which cells of any two types part; nothing sticks when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub strength: Option<Stress>,
+    /// Shear over area of contact at which they slide; as `strength` when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub shear_strength: Option<Stress>,
+    /// Strengths of single pairs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub between: Vec<Between>,
+}
+
+/// How strongly the cells of two types stick to each other, or those of a type to a plane.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Between {
+    /// Two types of cells, or a type and a plane; the same type twice for its cells among themselves.
+    pub types: [String; 2],
+    /// Pull over area of contact at which they part.
+    #[schemars(extend("x-minimum" = 0))]
+    pub strength: Stress,
+    /// Shear over area of contact at which they slide; as `strength` when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub shear_strength: Option<Stress>,
+}
+
+/// What two names of a pair mean in an experiment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pair {
+    /// Two types, by number, the smaller first.
+    Types(usize, usize),
+    /// A type and a plane.
+    OnPlane(usize, usize),
+}
+
+impl Between {
+    /// The meaning of the pair; none where a name is unknown or both are planes.
+    pub(super) fn pair(&self, experiment: &super::Experiment) -> Option<Pair> {
+        let kind = |name: &str| experiment.cells.get_index_of(name);
+        let plane = |name: &str| experiment.planes.iter().position(|plane| plane.name == name);
+        let [first, second] = &self.types;
+        match (kind(first), kind(second)) {
+            (Some(one), Some(other)) => Some(Pair::Types(one.min(other), one.max(other))),
+            (Some(one), None) => plane(second).map(|plane| Pair::OnPlane(one, plane)),
+            (None, Some(one)) => plane(first).map(|plane| Pair::OnPlane(one, plane)),
+            (None, None) => None,
+        }
+    }
+}

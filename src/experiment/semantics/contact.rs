@@ -1,0 +1,91 @@
+//! What must hold in the table of contacts: pairs of known names, each once, none forgotten.
+
+use super::Check;
+use crate::error::words;
+use crate::experiment::contact::{Contact, Pair};
+
+impl Check<'_> {
+    pub(super) fn contact(&mut self) {
+        let experiment = &self.document.experiment;
+        let Some(contact) = &experiment.contact else { return };
+        if experiment.chemistry.contains_key("contact") {
+            let message = "`chemistry.contact` has the name under which contacts are recorded".to_owned();
+            self.fault("chemistry.contact", "taken", message, "give the system another name");
+        }
+        if contact.shear_strength.is_some() && contact.strength.is_none() {
+            let message = "`contact.shear_strength` is given without `strength`".to_owned();
+            let help = "add `strength`; \"0 Pa\" for surfaces that resist sliding but not parting";
+            self.fault("contact.shear_strength", "`strength` is missing", message, help);
+        }
+        let mut named: Vec<Pair> = Vec::new();
+        for (index, between) in contact.between.iter().enumerate() {
+            let path = format!("contact.between[{index}].types");
+            let known = (0..2).filter(|side| self.surface(&format!("{path}[{side}]"), &between.types[*side])).count();
+            let Some(pair) = between.pair(experiment) else {
+                if known == 2 {
+                    let message = format!("`{path}` names two planes, which never touch");
+                    self.fault(&path, "two planes", message, "name a type of cells and a plane, or two types");
+                }
+                continue;
+            };
+            if named.contains(&pair) {
+                let [one, other] = &between.types;
+                let message = format!("`{path}`: the pair of \"{one}\" and \"{other}\" is given a second time");
+                self.fault(&path, "given before", message, "keep one of the two; their order does not matter");
+            }
+            named.push(pair);
+        }
+        if !contact.between.is_empty() && contact.strength.is_none() {
+            self.forgotten(contact, &named);
+        }
+    }
+
+    /// Whether a name is that of one type or plane; a fault if not.
+    fn surface(&mut self, path: &str, name: &str) -> bool {
+        let experiment = &self.document.experiment;
+        let types = || experiment.cells.keys().map(String::as_str);
+        let planes = || experiment.planes.iter().map(|plane| plane.name.as_str());
+        match (types().any(|known| known == name), planes().any(|known| known == name)) {
+            (true, true) => {
+                let message = format!("`{path}`: \"{name}\" is a type of cells and a plane");
+                self.fault(path, "which of the two?", message, "give the plane another name");
+            }
+            (false, false) => {
+                let meant = words::meant(name, types().chain(planes()));
+                let label = meant.map_or("unknown".to_owned(), |meant| format!("did you mean \"{meant}\"?"));
+                let mut help = format!("types of cells here are {}", words::all_of(types()));
+                if planes().next().is_some() {
+                    help += &format!("; planes are {}", words::all_of(planes()));
+                }
+                let message = format!("`{path}`: there is no type of cells and no plane \"{name}\"");
+                self.fault(path, &label, message, help);
+                return false;
+            }
+            _ => {}
+        }
+        true
+    }
+
+    /// Pairs of types that can touch and are not in the table, where nothing else says how they stick.
+    fn forgotten(&mut self, contact: &Contact, named: &[Pair]) {
+        let cells: Vec<_> = self.document.experiment.cells.iter().collect();
+        let mut missing = Vec::new();
+        for (first, (name, cell)) in cells.iter().enumerate() {
+            for (second, (other, _)) in cells.iter().enumerate().skip(first) {
+                // The only cell of a type meets no other of it.
+                let meet = first != second || cell.count() > 1;
+                if meet && !named.contains(&Pair::Types(first, second)) {
+                    missing.push(format!("{name}/{other}"));
+                }
+            }
+        }
+        let misspelt = contact.between.iter().any(|between| between.pair(&self.document.experiment).is_none());
+        if missing.is_empty() || misspelt {
+            return;
+        }
+        let pairs = words::all_of(missing.iter().map(String::as_str));
+        let message = format!("`contact.between` does not say how strongly {pairs} stick");
+        let help = "add them, or give `strength` to [contact] for all pairs that are not in the table; \"0 Pa\" does not stick";
+        self.fault("contact.between", "the table lacks pairs", message, help);
+    }
+}

@@ -1,0 +1,192 @@
+//! What the table of contacts in a document means, and where cells start that touch.
+
+use pseudopod::Vec3;
+use pseudopod::experiment::{Compiled, Document, check_start, compile};
+use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::run::{Quiet, RunOptions, run};
+use pseudopod::sim::contact::Strength;
+use std::path::Path;
+
+/// Two types at random in a box above a plane, without contacts.
+const SCENE: &str = r#"
+title = "Two types"
+seed = 3
+[run]
+until = "2 s"
+[cells.red]
+number = 12
+mesh = { shape = "icosphere", radius = "5 um", level = 1 }
+placement = { random_from = ["0 um", "0 um", "0 um"], random_to = ["60 um", "60 um", "30 um"] }
+mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "50 pN/um" } }
+[cells.white]
+number = 6
+mesh = { shape = "icosphere", radius = "4 um", level = 1 }
+placement = { random_from = ["0 um", "0 um", "0 um"], random_to = ["60 um", "60 um", "30 um"] }
+mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "50 pN/um" } }
+[[planes]]
+name = "floor"
+point = ["0 um", "0 um", "0 um"]
+normal = [0, 0, 1]
+"#;
+
+fn document(more: &str) -> Document {
+    Document::parse("contacts.toml", &format!("{SCENE}{more}"), Path::new("."), &[]).unwrap_or_else(|error| {
+        panic!("{}", pseudopod::error::render(&error, pseudopod::error::Paint::Plain));
+    })
+}
+
+fn compiled(more: &str) -> Compiled {
+    let document = document(more);
+    let compiled = compile(&document).expect("a good document");
+    check_start(&document, &compiled).expect("a start without overlap");
+    compiled
+}
+
+/// Mean of the atoms of every cell; exact centres, for the atoms of an icosphere lie opposite each other.
+fn centres(compiled: &Compiled) -> Vec<(Vec3, f64)> {
+    let kinds = compiled.model.kinds.iter().zip(&compiled.state.kinds);
+    let of_kind = |(kind, now): (&pseudopod::sim::Kind, &pseudopod::sim::KindState)| -> Vec<(Vec3, f64)> {
+        let radius = kind.rest.positions[0].norm();
+        let mean = |cell| now.cell(kind, cell).iter().sum::<Vec3>() / kind.atoms() as f64;
+        (0..kind.cells).map(|cell| (mean(cell), radius)).collect()
+    };
+    kinds.flat_map(of_kind).collect()
+}
+
+#[test]
+fn the_table_gives_each_pair_its_strength_and_the_default_the_others() {
+    let compiled = compiled(
+        r#"
+[contact]
+strength = "10 pN/um^2"
+shear_strength = "4 Pa"
+[[contact.between]]
+types = ["white", "red"]
+strength = "2 Pa"
+[[contact.between]]
+types = ["floor", "red"]
+strength = "50 pN/um^2"
+shear_strength = "5 pN/um^2"
+"#,
+    );
+    let contact = compiled.model.contact.expect("contacts");
+    let (default, pair) = (Strength { tensile: 10.0, shear: 4.0 }, Strength { tensile: 2.0, shear: 2.0 });
+    assert_eq!(contact.between, [default, pair, pair, default]);
+    assert_eq!(contact.on_planes, [Strength { tensile: 50.0, shear: 5.0 }, Strength::default()]);
+}
+
+#[test]
+fn an_empty_table_turns_contacts_on_and_nothing_sticks() {
+    assert!(compiled("").model.contact.is_none());
+    let Compiled { model, .. } = compiled("[contact]\n");
+    let contact = model.contact.expect("contacts");
+    assert!(contact.between.iter().chain(&contact.on_planes).all(|strength| *strength == Strength::default()));
+    let smallest = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
+    assert_eq!(contact.scene.reach.proximity, 0.1 * smallest);
+}
+
+#[test]
+fn cells_at_random_start_apart_and_above_the_planes() {
+    let with = compiled("[contact]\nproximity = \"0.3 um\"\n");
+    let cells = centres(&with);
+    assert_eq!(cells.len(), 18);
+    for (number, (centre, radius)) in cells.iter().enumerate() {
+        for (other, its) in &cells[..number] {
+            // Round-off of the mean.
+            assert!((centre - other).norm() >= radius + its + 0.3 - 1e-9, "cell {number}");
+        }
+    }
+    let lowest = |kind: &pseudopod::sim::Kind, now: &pseudopod::sim::KindState| {
+        (0..kind.cells).flat_map(|cell| now.cell(kind, cell)).map(|p| p.z).fold(f64::INFINITY, f64::min)
+    };
+    for (kind, now) in with.model.kinds.iter().zip(&with.state.kinds) {
+        assert!(lowest(kind, now) > -1e-7, "an atom stands on the plane at most");
+    }
+}
+
+#[test]
+fn a_cell_that_has_room_at_once_is_where_it_is_without_contacts() {
+    let (with, without) = (compiled("[contact]\n"), compiled(""));
+    let same = centres(&with).iter().zip(centres(&without)).filter(|(one, other)| **one == *other).count();
+    // Spheres that drew a free place at once; the others drew again.
+    assert!((4..18).contains(&same), "{same} of 18 cells stay where they were");
+    assert_eq!(with.state.kinds[0].cell(&with.model.kinds[0], 0).len(), 42);
+}
+
+/// Three cells in a row that touch, one alone, pulled apart by nothing.
+const ROW: &str = r#"
+title = "Three in a row and one alone"
+[run]
+until = "0.2 s"
+[cells.red]
+mesh = { shape = "icosphere", radius = "5 um", level = 2 }
+placement = { at = [["0 um", "0 um", "20 um"], ["20.4 um", "0 um", "20 um"], ["50 um", "0 um", "20 um"]] }
+mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "50 pN/um" } }
+[cells.white]
+mesh = { shape = "icosphere", radius = "5 um", level = 2 }
+placement = { at = [["10.2 um", "0 um", "20 um"]] }
+mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "50 pN/um" } }
+[contact]
+proximity = "0.6 um"
+strength = "1 Pa"
+[output]
+every = "0.1 s"
+[measure.together]
+kind = "value"
+series = "largest_aggregate"
+[measure.share]
+kind = "value"
+series = "contact_share"
+cells = "white"
+[[plot]]
+name = "contacts"
+kind = "series"
+y = ["contact.count", "contact.deepest", "aggregates"]
+"#;
+
+#[test]
+fn aggregates_and_shares_of_contact_are_recorded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = folder.path().join("row.vtkhdf");
+    let document = Document::parse("row.toml", ROW, Path::new("."), &[]).unwrap_or_else(|error| {
+        panic!("{}", pseudopod::error::render(&error, pseudopod::error::Paint::Plain));
+    });
+    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+    run(&document, &options, &mut Quiet).expect("a run");
+    let file = ResultFile::open(&result).expect("a result");
+    let frames = file.frames();
+    assert!(frames >= 3);
+    // Cells 0, 1, 2 are red, 3 is white and stands between 0 and 1.
+    let aggregate = file.cell_series("aggregate").expect("a series");
+    assert!(aggregate.rows().into_iter().all(|row| row.to_vec() == [0.0, 0.0, 2.0, 0.0]), "{aggregate}");
+    let share = file.cell_series("contact_share").expect("a series");
+    assert!(share.rows().into_iter().all(|row| row[2] == 0.0 && row[0] > 0.0 && row[3] > row[0]), "{share}");
+    for (series, value) in [("aggregates", 2.0), ("largest_aggregate", 3.0)] {
+        assert_eq!(file.scene_series(series).expect("a series"), vec![value; frames], "{series}");
+    }
+    assert!(file.scene_series("contact.count").expect("a series").iter().all(|count| *count >= 2.0));
+    assert_eq!(file.scene_series("contact.sweeps").expect("a series")[0], 0.0, "no step before the first frame");
+    let summary = file.summary().expect("measures");
+    assert_eq!(summary.iter().map(|m| (m.name.as_str(), m.value)).next(), Some(("together", 3.0)));
+    // A facet of an icosphere has its middle along its normal.
+    let cosine = file.cell_series("smallest_cosine").expect("a series");
+    assert!(cosine.iter().all(|cosine| *cosine > 0.98 && *cosine <= 1.0), "{cosine}");
+}
+
+#[test]
+fn a_run_without_contacts_records_cells_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = folder.path().join("row.vtkhdf");
+    let (before, rest) = ROW.split_once("[contact]").expect("the table");
+    let text =
+        format!("{before}{}", rest.split_once("[output]").map(|(_, rest)| format!("[output]{rest}")).expect("output"));
+    let text = text.split_once("[measure.together]").expect("measures").0;
+    let document = Document::parse("row.toml", text, Path::new("."), &[]).expect("a good document");
+    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+    run(&document, &options, &mut Quiet).expect("a run");
+    let file = ResultFile::open(&result).expect("a result");
+    let aggregate = file.cell_series("aggregate").expect("a series");
+    assert!(aggregate.rows().into_iter().all(|row| row.to_vec() == [0.0, 1.0, 2.0, 3.0]));
+    assert!(file.cell_series("contact_share").expect("a series").iter().all(|share| *share == 0.0));
+    assert!(file.scene_series("contact.count").is_err());
+}
