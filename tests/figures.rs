@@ -86,3 +86,13 @@ fn cells_relay_waves_of_camp() {
 fn a_brusselator_takes_its_wavelength() {
     experiment_keeps_its_word("turing", "experiment.toml");
 }
+
+#[test]
+fn twenty_five_cells_become_one_aggregate() {
+    experiment_keeps_its_word("aggregation", "experiment.toml");
+}
+
+#[test]
+fn a_strong_pair_holds_where_a_weak_one_parts() {
+    experiment_keeps_its_word("sticky_pair", "experiment.toml");
+}

@@ -187,6 +187,10 @@ fn volume_rule(document: &Document, key: &str, cell: &CellType, kind: &Kind, fau
         faults.push(place.into_iter().fold(fault, Fault::at));
         return VolumeRule::Free;
     }
+    // What cannot move keeps its volume by itself, and has no gradient along which it could be restored.
+    if kind.is_held() && kind.held.iter().all(|factor| *factor == 0.0) {
+        return VolumeRule::Free;
+    }
     let rest = geometry::volume(&kind.rest);
     let factor = match (&control.target, &control.ratio) {
         (Some(target), _) => course(target.points().into_iter().map(|(t, v)| (t, v / rest)).collect()),

@@ -13,6 +13,8 @@ mod rows;
 mod scratch;
 mod state;
 mod sweep;
+#[cfg(test)]
+mod sweep_tests;
 
 pub use find::{add_contact_forces, find_contacts, keep_contacts};
 pub use hold::{hold_contacts, travel};
