@@ -5,6 +5,8 @@ use pseudopod::experiment::{Compiled, Document, check_start, compile};
 use pseudopod::output::{Overwrite, ResultFile};
 use pseudopod::run::{Quiet, RunOptions, run};
 use pseudopod::sim::contact::Strength;
+use pseudopod::sim::{Workspace, begin_chemistry, step};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Two types at random in a box above a plane, without contacts.
@@ -167,7 +169,9 @@ fn aggregates_and_shares_of_contact_are_recorded() {
     assert!(file.scene_series("contact.count").expect("a series").iter().all(|count| *count >= 2.0));
     assert_eq!(file.scene_series("contact.sweeps").expect("a series")[0], 0.0, "no step before the first frame");
     let summary = file.summary().expect("measures");
-    assert_eq!(summary.iter().map(|m| (m.name.as_str(), m.value)).next(), Some(("together", 3.0)));
+    assert_eq!(summary.iter().find(|measure| measure.name == "together").map(|measure| measure.value), Some(3.0));
+    let page = pseudopod::output::describe(&file).expect("a page");
+    assert!(page.contains("2 aggregates in the last frame, the largest of 3"), "{page}");
     // A facet of an icosphere has its middle along its normal.
     let cosine = file.cell_series("smallest_cosine").expect("a series");
     assert!(cosine.iter().all(|cosine| *cosine > 0.98 && *cosine <= 1.0), "{cosine}");
@@ -189,4 +193,35 @@ fn a_run_without_contacts_records_cells_alone() {
     assert!(aggregate.rows().into_iter().all(|row| row.to_vec() == [0.0, 1.0, 2.0, 3.0]));
     assert!(file.cell_series("contact_share").expect("a series").iter().all(|share| *share == 0.0));
     assert!(file.scene_series("contact.count").is_err());
+}
+
+#[test]
+fn chemistry_feels_other_cells_the_same_with_every_scratch() {
+    let eml = r#"<eml name="touch" level="cell"><input id="share" default="0"/><variable id="sum" initial="0" rate="share"/>
+        <link from="cell.contact_share" to="system.share"/></eml>"#;
+    let before = ROW.split_once("[output]").expect("the output").0;
+    let with_system = before.replace("mechanics =", "chemistry = [\"touch\"]\nmechanics =");
+    let text = format!("{with_system}[chemistry.touch]\ndocument = \"touch.eml\"\n");
+    let beside = BTreeMap::from([("touch.eml".to_owned(), eml.to_owned())]);
+    let document = Document::parse_beside("row.toml", &text, Path::new("."), &[], beside).expect("a good document");
+    let Compiled { model, mut state, .. } = compile(&document).expect("a good experiment");
+    let mut ws = Workspace::new(&model);
+    begin_chemistry(&model, &mut state, &mut ws).expect("a start");
+    let share = |state: &pseudopod::sim::State| -> Vec<f64> {
+        let (reactor, population) = (&model.chemistry.reactors[0], &state.chemistry.populations[0]);
+        let (quantity, ..) = reactor.recorded.iter().find(|(_, id, _)| id == "share").expect("the input");
+        let mut values = vec![0.0; population.cells()];
+        population.observe(&reactor.program, *quantity, state.time, &mut values);
+        values
+    };
+    let at_start = share(&state);
+    // In the middle, at the ends of the row, and alone.
+    assert!(at_start[3] > at_start[0] && at_start[0] > 0.0 && at_start[2] == 0.0, "{at_start:?}");
+    let mut other = state.clone();
+    for _ in 0..12 {
+        step(&model, &mut state, &mut ws).expect("a step");
+        // What goes on from a checkpoint has a new workspace.
+        step(&model, &mut other, &mut Workspace::new(&model)).expect("a step");
+        assert!(share(&state) == share(&other) && state == other, "at {} s", state.time);
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::enforce_constraints;
-use super::contact::{find_contacts, hold_contacts, keep_contacts, travel};
+use super::contact::{check_depth, find_contacts, hold_contacts, keep_contacts, travel};
 use super::forces::add_forces;
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
@@ -47,6 +47,7 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
     }
     remember(state, ws);
     find_contacts(model, state, ws);
+    check_depth(model, state, ws)?;
     let (mut dt, mut limited) = (plan_step(model, state), false);
     for refused in 0..TRIES {
         let dt_now = end_at_kinks(model, state.time, dt);

@@ -74,6 +74,15 @@ pub enum Trouble {
         /// Sweeps made.
         sweeps: u32,
     },
+    /// Two cells are deeper inside each other than contacts can mend.
+    Pressed {
+        /// Type and number of the two cells.
+        cells: [(String, usize); 2],
+        /// Start of the step, s.
+        time: f64,
+        /// How deep at least, µm.
+        depth: f64,
+    },
     /// An atom moved farther in a fixed step than contacts allow.
     TooFast {
         /// End of the step, s.
@@ -120,7 +129,7 @@ impl Trouble {
             Self::Link { .. } => {
                 "bound the number in the link's transfer, such as transfer=\"max(value, 0)\", or mend the equations behind it"
             }
-            Self::Contact { .. } => {
+            Self::Contact { .. } | Self::Pressed { .. } => {
                 "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
                  shorten run.integrator.step if you set one"
             }
@@ -170,6 +179,10 @@ impl std::fmt::Display for Trouble {
                     write!(f, " and of cell {} of type `{}`, which touch,", other.1, other.0)?;
                 }
                 write!(f, " still move by {left:.1e} um")
+            }
+            Self::Pressed { cells: [(kind, cell), other], time, depth } => {
+                write!(f, "cell {cell} of type `{kind}` and cell {} of type `{}` are ", other.1, other.0)?;
+                write!(f, "at least {depth:.1e} um deep in each other at t = {time:.6} s, more than contacts can mend")
             }
             Self::TooFast { time, share } => {
                 write!(f, "an atom moves {share:.2} times as far as contacts allow in the step to t = {time:.6} s")

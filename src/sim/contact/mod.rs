@@ -4,6 +4,7 @@
 //! freely; then a projection finds what is missing, by projected Gauss–Seidel over all contacts and all volumes in a fixed
 //! order, eq. (adhesion.3). At rest nothing is missing, and the force is the true one, whatever the step.
 
+mod depth;
 mod find;
 mod gather;
 mod hold;
@@ -16,6 +17,7 @@ mod sweep;
 #[cfg(test)]
 mod sweep_tests;
 
+pub use depth::check_depth;
 pub use find::{add_contact_forces, find_contacts, keep_contacts};
 pub use hold::{hold_contacts, travel};
 pub use model::{ContactModel, Strength};
