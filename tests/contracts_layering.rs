@@ -21,7 +21,7 @@ const TABLE: &[(&str, &[&str])] = &[
     // Numbers and plots come from a finished file; the kinds of measures are words of the document.
     ("analysis", &["output", "experiment", "cell", "geometry"]),
     ("picture", &["output", "experiment", "analysis", "cell", "geometry", "run"]),
-    ("run", &["experiment", "sim", "output", "analysis", "cell", "mechanics", "geometry"]),
+    ("run", &["experiment", "sim", "output", "analysis", "cell", "mechanics", "contact", "geometry"]),
     ("cli", &["run", "experiment", "chemistry", "sim", "output", "analysis", "picture", "geometry"]),
 ];
 
