@@ -14,6 +14,7 @@ use std::time::Instant;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Compiled, Document, check_start, compile};
 use crate::output::{Frame, Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
+use crate::sim::contact::check_passed;
 use crate::sim::{State, Trouble, Workspace, begin_chemistry, step};
 
 /// How a run is to be made.
@@ -195,6 +196,8 @@ fn drive(
         writer.append(&recorder.record(&model, &mut state, &ws, 0.0))?;
         save(&mut writer, &state)?;
     }
+    // Where cells were last known to be outside each other.
+    let mut good = model.contact.is_some().then(|| state.clone());
     report.begin(state.time, model.until);
     while state.time < model.until {
         let before = state.time;
@@ -203,6 +206,11 @@ fn drive(
                 limited += u64::from(done.limited);
                 let last = state.time >= model.until;
                 if last || passed(before, state.time, schedule.every) {
+                    if let Err(trouble) = check_passed(&model, &state) {
+                        report.end();
+                        return Err(failed(trouble, writer, &good.unwrap_or(state), None, result));
+                    }
+                    good = model.contact.is_some().then(|| state.clone());
                     writer.append(&recorder.record(&model, &mut state, &ws, done.dt))?;
                     recorded = state.step;
                 }

@@ -1,7 +1,12 @@
-//! Whether contacts can be mended where a step begins.
+//! Whether contacts can be mended where a step begins, and whether cells have passed each other unnoticed.
 
+use rayon::prelude::*;
+
+use super::gather::gather;
 use super::model::ContactModel;
-use crate::contact::{Sides, winding_number};
+use crate::Vec3;
+use crate::contact::{Sides, closest_on_facet, winding_number};
+use crate::geometry::bounding_box;
 use crate::sim::model::Model;
 use crate::sim::state::State;
 use crate::sim::trouble::Trouble;
@@ -51,4 +56,55 @@ fn lost_inside(contact: &ContactModel, state: &State, ws: &Workspace) -> Option<
     };
     let mut touched = state.contact.atoms.iter().map(|bond| (bond.atom, bond.body));
     touched.find(|&(atom, body)| !is_found(atom, body) && is_inside(atom, body))
+}
+
+/// Refuses a state in which an atom is farther inside another cell than contacts are found. Contacts look at what is near; where
+/// cells are crushed beyond what they can resolve, as in a box that is too small, surfaces may slip through each other
+/// by ways that no contact sees. This looks at all atoms, slowly: for the instants that are recorded.
+///
+/// # Errors
+/// The first two cells that are inside each other.
+pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
+    let Some(contact) = &model.contact else { return Ok(()) };
+    let scene = &contact.scene;
+    let mut places = vec![Vec3::zeros(); scene.atoms];
+    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+        gather(kind, &now.positions, &mut places[contact.atoms_of(number)], |x| x);
+    }
+    let atoms_of = |body: u32| {
+        let first = scene.bodies[body as usize].first_atom as usize;
+        first..first + scene.shape(body).atoms
+    };
+    let bodies = 0..scene.bodies.len() as u32;
+    let boxes: Vec<(Vec3, Vec3)> =
+        bodies.clone().map(|body| bounding_box(&places[atoms_of(body)]).unwrap_or_default()).collect();
+    let depth_in = |atom: usize, other: u32| {
+        let (shape, there) = (scene.shape(other), &places[atoms_of(other)]);
+        let (low, high) = &boxes[other as usize];
+        let outside = (0..3).any(|axis| places[atom][axis] < low[axis] || places[atom][axis] > high[axis]);
+        if outside || winding_number(places[atom], there, &shape.facets) < 0.5 {
+            return 0.0;
+        }
+        let corners = shape.facets.iter().map(|facet| facet.map(|corner| there[corner as usize]));
+        let distances = corners.map(|corners| closest_on_facet(places[atom], corners).offset.norm());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    let passed = bodies.clone().into_par_iter().find_map_first(|body| {
+        let meets = |other: &u32| {
+            let ((low, high), (from, to)) = (&boxes[body as usize], &boxes[*other as usize]);
+            let shape = scene.shape(*other);
+            let solid = shape.closed && shape.sides == Sides::Outer;
+            *other != body && solid && (0..3).all(|axis| low[axis] <= to[axis] && from[axis] <= high[axis])
+        };
+        bodies.clone().filter(meets).find_map(|other| {
+            let deep = atoms_of(body).map(|atom| depth_in(atom, other)).find(|depth| *depth > scene.reach.depth);
+            deep.map(|depth| (body, other, depth))
+        })
+    });
+    let Some((body, other, depth)) = passed else { return Ok(()) };
+    let cells = [body, other].map(|body| {
+        let kind = contact.kind_of(body);
+        (model.kinds[kind].name.clone(), body as usize - model.kinds[kind].first_cell)
+    });
+    Err(Trouble::Pressed { cells, time: state.time, depth })
 }

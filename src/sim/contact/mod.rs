@@ -17,7 +17,7 @@ mod sweep;
 #[cfg(test)]
 mod sweep_tests;
 
-pub use depth::check_depth;
+pub use depth::{check_depth, check_passed};
 pub use find::{add_contact_forces, find_contacts, keep_contacts};
 pub use hold::{hold_contacts, travel};
 pub use model::{ContactModel, Strength};

@@ -1,0 +1,153 @@
+//! The whole step and its contacts in packed populations of cells of 42 atoms, each with exactly its volume: processor
+//! time, what contacts take of it, and memory. The cells begin on a lattice where they just touch, and a pull to
+//! the middle packs them before anything is measured.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use pseudopod::Vec3;
+use pseudopod::contact::Reach;
+use pseudopod::geometry::{Topology, icosphere, mean_edge_length};
+use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
+use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
+use pseudopod::sim::contact::{ContactModel, Strength, find_contacts};
+use pseudopod::sim::{Attraction, Kind, Model, State, Workspace, step};
+
+/// Bytes held now.
+static HELD: AtomicUsize = AtomicUsize::new(0);
+
+struct Counting;
+
+// SAFETY: every call goes on to the system's allocator as it is.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        HELD.fetch_add(layout.size(), Ordering::Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        HELD.fetch_sub(layout.size(), Ordering::Relaxed);
+        unsafe { System.dealloc(place, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Steps that are timed.
+const STEPS: u32 = 40;
+
+/// A population that is being pulled together, and its start.
+fn population(cells: usize, largest: f64) -> (Model, State) {
+    let rest = icosphere(5.0, 1);
+    let topology = Topology::of(&rest);
+    let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
+    let energy = 5.0 * mean_edge_length(&rest).powi(2);
+    let elasticity = Elasticity {
+        shape_memory: vec![ShapeMemory::new(&rest.positions, &rings, 5.0, Reaction::Exact)],
+        barrier: vec![Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy))],
+        ..Elasticity::default()
+    };
+    let mut kind = Kind::new("cell", rest.clone(), elasticity);
+    kind.drag = 20.0 / 42.0;
+    // The same pressure in the middle, however many there are.
+    let stiffness = 0.05 * (25.0 / cells as f64).powf(2.0 / 3.0);
+    kind.attraction = Some(Attraction { to: Vec3::zeros(), stiffness });
+    kind.largest_stiffness = kind.measure_largest_stiffness();
+    let mut kind = kind.with_cells(0, cells);
+    kind.bound_stiffness();
+    let size = StepSize::Adaptive { tolerance: 1e-3, largest };
+    let integrator = Integrator { method: Method::Implicit { order: Order::Second }, size };
+    let mut model = Model::of(vec![kind], integrator, f64::MAX);
+    let near = 0.1 * model.kinds[0].edge;
+    let mut contact = ContactModel::new(&model.kinds, &[], Reach { proximity: near, depth: near, margin: near });
+    contact.stick(0, 0, Strength { tensile: 0.2, shear: 0.2 });
+    model.contact = Some(contact);
+    let side = (1..).find(|side: &usize| side.pow(3).div_ceil(2) >= cells).expect("a cube large enough");
+    let sites = (0..side.pow(3)).map(|site| [site / side / side, site / side % side, site % side]);
+    let middle = Vec3::repeat(0.5 * (side - 1) as f64);
+    let places = sites.filter(|site| site.iter().sum::<usize>() % 2 == 0).take(cells).map(|site| {
+        let centre = (Vec3::from(site.map(|index| index as f64)) - middle) * (2f64.sqrt() * 5.02);
+        rest.positions.iter().map(|x| x + centre).collect()
+    });
+    let state = State::new(&model, &[places.collect()]);
+    (model, state)
+}
+
+/// Packs a population and prints what its steps cost.
+fn measure(cells: usize, threads: usize, pack: f64) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    pool.install(|| {
+        let before = HELD.load(Ordering::Relaxed);
+        let (model, mut state) = population(cells, 0.2);
+        let mut ws = Workspace::new(&model);
+        while state.time < pack {
+            step(&model, &mut state, &mut ws).expect("a step");
+        }
+        let (mut tries, mut sweeps, mut contacts) = (0, 0, 0);
+        let began = Instant::now();
+        for _ in 0..STEPS {
+            let done = step(&model, &mut state, &mut ws).expect("a step");
+            tries += 1 + done.refused;
+            sweeps += ws.contact.sweeps;
+            contacts += ws.contact.rows.len();
+        }
+        let seconds = began.elapsed().as_secs_f64();
+        let bytes = (HELD.load(Ordering::Relaxed) - before) as f64 / model.atoms() as f64;
+        // The same cells as if they passed through each other: the rest of the step.
+        let (alone, mut trial) = (Model { contact: None, ..model.clone() }, state.clone());
+        let mut spare = Workspace::new(&alone);
+        step(&alone, &mut trial, &mut spare).expect("a step");
+        let (began, mut others) = (Instant::now(), 0);
+        for _ in 0..STEPS {
+            others += 1 + step(&alone, &mut trial, &mut spare).expect("a step").refused;
+        }
+        let without = began.elapsed().as_secs_f64();
+        let mut finding = 0.0;
+        for _ in 0..STEPS / 4 {
+            step(&model, &mut state, &mut ws).expect("a step");
+            let began = Instant::now();
+            find_contacts(&model, &state, &mut ws);
+            finding += began.elapsed().as_secs_f64();
+        }
+        let each = |seconds: f64, count: u32| 1e3 * seconds / f64::from(count);
+        println!(
+            "{cells:6} {threads:8} {:10.2} {:10.2} {:10.3} {:8.1} {:12.1} {:10.2} {:10.2} {:10.0}",
+            each(seconds, STEPS),
+            each(seconds, tries),
+            1e-6 * model.atoms() as f64 * f64::from(tries) / seconds,
+            f64::from(sweeps) / f64::from(STEPS),
+            contacts as f64 / f64::from(STEPS) / cells as f64,
+            each(seconds, tries) - each(without, others),
+            each(finding, STEPS / 4),
+            bytes,
+        );
+    });
+}
+
+fn main() {
+    println!(
+        "{:>6} {:>8} {:>10} {:>10} {:>10} {:>8} {:>12} {:>10} {:>10} {:>10}",
+        "cells",
+        "threads",
+        "ms a step",
+        "ms a try",
+        "Matom/s",
+        "sweeps",
+        "rows a cell",
+        "contact ms",
+        "find ms",
+        "B an atom"
+    );
+    let large = std::env::args().any(|argument| argument == "--large");
+    for (cells, pack) in [(25, 40.0), (100, 20.0), (1000, 6.0), (10_000, 2.0)] {
+        for threads in [1, 2] {
+            if cells < 10_000 || large {
+                measure(cells, threads, pack);
+            }
+        }
+    }
+}
