@@ -274,3 +274,41 @@ fn an_sbml_model_stands_where_an_eml_document_can() {
     let way: f64 = (0..40).map(|n| 0.1 * 0.1 * exact(0.1 * f64::from(n))).sum();
     assert!((scene.place(0, 0) - way).abs() < 1e-7, "{} against {way}", scene.place(0, 0));
 }
+
+#[test]
+fn cells_let_go_when_chemistry_takes_their_adhesion_away() {
+    // Two cells are pressed together, then pulled with less than what holds them; at 40 s each loses its adhesion.
+    let own = r#"<eml name="own" level="cell"><variable id="a" initial="1" rate="0"/>
+        <event id="off" when="time ge 40"><set id="a">0</set></event><link from="system.a" to="cell.adhesion"/></eml>"#;
+    let cell = |name: &str, side: f64| {
+        format!(
+            r#"
+[cells.{name}]
+mesh = {{ shape = "icosphere", radius = "5 um", level = 1 }}
+placement = {{ at = [["{} um", "0 um", "0 um"]] }}
+mechanics = {{ drag = "20 pN s/um", shape_memory = {{ shape_modulus = "5 pN/um" }} }}
+loads = [{{ name = "pull", all = true, direction = [{side}, 0, 0], force = [["0 s", "-10 pN"], ["20 s", "-10 pN"], ["21 s", "2.5 pN"], ["100 s", "2.5 pN"]] }}]
+chemistry = ["own"]
+"#,
+            5.1 * side
+        )
+    };
+    let text = format!(
+        r#"[run]
+until = "60 s"
+integrator = {{ max_step = "0.2 s" }}
+[output]
+every = "1 s"
+{}{}
+[contact]
+strength = "0.5 pN/um^2"
+"#,
+        cell("left", -1.0),
+        cell("right", 1.0)
+    );
+    let mut scene = scene(&[("own", own)], &text);
+    let rows = scene.rows_until(60.0, |scene| scene.state().contact.atoms.len());
+    let at = |time: f64| rows.iter().rfind(|(when, _)| *when <= time).unwrap().1;
+    assert!(at(39.9) > 0, "they hold against the pull");
+    assert_eq!(at(60.0), 0, "they are apart");
+}

@@ -39,6 +39,8 @@ pub enum Setting {
     Bias(usize),
     /// Factor of all elastic forces; 1 without a link.
     Stiffness,
+    /// Factor of the strength with which the cell sticks; 1 without a link.
+    Adhesion,
     /// Rest volume, µm³.
     RestVolume,
     /// Rest volume over that of the mesh at rest.
@@ -81,10 +83,11 @@ pub const READABLE: [&str; 14] = [
 ];
 
 /// What can be set, as messages list it.
-pub const SETTABLE: [&str; 8] = [
+pub const SETTABLE: [&str; 9] = [
     "motility.speed",
     "motility.bias.x",
     "stiffness",
+    "adhesion",
     "rest_volume",
     "rest_volume_ratio",
     "load[NAME]",
@@ -115,6 +118,7 @@ pub fn setting(path: &[Step]) -> Option<Setting> {
         [("motility", None), ("speed", None)] => Setting::MotilitySpeed,
         [("motility", None), ("bias", None), (axis, None)] => Setting::Bias(component(axis)?),
         [("stiffness", None)] => Setting::Stiffness,
+        [("adhesion", None)] => Setting::Adhesion,
         [("rest_volume", None)] => Setting::RestVolume,
         [("rest_volume_ratio", None)] => Setting::RestVolumeRatio,
         [("load", Some(Index::Name(name)))] => Setting::Load(name.clone()),

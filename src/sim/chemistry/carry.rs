@@ -124,7 +124,9 @@ fn missed(target: Target, value: f64) -> Option<&'static str> {
         return Some("a finite number");
     }
     match target {
-        Target::Cell(_, Control::MotilitySpeed | Control::Stiffness) if value < 0.0 => Some("a number not below 0"),
+        Target::Cell(_, Control::MotilitySpeed | Control::Stiffness | Control::Adhesion) if value < 0.0 => {
+            Some("a number not below 0")
+        }
         Target::Cell(_, Control::RestVolume | Control::RestVolumeRatio) if value <= 0.0 => Some("a number above 0"),
         _ => None,
     }
@@ -212,6 +214,7 @@ fn set(model: &Model, cell: usize, control: Control, value: f64, state: &mut Sta
         Control::MotilitySpeed => controls.speed[cell] = value,
         Control::Bias(axis) => controls.bias[cell][axis] = value,
         Control::Stiffness => controls.stiffness[cell] = value,
+        Control::Adhesion => controls.adhesion[cell] = value,
         Control::Load(load) => controls.loads[load][cell] = value,
         Control::Secretion(channel) => controls.secretion[channel][cell] = value,
         Control::RestVolume | Control::RestVolumeRatio => {

@@ -209,6 +209,8 @@ pub enum Control {
     Bias(usize),
     /// Factor of elastic forces.
     Stiffness,
+    /// Factor of the strength of contacts.
+    Adhesion,
     /// Rest volume, µm³.
     RestVolume,
     /// Rest volume over that of the mesh at rest.

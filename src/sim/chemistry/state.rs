@@ -44,6 +44,8 @@ pub struct Controls {
     pub bias: Vec<[f64; 3]>,
     /// Factor of elastic forces.
     pub stiffness: Vec<f64>,
+    /// Factor of the strength with which a cell sticks; empty without a link to one.
+    pub adhesion: Vec<f64>,
     /// Factors of loads, one list a load number.
     pub loads: Vec<Vec<f64>>,
     /// Amount released per second, one list for each species secreted.
@@ -116,6 +118,7 @@ impl Controls {
                 Target::Cell(_, Control::MotilitySpeed) => controls.speed = vec![f64::NAN; cells],
                 Target::Cell(_, Control::Bias(_)) => controls.bias = vec![[0.0; 3]; cells],
                 Target::Cell(_, Control::Stiffness) => controls.stiffness = vec![1.0; cells],
+                Target::Cell(_, Control::Adhesion) => controls.adhesion = vec![1.0; cells],
                 Target::Cell(_, Control::Load(load)) => {
                     let loads = controls.loads.len().max(load + 1);
                     controls.loads.resize(loads, vec![1.0; cells]);
@@ -130,6 +133,7 @@ impl Controls {
         self.speed.clone_from(&other.speed);
         self.bias.clone_from(&other.bias);
         self.stiffness.clone_from(&other.stiffness);
+        self.adhesion.clone_from(&other.adhesion);
         self.loads.clone_from(&other.loads);
         self.secretion.clone_from(&other.secretion);
     }
@@ -147,6 +151,11 @@ impl Controls {
     /// Factor of a cell's elastic forces.
     pub fn stiffness_of(&self, cell: usize) -> f64 {
         self.stiffness.get(cell).copied().unwrap_or(1.0)
+    }
+
+    /// Factor of the strength with which a cell sticks.
+    pub fn adhesion_of(&self, cell: usize) -> f64 {
+        self.adhesion.get(cell).copied().unwrap_or(1.0)
     }
 
     /// Factor of a load of a cell.

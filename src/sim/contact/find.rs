@@ -21,7 +21,7 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     }
     s.detector.detect(&contact.scene, &s.start, &mut s.found);
     keep_edges(contact, &state.contact, &s.start, &mut s.found);
-    write_rows(contact, &s.found, &state.contact, &mut s.rows, &mut s.pulls);
+    write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, &mut s.rows, &mut s.pulls);
     s.force.clear();
     s.force.resize(contact.scene.atoms, Vec3::zeros());
     if model.integrator.method.is_inertial() {

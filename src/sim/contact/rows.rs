@@ -4,6 +4,7 @@ use super::model::{ContactModel, Strength};
 use super::state::ContactState;
 use crate::Vec3;
 use crate::contact::Contacts;
+use crate::sim::chemistry::Controls;
 
 /// One contact as it stands in a step, eq. (adhesion.1). The gap changes by `normal · Σ weights[i] D[atoms[i]]` when atoms are displaced by
 /// D. A packed population has almost as many contacts as atoms, and every sweep reads them all: what need not be exact to
@@ -47,6 +48,7 @@ pub fn write_rows(
     model: &ContactModel,
     found: &Contacts,
     before: &ContactState,
+    controls: &Controls,
     rows: &mut Vec<Row>,
     pulls: &mut Vec<Pull>,
 ) {
@@ -85,6 +87,7 @@ pub fn write_rows(
         let (kind, other) = (model.kind_of(body as u32), model.kind_of(contact.body));
         let strength = if own { Strength::default() } else { model.between[kind * model.areas.len() + other] };
         let area = SHARE * model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
+        let area = area * controls.adhesion_of(body) * controls.adhesion_of(contact.body as usize);
         add(
             [contact.atom, i, j, k],
             [1.0, -u, -v, -w],
@@ -124,6 +127,7 @@ pub fn write_rows(
         let kind = model.kind_of(body as u32);
         let strength = model.on_planes[kind * scene.planes.len() + contact.plane as usize];
         let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
+        let area = area * controls.adhesion_of(body);
         add(
             [contact.atom; 4],
             [1.0, 0.0, 0.0, 0.0],

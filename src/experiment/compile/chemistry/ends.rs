@@ -23,6 +23,8 @@ pub(super) struct Ends<'a, 'b> {
     pub(super) part: &'a Part<'a>,
     pub(super) kinds: &'b [Kind],
     pub(super) chemistry: &'b mut Chemistry,
+    /// Whether the experiment has contacts.
+    pub(super) touching: bool,
 }
 
 impl Ends<'_, '_> {
@@ -129,6 +131,7 @@ impl Ends<'_, '_> {
             Setting::MotilitySpeed => Control::MotilitySpeed,
             Setting::Bias(axis) => Control::Bias(axis),
             Setting::Stiffness => Control::Stiffness,
+            Setting::Adhesion => Control::Adhesion,
             Setting::RestVolume => Control::RestVolume,
             Setting::RestVolumeRatio => Control::RestVolumeRatio,
             Setting::Atom(atom, axis) => Control::Atom(atom, axis),
@@ -154,6 +157,9 @@ impl Ends<'_, '_> {
             let (lacking, help) = match setting {
                 Setting::MotilitySpeed if kind.brownian.is_none() => {
                     ("has no Brownian motility", "add `motility = { brownian = … }`, or set motility.bias")
+                }
+                Setting::Adhesion if !self.touching => {
+                    ("touches nothing in this experiment", "add a [contact] table with a strength")
                 }
                 Setting::RestVolume | Setting::RestVolumeRatio if free => {
                     ("has no volume that is kept", "give it a closed mesh and the volume rule exact or compressible")

@@ -44,7 +44,8 @@ pub(super) fn links(
         let own: Vec<_> = described.chain(outside(document, part, faults)).collect();
         for (description, place) in own {
             let place = place.unwrap_or_else(|key| nowhere(document, &key));
-            let mut ends = Ends { parts, part, kinds, chemistry };
+            let touching = document.experiment.contact.is_some();
+            let mut ends = Ends { parts, part, kinds, chemistry, touching };
             match link(&mut ends, &description) {
                 Ok(link) => links.push((link, place)),
                 Err(fault) => faults.push(fault),
