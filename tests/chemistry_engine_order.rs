@@ -170,7 +170,7 @@ fn rates_kept_between_windows_change_no_bit() {
             for cell in 0..37 {
                 // Some inputs and states change, most are set to what they are.
                 let input = if cell % 5 == 0 { 1.0 + 0.1 * f64::from(window) } else { 1.0 };
-                let jump = if (cell + window as usize) % 9 == 0 { 0.5 } else { 0.0 };
+                let jump = if (cell + window as usize).is_multiple_of(9) { 0.5 } else { 0.0 };
                 for population in [&mut kept, &mut anew] {
                     population.set_given(cell, 0, input);
                     population.set_state(cell, 0, population.state(cell, 0) + jump);
