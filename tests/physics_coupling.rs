@@ -192,13 +192,7 @@ fn a_system_that_blows_up_is_named_and_the_state_stays() {
     let text = one_cell("30 s", "0.5 s")
         + "placement = { at = [[\"0 um\", \"0 um\", \"0 um\"], [\"0.1 um\", \"0 um\", \"0 um\"]] }\n";
     let mut scene = scene(&[("own", own)], &text);
-    let trouble = loop {
-        let before = scene.state().clone();
-        if let Err(trouble) = scene.step() {
-            assert_eq!(*scene.state(), before, "the state is the one before the step");
-            break trouble;
-        }
-    };
+    let trouble = scene.until_trouble();
     // U = 1/(1 − 0.1 t) for the second cell.
     let Trouble::System { system, owner, time, variable, .. } = &trouble else { panic!("{trouble}") };
     assert_eq!((system.as_str(), owner.clone()), ("own", Some(("cell".to_owned(), 1))));

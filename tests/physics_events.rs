@@ -244,13 +244,7 @@ fn events_without_end_are_trouble_of_a_cell_and_the_state_stays() {
     let text = one_cell("4 s", "0.5 s")
         + "placement = { at = [[\"0 um\", \"0 um\", \"0 um\"], [\"30 um\", \"0 um\", \"0 um\"]] }\n";
     let mut scene = scene(&[("own", own)], &text);
-    let trouble = loop {
-        let before = scene.state().clone();
-        if let Err(trouble) = scene.step() {
-            assert_eq!(*scene.state(), before, "the state is the one before the step");
-            break trouble;
-        }
-    };
+    let trouble = scene.until_trouble();
     let text = trouble.to_string();
     let Trouble::System { system, owner, time, reason, .. } = trouble else { panic!("{text}") };
     assert_eq!((system.as_str(), owner, reason), ("own", Some(("cell".to_owned(), 1)), Reason::EndlessEvents));

@@ -277,6 +277,12 @@ impl Model {
         }
     }
 
+    /// The kind of a cell, by its number in the order of all cells, and its number within the kind.
+    pub fn kind_of(&self, cell: usize) -> (usize, usize) {
+        let kind = self.kinds.partition_point(|kind| kind.first_cell + kind.cells <= cell);
+        (kind, cell - self.kinds[kind].first_cell)
+    }
+
     /// Number of cells.
     pub fn cells(&self) -> usize {
         self.kinds.iter().map(|kind| kind.cells).sum()

@@ -55,6 +55,17 @@ impl Scene {
         rows
     }
 
+    /// Steps until one fails, which must leave the state as it was.
+    pub fn until_trouble(&mut self) -> Trouble {
+        loop {
+            let before = self.state().clone();
+            if let Err(trouble) = self.step() {
+                assert_eq!(*self.state(), before, "the state is the one before the step");
+                return trouble;
+            }
+        }
+    }
+
     /// Where the run is.
     pub fn state(&self) -> &State {
         &self.compiled.state

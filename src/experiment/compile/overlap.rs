@@ -6,8 +6,8 @@ use crate::Vec3;
 use crate::contact::{Overlap, find_overlaps};
 use crate::error::{Error, Fault, Result, short};
 use crate::geometry::bounding_box;
+use crate::sim::Model;
 use crate::sim::contact::ContactModel;
-use crate::sim::{Kind, Model};
 
 /// Overlaps that a message lists.
 const MOST: usize = 5;
@@ -51,16 +51,9 @@ pub fn check_start(document: &Document, compiled: &Compiled) -> Result<()> {
     Err(Error::input(place.into_iter().fold(fault, Fault::at)))
 }
 
-/// The cell that a body is.
-fn cell_of(model: &Model, body: u32) -> (usize, &Kind, usize) {
-    let body = body as usize;
-    let number = model.kinds.partition_point(|kind| kind.first_cell <= body) - 1;
-    (number, &model.kinds[number], body - model.kinds[number].first_cell)
-}
-
 fn name_of(model: &Model, body: u32) -> String {
-    let (_, kind, cell) = cell_of(model, body);
-    format!("cell {cell} of type `{}`", kind.name)
+    let (kind, cell) = model.kind_of(body as usize);
+    format!("cell {cell} of type `{}`", model.kinds[kind].name)
 }
 
 /// What overlaps how.
@@ -77,11 +70,11 @@ fn told(model: &Model, overlap: &Overlap) -> Found {
         (Some(_), _) => format!("{inner_name} is wholly inside {outer_name}"),
         (None, 0) => format!("edges of {inner_name} pass through {outer_name} at {} places", overlap.crossings),
         (None, _) => {
-            let atoms = cell_of(model, inner).1.atoms();
+            let atoms = model.kinds[model.kind_of(inner as usize).0].atoms();
             format!("{inner_name} has {inside} of its {atoms} atoms inside {outer_name}")
         }
     };
-    Found { kind: cell_of(model, second).0, words }
+    Found { kind: model.kind_of(second as usize).0, words }
 }
 
 /// Cells that reach farther behind a plane than a step may move an atom.
@@ -89,7 +82,8 @@ fn behind_planes(model: &Model, contact: &ContactModel, positions: &[Vec3]) -> V
     let mut found = Vec::new();
     let mut atoms = positions;
     for body in 0..model.cells() as u32 {
-        let (number, kind, _) = cell_of(model, body);
+        let number = model.kind_of(body as usize).0;
+        let kind = &model.kinds[number];
         let (own, others) = atoms.split_at(kind.atoms());
         atoms = others;
         for plane in &model.planes {

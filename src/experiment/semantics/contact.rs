@@ -8,6 +8,12 @@ impl Check<'_> {
     pub(super) fn contact(&mut self) {
         let experiment = &self.document.experiment;
         let Some(contact) = &experiment.contact else { return };
+        if experiment.run.integrator.method.is_inertial() {
+            let message =
+                "`run.integrator.method` moves masses, and contacts are there for over-damped motion only".to_owned();
+            let help = "take the method \"implicit\" or \"explicit\" with drag instead of mass, or leave [contact] out";
+            self.fault("run.integrator.method", "not with [contact]", message, help);
+        }
         if experiment.chemistry.contains_key("contact") {
             let message = "`chemistry.contact` has the name under which contacts are recorded".to_owned();
             self.fault("chemistry.contact", "taken", message, "give the system another name");

@@ -100,7 +100,7 @@ fn carry(
         });
         let carried = link.gain * carried;
         if let Some(expected) = missed(link.to, carried) {
-            let owner = own.map(|cell| kind_of(model, cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
+            let owner = own.map(|cell| model.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
             return Err(Trouble::Link { link: link.text.clone(), owner, value: carried, expected, time });
         }
         match (link.to, link.owner) {
@@ -154,13 +154,13 @@ fn read(model: &Model, from: &Source, own: Option<usize>, time: f64, state: &Sta
         Source::Own(_) => f64::NAN,
         Source::Time => time,
         Source::Cell(whose, Reading::Atom(atom, axis)) => mean(whose, &|cell| {
-            let (kind, local) = kind_of(model, cell);
+            let (kind, local) = model.kind_of(cell);
             vector(&model.kinds[kind], &state.kinds[kind].positions, local, atom)[axis]
         }),
         Source::Cell(whose, reading) => mean(whose, &|cell| scratch.cells[cell].read(reading)),
         Source::Sensed(whose, channel, sense) => mean(whose, &|cell| pick(&scratch.sensed[channel][cell], sense)),
         Source::AtAtom(whose, atom, field, species, sense) => mean(whose, &|cell| {
-            let (kind, local) = kind_of(model, cell);
+            let (kind, local) = model.kind_of(cell);
             let place = vector(&model.kinds[kind], &state.kinds[kind].positions, local, atom);
             pick(&scratch.fields[field].sense(species, place), sense)
         }),
@@ -201,12 +201,6 @@ fn pick(sensed: &Sensed, sense: Sense) -> f64 {
     }
 }
 
-/// The kind of a cell and its number within it.
-fn kind_of(model: &Model, cell: usize) -> (usize, usize) {
-    let kind = model.kinds.partition_point(|kind| kind.first_cell + kind.cells <= cell);
-    (kind, cell - model.kinds[kind].first_cell)
-}
-
 /// Sets what mechanics reads of a cell.
 fn set(model: &Model, cell: usize, control: Control, value: f64, state: &mut State) {
     let controls = &mut state.chemistry.controls;
@@ -218,12 +212,12 @@ fn set(model: &Model, cell: usize, control: Control, value: f64, state: &mut Sta
         Control::Load(load) => controls.loads[load][cell] = value,
         Control::Secretion(channel) => controls.secretion[channel][cell] = value,
         Control::RestVolume | Control::RestVolumeRatio => {
-            let (kind, local) = kind_of(model, cell);
+            let (kind, local) = model.kind_of(cell);
             let unit = if control == Control::RestVolume { 1.0 } else { model.chemistry.rest[kind][0] };
             state.kinds[kind].rest_volumes[local] = value * unit;
         }
         Control::Atom(atom, axis) => {
-            let (kind, local) = kind_of(model, cell);
+            let (kind, local) = model.kind_of(cell);
             let at = index(&model.kinds[kind], local, atom, axis);
             state.kinds[kind].positions[at] = value;
         }

@@ -34,8 +34,7 @@ pub fn check_depth(model: &Model, state: &State, ws: &Workspace) -> Result<(), T
     let too_deep = deepest.filter(|(gap, ..)| -gap > DEEPEST * most).map(|(gap, atom, body)| (-gap, atom, body));
     let lost = || lost_inside(contact, state, ws).map(|(atom, body)| (most, atom, body));
     let Some((depth, atom, body)) = too_deep.or_else(lost) else { return Ok(()) };
-    let (kind, other) = (contact.owner(atom), contact.kind_of(body));
-    let cells = [kind, (other, body as usize - model.kinds[other].first_cell)];
+    let cells = [contact.owner(atom), model.kind_of(body as usize)];
     let cells = cells.map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
     Err(Trouble::Pressed { cells, time: state.time, depth })
 }
@@ -102,9 +101,7 @@ pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
         })
     });
     let Some((body, other, depth)) = passed else { return Ok(()) };
-    let cells = [body, other].map(|body| {
-        let kind = contact.kind_of(body);
-        (model.kinds[kind].name.clone(), body as usize - model.kinds[kind].first_cell)
-    });
+    let cells = [body, other].map(|body| model.kind_of(body as usize));
+    let cells = cells.map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
     Err(Trouble::Pressed { cells, time: state.time, depth })
 }

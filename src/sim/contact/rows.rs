@@ -13,7 +13,7 @@ use crate::sim::chemistry::Controls;
 pub struct Row {
     /// Its atoms; those that are not there have weight 0.
     pub atoms: [u32; 4],
-    /// Their weights: positive on the first side of the contact, negative on the other; each side sums to ±1 exactly.
+    /// Their weights: positive on the first side of the contact, negative on the other; each side sums to ±1.
     pub weights: [f64; 4],
     /// From the other side to the first, and the gap where the step began, µm.
     pub normal_and_gap: [f32; 4],
