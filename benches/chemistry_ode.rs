@@ -1,6 +1,6 @@
 //! Populations of oscillators over lanes against the crate diffsol, whose solver is set to each cell's state at the begin
 //! of each of its windows; the ratios that matter are printed from one run, on one thread. The same cells, start and end
-//! for both, and the error of both against a run at 1e-11.
+//! for both, and the error of both against a run at 1e-11. A word given picks the problems whose name has it.
 
 #[path = "../tests/ode_problems/mod.rs"]
 mod ode_problems;
@@ -199,6 +199,9 @@ fn tolerances() -> impl Iterator<Item = f64> {
 
 /// Both at the tolerance asked, and then ours at the loosest that is, with all tighter ones, at least as accurate as theirs was.
 fn compare(problem: &Problem, method: Method, whiches: &[(Theirs, &str)]) {
+    if std::env::args().skip(1).any(|wanted| !wanted.starts_with('-') && !problem.name.contains(&wanted)) {
+        return;
+    }
     let start = problem.spread();
     let exact = problem.ours(Method::Rosenbrock, &start, 1e-11).1;
     let many: States = (0..100 * CELLS).map(|cell| start[cell % CELLS].clone()).collect();

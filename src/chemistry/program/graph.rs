@@ -22,13 +22,10 @@ pub enum Node {
     Select(NodeId, NodeId, NodeId),
 }
 
-/// Whole and half exponents up to this one become products and a root; the error of x^k grows as k/2 units in the last place.
-const LARGEST_PRODUCT: f64 = 16.0;
-
-/// Nodes, each once.
+/// Nodes, each once; made by the functions of `simplify`.
 #[derive(Debug, Clone, Default)]
 pub struct Graph {
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
     known: HashMap<Node, NodeId>,
     pub(super) derivatives: HashMap<(NodeId, u32), NodeId>,
 }
@@ -49,7 +46,7 @@ impl Graph {
         self.nodes.is_empty()
     }
 
-    fn intern(&mut self, node: Node) -> NodeId {
+    pub(super) fn intern(&mut self, node: Node) -> NodeId {
         let Self { nodes, known, .. } = self;
         *known.entry(node).or_insert_with(|| {
             nodes.push(node);
@@ -72,78 +69,6 @@ impl Graph {
         match self.node(id) {
             Node::Constant(bits) => Some(f64::from_bits(bits)),
             _ => None,
-        }
-    }
-
-    /// A function of one argument.
-    pub fn unary(&mut self, function: Unary, a: NodeId) -> NodeId {
-        if let Some(value) = self.value(a) {
-            return self.constant(function.apply(value));
-        }
-        if let (Unary::Neg, Node::Unary(Unary::Neg, inner)) = (function, self.node(a)) {
-            return inner;
-        }
-        self.intern(Node::Unary(function, a))
-    }
-
-    /// An operator or function of two arguments. `0·x` is 0 whatever x is.
-    pub fn binary(&mut self, function: Binary, a: NodeId, b: NodeId) -> NodeId {
-        use Binary as B;
-        let (left, right) = (self.value(a), self.value(b));
-        if let (Some(left), Some(right)) = (left, right) {
-            return self.constant(function.apply(left, right));
-        }
-        match (function, left, right) {
-            (B::Add, Some(0.0), _) => return b,
-            (B::Add | B::Sub, _, Some(0.0)) => return a,
-            (B::Sub, Some(0.0), _) => return self.unary(Unary::Neg, b),
-            (B::Mul, Some(0.0), _) | (B::Mul, _, Some(0.0)) | (B::Div, Some(0.0), _) => return self.constant(0.0),
-            (B::Mul, Some(1.0), _) => return b,
-            (B::Mul | B::Div, _, Some(1.0)) => return a,
-            (B::Mul, Some(-1.0), _) => return self.unary(Unary::Neg, b),
-            (B::Mul | B::Div, _, Some(-1.0)) => return self.unary(Unary::Neg, a),
-            (B::Pow, _, Some(exponent)) => {
-                if let Some(product) = self.power(a, exponent) {
-                    return product;
-                }
-            }
-            _ => {}
-        }
-        let commutes = matches!(function, B::Add | B::Mul | B::Eq | B::Ne | B::And | B::Or | B::Xor);
-        let (a, b) = if commutes && a > b { (b, a) } else { (a, b) };
-        self.intern(Node::Binary(function, a, b))
-    }
-
-    /// A power with a constant exponent that products and a root give.
-    fn power(&mut self, a: NodeId, exponent: f64) -> Option<NodeId> {
-        if (2.0 * exponent).fract() != 0.0 || exponent.abs() > LARGEST_PRODUCT {
-            return None;
-        }
-        let (mut left, mut square) = (exponent.abs() as u32, a);
-        let mut product = if exponent.fract() != 0.0 { self.unary(Unary::Sqrt, a) } else { self.constant(1.0) };
-        while left > 0 {
-            if left & 1 == 1 {
-                product = self.binary(Binary::Mul, product, square);
-            }
-            left >>= 1;
-            if left > 0 {
-                square = self.binary(Binary::Mul, square, square);
-            }
-        }
-        if exponent < 0.0 {
-            let one = self.constant(1.0);
-            product = self.binary(Binary::Div, one, product);
-        }
-        Some(product)
-    }
-
-    /// The second where the first is true, and else the third.
-    pub fn select(&mut self, condition: NodeId, yes: NodeId, no: NodeId) -> NodeId {
-        match self.value(condition) {
-            _ if yes == no => yes,
-            Some(0.0) => no,
-            Some(_) => yes,
-            None => self.intern(Node::Select(condition, yes, no)),
         }
     }
 

@@ -10,6 +10,7 @@ pub mod graph;
 mod initial;
 pub mod math;
 mod run;
+mod simplify;
 
 pub use initial::initial_values;
 pub use run::{Lanes, run};
@@ -93,12 +94,16 @@ impl Program {
             .collect();
         let mut constants = Constants::default();
         let slots = 1 + variables.len() + open.len();
-        for group in [&rates, &linear, &nodes].into_iter().chain(&further) {
+        let (rates, linear) = (graph.with_shared_divisors(&rates), graph.with_shared_divisors(&linear));
+        for (graph, group) in [&rates, &linear] {
+            constants.collect(graph, group);
+        }
+        for group in [&nodes].into_iter().chain(&further) {
             constants.collect(&graph, group);
         }
-        let code = |roots: &[NodeId]| Code::of(&graph, roots, slots, &constants);
-        let (rates, linear, observe) = (code(&rates), code(&linear), code(&nodes));
-        let further: Vec<Code> = further.iter().map(|group| code(group)).collect();
+        let code = |graph: &Graph, roots: &[NodeId]| Code::of(graph, roots, slots, &constants);
+        let (rates, linear, observe) = (code(&rates.0, &rates.1), code(&linear.0, &linear.1), code(&graph, &nodes));
+        let further: Vec<Code> = further.iter().map(|group| code(&graph, group)).collect();
         let registers =
             [&rates, &linear, &observe].into_iter().chain(&further).map(|code| code.registers).max().unwrap_or(0);
         Ok(Self {
