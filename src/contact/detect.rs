@@ -28,6 +28,10 @@ pub struct Detection {
 pub struct Detector {
     boxes: Boxes,
     lists: Vec<Lists>,
+    /// How much farther than a contact pairs were collected from, µm.
+    margin: f64,
+    /// Detections since then.
+    looks: u32,
     /// Where the atoms were when the pairs were collected, µm.
     collected_at: Vec<[f32; 3]>,
     /// One per batch: what several threads find before it is put in order, and scratch.
@@ -42,6 +46,14 @@ struct Found {
     lows: Vec<Low>,
     bounds: Vec<Bounds>,
 }
+
+/// Detections for which pairs should last: fewer cost more in collecting, more in looking at pairs that are far apart.
+const LASTING: std::ops::RangeInclusive<u32> = 6..=20;
+
+/// What the margin is multiplied or divided by when pairs lasted too short or too long, and the most it becomes, over
+/// the scene's.
+const WIDER: f64 = 1.5;
+const WIDEST: f64 = 6.0;
 
 /// A position rounded to four bytes an axis is off by less than this share of its coordinates.
 const ROUNDING: f64 = 1.1e-7;
@@ -58,10 +70,13 @@ impl Detector {
     pub fn detect(&mut self, scene: &Scene, positions: &[Vec3], contacts: &mut Contacts) -> Detection {
         assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
         let moved = self.moved(scene, positions);
-        let collected = moved.is_nan() || moved > 0.5 * scene.reach.margin;
+        let collected = moved.is_nan() || moved > 0.5 * self.margin;
         if collected {
+            self.margin = self.next_margin(scene, moved);
+            self.looks = 0;
             self.collect(scene, positions);
         }
+        self.looks += 1;
         contacts.clear();
         if rayon::current_num_threads() == 1 {
             for (batch, lists) in self.lists.iter().enumerate() {
@@ -81,9 +96,28 @@ impl Detector {
         Detection { collected, moved, pairs: self.lists.iter().map(Lists::words).sum() }
     }
 
+    /// The margin to collect with: wider when the last pairs did not last, narrower when they lasted long.
+    fn next_margin(&self, scene: &Scene, moved: f64) -> f64 {
+        let least = scene.reach.margin;
+        if !moved.is_finite() {
+            return least;
+        }
+        let margin = match self.looks {
+            looks if looks < *LASTING.start() => self.margin * WIDER,
+            looks if looks > *LASTING.end() => self.margin / WIDER,
+            _ => self.margin,
+        };
+        margin.clamp(least, WIDEST * least)
+    }
+
     /// Forgets the pairs, so that the next detection collects them anew. Contacts do not depend on it.
     pub fn forget(&mut self) {
         self.collected_at.clear();
+    }
+
+    /// How much farther than a contact the pairs were collected from, µm.
+    pub(super) fn margin(&self) -> f64 {
+        self.margin
     }
 
     /// The lists of pairs, one per batch.
@@ -140,7 +174,8 @@ impl Detector {
             }
         });
         // Bodies may touch when the boxes grown by half of the reach meet.
-        let half = 0.5 * scene.reach.collected();
+        let reach = scene.reach.range() + self.margin;
+        let half = 0.5 * reach;
         self.boxes.bounds.clear();
         for found in &self.found {
             self.boxes.bounds.extend(found.bounds.iter().map(|bounds| bounds.grown(half)));
@@ -151,7 +186,10 @@ impl Detector {
             self.boxes.bounds.extend_from_slice(&found.bounds);
         }
         let boxes = &self.boxes;
-        self.lists.par_iter_mut().enumerate().for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes));
+        self.lists
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes, reach));
         self.collected_at.clear();
         self.collected_at.extend(positions.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32]));
     }

@@ -30,6 +30,8 @@ pub(super) struct Lists {
     facets: Vec<u32>,
     edges_first: Vec<u32>,
     edges: Vec<u32>,
+    /// The farthest from which they were collected, µm.
+    reach: f64,
     /// Scratch: the facets near one facet, as words.
     near: Vec<u32>,
 }
@@ -56,8 +58,9 @@ impl Lists {
             + 4 * (self.edges_first.capacity() + self.edges.capacity() + self.near.capacity())
     }
 
-    /// Collects the pairs of a batch: all within the collected reach, eq. (contacts.5).
-    pub fn collect(&mut self, scene: &Scene, batch: usize, positions: &[Vec3], boxes: &Boxes) {
+    /// Collects the pairs of a batch: all within `reach` (µm), eq. (contacts.5).
+    pub fn collect(&mut self, scene: &Scene, batch: usize, positions: &[Vec3], boxes: &Boxes, reach: f64) {
+        self.reach = reach;
         self.facets_first.clear();
         self.facets.clear();
         self.edges_first.clear();
@@ -70,7 +73,7 @@ impl Lists {
             let others = boxes.neighbours.of(body);
             let after = others.partition_point(|&other| other < body);
             for atom in 0..shape.atoms {
-                let bounds = Bounds::around(&here[atom..=atom], scene.reach.collected());
+                let bounds = Bounds::around(&here[atom..=atom], self.reach);
                 let own = std::iter::once(&body);
                 for &other in others[..after].iter().chain(own).chain(&others[after..]) {
                     if bounds.meets(&boxes.bounds[other as usize]) {
@@ -97,7 +100,7 @@ impl Lists {
     ) {
         let (shape, there) = (scene.shape(other), scene.of_body(other, positions));
         let place = scene.of_body(body, positions)[atom];
-        let farthest = scene.reach.collected().powi(2);
+        let farthest = self.reach.powi(2);
         let start = self.facets.len();
         push(&mut self.facets, other | BODY);
         visit(scene, other, boxes, bounds, &mut |facet| {
@@ -127,7 +130,7 @@ impl Lists {
             return;
         }
         let here = scene.of_body(body, positions);
-        let reach = scene.reach.collected();
+        let reach = self.reach;
         let bounds = Bounds::around(&shape.corners(facet, here), reach);
         self.near.clear();
         for &other in std::iter::once(&body).chain(after) {

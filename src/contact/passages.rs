@@ -58,7 +58,7 @@ impl Detector {
     ) -> Coverage {
         assert_eq!([before.len(), after.len()], [scene.atoms; 2], "one position per atom of the scene");
         passages.clear();
-        let half = 0.5 * scene.reach.margin;
+        let half = 0.5 * self.margin();
         if self.moved(scene, before).is_infinite() {
             return Coverage::Partial;
         }

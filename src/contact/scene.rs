@@ -12,7 +12,8 @@ pub struct Reach {
     /// Atoms and edges that are inside another surface by no more than this are found. It must be less than the
     /// thickness of the thinnest surface.
     pub depth: f64,
-    /// Pairs are collected from this much farther away, and collected again when an atom has moved half of it.
+    /// Pairs are collected from at least this much farther away, and collected again when an atom has moved half of
+    /// what they were collected with: where atoms are fast, a detector takes more.
     pub margin: f64,
 }
 
@@ -20,11 +21,6 @@ impl Reach {
     /// The farthest that matters now, µm.
     pub(super) fn range(&self) -> f64 {
         self.proximity.max(self.depth)
-    }
-
-    /// The farthest from which pairs are collected, µm.
-    pub(super) fn collected(&self) -> f64 {
-        self.range() + self.margin
     }
 }
 

@@ -75,11 +75,13 @@ pub fn compile(document: &Document) -> Result<Compiled> {
         Some(reach) => room::place_apart(document, &kinds, &planes, reach.proximity)?,
         None => place::place(experiment, &kinds),
     };
+    let integrator = steps::integrator(document, &mut kinds)?;
+    let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach));
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),
-        integrator: steps::integrator(document, &mut kinds)?,
-        contact: reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach)),
+        integrator,
+        contact: contact.map(|contact| contact.as_exact_as(integrator.size)),
         kinds,
         chemistry,
         planes,

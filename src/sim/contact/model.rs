@@ -2,6 +2,7 @@
 
 use crate::contact::{self, Reach, Scene, Shape, Sides};
 use crate::geometry;
+use crate::mechanics::integrator::StepSize;
 use crate::sim::model::{Kind, Plane};
 
 /// How strongly two surfaces stick, eq. (adhesion.2). It depends neither on the step nor on the mesh.
@@ -35,8 +36,11 @@ pub struct ContactModel {
 /// Sweeps over the contacts after which a step is given up.
 const MOST_SWEEPS: u32 = 200;
 
-/// What a sweep may still move, over the mean edge.
+/// What a sweep may still move, over the mean edge, where steps are fixed.
 const TOLERANCE: f64 = 1e-4;
+
+/// What a sweep may still move, over the error that an adaptive step may make.
+const SHARE_OF_ERROR: f64 = 0.3;
 
 impl ContactModel {
     /// Contacts of all cells of these kinds with each other, with themselves and with planes, without any strength.
@@ -61,6 +65,14 @@ impl ContactModel {
             areas: kinds.iter().map(|kind| geometry::atom_areas(&kind.rest)).collect(),
             first_atom,
         }
+    }
+
+    /// The same with sweeps as exact as adaptive steps are: they need not end closer than the step's error.
+    pub fn as_exact_as(mut self, steps: StepSize) -> Self {
+        if let StepSize::Adaptive { tolerance, .. } = steps {
+            self.tolerance *= SHARE_OF_ERROR * tolerance / TOLERANCE;
+        }
+        self
     }
 
     /// Sets the strength between two kinds, both ways.
