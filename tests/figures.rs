@@ -96,3 +96,18 @@ fn twenty_five_cells_become_one_aggregate() {
 fn a_strong_pair_holds_where_a_weak_one_parts() {
     experiment_keeps_its_word("sticky_pair", "experiment.toml");
 }
+
+#[test]
+fn six_spheres_come_to_rest_in_the_dent_they_make() {
+    experiment_keeps_its_word("falling_spheres", "experiment.toml");
+}
+
+#[test]
+fn a_ball_rolls_down_a_sheet_where_shear_holds_it() {
+    experiment_keeps_its_word("rolling_ball", "experiment.toml");
+}
+
+#[test]
+fn a_ball_rolls_down_a_plane_as_fast_as_drag_allows() {
+    experiment_keeps_its_word("rolling_ball", "plane.toml");
+}
