@@ -133,6 +133,7 @@ proximity = "0.6 um"
 strength = "1 Pa"
 [output]
 every = "0.1 s"
+forces = true
 [measure.together]
 kind = "value"
 series = "largest_aggregate"
@@ -172,6 +173,13 @@ fn aggregates_and_shares_of_contact_are_recorded() {
     assert_eq!(summary.iter().find(|measure| measure.name == "together").map(|measure| measure.value), Some(3.0));
     let page = pseudopod::output::describe(&file).expect("a page");
     assert!(page.contains("2 aggregates in the last frame, the largest of 3"), "{page}");
+    // Contacts are among the forces of a frame, from the first one on, and none comes from outside. They are kept in
+    // four bytes, so that both sides carry the same to round-off of the sums alone.
+    for frame in 0..frames {
+        let forces = file.forces(frame).expect("a frame").expect("forces were asked for");
+        let sum = forces.iter().fold(Vec3::zeros(), |sum, force| sum + Vec3::from(*force));
+        assert!(sum.norm() < 1e-6, "{sum} pN at frame {frame}");
+    }
     // A facet of an icosphere has its middle along its normal.
     let cosine = file.cell_series("smallest_cosine").expect("a series");
     assert!(cosine.iter().all(|cosine| *cosine > 0.98 && *cosine <= 1.0), "{cosine}");

@@ -4,6 +4,7 @@ use super::touch::Touch;
 use crate::experiment::{CONTACT_SERIES, Schedule};
 use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
 use crate::sim::chemistry::Members;
+use crate::sim::contact::find_contacts;
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
 use crate::sim::{Model, State, Workspace, forces};
@@ -112,6 +113,8 @@ impl Recorder {
             self.touch.look(model, contact, ws, dt, &mut frame);
         }
         if let Some(scratch) = &mut self.force_scratch {
+            // What contacts carry is part of the state, and is read from there.
+            find_contacts(model, state, scratch);
             forces::add_forces(model, state.time, state, scratch);
             for (kind, w) in model.kinds.iter().zip(&scratch.kinds) {
                 for cell in 0..kind.cells {
