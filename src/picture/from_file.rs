@@ -157,6 +157,7 @@ fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &
         range: picture.colour_range,
         label,
         direction: picture.view.from,
+        up: picture.view.up,
         ..Look::default()
     }
 }

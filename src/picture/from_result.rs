@@ -7,7 +7,7 @@ use super::Image;
 use super::colour::{Colour, ColourMap};
 use super::render::{
     Bounds, Camera, Edges, FieldBar, Floor, Insets, Key, Overlay, Pane, Projection, ScaleBar, Scene, Sheet, Surface,
-    SurfaceColour, draw, time_text,
+    SurfaceColour, basis, draw, time_text,
 };
 use super::ticks::nice_above;
 use crate::Vec3;
@@ -67,6 +67,8 @@ pub struct Look {
     pub opacity: Option<f32>,
     /// From the scene towards the camera; only the direction counts.
     pub direction: [f64; 3],
+    /// The direction that is up in the picture.
+    pub up: [f64; 3],
     /// Parallel or perspective; the height of a parallel projection is fitted.
     pub projection: Projection,
     /// The scale bar.
@@ -87,6 +89,7 @@ impl Default for Look {
             edges: Edges::Hidden,
             opacity: None,
             direction: [0.35, -1.0, 0.75],
+            up: [0.0, 0.0, 1.0],
             projection: Projection::Orthographic { height: 1.0 },
             scale_bar: ScaleBar::Auto,
         }
@@ -113,8 +116,8 @@ impl Framing {
     /// Nothing seen yet, for pictures with this look.
     pub fn new(look: &Look) -> Self {
         let back = Vec3::from(look.direction).try_normalize(1e-300).unwrap_or(Vec3::z());
-        let right = Vec3::z().cross(&back).try_normalize(1e-6).unwrap_or(Vec3::x());
-        let axes = [right, back.cross(&right), back];
+        let [right, up, forward] = basis(-back, Vec3::from(look.up));
+        let axes = [right, up, -forward];
         let mut outermost = Vec::new();
         for n in 0..27 {
             let signs = [n % 3, n / 3 % 3, n / 9].map(|k| f64::from(k) - 1.0);
@@ -173,7 +176,7 @@ impl Framing {
         let mut points: Vec<[f64; 3]> = self.outermost.iter().filter(|o| o.1.is_finite()).map(|o| o.2).collect();
         points.extend(&self.pane_corners);
         points.extend(&self.field_corners);
-        Camera::fit(&points, self.axes[2].into(), look.projection, aspect, insets)
+        Camera::fit(&points, self.axes[2].into(), self.axes[1].into(), look.projection, aspect, insets)
     }
 
     /// The numbers at the ends of the colour bar.

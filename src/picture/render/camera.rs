@@ -95,12 +95,19 @@ impl Bounds {
 
 impl Camera {
     /// A camera that shows all points within the insets of a picture of `aspect` (width over height), looking along
-    /// the opposite of `direction` (from the scene towards the camera). The height of an orthographic projection is
-    /// chosen by the fit; the angle of a perspective one is kept.
-    pub fn fit(points: &[[f64; 3]], direction: [f64; 3], projection: Projection, aspect: f64, insets: Insets) -> Self {
+    /// the opposite of `direction` (from the scene towards the camera) with `up` upwards. The height of an orthographic
+    /// projection is chosen by the fit; the angle of a perspective one is kept.
+    pub fn fit(
+        points: &[[f64; 3]],
+        direction: [f64; 3],
+        up: [f64; 3],
+        projection: Projection,
+        aspect: f64,
+        insets: Insets,
+    ) -> Self {
         let bounds = Bounds::around(points).unwrap_or(Bounds { low: [-1.0; 3], high: [1.0; 3] });
         let radius = (0.5 * bounds.diagonal()).max(1e-6);
-        let [right, up, forward] = basis(-Vec3::from(direction), Vec3::z());
+        let [right, up, forward] = basis(-Vec3::from(direction), Vec3::from(up));
         let (half_x, half_y) = (
             (0.5 * aspect - insets.sides - 0.5 * insets.right).max(0.05),
             (0.5 - 0.5 * (insets.top + insets.bottom)).max(0.05),
@@ -164,7 +171,7 @@ impl Camera {
 }
 
 /// Right, up and forward unit vectors of a camera; another up is taken when the camera looks along it.
-pub(super) fn basis(forward: Vec3, up: Vec3) -> [Vec3; 3] {
+pub(in crate::picture) fn basis(forward: Vec3, up: Vec3) -> [Vec3; 3] {
     let forward = forward.try_normalize(1e-300).unwrap_or(-Vec3::z());
     let right = forward.cross(&up).try_normalize(1e-6).unwrap_or_else(|| {
         let helper = if forward.y.abs() < 0.9 { Vec3::y() } else { Vec3::x() };

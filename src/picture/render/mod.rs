@@ -20,6 +20,7 @@ use rayon::prelude::*;
 
 use super::Image;
 
+pub(in crate::picture) use camera::basis;
 pub use camera::{Bounds, Camera, Insets, Projection};
 pub use overlay::{FieldBar, Key, Overlay, ScaleBar, time_text};
 pub use scene::{Background, Edges, Floor, Pane, Scene, Sheet, Surface, SurfaceColour};

@@ -92,7 +92,7 @@ fn crowd(splits: usize) -> Scene {
 fn view_of(scene: &Scene, overlay: &Overlay, direction: [f64; 3], projection: Projection) -> Camera {
     let points: Vec<[f64; 3]> =
         scene.surfaces.iter().chain([&scene.strokes]).flat_map(|s| s.positions.iter().copied()).collect();
-    Camera::fit(&points, direction, projection, 1280.0 / 720.0, overlay.insets())
+    Camera::fit(&points, direction, [0.0, 0.0, 1.0], projection, 1280.0 / 720.0, overlay.insets())
 }
 
 #[test]
@@ -275,4 +275,16 @@ fn gallery_of_scenes() {
     let overlay = Overlay { title: "Compression between plates".into(), ..Overlay::default() };
     let camera = view_of(&scene, &overlay, [0.3, -1.0, 0.35], Projection::Perspective { angle: 0.45 });
     save("plates.png", &scene, &camera, &overlay);
+}
+
+#[test]
+fn what_is_asked_to_be_up_is_up() {
+    let points = [[0.0; 3], [10.0, 0.0, 0.0], [0.0, 2.0, 1.0]];
+    let fit = |up| {
+        Camera::fit(&points, [0.0, 0.0, 1.0], up, Projection::Orthographic { height: 1.0 }, 1.0, Insets::default())
+    };
+    let (along_y, along_x) = (fit([0.0, 1.0, 0.0]), fit([1.0, 0.0, 0.3]));
+    assert_eq!(along_y.up, [0.0, 1.0, 0.0]);
+    // At a right angle to the view.
+    assert_eq!(along_x.up, [1.0, 0.0, 0.0]);
 }
