@@ -65,7 +65,11 @@ pub fn evaluate(
     let fields = Fields::of(file);
     match kind {
         MeasureKind::Value { series, cells, over, time } => {
-            reduce(*time, &recording.times, &recording.series(series, cells.as_deref(), *over)?)
+            let value = reduce(*time, &recording.times, &recording.series(series, cells.as_deref(), *over)?)?;
+            match value.is_nan() && series.starts_with("contact.") {
+                true => Err(nobody_touches(series)),
+                false => Ok(value),
+            }
         }
         MeasureKind::Slope(fit) => fitted(recording, fit).map(|line| line.slope),
         MeasureKind::RSquared(fit) => fitted(recording, fit).map(|line| line.r_squared),
@@ -96,6 +100,12 @@ pub fn evaluate(
         MeasureKind::Wavelength(pattern) => chemistry::wavelength(pattern, &recording.times, fields),
         MeasureKind::Segregation(wanted) => sorting::segregation(wanted, recording, file),
     }
+}
+
+/// That a series of contacts has no value where it is asked for.
+fn nobody_touches(series: &str) -> Error {
+    let fault = Fault::new(format!("\"{series}\" has no value where no two cells touch, or none of different types"));
+    Error::input(fault.help("give a time at which such cells touch"))
 }
 
 /// Makes one of the values at several instants.
