@@ -16,6 +16,8 @@ pub enum Purpose {
     Motility = 1,
     /// Where cells are put at the start.
     Placement = 2,
+    /// Permutations of cell types in the test for segregation; the number of the permutation stands for the cell.
+    Permutation = 3,
 }
 
 const ROUNDS: usize = 10;

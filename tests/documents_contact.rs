@@ -1,7 +1,7 @@
 //! What the table of contacts in a document means, and where cells start that touch.
 
 use pseudopod::Vec3;
-use pseudopod::experiment::{Compiled, Document, check_start, compile};
+use pseudopod::experiment::{CONTACT_SERIES, Compiled, Document, check_start, compile, pair_series};
 use pseudopod::output::{Overwrite, ResultFile};
 use pseudopod::run::{Quiet, RunOptions, run};
 use pseudopod::sim::contact::Strength;
@@ -141,6 +141,12 @@ series = "largest_aggregate"
 kind = "value"
 series = "contact_share"
 cells = "white"
+[measure.mixed]
+kind = "segregation"
+[measure.p]
+kind = "segregation"
+cells = ["red", "white"]
+statistic = "p_value"
 [[plot]]
 name = "contacts"
 kind = "series"
@@ -171,6 +177,22 @@ fn aggregates_and_shares_of_contact_are_recorded() {
     assert_eq!(file.scene_series("contact.sweeps").expect("a series")[0], 0.0, "no step before the first frame");
     let summary = file.summary().expect("measures");
     assert_eq!(summary.iter().find(|measure| measure.name == "together").map(|measure| measure.value), Some(3.0));
+    for frame in 0..frames {
+        let pairs: Vec<[u32; 2]> = file.pairs(frame).unwrap().iter().map(|pair| [pair.cell, pair.other]).collect();
+        assert_eq!(pairs, [[0, 3], [1, 3]], "in frame {frame}");
+    }
+    // Two red cells and a white one touch: by chance a pair is alike with probability 1/3, and none is. There are three
+    // ways to deal the types, of which one has no pair alike and two have one.
+    let measure = |name: &str| summary.iter().find(|measure| measure.name == name).expect("a measure").value;
+    assert!((measure("mixed") + 0.5).abs() < 1e-15 && measure("p") == 1.0);
+    assert_eq!(file.scene_series("contact.segregation").expect("a series")[0], measure("mixed"));
+    assert_eq!(file.scene_series("contact.heterotypic_share").expect("a series"), vec![1.0; frames]);
+    let names = pair_series(&["red", "white"], &[]);
+    let of_file = file
+        .scene_names()
+        .into_iter()
+        .filter(|name| name.starts_with("contact.") && !CONTACT_SERIES.contains(&name.as_str()));
+    assert_eq!(of_file.collect::<Vec<_>>(), names);
     let page = pseudopod::output::describe(&file).expect("a page");
     assert!(page.contains("2 aggregates in the last frame, the largest of 3"), "{page}");
     // Contacts are among the forces of a frame, from the first one on, and none comes from outside. They are kept in
@@ -183,6 +205,71 @@ fn aggregates_and_shares_of_contact_are_recorded() {
     // A facet of an icosphere has its middle along its normal.
     let cosine = file.cell_series("smallest_cosine").expect("a series");
     assert!(cosine.iter().all(|cosine| *cosine > 0.98 && *cosine <= 1.0), "{cosine}");
+}
+
+/// Sheets that lie on each other, 0.1 µm apart, the lowest as high above a floor.
+const STACK: &str = r#"
+title = "A stack of sheets"
+[run]
+until = "1 us"
+[cells.low]
+mesh = { shape = "sheet", size = ["10 um", "8 um"], divisions = [5, 4] }
+placement = { at = [["0 um", "0 um", "0 um"]] }
+mechanics = { drag = "20 pN s/um", springs = { stiffness = "10 pN/um" } }
+[cells.high]
+mesh = { shape = "sheet", size = ["10 um", "8 um"], divisions = [5, 4] }
+placement = { at = [["0 um", "0 um", "0.1 um"], ["0 um", "0 um", "0.2 um"]] }
+mechanics = { drag = "20 pN s/um", springs = { stiffness = "10 pN/um" } }
+[[planes]]
+name = "floor"
+point = ["0 um", "0 um", "-0.1 um"]
+normal = [0, 0, 1]
+[contact]
+proximity = "0.15 um"
+[measure.none]
+kind = "value"
+series = "contact.area.low.low"
+[measure.pair]
+kind = "value"
+series = "contact.area.low.high"
+[measure.floor]
+kind = "value"
+series = "contact.area.low.floor"
+[[plot]]
+name = "areas"
+kind = "series"
+y = ["contact.area.low.high", "contact.area.high.high"]
+"#;
+
+#[test]
+fn sheets_that_lie_on_each_other_touch_with_all_their_area() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = folder.path().join("stack.vtkhdf");
+    let document = Document::parse("stack.toml", STACK, Path::new("."), &[]).unwrap_or_else(|error| {
+        panic!("{}", pseudopod::error::render(&error, pseudopod::error::Paint::Plain));
+    });
+    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+    run(&document, &options, &mut Quiet).expect("a run");
+    let file = ResultFile::open(&result).expect("a result");
+    let area = |name: &str| file.scene_series(&format!("contact.area.{name}")).expect("a series")[0];
+    // 80 µm² each. The lowest shares them between the floor and the sheet above it, the middle one between both sheets,
+    // the highest gives all; of two sheets each counts half.
+    for (name, wanted) in [
+        ("low.floor", 40.0),
+        ("low.high", 0.5 * (40.0 + 40.0)),
+        ("high.high", 0.5 * (40.0 + 80.0)),
+        ("low.low", 0.0),
+        ("high.floor", 0.0),
+    ] {
+        // Round-off of sums over 30 atoms.
+        assert!((area(name) - wanted).abs() < 1e-11, "{name}: {} µm² in place of {wanted}", area(name));
+    }
+    let pairs: Vec<[u32; 2]> = file.pairs(0).unwrap().iter().map(|pair| [pair.cell, pair.other]).collect();
+    assert_eq!(pairs, [[0, 1], [1, 2]]);
+    let values = |name: &str| file.summary().unwrap().into_iter().find(|measure| measure.name == name).unwrap().value;
+    assert!(values("none") == 0.0 && values("pair") > 39.9 && values("floor") > 39.9);
+    let chart = pseudopod::picture::plots::chart_of(&file, &document, &document.experiment.plot[0]).expect("a chart");
+    assert_eq!((chart.series.len(), chart.y.label.as_str()), (2, "µm²"));
 }
 
 #[test]

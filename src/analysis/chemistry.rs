@@ -202,16 +202,20 @@ fn arrivals_at_cells(wanted: &WaveSpeed, name: &str, first: usize, recording: &R
 /// When there is no such field, or no pattern in it.
 pub(super) fn wavelength(wanted: &Wavelength, times: &[f64], fields: Fields) -> Result<f64> {
     let field = fields.field(&wanted.field)?;
+    pattern::wavelength(field.layout, &field.frame(frame_at(wanted.time, times))?)
+}
+
+/// The frame that a time means.
+pub(super) fn frame_at(time: When, times: &[f64]) -> usize {
     let last = times.len().saturating_sub(1);
-    let frame = match wanted.time {
+    match time {
         When::First => 0,
         When::Last => last,
         When::At(time) => {
             let away = |frame: &usize| (times[*frame] - time.value()).abs();
             (0..times.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(last)
         }
-    };
-    pattern::wavelength(field.layout, &field.frame(frame)?)
+    }
 }
 
 #[cfg(test)]

@@ -24,9 +24,9 @@ pub struct Field<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// The fields of a result file.
-    pub fn of(file: &'a ResultFile) -> Self {
-        Self { file: Some(file) }
+    /// The fields of a result file; none without a file.
+    pub fn of(file: Option<&'a ResultFile>) -> Self {
+        Self { file }
     }
 
     /// The field of a name: `FIELD.SPECIES`, or a field's name for its first species.

@@ -5,10 +5,12 @@ use super::curve::Curve;
 use super::fields::Fields;
 use super::msd;
 use super::recording::Recording;
+use super::sorting;
 use super::statistics::{self, Line};
 use super::table::Table;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Comparison, Fit, MeasureKind, OneOrMany, Over, Reduction, SphereFit, WaveSpeed};
+use crate::output::ResultFile;
 use crate::units::Time;
 use std::path::{Path, PathBuf};
 
@@ -37,7 +39,8 @@ pub fn series_of(kind: &MeasureKind) -> Vec<&str> {
         MeasureKind::RunLengthP { .. }
         | MeasureKind::WaveSpeed(_)
         | MeasureKind::FieldValue(_)
-        | MeasureKind::Wavelength(_) => Vec::new(),
+        | MeasureKind::Wavelength(_)
+        | MeasureKind::Segregation(_) => Vec::new(),
     };
     names.into_iter().filter(|name| *name != "time").collect()
 }
@@ -48,7 +51,7 @@ fn with_x<'a>(x: &'a String, y: &'a OneOrMany<String>) -> Vec<&'a str> {
 
 /// Computes the number, in base units: µm, s, pN.
 ///
-/// * `fields` – the fields of the same run.
+/// * `file` – the same run, for what is read frame by frame: fields, and who touches whom. A run without these has none.
 /// * `resolve` – makes a path of the document one that the system can open.
 ///
 /// # Errors
@@ -56,12 +59,17 @@ fn with_x<'a>(x: &'a String, y: &'a OneOrMany<String>) -> Vec<&'a str> {
 pub fn evaluate(
     kind: &MeasureKind,
     recording: &Recording,
-    fields: Fields,
+    file: Option<&ResultFile>,
     resolve: &dyn Fn(&Path) -> PathBuf,
 ) -> Result<f64> {
+    let fields = Fields::of(file);
     match kind {
         MeasureKind::Value { series, cells, over, time } => {
-            reduce(*time, &recording.times, &recording.series(series, cells.as_deref(), *over)?)
+            let value = reduce(*time, &recording.times, &recording.series(series, cells.as_deref(), *over)?)?;
+            match value.is_nan() && series.starts_with("contact.") {
+                true => Err(nobody_touches(series)),
+                false => Ok(value),
+            }
         }
         MeasureKind::Slope(fit) => fitted(recording, fit).map(|line| line.slope),
         MeasureKind::RSquared(fit) => fitted(recording, fit).map(|line| line.r_squared),
@@ -90,7 +98,14 @@ pub fn evaluate(
         MeasureKind::Period(period) => chemistry::period(period, recording),
         MeasureKind::WaveSpeed(wave) => chemistry::wave_speed(wave, recording, fields),
         MeasureKind::Wavelength(pattern) => chemistry::wavelength(pattern, &recording.times, fields),
+        MeasureKind::Segregation(wanted) => sorting::segregation(wanted, recording, file),
     }
+}
+
+/// That a series of contacts has no value where it is asked for.
+fn nobody_touches(series: &str) -> Error {
+    let fault = Fault::new(format!("\"{series}\" has no value where no two cells touch, or none of different types"));
+    Error::input(fault.help("give a time at which such cells touch"))
 }
 
 /// Makes one of the values at several instants.

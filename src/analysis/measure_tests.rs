@@ -22,7 +22,7 @@ fn pulled() -> Recording {
 
 /// Evaluates with paths that can be opened as they are.
 fn evaluate(kind: &MeasureKind, recording: &Recording) -> Result<f64> {
-    super::evaluate(kind, recording, Fields::default(), &Path::to_path_buf)
+    super::evaluate(kind, recording, None, &Path::to_path_buf)
 }
 
 fn value(cells: Option<&str>, over: Over, time: Reduction) -> MeasureKind {

@@ -1,5 +1,6 @@
 //! Numbers and series from a finished result file.
 
+pub mod aggregates;
 mod chemistry;
 pub mod claims;
 pub mod curve;
@@ -10,6 +11,7 @@ pub mod msd;
 mod noise;
 pub mod pattern;
 pub mod recording;
+pub mod sorting;
 pub mod statistics;
 pub mod table;
 pub mod waves;
@@ -18,7 +20,6 @@ use crate::error::{Error, Fault, Result};
 use crate::experiment::Document;
 use crate::output::{Measure, ResultFile};
 use claims::{Claim, ClaimResult};
-use fields::Fields;
 use recording::Recording;
 
 /// Evaluates all measures that a document declares, each multiplied by its scale. Those that cannot be computed come
@@ -34,7 +35,7 @@ pub fn measure_result(file: &ResultFile, document: &Document) -> Result<(Vec<Mea
     let recording = Recording::read(file, &names)?;
     let (mut measures, mut faults) = (Vec::new(), Vec::new());
     for (name, declared) in declared {
-        match measure::evaluate(&declared.kind, &recording, Fields::of(file), &|path| document.resolve(path)) {
+        match measure::evaluate(&declared.kind, &recording, Some(file), &|path| document.resolve(path)) {
             Ok(value) => measures.push(Measure {
                 name: name.clone(),
                 value: value * declared.scale,

@@ -4,10 +4,11 @@ use super::frames::FrameArgs;
 use super::render::{Named, refuse_existing};
 use super::report::Report;
 use crate::Vec3;
+use crate::analysis::aggregates::table_of_changes;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::When;
 use crate::geometry::{Surface, export_surface};
-use crate::output::{ResultFile, Table, write_field_image, write_field_table, write_table};
+use crate::output::{ResultFile, Table, write_field_image, write_field_table, write_table, write_text};
 use std::path::PathBuf;
 
 /// Writes the cells of a frame as OBJ, PLY or STL, in um, a field of a frame as VTI or CSV, or series, tracks and
@@ -53,6 +54,10 @@ pub enum TableKind {
     Runs,
     /// A row per measure of the experiment.
     Summary,
+    /// A row per frame and pair of cells that touch, or cell that touches a plane, with the area.
+    Contacts,
+    /// A row per birth, merge, split and death of aggregates between frames.
+    Aggregates,
 }
 
 /// Runs the command.
@@ -77,7 +82,10 @@ pub fn run(args: &ExportArgs) -> Result<Report> {
     let result = ResultFile::open(&args.result)?;
     refuse_existing(&args.output, args.force, Named::ByUser)?;
     match what {
-        What::Table => write_table(&result, &table_of(args), &args.output)?,
+        What::Table => match table_of(args) {
+            Some(table) => write_table(&result, &table, &args.output)?,
+            None => write_text(&table_of_changes(&result)?, &args.output)?,
+        },
         What::Mesh => {
             let frame = args.frame.of(&result, When::Last)?;
             export_surface(&surface_of(&result, frame, args.cell)?, &args.output)?;
@@ -130,13 +138,16 @@ fn refuse_unused(args: &ExportArgs, what: What) -> Result<()> {
     Err(Error::input(fault))
 }
 
-fn table_of(args: &ExportArgs) -> Table {
-    match args.table.unwrap_or(TableKind::Series) {
+/// The table of the result; none for what is found from it.
+fn table_of(args: &ExportArgs) -> Option<Table> {
+    Some(match args.table.unwrap_or(TableKind::Series) {
         TableKind::Series => Table::Series(args.series.clone()),
         TableKind::Tracks => Table::Tracks,
         TableKind::Runs => Table::Runs,
         TableKind::Summary => Table::Summary,
-    }
+        TableKind::Contacts => Table::Contacts,
+        TableKind::Aggregates => return None,
+    })
 }
 
 /// The surface of one cell or of all cells in a frame.

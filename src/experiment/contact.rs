@@ -9,6 +9,21 @@ use serde::{Deserialize, Serialize};
 pub const CONTACT_SERIES: [&str; 5] =
     ["contact.sweeps", "contact.deepest", "contact.count", "aggregates", "largest_aggregate"];
 
+/// Names of the series that a result with contacts has for types of cells, by their order in the document, and planes:
+/// areas and numbers of contacts by pair, shares and clusters.
+pub fn pair_series<'a>(types: &[&'a str], planes: &[&'a str]) -> Vec<String> {
+    let after = |one: usize| types[one..].iter().map(move |other| format!("{}.{other}", types[one]));
+    let pairs = || (0..types.len()).flat_map(after);
+    let on_planes = types.iter().flat_map(|kind| planes.iter().map(move |plane| format!("{kind}.{plane}")));
+    let mut names: Vec<String> = pairs().chain(on_planes).map(|pair| format!("contact.area.{pair}")).collect();
+    names.extend(pairs().map(|pair| format!("contact.pairs.{pair}")));
+    names.extend(["contact.heterotypic_share", "contact.segregation"].map(str::to_owned));
+    for stem in ["contact.clusters", "contact.largest_cluster"] {
+        names.extend(types.iter().map(|kind| format!("{stem}.{kind}")));
+    }
+    names
+}
+
 /// Contacts of cells with each other, with themselves and with planes. Without this table cells pass through each other.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]

@@ -1,8 +1,11 @@
 //! Numbers that are computed from a finished run and stored with it.
 
 mod chemistry;
+mod sorting;
 
 pub use chemistry::{ChemotacticIndex, FieldValue, OverBoxes, Period, Statistic, WaveSpeed, WaveStatistic, Wavelength};
+
+pub use sorting::{Segregation, SegregationStatistic};
 
 use super::values::{OneOrMany, words_or_time};
 use crate::units::{LineStiffness, Speed, Time, UnitError};
@@ -115,6 +118,9 @@ pub enum MeasureKind {
     WaveSpeed(WaveSpeed),
     /// The wavelength of a pattern in a flat field, from its spectrum, µm.
     Wavelength(Wavelength),
+    /// How much cells of a type touch each other beyond chance: the segregation index, from below 0 (mixed) to 1 (apart),
+    /// or what permutations of the types say of it.
+    Segregation(Segregation),
 }
 
 /// A part of a curve to which a straight line is fitted.

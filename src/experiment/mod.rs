@@ -49,13 +49,13 @@ mod values;
 pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{Compiled, Schedule, check_start, compile};
-pub use contact::{Between, CONTACT_SERIES, Contact};
+pub use contact::{Between, CONTACT_SERIES, Contact, pair_series};
 pub use document::Document;
 pub(crate) use document::near_file;
 pub use loads::{Cap, CapExtent, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
 pub use measures::{
-    ChemotacticIndex, Comparison, FieldValue, Fit, Measure, MeasureKind, Over, OverBoxes, Period, Reduction, SphereFit,
-    Statistic, WaveSpeed, WaveStatistic, Wavelength,
+    ChemotacticIndex, Comparison, FieldValue, Fit, Measure, MeasureKind, Over, OverBoxes, Period, Reduction,
+    Segregation, SegregationStatistic, SphereFit, Statistic, WaveSpeed, WaveStatistic, Wavelength,
 };
 pub use mechanics::{
     Barrier, BendingRest, Form, Law, Mechanics, Membrane, Reaction, ShapeMemory, ShapeStrength, Springs, VolumeControl,

@@ -1,7 +1,7 @@
 //! Checks that need more than one key: what requires, excludes or names what.
 
 use super::check::Reference;
-use super::contact::CONTACT_SERIES;
+use super::contact::{CONTACT_SERIES, pair_series};
 use super::document::{Document, near_file};
 use crate::error::Fault;
 use crate::error::words;
@@ -107,17 +107,21 @@ impl Check<'_> {
     }
 
     fn series(&mut self, path: &str, text: &str) {
+        let pairs = self.series_of_pairs();
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> = cells.flat_map(|cell| &cell.loads).map(|load| format!("load.{}", load.name)).collect();
         let contacts = self.document.experiment.contact.is_some();
         let of_contacts = CONTACT_SERIES.into_iter().filter(|_| contacts);
+        let of_pairs = pairs.iter().filter(|_| contacts);
         let known = || {
-            CELL_SERIES.into_iter().chain(of_contacts.clone()).chain(["time"]).chain(loads.iter().map(String::as_str))
+            let own = CELL_SERIES.into_iter().chain(of_contacts.clone()).chain(["time"]);
+            own.chain(loads.iter().chain(of_pairs.clone()).map(String::as_str))
         };
         if known().any(|name| name == text) {
             return;
         }
-        if CONTACT_SERIES.contains(&text) && !self.document.experiment.chemistry.contains_key("contact") {
+        let is_of_contacts = CONTACT_SERIES.contains(&text) || pairs.iter().any(|name| name == text);
+        if is_of_contacts && !self.document.experiment.chemistry.contains_key("contact") {
             let message = format!("`{path}`: there is no series \"{text}\" without contacts");
             return self.fault(path, "not recorded", message, "add [contact] to the document");
         }
@@ -132,12 +136,55 @@ impl Check<'_> {
         {
             return self.system(path, system);
         }
+        if contacts && self.pair_of_contacts(path, text, &pairs) {
+            return;
+        }
         let label = words::meant(text, known()).map(|meant| format!("did you mean \"{meant}\"?"));
         let mut list: Vec<&str> = loads.iter().map(String::as_str).collect();
         list.extend(["time", "volume", "area", "energy", "speed", "position_x", "velocity_x", "size_x", "principal_1"]);
         let help = format!("there are series such as {}", words::all_of(list));
         let message = format!("`{path}`: there is no series \"{text}\"");
         self.fault(path, label.as_deref().unwrap_or("unknown series"), message, help);
+    }
+
+    /// Names of the series of contacts by pair and by type.
+    fn series_of_pairs(&self) -> Vec<String> {
+        let types: Vec<&str> = self.document.experiment.cells.keys().map(String::as_str).collect();
+        let planes: Vec<&str> = self.document.experiment.planes.iter().map(|plane| plane.name.as_str()).collect();
+        pair_series(&types, &planes)
+    }
+
+    /// Whether a text is `contact.SOMETHING.NAME` or `contact.SOMETHING.NAME.NAME` and not one of the series `pairs`: a
+    /// fault that says which name is wrong.
+    fn pair_of_contacts(&mut self, path: &str, text: &str, pairs: &[String]) -> bool {
+        let parts: Vec<&str> = text.split('.').collect();
+        let ["contact", stem, names @ ..] = parts.as_slice() else { return false };
+        let of_stem = |name: &&String| name.starts_with(&format!("contact.{stem}."));
+        let alike: Vec<&str> = pairs.iter().filter(of_stem).map(String::as_str).collect();
+        if alike.is_empty() || names.is_empty() {
+            return false;
+        }
+        let experiment = &self.document.experiment;
+        let types = || experiment.cells.keys().map(String::as_str);
+        let surfaces = || types().chain(experiment.planes.iter().map(|plane| plane.name.as_str()));
+        let turned = format!("contact.{stem}.{}", names.iter().rev().copied().collect::<Vec<_>>().join("."));
+        let message = format!("`{path}`: there is no series \"{text}\"");
+        let (message, label) = match names.iter().find(|name| !surfaces().any(|known| known == **name)) {
+            _ if alike.contains(&turned.as_str()) => (message, format!("did you mean \"{turned}\"?")),
+            Some(name) => {
+                let message = format!("`{path}`: there is no type of cells or plane \"{name}\"");
+                let meant = words::meant(name, surfaces());
+                (message, meant.map_or("unknown name".to_owned(), |meant| format!("did you mean \"{meant}\"?")))
+            }
+            None => (message, "unknown series".to_owned()),
+        };
+        // Of many types the pairs are too many to be listed.
+        let help = match alike.len() {
+            ..=12 => format!("there are {}", words::all_of(alike)),
+            _ => format!("there are series such as {}; pairs have the order of the document", alike[0]),
+        };
+        self.fault(path, &label, message, help);
+        true
     }
 
     /// A part of `[chemistry]` that a text names.

@@ -44,10 +44,10 @@ pub enum Filled {
     Cell(fn(&CellRecord) -> f64),
     /// Three numbers per frame and cell; the endings name the components.
     CellVector(fn(&CellRecord) -> [f64; 3], [&'static str; 3]),
-    /// An integer per motility run.
-    RunInteger(fn(&Run) -> i64),
-    /// A floating-point number per motility run.
-    RunFloat(fn(&Run) -> f64),
+    /// An integer per row of a list.
+    RowInteger(List, fn(&Frame, usize) -> i64),
+    /// A floating-point number per row of a list.
+    RowFloat(List, fn(&Frame, usize) -> f64),
     /// One number per frame and name of the scene; `<name>` in the path.
     Scene,
     /// One number per measure, written when the run ends; `<name>` in the path.
@@ -64,8 +64,51 @@ pub struct Instant<'a> {
     pub index: usize,
     /// Atoms of all cells.
     pub atoms: usize,
-    /// Motility runs recorded up to this frame, its own included.
-    pub runs: usize,
+    /// Rows of each list up to this frame, its own included.
+    pub rows: [usize; List::ALL.len()],
+}
+
+/// What has any number of rows in a frame. All frames stand one after the other; a counter says where each ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum List {
+    /// Motility runs that ended.
+    Runs,
+    /// Pairs of cells that touch.
+    Pairs,
+    /// Cells that touch a plane.
+    OnPlanes,
+}
+
+impl List {
+    /// All lists, each at its number.
+    pub const ALL: [Self; 3] = [Self::Runs, Self::Pairs, Self::OnPlanes];
+
+    /// Rows of a frame.
+    pub fn rows(self, frame: &Frame) -> usize {
+        match self {
+            Self::Runs => frame.runs.len(),
+            Self::Pairs => frame.pairs.len(),
+            Self::OnPlanes => frame.on_planes.len(),
+        }
+    }
+
+    /// The dataset that counts its rows up to each frame.
+    pub fn counter(self) -> &'static str {
+        match self {
+            Self::Runs => "/events/run_count",
+            Self::Pairs => "/contacts/pair_count",
+            Self::OnPlanes => "/contacts/plane_count",
+        }
+    }
+
+    /// A dataset with its rows.
+    pub fn column(self) -> &'static str {
+        match self {
+            Self::Runs => "/events/runs/cell",
+            Self::Pairs => "/contacts/pairs/area",
+            Self::OnPlanes => "/contacts/planes/area",
+        }
+    }
 }
 
 const XYZ: [&str; 3] = ["x", "y", "z"];
@@ -82,11 +125,11 @@ const fn row(
 }
 
 use Filled::{
-    Atoms, Bytes, Cell, CellVector, Counter, Frame as PerFrame, Link, OnceFloats, OnceIntegers, OnceTexts, RunFloat,
-    RunInteger,
+    Atoms, Bytes, Cell, CellVector, Counter, Frame as PerFrame, Link, OnceFloats, OnceIntegers, OnceTexts, RowFloat,
+    RowInteger,
 };
 
-/// All datasets, in the order in which they are made, except those of [`FORCE`].
+/// All datasets, in the order in which they are made, except those of [`CONTACT`] and [`FORCE`].
 #[rustfmt::skip]
 pub const CATALOGUE: &[Entry] = &[
     // The animated surface, in the layout that VTK calls VTKHDF PolyData 2.0.
@@ -150,10 +193,10 @@ pub const CATALOGUE: &[Entry] = &[
     row("/planes/point", "um", "plane, 3", OnceFloats, "A point of a plane."),
     row("/planes/normal", "1", "plane, 3", OnceFloats, "Unit normal, towards the free side."),
     // What happened, and what the experiment as a whole records.
-    row("/events/run_count", "1", "frame", Counter(1, |i| i.runs as i64), "Motility runs that ended up to a frame."),
-    row("/events/runs/cell", "1", "run", RunInteger(|r| i64::from(r.0)), "Cell whose motility run ended."),
-    row("/events/runs/end_time", "s", "run", RunFloat(|r| r.1), "When the motility run ended."),
-    row("/events/runs/duration", "s", "run", RunFloat(|r| r.2), "How long the motility run lasted."),
+    row("/events/run_count", "1", "frame", Counter(1, |i| i.rows[List::Runs as usize] as i64), "Motility runs that ended up to a frame."),
+    row("/events/runs/cell", "1", "run", RowInteger(List::Runs, |f, i| i64::from(f.runs[i].0)), "Cell whose motility run ended."),
+    row("/events/runs/end_time", "s", "run", RowFloat(List::Runs, |f, i| f.runs[i].1), "When the motility run ended."),
+    row("/events/runs/duration", "s", "run", RowFloat(List::Runs, |f, i| f.runs[i].2), "How long the motility run lasted."),
     row("/scene/<name>", "of the series", "frame", Filled::Scene, "A series of the scene as a whole."),
     row("/provenance/experiment", "1", "1", OnceTexts, "The experiment document, verbatim."),
     row("/provenance/equation_files", "1", "document", OnceTexts, "Documents of equations, as the experiment names them."),
@@ -161,6 +204,19 @@ pub const CATALOGUE: &[Entry] = &[
     row("/provenance/sets", "1", "setting", OnceTexts, "Settings of the command line."),
     row("/summary/<name>", "of the measure", "scalar", Filled::Measure, "A measure that the experiment declares."),
     row("/checkpoint", "1", "byte", Bytes, "The state at the end of the run, to resume from."),
+];
+
+/// The datasets of contacts, which exist in a run with contacts.
+#[rustfmt::skip]
+pub const CONTACT: &[Entry] = &[
+    row("/contacts/pair_count", "1", "frame", Counter(1, |i| i.rows[List::Pairs as usize] as i64), "Rows of /contacts/pairs up to the end of a frame."),
+    row("/contacts/pairs/first", "1", "pair", RowInteger(List::Pairs, |f, i| i64::from(f.pairs[i].cell)), "Of two cells that touch the one with the smaller number."),
+    row("/contacts/pairs/second", "1", "pair", RowInteger(List::Pairs, |f, i| i64::from(f.pairs[i].other)), "The other."),
+    row("/contacts/pairs/area", "um^2", "pair", RowFloat(List::Pairs, |f, i| f.pairs[i].area), "Area of contact: of the atoms of both sides that touch the other, at rest, half of it. 0 where only edges touch."),
+    row("/contacts/plane_count", "1", "frame", Counter(1, |i| i.rows[List::OnPlanes as usize] as i64), "Rows of /contacts/planes up to the end of a frame."),
+    row("/contacts/planes/cell", "1", "cell on plane", RowInteger(List::OnPlanes, |f, i| i64::from(f.on_planes[i].cell)), "A cell that touches a plane."),
+    row("/contacts/planes/plane", "1", "cell on plane", RowInteger(List::OnPlanes, |f, i| i64::from(f.on_planes[i].other)), "The plane, an index into /planes/names."),
+    row("/contacts/planes/area", "um^2", "cell on plane", RowFloat(List::OnPlanes, |f, i| f.on_planes[i].area), "Area of contact: of the atoms that touch the plane, at rest."),
 ];
 
 /// The datasets of the forces, which exist when the first frame carries forces.
@@ -175,7 +231,7 @@ pub const FORCE: &[Entry] = &[
 /// # Panics
 /// If the catalogue has no such row: a mistake in this module.
 pub fn entry(path: &str) -> &'static Entry {
-    let found = CATALOGUE.iter().chain(FORCE).find(|entry| entry.path == path);
+    let found = CATALOGUE.iter().chain(CONTACT).chain(FORCE).find(|entry| entry.path == path);
     found.unwrap_or_else(|| panic!("{path} is missing from the catalogue of the result file"))
 }
 
@@ -201,7 +257,7 @@ mod tests {
 
     #[test]
     fn every_path_is_listed_once_and_links_lead_somewhere() {
-        let all: Vec<&Entry> = CATALOGUE.iter().chain(FORCE).collect();
+        let all: Vec<&Entry> = CATALOGUE.iter().chain(CONTACT).chain(FORCE).collect();
         for (number, entry) in all.iter().enumerate() {
             assert!(!all[..number].iter().any(|other| other.path == entry.path), "{} is listed twice", entry.path);
             if let Link(target) = entry.filled {

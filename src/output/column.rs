@@ -179,6 +179,14 @@ impl Column {
         write_piece(&self.dataset, self.rows - self.tail_rows, self.row.len(), pointer, bytes)
     }
 
+    /// See [`PackedColumn::renewed`].
+    pub fn renewed(self, file: &Group) -> hdf5::Result<Self> {
+        let Self { dataset, row, number, rows, tail, tail_rows } = self;
+        let path = dataset.name();
+        drop(dataset);
+        Ok(Self { dataset: file.dataset(&path)?, row, number, rows, tail, tail_rows })
+    }
+
     /// Sets the number of rows in the file.
     pub fn resize(&mut self, rows: usize) -> hdf5::Result<()> {
         self.rows = rows;

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use hdf5::File;
 
-use super::catalogue::{CATALOGUE, Entry, FORCE, Filled, Instant, Run};
+use super::catalogue::{CATALOGUE, CONTACT, Entry, FORCE, Filled, Instant, List};
 use super::column::{Column, Number, PackedColumn, Plan, push_frames};
 use super::container::set_number;
 use super::fields::FieldColumns;
@@ -36,11 +36,14 @@ impl CellSource {
     }
 }
 
-/// Where a number per motility run comes from.
-enum RunSource {
-    Integer(fn(&Run) -> i64),
-    Float(fn(&Run) -> f64),
+/// Where a number per row of a list comes from.
+enum RowSource {
+    Integer(fn(&Frame, usize) -> i64),
+    Float(fn(&Frame, usize) -> f64),
 }
+
+/// Rows of each list so far.
+pub(super) type Rows = [usize; List::ALL.len()];
 
 /// The datasets by what fills them.
 #[derive(Default)]
@@ -48,13 +51,13 @@ pub(super) struct Columns {
     atoms: usize,
     cells: usize,
     frames: usize,
-    runs: usize,
+    rows: Rows,
     atom_vectors: Vec<(AtomVectors, PackedColumn)>,
     many_cells: Vec<(CellSource, PackedColumn)>,
     few_cells: Vec<(CellSource, Column)>,
     counters: Vec<(usize, Counted, Column)>,
     frame_numbers: Vec<(FrameNumber, Column)>,
-    run_numbers: Vec<(RunSource, Column)>,
+    row_numbers: Vec<(List, RowSource, Column)>,
     scene: Vec<Column>,
     forces: bool,
     fields: FieldColumns,
@@ -69,7 +72,7 @@ pub(super) struct Columns {
 #[derive(Clone, Copy)]
 enum Start {
     New,
-    Cut { frames: usize, runs: usize },
+    Cut { frames: usize, rows: Rows },
 }
 
 impl Columns {
@@ -78,17 +81,18 @@ impl Columns {
         Self::start(file, layout, Start::New)
     }
 
-    /// Opens all datasets and cuts them to their first frames and motility runs.
-    pub fn reopen(file: &File, layout: &Layout, frames: usize, runs: usize) -> hdf5::Result<Self> {
-        Self::start(file, layout, Start::Cut { frames, runs })
+    /// Opens all datasets and cuts them to their first frames and rows.
+    pub fn reopen(file: &File, layout: &Layout, frames: usize, rows: Rows) -> hdf5::Result<Self> {
+        Self::start(file, layout, Start::Cut { frames, rows })
     }
 
     fn start(file: &File, layout: &Layout, start: Start) -> hdf5::Result<Self> {
         let mut columns = Self { atoms: layout.atoms(), cells: layout.cells.len(), ..Self::default() };
-        if let Start::Cut { frames, runs } = start {
-            (columns.frames, columns.runs) = (frames, runs);
+        if let Start::Cut { frames, rows } = start {
+            (columns.frames, columns.rows) = (frames, rows);
         }
-        for entry in CATALOGUE {
+        let contacts = if layout.contacts { CONTACT } else { &[] };
+        for entry in CATALOGUE.iter().chain(contacts) {
             columns.add(file, entry, start)?;
         }
         for (order, (name, unit)) in (0_i64..).zip(&layout.scene_series) {
@@ -112,7 +116,7 @@ impl Columns {
     fn add(&mut self, file: &File, entry: &Entry, start: Start) -> hdf5::Result<()> {
         let integer = |row: &[usize], rows| small(file, &entry.plan(Number::Integer), row, start, rows);
         let float = |row: &[usize], rows| small(file, &entry.plan(Number::Float), row, start, rows);
-        let (frames, runs) = (self.frames, self.runs);
+        let (frames, rows) = (self.frames, self.rows);
         match entry.filled {
             Filled::Frame(value) => self.frame_numbers.push((value, float(&[], frames)?)),
             Filled::Counter(1, value) => self.counters.push((1, value, integer(&[], frames)?)),
@@ -120,8 +124,14 @@ impl Columns {
             Filled::Atoms(value) => self.atom_vectors.push((value, large(file, entry, self.atoms, &[3], start)?)),
             Filled::Cell(value) => self.add_cells(file, entry, &[], CellSource::Number(value), start)?,
             Filled::CellVector(value, _) => self.add_cells(file, entry, &[3], CellSource::Vector(value), start)?,
-            Filled::RunInteger(value) => self.run_numbers.push((RunSource::Integer(value), integer(&[], runs)?)),
-            Filled::RunFloat(value) => self.run_numbers.push((RunSource::Float(value), float(&[], runs)?)),
+            Filled::RowInteger(list, value) => {
+                let column = integer(&[], rows[list as usize])?;
+                self.row_numbers.push((list, RowSource::Integer(value), column));
+            }
+            Filled::RowFloat(list, value) => {
+                let column = float(&[], rows[list as usize])?;
+                self.row_numbers.push((list, RowSource::Float(value), column));
+            }
             Filled::Link(target) => link(file, target, entry.path)?,
             Filled::OnceIntegers | Filled::OnceFloats | Filled::OnceTexts => {}
             Filled::Scene | Filled::Measure | Filled::Bytes => {}
@@ -160,9 +170,9 @@ impl Columns {
         FORCE.iter().try_for_each(|entry| self.add(file, entry, start))
     }
 
-    /// Frames and motility runs so far.
-    pub fn counts(&self) -> (usize, usize) {
-        (self.frames, self.runs)
+    /// Frames so far.
+    pub fn frames(&self) -> usize {
+        self.frames
     }
 
     /// Appends a frame.
@@ -174,7 +184,8 @@ impl Columns {
         self.append_large(frame)?;
         self.fields.append(&frame.fields)?;
         self.systems.append(&self.members, &frame.systems)?;
-        let instant = Instant { frame, index: self.frames, atoms: self.atoms, runs: self.runs + frame.runs.len() };
+        let rows = List::ALL.map(|list| self.rows[list as usize] + list.rows(frame));
+        let instant = Instant { frame, index: self.frames, atoms: self.atoms, rows };
         for (value, column) in &mut self.frame_numbers {
             column.push([value(frame).to_bits()])?;
         }
@@ -187,16 +198,16 @@ impl Columns {
         for (column, value) in self.scene.iter_mut().zip(&frame.scene) {
             column.push([value.to_bits()])?;
         }
-        for (source, column) in &mut self.run_numbers {
-            for run in &frame.runs {
+        for (list, source, column) in &mut self.row_numbers {
+            for row in 0..list.rows(frame) {
                 column.push([match source {
-                    RunSource::Integer(value) => value(run).cast_unsigned(),
-                    RunSource::Float(value) => value(run).to_bits(),
+                    RowSource::Integer(value) => value(frame, row).cast_unsigned(),
+                    RowSource::Float(value) => value(frame, row).to_bits(),
                 }])?;
             }
         }
         self.frames += 1;
-        self.runs += frame.runs.len();
+        self.rows = rows;
         Ok(())
     }
 
@@ -218,7 +229,7 @@ impl Columns {
         let frames = self.counters.iter_mut().map(|(_, _, column)| column);
         let frames = frames.chain(self.frame_numbers.iter_mut().map(|(_, column)| column));
         let frames = frames.chain(self.few_cells.iter_mut().map(|(_, column)| column)).chain(&mut self.scene);
-        let mut all = frames.chain(self.run_numbers.iter_mut().map(|(_, column)| column));
+        let mut all = frames.chain(self.row_numbers.iter_mut().map(|(_, _, column)| column));
         all.try_for_each(Column::write)?;
         self.systems.write()?;
         self.fields.write_counts(self.frames)
@@ -236,6 +247,9 @@ impl Columns {
         }
         for (source, column) in std::mem::take(&mut self.many_cells) {
             self.many_cells.push((source, column.renewed(file)?));
+        }
+        for (list, source, column) in std::mem::take(&mut self.row_numbers) {
+            self.row_numbers.push((list, source, column.renewed(file)?));
         }
         self.fields.renew(file)?;
         self.systems.renew(file)

@@ -8,6 +8,7 @@ pub mod catalogue;
 mod checkpoint;
 mod column;
 mod columns;
+mod contacts;
 mod container;
 mod field_column;
 mod field_export;
@@ -23,13 +24,14 @@ mod tables;
 mod writer;
 
 pub use checkpoint::{Checkpoint, CheckpointMeta, checkpoint_path, load_checkpoint, save_checkpoint};
+pub use contacts::{Alike, Touching, clusters, count_alike, segregation, touching_cells};
 pub use field_export::{write_field_image, write_field_table};
 pub use fields::{Along, FieldLayout, field_view_path};
 pub use header::{Header, Measure};
 pub use info::{describe, to_json};
 pub use reader::{Ending, ResultFile};
 pub use systems::{SystemLayout, SystemScope};
-pub use tables::{Table, table_text, write_table};
+pub use tables::{Table, table_text, write_table, write_text};
 pub use writer::{Overwrite, ResultWriter};
 
 /// What does not change during a run and says how the arrays of a frame are to be read.
@@ -51,6 +53,8 @@ pub struct Layout {
     pub fields: Vec<FieldLayout>,
     /// The systems of chemistry inside cells, and those of the scene.
     pub systems: Vec<SystemLayout>,
+    /// Whether the cells can touch, so that who touches whom is recorded.
+    pub contacts: bool,
 }
 
 impl Layout {
@@ -92,6 +96,10 @@ pub struct Frame {
     pub scene: Vec<f64>,
     /// Motility runs that ended since the frame before: (cell, end time s, duration s).
     pub runs: Vec<(u32, f64, f64)>,
+    /// Pairs of cells that touch, the smaller number first, in ascending order.
+    pub pairs: Vec<Touching>,
+    /// Cells that touch planes, in ascending order of cell, then plane.
+    pub on_planes: Vec<Touching>,
     /// Values of the fields: for each field of the layout, for each species, one value for each box, x fastest.
     pub fields: Vec<Vec<Vec<f64>>>,
     /// Values of the systems: for each system of the layout, for each quantity, one value for each of its cells (one

@@ -1,12 +1,15 @@
 //! Reads a result file: finished, interrupted, or left behind by a run that was killed.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use hdf5::{Dataset, File};
 use ndarray::{Array2, s};
 
 use super::Layout;
-use super::catalogue::{CATALOGUE, FORCE, Filled, Run, cell_series_names};
+use super::catalogue::{CATALOGUE, CONTACT, FORCE, Filled, List, Run, cell_series_names};
+use super::contacts;
 use super::container::{self, Access, damaged, text};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
@@ -21,6 +24,8 @@ pub struct ResultFile {
     layout: Layout,
     ending: Ending,
     frames: usize,
+    /// The series of contacts once they were asked for, by their order.
+    of_contacts: OnceLock<Vec<Vec<f64>>>,
 }
 
 /// How the run of a file ended.
@@ -59,7 +64,7 @@ impl ResultFile {
                     .help("run the experiment again with --force"),
             ));
         }
-        Ok(Self { path: path.to_path_buf(), file, header, layout, ending, frames })
+        Ok(Self { path: path.to_path_buf(), file, header, layout, ending, frames, of_contacts: OnceLock::new() })
     }
 
     /// The path it was opened by.
@@ -152,6 +157,7 @@ impl ResultFile {
     /// Names that [`scene_series`](Self::scene_series) knows.
     pub fn scene_names(&self) -> Vec<String> {
         let mut names: Vec<String> = self.layout.scene_series.iter().map(|(name, _)| name.clone()).collect();
+        names.extend(contacts::series(&self.layout).into_iter().map(|(name, _)| name));
         names.extend(self.scene_quantities());
         names
     }
@@ -192,11 +198,14 @@ impl ResultFile {
     }
 
     /// A series of the scene as a whole: one number per frame. `SYSTEM.QUANTITY` is a quantity of a system of the
-    /// scene.
+    /// scene; `contact.area.TYPE.TYPE` and its like are found from who touches whom.
     ///
     /// # Errors
     /// An unknown name, or a damaged file.
     pub fn scene_series(&self, name: &str) -> Result<Vec<f64>> {
+        if let Some(number) = contacts::series(&self.layout).iter().position(|(known, _)| known == name) {
+            return Ok(self.contact_series()?[number].clone());
+        }
         match self.layout.scene_series.iter().any(|(known, _)| known == name) {
             true => self.numbers(&format!("/scene/{name}")),
             false => match self.quantity_of(name) {
@@ -216,6 +225,9 @@ impl ResultFile {
         if let Some((_, unit)) = self.layout.scene_series.iter().find(|(known, _)| known == name) {
             return Ok(unit.clone());
         }
+        if let Some((_, unit)) = contacts::series(&self.layout).into_iter().find(|(known, _)| known == name) {
+            return Ok(unit.to_owned());
+        }
         if let Some((_, (_, unit))) = self.quantity_of(name) {
             return Ok(unit.clone());
         }
@@ -233,12 +245,30 @@ impl ResultFile {
     /// # Errors
     /// A damaged file.
     pub fn runs(&self) -> Result<Vec<Run>> {
-        let counts = self.read("/events/run_count", |dataset| dataset.read_slice_1d::<i64, _>(0..self.frames))?;
-        let count = counts.last().map_or(0, |count| usize::try_from(*count).unwrap_or(0));
+        let count = self.rows_of(List::Runs, 0..self.frames)?.end;
         let cells = self.read("/events/runs/cell", |dataset| dataset.read_slice_1d::<i64, _>(0..count))?;
         let ends = self.read("/events/runs/end_time", |dataset| dataset.read_slice_1d::<f64, _>(0..count))?;
         let durations = self.read("/events/runs/duration", |dataset| dataset.read_slice_1d::<f64, _>(0..count))?;
         Ok((0..count).map(|i| (u32::try_from(cells[i]).unwrap_or(u32::MAX), ends[i], durations[i])).collect())
+    }
+
+    /// The rows that a list has in some frames.
+    pub(super) fn rows_of(&self, list: List, frames: Range<usize>) -> Result<Range<usize>> {
+        let up_to = |frames: usize| {
+            let count = |dataset: &Dataset| dataset.read_slice_1d::<i64, _>(frames.max(1) - 1..frames);
+            let count = self.read(list.counter(), count)?;
+            Ok::<_, Error>(count.last().map_or(0, |count| usize::try_from(*count).unwrap_or(0)))
+        };
+        Ok(up_to(frames.start)?..up_to(frames.end)?)
+    }
+
+    /// All series of contacts, found when they are asked for the first time.
+    fn contact_series(&self) -> Result<&Vec<Vec<f64>>> {
+        if let Some(known) = self.of_contacts.get() {
+            return Ok(known);
+        }
+        let found = contacts::all_series(self)?;
+        Ok(self.of_contacts.get_or_init(|| found))
     }
 
     /// The measures of the experiment, by name; none before the run has finished.
@@ -314,7 +344,7 @@ pub(super) fn whole_frames(file: &File) -> hdf5::Result<usize> {
     let atoms = file.dataset("/VTKHDF/NumberOfPoints")?.read_raw::<i64>()?;
     let atoms = atoms.first().map_or(0, |atoms| usize::try_from(*atoms).unwrap_or(0));
     let mut frames = usize::MAX;
-    for entry in CATALOGUE.iter().chain(FORCE) {
+    for entry in CATALOGUE.iter().chain(CONTACT).chain(FORCE) {
         let rows_per_frame = match entry.filled {
             Filled::Frame(_) | Filled::Counter(..) | Filled::Cell(_) | Filled::CellVector(..) => 1,
             Filled::Atoms(_) if atoms > 0 => atoms,
@@ -322,7 +352,7 @@ pub(super) fn whole_frames(file: &File) -> hdf5::Result<usize> {
         };
         match file.dataset(entry.path) {
             Ok(dataset) => frames = frames.min(dataset.get_shape()?[0] / rows_per_frame),
-            Err(_) if FORCE.iter().any(|force| force.path == entry.path) => {}
+            Err(_) if CONTACT.iter().chain(FORCE).any(|optional| optional.path == entry.path) => {}
             Err(error) => return Err(error),
         }
     }
@@ -363,10 +393,30 @@ pub(super) fn whole_frames(file: &File) -> hdf5::Result<usize> {
                 return Ok(false);
             }
         }
+        let counted = rows_up_to(file, frame + 1)?;
+        for list in List::ALL {
+            if counted[list as usize] > 0 && file.dataset(list.column())?.get_shape()?[0] < counted[list as usize] {
+                return Ok(false);
+            }
+        }
         Ok(time.iter().chain(&ends).all(|value| !value.is_nan()))
     };
     while frames > 0 && !written(frames - 1).unwrap_or(false) {
         frames -= 1;
     }
     Ok(frames)
+}
+
+/// Rows that each list has up to a frame, none where there is no such list.
+pub(super) fn rows_up_to(file: &File, frames: usize) -> hdf5::Result<[usize; List::ALL.len()]> {
+    let mut rows = [0; List::ALL.len()];
+    for list in List::ALL {
+        if frames > 0
+            && let Ok(counter) = file.dataset(list.counter())
+        {
+            let count = counter.read_slice_1d::<i64, _>(frames - 1..frames)?;
+            rows[list as usize] = count.first().map_or(0, |count| usize::try_from(*count).unwrap_or(0));
+        }
+    }
+    Ok(rows)
 }

@@ -3,8 +3,8 @@
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use super::ResultFile;
 use super::container::machine_error;
+use super::{ResultFile, Touching};
 use crate::error::Result;
 
 /// What a table holds.
@@ -18,15 +18,24 @@ pub enum Table {
     Runs,
     /// A row per measure of the experiment.
     Summary,
+    /// A row per frame and pair of cells that touch, or cell that touches a plane, with the area.
+    Contacts,
 }
 
-/// Writes a table to a file; an existing file is replaced.
+/// Writes a table to a file; an existing file is replaced. See [`table_text`] and [`write_text`].
 ///
 /// # Errors
 /// [`crate::error::Error::Input`] for a series that the result does not have, or a damaged result;
 /// [`crate::error::Error::Machine`] when the file cannot be written.
 pub fn write_table(result: &ResultFile, table: &Table, path: &Path) -> Result<()> {
-    let text = table_text(result, table)?;
+    write_text(&table_text(result, table)?, path)
+}
+
+/// Writes a text to a file; an existing file is replaced.
+///
+/// # Errors
+/// [`crate::error::Error::Machine`] when the file cannot be written.
+pub fn write_text(text: &str, path: &Path) -> Result<()> {
     let written = std::fs::File::create(path).and_then(|file| {
         let mut out = BufWriter::new(file);
         out.write_all(text.as_bytes())?;
@@ -48,6 +57,7 @@ pub fn table_text(result: &ResultFile, table: &Table) -> Result<String> {
         Table::Tracks => series(result, &["position_x", "position_y", "position_z"].map(str::to_owned)),
         Table::Runs => runs(result),
         Table::Summary => summary(result),
+        Table::Contacts => contacts(result),
     }
 }
 
@@ -82,6 +92,25 @@ fn series(result: &ResultFile, names: &[String]) -> Result<String> {
                 text.push_str(&format!(",{value}"));
             }
             text.push('\n');
+        }
+    }
+    Ok(text)
+}
+
+fn contacts(result: &ResultFile) -> Result<String> {
+    let layout = result.layout();
+    let kind = |cell: u32| {
+        let kind = layout.cells.get(cell as usize).and_then(|cell| layout.types.get(cell.kind as usize));
+        field(kind.map_or("", String::as_str))
+    };
+    let mut text = String::from("frame,time (s),cell,type,other,type or plane,area (um^2)\n");
+    for (frame, time) in result.times()?.into_iter().enumerate() {
+        for Touching { cell, other, area } in result.pairs(frame)? {
+            text.push_str(&format!("{frame},{time},{cell},{},{other},{},{area}\n", kind(cell), kind(other)));
+        }
+        for Touching { cell, other, area } in result.on_planes(frame)? {
+            let plane = layout.planes.get(other as usize).map_or("", |plane| plane.0.as_str());
+            text.push_str(&format!("{frame},{time},{cell},{},,{},{area}\n", kind(cell), field(plane)));
         }
     }
     Ok(text)

@@ -11,7 +11,7 @@ use super::container::{self, Access, failed, machine_error, set_number, set_text
 use super::fields::{check_layout, field_view_path, write_views};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout, write_header, write_layout};
-use super::reader::{ResultFile, whole_frames};
+use super::reader::{ResultFile, rows_up_to, whole_frames};
 use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
 
@@ -92,11 +92,10 @@ impl ResultWriter {
         let steps = file.dataset("/step").and_then(|steps| steps.read_raw::<i64>()).map_err(damaged)?;
         let last = i64::try_from(keep_until_step).unwrap_or(i64::MAX);
         let keep = steps[..whole].iter().take_while(|step| **step <= last).count();
-        let counts = file.dataset("/events/run_count").and_then(|counts| counts.read_raw::<i64>()).map_err(damaged)?;
-        let runs = if keep == 0 { 0 } else { usize::try_from(counts[keep - 1]).unwrap_or(0) };
+        let rows = rows_up_to(&file, keep).map_err(damaged)?;
         let unfinished = remove_end(path, &file);
         let columns = unfinished.and_then(|()| {
-            Columns::reopen(&file, layout, keep, runs).map_err(|error| failed(path, "could not be changed", &error))
+            Columns::reopen(&file, layout, keep, rows).map_err(|error| failed(path, "could not be changed", &error))
         })?;
         write_views(path, layout)?;
         Self::around(path, file, header, columns)
@@ -126,7 +125,7 @@ impl ResultWriter {
 
     /// Frames appended so far, those kept by [`reopen`](Self::reopen) included.
     pub fn frames(&self) -> usize {
-        self.columns.counts().0
+        self.columns.frames()
     }
 
     /// Appends a frame. It is on disk after the next flush, which comes by itself once a second.
@@ -160,7 +159,7 @@ impl ResultWriter {
 
     fn write_out(&mut self) -> hdf5::Result<()> {
         self.columns.write()?;
-        self.step_count.write_scalar(&(self.columns.counts().0 as i64))?;
+        self.step_count.write_scalar(&(self.columns.frames() as i64))?;
         reserve(&self.path, self.file.size())?;
         self.file.flush()?;
         self.columns.forget_history(&self.file)

@@ -16,7 +16,7 @@ use crate::output::ResultFile;
 const MEASURED: Colour = Colour([0x33, 0x33, 0x33]);
 
 /// Names of series as a reader would say them.
-const READABLE: [(&str, &str); 18] = [
+const READABLE: [(&str, &str); 20] = [
     ("size_x", "extent along x"),
     ("size_y", "extent along y"),
     ("size_z", "extent along z"),
@@ -35,6 +35,16 @@ const READABLE: [(&str, &str); 18] = [
     ("contact.count", "contacts"),
     ("contact.deepest", "deepest penetration over edge"),
     ("contact.sweeps", "sweeps over contacts"),
+    ("contact.heterotypic_share", "heterotypic share of contact area"),
+    ("contact.segregation", "segregation index"),
+];
+
+/// What series of contacts by types begin with, as a reader would say it before the types.
+const OF_CONTACTS: [(&str, &str); 4] = [
+    ("contact.area.", "area of contact"),
+    ("contact.pairs.", "pairs in contact"),
+    ("contact.clusters.", "clusters of"),
+    ("contact.largest_cluster.", "cells of the largest cluster of"),
 ];
 
 /// A series' name as a reader would say it, with its unit.
@@ -47,8 +57,12 @@ pub fn label_of(result: &ResultFile, series: &str) -> String {
 }
 
 fn readable(series: &str) -> String {
-    let known = READABLE.iter().find(|(name, _)| *name == series);
-    known.map_or_else(|| series.replace("load.", "load "), |(_, text)| (*text).to_owned())
+    if let Some((_, text)) = READABLE.iter().find(|(name, _)| *name == series) {
+        return (*text).to_owned();
+    }
+    let of_contacts = OF_CONTACTS.iter().find_map(|(stem, text)| Some((series.strip_prefix(stem)?, text)));
+    of_contacts
+        .map_or_else(|| series.replace("load.", "load "), |(names, text)| format!("{text} {}", names.replace('.', "–")))
 }
 
 /// The chart that a plot asks for.

@@ -27,7 +27,8 @@ pub fn layout_of(model: &Model) -> Layout {
         }
     }
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
-    if model.contact.is_some() {
+    layout.contacts = model.contact.is_some();
+    if layout.contacts {
         layout.scene_series.extend(CONTACT_SERIES.map(|name| (name.to_owned(), "1".to_owned())));
     }
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());

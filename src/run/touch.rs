@@ -3,7 +3,7 @@
 
 use crate::Vec3;
 use crate::contact::{Contacts, Detector, Scene};
-use crate::output::Frame;
+use crate::output::{Frame, Touching, clusters};
 use crate::sim::contact::ContactModel;
 use crate::sim::{Model, Workspace};
 
@@ -13,8 +13,10 @@ pub struct Touch {
     detector: Detector,
     found: Contacts,
     positions: Vec<Vec3>,
-    /// For each cell a smaller one that it touches, or itself; at the end the smallest of its aggregate.
-    first: Vec<u32>,
+    /// What each atom touches: the atom, then another body, or the number of bodies and that of a plane.
+    partners: Vec<(u32, u32)>,
+    /// A cell, what it touches in the same way, and an area.
+    areas: Vec<(u32, u32, f64)>,
 }
 
 impl Touch {
@@ -24,21 +26,21 @@ impl Touch {
         self.positions.clear();
         self.positions.extend(frame.positions.iter().map(|p| Vec3::from(*p)));
         self.detector.detect(&contact.scene, &self.positions, &mut self.found);
-        let body_of = |atom: u32| body_of(&contact.scene, atom);
-        let mut touching = vec![0_u32; contact.scene.bodies.len()];
-        let mut last = None;
-        for near in self.found.atoms.iter().filter(|near| body_of(near.atom) != near.body) {
-            // Contacts are ordered by atom: one that touches several facets counts once.
-            touching[body_of(near.atom) as usize] += u32::from(last != Some(near.atom));
-            last = Some(near.atom);
+        let bodies = contact.scene.bodies.len();
+        self.find_partners(&contact.scene);
+        let mut touching = vec![0_u32; bodies];
+        for of_atom in self.partners.chunk_by(|one, other| one.0 == other.0) {
+            // A plane stands after all bodies.
+            touching[body_of(&contact.scene, of_atom[0].0) as usize] += u32::from((of_atom[0].1 as usize) < bodies);
         }
-        self.join(&contact.scene);
+        self.measure_areas(contact, frame);
+        let first = clusters(bodies, frame.pairs.iter().map(|pair| [pair.cell, pair.other]));
         for (cell, record) in frame.cells.iter_mut().enumerate() {
             record.contact_share = f64::from(touching[cell]) / contact.scene.shape(cell as u32).atoms as f64;
-            record.aggregate = f64::from(self.first[cell]);
+            record.aggregate = f64::from(first[cell]);
         }
-        let mut sizes = vec![0_u32; self.first.len()];
-        self.first.iter().for_each(|first| sizes[*first as usize] += 1);
+        let mut sizes = vec![0_u32; first.len()];
+        first.iter().for_each(|first| sizes[*first as usize] += 1);
         let sweeps = if dt > 0.0 { ws.contact.sweeps } else { 0 };
         let edge = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
         frame.scene.extend([
@@ -50,18 +52,39 @@ impl Touch {
         ]);
     }
 
-    /// Finds the aggregates: cells that touch, and what these touch.
-    fn join(&mut self, scene: &Scene) {
-        self.first.clear();
-        self.first.extend(0..scene.bodies.len() as u32);
-        let of_atoms = self.found.atoms.iter().map(|near| [body_of(scene, near.atom), near.body]);
-        for [one, other] in of_atoms.chain(self.found.edges.iter().map(|near| near.bodies)) {
-            let (one, other) = (root(&mut self.first, one), root(&mut self.first, other));
-            // The smaller number stays: it names the aggregate.
-            self.first[one.max(other) as usize] = one.min(other);
+    /// Finds what each atom touches, its own cell left out; one that touches several facets of a cell counts once.
+    fn find_partners(&mut self, scene: &Scene) {
+        let bodies = scene.bodies.len() as u32;
+        self.partners.clear();
+        let others = self.found.atoms.iter().filter(|near| body_of(scene, near.atom) != near.body);
+        self.partners.extend(others.map(|near| (near.atom, near.body)));
+        self.partners.extend(self.found.planes.iter().map(|near| (near.atom, bodies + near.plane)));
+        self.partners.sort_unstable();
+        self.partners.dedup();
+    }
+
+    /// Adds up the areas of contact, eq. (adhesion.8), in the order of atoms.
+    fn measure_areas(&mut self, contact: &ContactModel, frame: &mut Frame) {
+        let bodies = contact.scene.bodies.len() as u32;
+        self.areas.clear();
+        for of_atom in self.partners.chunk_by(|one, other| one.0 == other.0) {
+            let atom = of_atom[0].0;
+            let (cell, area) = (body_of(&contact.scene, atom), contact.area_of(atom) / of_atom.len() as f64);
+            self.areas.extend(of_atom.iter().map(|&(_, other)| match other < bodies {
+                true => (cell.min(other), cell.max(other), 0.5 * area),
+                false => (cell, other, area),
+            }));
         }
-        for cell in 0..scene.bodies.len() as u32 {
-            self.first[cell as usize] = root(&mut self.first, cell);
+        // Edges have no area, and yet they join.
+        let of_edges = self.found.edges.iter().map(|near| near.bodies).filter(|[one, other]| one != other);
+        self.areas.extend(of_edges.map(|[one, other]| (one.min(other), one.max(other), 0.0)));
+        self.areas.sort_by_key(|area| (area.0, area.1));
+        for alike in self.areas.chunk_by(|one, other| (one.0, one.1) == (other.0, other.1)) {
+            let (cell, other, area) = (alike[0].0, alike[0].1, alike.iter().map(|one| one.2).sum());
+            match other.checked_sub(bodies) {
+                None => frame.pairs.push(Touching { cell, other, area }),
+                Some(plane) => frame.on_planes.push(Touching { cell, other: plane, area }),
+            }
         }
     }
 }
@@ -69,13 +92,4 @@ impl Touch {
 /// The body of an atom.
 fn body_of(scene: &Scene, atom: u32) -> u32 {
     scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1
-}
-
-/// The smallest cell known of the aggregate of a cell; shortens the way to it.
-fn root(first: &mut [u32], mut cell: u32) -> u32 {
-    while first[cell as usize] != cell {
-        first[cell as usize] = first[first[cell as usize] as usize];
-        cell = first[cell as usize];
-    }
-    cell
 }

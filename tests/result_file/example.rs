@@ -4,6 +4,7 @@ use std::path::Path;
 
 use pseudopod::output::{
     CellLayout, CellRecord, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter, SystemLayout, SystemScope,
+    Touching,
 };
 
 /// Corners of an octahedron.
@@ -23,11 +24,13 @@ pub fn layout(cells: u32) -> Layout {
         links: (0..cells).map(|cell| [6 * cell, 6 * cell + 3]).collect(),
         scene_series: vec![("wall.height".into(), "um".into()), ("load.pull".into(), "pN".into())],
         planes: vec![("floor".into(), [0.0, 0.0, -2.0], [0.0, 0.0, 1.0])],
+        contacts: true,
         ..Layout::default()
     }
 }
 
-/// The frame of this number: the cells drift along x and a motility run ends in every frame but the first.
+/// The frame of this number: the cells drift along x and a motility run ends in every frame but the first. Of
+/// neighbours two thirds touch, others in the next frame, and every second cell stands on the floor.
 pub fn frame(layout: &Layout, number: usize) -> Frame {
     let time = 0.25 * number as f64;
     let cells = layout.cells.len();
@@ -56,6 +59,14 @@ pub fn frame(layout: &Layout, number: usize) -> Frame {
             .collect(),
         scene: vec![10.0 - time, 2.0 * time],
         runs: if number == 0 { Vec::new() } else { vec![(number as u32 % cells as u32, time, 0.5 * time)] },
+        pairs: (1..cells as u32)
+            .filter(|cell| !(*cell as usize + number).is_multiple_of(3))
+            .map(|cell| Touching { cell: cell - 1, other: cell, area: f64::from(cell) + time })
+            .collect(),
+        on_planes: (0..cells as u32)
+            .filter(|cell| (*cell as usize + number).is_multiple_of(2))
+            .map(|cell| Touching { cell, other: 0, area: 1.5 })
+            .collect(),
         ..Frame::default()
     }
 }

@@ -1,6 +1,6 @@
 //! What was written is read.
 
-use pseudopod::output::{Frame, Layout, Measure, ResultFile, ResultWriter, describe, to_json};
+use pseudopod::output::{Frame, Layout, Measure, ResultFile, ResultWriter, catalogue, describe, to_json};
 
 use crate::example::{frame, header, layout, write};
 
@@ -18,6 +18,8 @@ pub fn assert_holds(result: &ResultFile, layout: &Layout, frames: &[Frame]) {
         assert_eq!(result.positions(i).unwrap(), frame.positions, "positions of frame {i}");
         assert_eq!(result.forces(i).unwrap().unwrap_or_default(), frame.forces, "forces of frame {i}");
         assert_eq!([wall[i], pull[i]], frame.scene[..]);
+        assert_eq!(result.pairs(i).unwrap(), frame.pairs, "pairs of frame {i}");
+        assert_eq!(result.on_planes(i).unwrap(), frame.on_planes, "cells on planes in frame {i}");
         for (c, cell) in frame.cells.iter().enumerate() {
             assert_eq!((x[[i, c]], size[[i, c]]), (cell.position[0], cell.size[2]));
             assert_eq!((volume[[i, c]], energy[[i, c]]), (cell.volume, cell.energy));
@@ -140,7 +142,44 @@ fn json_tells_all_but_the_arrays() {
     for dataset in datasets {
         assert!(dataset["unit"] != "" && dataset["description"] != "", "{dataset}");
     }
-    for entry in pseudopod::output::catalogue::CATALOGUE.iter().filter(|entry| !entry.path.contains('<')) {
+    let rows = catalogue::CATALOGUE.iter().chain(catalogue::CONTACT);
+    for entry in rows.filter(|entry| !entry.path.contains('<')) {
         assert!(listed(entry.path).is_some(), "{} is missing from the file", entry.path);
     }
+}
+
+#[test]
+fn areas_between_types_follow_from_the_pairs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    write(&path, &layout(7), 4).finish(1.0).unwrap();
+    let result = ResultFile::open(&path).unwrap();
+    let series = |name: &str| result.scene_series(name).unwrap();
+    // Neighbours are of different types, `round` and `lone` by turns.
+    for number in 0..4 {
+        let frame = frame(&layout(7), number);
+        let area: f64 = frame.pairs.iter().map(|pair| pair.area).sum();
+        assert_eq!(series("contact.area.round.lone")[number], area);
+        assert_eq!(series("contact.pairs.round.lone")[number], frame.pairs.len() as f64);
+        // Cells 0, 2, 4, 6 are round and stand on the floor in even frames, the others in odd ones.
+        assert_eq!(series("contact.area.round.floor")[number], if number % 2 == 0 { 6.0 } else { 0.0 });
+    }
+    assert_eq!(series("contact.heterotypic_share"), [1.0; 4]);
+    assert_eq!(series("contact.clusters.lone"), [3.0; 4]);
+    assert_eq!(result.units("contact.area.round.lone").unwrap(), "um^2");
+    assert!(result.scene_names().iter().all(|name| result.scene_series(name).unwrap().len() == 4));
+}
+
+#[test]
+fn a_run_without_contacts_says_so_when_it_is_asked_who_touches_whom() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    let layout = Layout { contacts: false, ..layout(3) };
+    let mut writer = ResultWriter::create(&path, &header(), &layout, pseudopod::output::Overwrite::Refuse).unwrap();
+    writer.append(&frame(&layout, 0)).unwrap();
+    writer.finish(1.0).unwrap();
+    let result = ResultFile::open(&path).unwrap();
+    assert!(result.pairs(0).unwrap_err().to_string().ends_with("does not say who touches whom"));
+    assert!(!result.scene_names().iter().any(|name| name.starts_with("contact")));
+    assert!(!result.layout().contacts);
 }

@@ -44,3 +44,14 @@ fn tracks_and_runs_are_those_that_were_recorded() {
     assert_eq!(runs[1], ["1", "0.25", "0.125"]);
     assert_eq!(runs.len(), 4, "a run ended in every frame but the first");
 }
+
+#[test]
+fn a_table_of_contacts_names_both_sides_and_the_plane() {
+    let rows = rows(&Table::Contacts);
+    assert_eq!(rows[0], ["frame", "time (s)", "cell", "type", "other", "type or plane", "area (um^2)"]);
+    let frames: Vec<_> = (0..4).map(|number| frame(&layout(3), number)).collect();
+    let number: usize = frames.iter().map(|frame| frame.pairs.len() + frame.on_planes.len()).sum();
+    assert_eq!(rows.len(), 1 + number);
+    assert_eq!(rows[1], ["0", "0", "0", "round", "1", "lone", "1"]);
+    assert_eq!(rows.last().unwrap()[..], ["3", "0.75", "1", "lone", "", "floor", "1.5"]);
+}

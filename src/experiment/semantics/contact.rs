@@ -3,6 +3,7 @@
 use super::Check;
 use crate::error::words;
 use crate::experiment::contact::{Contact, Pair};
+use crate::experiment::{Segregation, When};
 
 impl Check<'_> {
     pub(super) fn contact(&mut self) {
@@ -43,6 +44,29 @@ impl Check<'_> {
         }
         if !contact.between.is_empty() && contact.strength.is_none() {
             self.forgotten(contact, &named);
+        }
+    }
+
+    /// What must hold for the measure of how cells are sorted.
+    pub(super) fn segregation(&mut self, path: &str, wanted: &Segregation) {
+        let experiment = &self.document.experiment;
+        if experiment.contact.is_none() {
+            let message = format!("`{path}` needs to know who touches whom, and there are no contacts");
+            return self.fault(path, "not recorded", message, "add [contact] to the document");
+        }
+        let mut types: Vec<&str> = match &wanted.cells {
+            Some(types) => types.as_slice().iter().map(String::as_str).collect(),
+            None => experiment.cells.keys().map(String::as_str).collect(),
+        };
+        types.sort_unstable();
+        types.dedup();
+        if types.len() < 2 {
+            let key = if wanted.cells.is_some() { format!("{path}.cells") } else { path.to_owned() };
+            let message = format!("`{key}`: cells of one type cannot be sorted");
+            self.fault(&key, "one type only", message, "name two types of cells or more");
+        }
+        if let When::At(time) = wanted.time {
+            self.instant(&format!("{path}.time"), time.value());
         }
     }
 

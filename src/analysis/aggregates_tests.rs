@@ -1,0 +1,65 @@
+//! What the changes of aggregates promise.
+
+use super::*;
+use crate::analysis::noise;
+use crate::output::clusters;
+use ndarray::Array2;
+
+/// The events of frames that give the aggregate of each cell.
+fn events<const CELLS: usize>(frames: &[[u32; CELLS]]) -> Vec<(usize, Change, Vec<u32>, Vec<u32>, usize)> {
+    let numbers = Array2::from_shape_fn((frames.len(), CELLS), |(frame, cell)| f64::from(frames[frame][cell]));
+    let plain = |event: Event| (event.frame, event.change, event.before, event.after, event.cells);
+    changes(numbers.view()).into_iter().map(plain).collect()
+}
+
+#[test]
+fn aggregates_are_born_merge_split_and_die() {
+    let found =
+        events(&[[0, 1, 2, 3, 4, 5], [0, 0, 2, 2, 4, 5], [0, 0, 0, 0, 4, 5], [0, 1, 0, 1, 4, 5], [0, 1, 0, 3, 4, 5]]);
+    let wanted = [
+        (1, Change::Birth, vec![], vec![0], 2),
+        (1, Change::Birth, vec![], vec![2], 2),
+        (2, Change::Merge, vec![0, 2], vec![0], 4),
+        (3, Change::Split, vec![0], vec![0, 1], 4),
+        (4, Change::Death, vec![1], vec![], 2),
+    ];
+    assert_eq!(found, wanted);
+}
+
+#[test]
+fn cells_that_join_or_leave_change_nothing_nor_does_a_new_smallest_number() {
+    assert_eq!(events(&[[0, 1, 1, 3], [0, 0, 0, 3], [0, 1, 1, 1]]), []);
+    assert_eq!(events::<3>(&[[0, 0, 2]]), []);
+    assert_eq!(events::<0>(&[[], []]), []);
+}
+
+#[test]
+fn cells_that_change_partners_split_and_merge_at_once() {
+    let found = events(&[[0, 0, 2, 2, 2, 2], [0, 1, 0, 1, 1, 0]]);
+    let changes: Vec<Change> = found.iter().map(|event| event.1).collect();
+    assert_eq!(changes, [Change::Split, Change::Split, Change::Merge, Change::Merge]);
+}
+
+#[test]
+fn the_events_account_for_the_number_of_aggregates() {
+    let mut next = noise::uniform(3);
+    for _ in 0..500 {
+        let mut frame = || -> Vec<u32> {
+            let pairs = (next() * 12.0) as usize;
+            let pairs: Vec<[u32; 2]> = (0..pairs).map(|_| [0; 2].map(|_| (next() * 20.0) as u32)).collect();
+            clusters(20, pairs)
+        };
+        let (before, after) = (frame(), frame());
+        let number = |frame: &[u32]| sizes(frame).iter().filter(|known| known.1 > 1).count() as i64;
+        let change: i64 = changes_between(1, &before, &after)
+            .iter()
+            .map(|event| match event.change {
+                Change::Birth => 1,
+                Change::Death => -1,
+                Change::Split => event.after.len() as i64 - 1,
+                Change::Merge => 1 - event.before.len() as i64,
+            })
+            .sum();
+        assert_eq!(number(&after) - number(&before), change, "{before:?} {after:?}");
+    }
+}

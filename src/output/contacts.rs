@@ -1,0 +1,223 @@
+//! Who touches whom in a result: the pairs of a frame, the clusters they make, how mixed the types are, and the series
+//! of the scene that follow from them. The file holds the pairs alone.
+
+use super::catalogue::List;
+use super::{Layout, ResultFile};
+use crate::error::{Error, Fault, Result};
+
+/// A cell that touches another, or a plane.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Touching {
+    /// The cell; of two the one with the smaller number.
+    pub cell: u32,
+    /// The other cell, or the plane, by its number in [`Layout::planes`].
+    pub other: u32,
+    /// Area of contact, µm², eq. (adhesion.8).
+    pub area: f64,
+}
+
+impl ResultFile {
+    /// Pairs of cells that touch in a frame, ascending.
+    ///
+    /// # Errors
+    /// A result without contacts, or a damaged file.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    pub fn pairs(&self, frame: usize) -> Result<Vec<Touching>> {
+        self.touching(List::Pairs, frame, ["/contacts/pairs/first", "/contacts/pairs/second"])
+    }
+
+    /// Cells that touch planes in a frame, ascending.
+    ///
+    /// # Errors
+    /// A result without contacts, or a damaged file.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    pub fn on_planes(&self, frame: usize) -> Result<Vec<Touching>> {
+        self.touching(List::OnPlanes, frame, ["/contacts/planes/cell", "/contacts/planes/plane"])
+    }
+
+    fn touching(&self, list: List, frame: usize, names: [&str; 2]) -> Result<Vec<Touching>> {
+        assert!(frame < self.frames(), "frame {frame} of {}", self.frames());
+        if !self.layout().contacts {
+            let fault = Fault::new(format!("{} does not say who touches whom", self.path().display()));
+            return Err(Error::input(fault.help("its cells pass through each other: add [contact] to the document")));
+        }
+        let rows = self.rows_of(list, frame..frame + 1)?;
+        let numbers = |name: &str| self.read(name, |data| data.read_slice_1d::<i64, _>(rows.clone()));
+        let (cells, numbers) = (numbers(names[0])?, numbers(names[1])?);
+        let areas = self.read(list.column(), |data| data.read_slice_1d::<f64, _>(rows.clone()))?;
+        let number = |number: &i64| u32::try_from(*number).unwrap_or(u32::MAX);
+        let known = |touching: &Touching| (touching.cell as usize) < self.layout().cells.len();
+        let rows = cells.iter().zip(&numbers).zip(&areas).map(|((cell, other), area)| Touching {
+            cell: number(cell),
+            other: number(other),
+            area: *area,
+        });
+        let found: Vec<Touching> = rows.collect();
+        let others = if list == List::Pairs { self.layout().cells.len() } else { self.layout().planes.len() };
+        match found.iter().all(|touching| known(touching) && (touching.other as usize) < others) {
+            true => Ok(found),
+            false => Err(super::container::damaged(self.path(), &format!("{} names no cell", names[0]))),
+        }
+    }
+}
+
+/// The clusters that pairs join: for each cell the smallest number of those that it is joined with, its own where it
+/// is alone.
+///
+/// # Panics
+/// If a pair names a cell that is not there.
+pub fn clusters(cells: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
+    let mut first: Vec<u32> = (0..cells as u32).collect();
+    for [one, other] in pairs {
+        let (one, other) = (root(&mut first, one), root(&mut first, other));
+        // The smaller number stays: it names the cluster.
+        first[one.max(other) as usize] = one.min(other);
+    }
+    for cell in 0..cells as u32 {
+        first[cell as usize] = root(&mut first, cell);
+    }
+    first
+}
+
+/// The smallest cell known of the cluster of a cell; shortens the way to it.
+fn root(first: &mut [u32], mut cell: u32) -> u32 {
+    while first[cell as usize] != cell {
+        first[cell as usize] = first[first[cell as usize] as usize];
+        cell = first[cell as usize];
+    }
+    cell
+}
+
+/// How many pairs of cells are alike, and how many would be if types were dealt at random to the cells that touch
+/// another one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alike {
+    /// Pairs.
+    pub pairs: usize,
+    /// Pairs of one type.
+    pub alike: usize,
+    /// Share of pairs of one type to be expected, eq. (analysis.15); NaN for no pair.
+    pub expected: f64,
+}
+
+impl Alike {
+    /// Counts pairs, each once; `types` has the type of every cell.
+    ///
+    /// # Panics
+    /// If a pair names a cell that is not there.
+    pub fn of(types: &[u32], pairs: &[[u32; 2]]) -> Self {
+        let mut numbers = vec![0_u64; types.iter().max().map_or(0, |most| *most as usize + 1)];
+        for cell in touching_cells(pairs) {
+            numbers[types[cell as usize] as usize] += 1;
+        }
+        let twice_the_pairs_of = |number: u64| (number * number.saturating_sub(1)) as f64;
+        let expected = numbers.iter().map(|number| twice_the_pairs_of(*number)).sum::<f64>()
+            / twice_the_pairs_of(numbers.iter().sum());
+        Self { pairs: pairs.len(), alike: count_alike(types, pairs), expected }
+    }
+
+    /// The segregation index, eq. (analysis.16), when so many pairs are alike: 1 where no two types touch, 0 where they
+    /// touch as often as by chance; NaN where there is no pair or but one type.
+    pub fn index(&self, alike: usize) -> f64 {
+        (alike as f64 / self.pairs as f64 - self.expected) / (1.0 - self.expected)
+    }
+}
+
+/// The cells that pairs name, each once, ascending.
+pub fn touching_cells(pairs: &[[u32; 2]]) -> Vec<u32> {
+    let mut cells: Vec<u32> = pairs.as_flattened().to_vec();
+    cells.sort_unstable();
+    cells.dedup();
+    cells
+}
+
+/// How many pairs are of one type.
+pub fn count_alike(types: &[u32], pairs: &[[u32; 2]]) -> usize {
+    pairs.iter().filter(|[one, other]| types[*one as usize] == types[*other as usize]).count()
+}
+
+/// The segregation index, see [`Alike::index`].
+pub fn segregation(types: &[u32], pairs: &[[u32; 2]]) -> f64 {
+    let found = Alike::of(types, pairs);
+    found.index(found.alike)
+}
+
+/// Names and units of the series of a result with contacts, in the order of [`values`]; a pair of types has the order
+/// of the document.
+pub(super) fn series(layout: &Layout) -> Vec<(String, &'static str)> {
+    let types = &layout.types;
+    if !layout.contacts {
+        return Vec::new();
+    }
+    let pairs = || pairs_of(types.len()).map(|[one, other]| format!("{}.{}", types[one], types[other]));
+    let of_planes = types.iter().flat_map(|kind| layout.planes.iter().map(move |plane| format!("{kind}.{}", plane.0)));
+    let mut names: Vec<(String, &str)> =
+        pairs().chain(of_planes).map(|pair| (format!("contact.area.{pair}"), "um^2")).collect();
+    names.extend(pairs().map(|pair| (format!("contact.pairs.{pair}"), "1")));
+    names.extend(["contact.heterotypic_share", "contact.segregation"].map(|name| (name.to_owned(), "1")));
+    for stem in ["contact.clusters", "contact.largest_cluster"] {
+        names.extend(types.iter().map(|kind| (format!("{stem}.{kind}"), "1")));
+    }
+    names
+}
+
+/// Pairs of types, the smaller number first.
+fn pairs_of(types: usize) -> impl Iterator<Item = [usize; 2]> {
+    (0..types).flat_map(move |one| (one..types).map(move |other| [one, other]))
+}
+
+/// The values of all [`series`] in all frames, by series.
+///
+/// # Errors
+/// A damaged file.
+pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
+    let mut all = vec![Vec::new(); series(result.layout()).len()];
+    for frame in 0..result.frames() {
+        let values = values(result.layout(), &result.pairs(frame)?, &result.on_planes(frame)?);
+        all.iter_mut().zip(values).for_each(|(series, value)| series.push(value));
+    }
+    Ok(all)
+}
+
+/// The values of all [`series`] in a frame.
+fn values(layout: &Layout, touching: &[Touching], on_planes: &[Touching]) -> Vec<f64> {
+    let types: Vec<u32> = layout.cells.iter().map(|cell| cell.kind).collect();
+    let (number, planes) = (layout.types.len(), layout.planes.len());
+    let kind = |cell: u32| types[cell as usize] as usize;
+    let mut areas = vec![0.0; number * number];
+    let mut counts = vec![0_u32; number * number];
+    for pair in touching {
+        let (one, other) = (kind(pair.cell), kind(pair.other));
+        let place = one.min(other) * number + one.max(other);
+        areas[place] += pair.area;
+        counts[place] += 1;
+    }
+    let mut on = vec![0.0; number * planes];
+    on_planes.iter().for_each(|touch| on[kind(touch.cell) * planes + touch.other as usize] += touch.area);
+    let whole: f64 = areas.iter().sum();
+    let alike: f64 = (0..number).map(|one| areas[one * number + one]).sum();
+
+    let pairs: Vec<[u32; 2]> = touching.iter().map(|pair| [pair.cell, pair.other]).collect();
+    let like = pairs.iter().copied().filter(|[one, other]| kind(*one) == kind(*other));
+    let mut sizes = vec![0_u32; types.len()];
+    clusters(types.len(), like).iter().for_each(|first| sizes[*first as usize] += 1);
+    let sizes_of = |wanted: usize| {
+        (0..types.len() as u32).filter(move |cell| kind(*cell) == wanted).map(|cell| sizes[cell as usize])
+    };
+
+    let mut values: Vec<f64> = pairs_of(number).map(|[one, other]| areas[one * number + other]).collect();
+    values.extend(on);
+    values.extend(pairs_of(number).map(|[one, other]| f64::from(counts[one * number + other])));
+    values.extend([(whole - alike) / whole, segregation(&types, &pairs)]);
+    values.extend((0..number).map(|kind| sizes_of(kind).filter(|size| *size > 0).count() as f64));
+    values.extend((0..number).map(|kind| f64::from(sizes_of(kind).max().unwrap_or(0))));
+    values
+}
+
+#[cfg(test)]
+#[path = "contacts_tests.rs"]
+mod tests;
