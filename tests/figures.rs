@@ -96,3 +96,8 @@ fn twenty_five_cells_become_one_aggregate() {
 fn a_strong_pair_holds_where_a_weak_one_parts() {
     experiment_keeps_its_word("sticky_pair", "experiment.toml");
 }
+
+#[test]
+fn a_squeezed_drop_takes_its_exact_shape() {
+    experiment_keeps_its_word("squeezed_drop", "experiment.toml");
+}
