@@ -101,3 +101,8 @@ fn a_strong_pair_holds_where_a_weak_one_parts() {
 fn a_squeezed_drop_takes_its_exact_shape() {
     experiment_keeps_its_word("squeezed_drop", "experiment.toml");
 }
+
+#[test]
+fn four_bunnies_fall_between_each_others_ears() {
+    experiment_keeps_its_word("four_bunnies", "experiment.toml");
+}
