@@ -111,3 +111,18 @@ fn a_ball_rolls_down_a_sheet_where_shear_holds_it() {
 fn a_ball_rolls_down_a_plane_as_fast_as_drag_allows() {
     experiment_keeps_its_word("rolling_ball", "plane.toml");
 }
+
+#[test]
+fn a_squeezed_drop_takes_its_exact_shape() {
+    experiment_keeps_its_word("squeezed_drop", "experiment.toml");
+}
+
+#[test]
+fn four_bunnies_fall_between_each_others_ears() {
+    experiment_keeps_its_word("four_bunnies", "experiment.toml");
+}
+
+#[test]
+fn two_types_of_cells_sort() {
+    experiment_keeps_its_word("sorting", "experiment.toml");
+}

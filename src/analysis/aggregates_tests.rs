@@ -5,8 +5,11 @@ use crate::analysis::noise;
 use crate::output::clusters;
 use ndarray::Array2;
 
+/// An event as a plain row: frame, change, aggregates before and after, cells.
+type Row = (usize, Change, Vec<u32>, Vec<u32>, usize);
+
 /// The events of frames that give the aggregate of each cell.
-fn events<const CELLS: usize>(frames: &[[u32; CELLS]]) -> Vec<(usize, Change, Vec<u32>, Vec<u32>, usize)> {
+fn events<const CELLS: usize>(frames: &[[u32; CELLS]]) -> Vec<Row> {
     let numbers = Array2::from_shape_fn((frames.len(), CELLS), |(frame, cell)| f64::from(frames[frame][cell]));
     let plain = |event: Event| (event.frame, event.change, event.before, event.after, event.cells);
     changes(numbers.view()).into_iter().map(plain).collect()
