@@ -5,26 +5,29 @@ use crate::analysis::noise;
 use crate::output::clusters;
 use ndarray::Array2;
 
-/// An event as a plain row: frame, change, aggregates before and after, cells.
-type Row = (usize, Change, Vec<u32>, Vec<u32>, usize);
-
 /// The events of frames that give the aggregate of each cell.
-fn events<const CELLS: usize>(frames: &[[u32; CELLS]]) -> Vec<Row> {
+fn events<const CELLS: usize>(frames: &[[u32; CELLS]]) -> Vec<Event> {
     let numbers = Array2::from_shape_fn((frames.len(), CELLS), |(frame, cell)| f64::from(frames[frame][cell]));
-    let plain = |event: Event| (event.frame, event.change, event.before, event.after, event.cells);
-    changes(numbers.view()).into_iter().map(plain).collect()
+    changes(numbers.view())
 }
 
 #[test]
 fn aggregates_are_born_merge_split_and_die() {
     let found =
         events(&[[0, 1, 2, 3, 4, 5], [0, 0, 2, 2, 4, 5], [0, 0, 0, 0, 4, 5], [0, 1, 0, 1, 4, 5], [0, 1, 0, 3, 4, 5]]);
+    let event = |frame, change, before: &[u32], after: &[u32], cells| Event {
+        frame,
+        change,
+        before: before.to_vec(),
+        after: after.to_vec(),
+        cells,
+    };
     let wanted = [
-        (1, Change::Birth, vec![], vec![0], 2),
-        (1, Change::Birth, vec![], vec![2], 2),
-        (2, Change::Merge, vec![0, 2], vec![0], 4),
-        (3, Change::Split, vec![0], vec![0, 1], 4),
-        (4, Change::Death, vec![1], vec![], 2),
+        event(1, Change::Birth, &[], &[0], 2),
+        event(1, Change::Birth, &[], &[2], 2),
+        event(2, Change::Merge, &[0, 2], &[0], 4),
+        event(3, Change::Split, &[0], &[0, 1], 4),
+        event(4, Change::Death, &[1], &[], 2),
     ];
     assert_eq!(found, wanted);
 }
@@ -39,7 +42,7 @@ fn cells_that_join_or_leave_change_nothing_nor_does_a_new_smallest_number() {
 #[test]
 fn cells_that_change_partners_split_and_merge_at_once() {
     let found = events(&[[0, 0, 2, 2, 2, 2], [0, 1, 0, 1, 1, 0]]);
-    let changes: Vec<Change> = found.iter().map(|event| event.1).collect();
+    let changes: Vec<Change> = found.iter().map(|event| event.change).collect();
     assert_eq!(changes, [Change::Split, Change::Split, Change::Merge, Change::Merge]);
 }
 
