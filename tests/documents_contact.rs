@@ -72,9 +72,10 @@ shear_strength = "5 pN/um^2"
 "#,
     );
     let contact = compiled.model.contact.expect("contacts");
-    let (default, pair) = (Strength { tensile: 10.0, shear: 4.0 }, Strength { tensile: 2.0, shear: 2.0 });
+    let (default, pair) =
+        (Strength { tensile: 10.0, shear: 4.0, energy: 0.0 }, Strength { tensile: 2.0, shear: 2.0, energy: 0.0 });
     assert_eq!(contact.between, [default, pair, pair, default]);
-    assert_eq!(contact.on_planes, [Strength { tensile: 50.0, shear: 5.0 }, Strength::default()]);
+    assert_eq!(contact.on_planes, [Strength { tensile: 50.0, shear: 5.0, energy: 0.0 }, Strength::default()]);
 }
 
 #[test]

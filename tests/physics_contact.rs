@@ -93,7 +93,7 @@ fn force_from(ws: &Workspace, first: u32) -> Vec3 {
     ws.contact.rows.iter().zip(&ws.contact.pulls).map(of_row).sum()
 }
 
-const GLUE: Strength = Strength { tensile: 1e3, shear: 1e3 };
+const GLUE: Strength = Strength { tensile: 1e3, shear: 1e3, energy: 0.0 };
 
 #[test]
 fn a_cell_that_hangs_on_a_rigid_one_is_held_with_its_load_whatever_the_step() {
@@ -134,7 +134,7 @@ fn sheets_part_at(tensile: f64, largest: f64, parts: u32) -> f64 {
     let atoms = areas.iter().zip(0..).map(|(area, atom)| (atom, area / 36.0)).collect();
     let force = Course::through(vec![(0.0, 0.0), (100.0, 60.0)]).unwrap();
     soft.loads = vec![Load { name: "pull".into(), atoms, direction: Vec3::z(), force }];
-    let model = model(vec![rigid, soft], adaptive(largest), 100.0, Strength { tensile, shear: 0.0 });
+    let model = model(vec![rigid, soft], adaptive(largest), 100.0, Strength { tensile, shear: 0.0, energy: 0.0 });
     let places = [(0, 0.0), (1, 0.02)].map(|(kind, height)| {
         let shifted = |x: &Vec3| x + Vec3::new(0.0, 0.0, height);
         vec![model.kinds[kind].rest.positions.iter().map(shifted).collect()]
@@ -163,7 +163,7 @@ fn parting(tensile: f64, largest: f64) -> (f64, f64) {
     let course = [(0.0, 10.0), (20.0, 10.0), (21.0, 0.0), (121.0, -50.0)];
     pair[0].loads = vec![load(Vec3::x(), &course)];
     pair[1].loads = vec![load(-Vec3::x(), &course)];
-    let model = model(pair.into(), adaptive(largest), 121.0, Strength { tensile, shear: tensile });
+    let model = model(pair.into(), adaptive(largest), 121.0, Strength { tensile, shear: tensile, energy: 0.0 });
     let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
     let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
     let rows = run(&model, &mut state, |_, ws| {
@@ -190,7 +190,8 @@ fn a_pair_parts_at_its_strength_and_not_at_its_step() {
 /// Two cells that were squeezed and pressed together, left alone.
 fn squeezed_pair(strength: f64, largest: f64) -> (Model, State) {
     let kind = cell("cell", 5.0).with_cells(0, 2);
-    let model = model(vec![kind], adaptive(largest), 40.0, Strength { tensile: strength, shear: strength });
+    let model =
+        model(vec![kind], adaptive(largest), 40.0, Strength { tensile: strength, shear: strength, energy: 0.0 });
     let squeeze = |x: &Vec3| Vec3::new(0.8 * x.x, 1.1 * x.y, 1.1 * x.z + 0.1 * x.x);
     let half = model.kinds[0].rest.positions.iter().map(|x| squeeze(x).x).fold(0.0, f64::max) + 0.05;
     let cells = [-1.0, 1.0].map(|side| {
@@ -251,7 +252,7 @@ fn gathered(seed: u64, cells: usize, pull: f64, strength: Strength) -> (Model, S
 fn packed_cells_keep_their_volumes_and_stay_out_of_each_other() {
     let strengths = [(0.0, 0.0), (0.1, 0.1), (5.0, 5.0), (5.0, 0.0)];
     for (seed, (tensile, shear)) in strengths.into_iter().enumerate() {
-        let (mut model, mut state) = gathered(seed as u64 + 1, 12, 0.04, Strength { tensile, shear });
+        let (mut model, mut state) = gathered(seed as u64 + 1, 12, 0.04, Strength { tensile, shear, energy: 0.0 });
         model.until = 60.0;
         let edge = model.kinds[0].edge;
         let mut deepest: f64 = 0.0;
@@ -281,7 +282,7 @@ fn contacts_are_state_and_nothing_else_is() {
     let run = |threads: usize, before: &(dyn Fn(&Model, &mut State, &mut Workspace) + Sync)| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let (model, mut state) = gathered(3, 12, 0.04, Strength { tensile: 0.3, shear: 0.2 });
+            let (model, mut state) = gathered(3, 12, 0.04, Strength { tensile: 0.3, shear: 0.2, energy: 0.0 });
             let mut ws = Workspace::new(&model);
             for _ in 0..250 {
                 before(&model, &mut state, &mut ws);

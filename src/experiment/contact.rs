@@ -1,6 +1,6 @@
 //! Contacts between cells: how near is a contact, and how strongly which surfaces stick.
 
-use crate::units::{Length, Stress};
+use crate::units::{Length, LineStiffness, Stress};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +40,10 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub shear_strength: Option<Stress>,
+    /// Energy that an area of contact releases, which spreads contacts against the tension of surfaces; none when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub energy: Option<LineStiffness>,
     /// Strengths of single pairs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub between: Vec<Between>,
@@ -58,6 +62,10 @@ pub struct Between {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub shear_strength: Option<Stress>,
+    /// Energy that an area of contact releases; none when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub energy: Option<LineStiffness>,
 }
 
 /// What two names of a pair mean in an experiment.

@@ -6,7 +6,7 @@ use crate::contact::Reach;
 use crate::error::{Error, Fault, Result, short};
 use crate::sim::contact::{ContactModel, Strength};
 use crate::sim::{Kind, Plane};
-use crate::units::Stress;
+use crate::units::{LineStiffness, Stress};
 
 /// The proximity over the smallest mean edge where the user names none.
 const PROXIMITY: f64 = 0.1;
@@ -42,13 +42,13 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
     let text = experiment.contact.as_ref()?;
     let mut model = ContactModel::new(kinds, planes, reach);
     if let Some(strength) = text.strength {
-        let strength = strength_of(strength, text.shear_strength);
+        let strength = strength_of(strength, text.shear_strength, text.energy);
         for kind in 0..kinds.len() {
             (kind..kinds.len()).for_each(|other| model.stick(kind, other, strength));
         }
     }
     for between in &text.between {
-        let strength = strength_of(between.strength, between.shear_strength);
+        let strength = strength_of(between.strength, between.shear_strength, between.energy);
         match between.pair(experiment) {
             Some(Pair::Types(one, other)) => model.stick(one, other, strength),
             Some(Pair::OnPlane(kind, plane)) => model.stick_to_plane(kind, plane, strength),
@@ -58,6 +58,7 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
     Some(model)
 }
 
-fn strength_of(strength: Stress, shear: Option<Stress>) -> Strength {
-    Strength { tensile: strength.value(), shear: shear.unwrap_or(strength).value() }
+fn strength_of(strength: Stress, shear: Option<Stress>, energy: Option<LineStiffness>) -> Strength {
+    let energy = energy.map_or(0.0, |energy| energy.value());
+    Strength { tensile: strength.value(), shear: shear.unwrap_or(strength).value(), energy }
 }

@@ -24,6 +24,12 @@ impl Check<'_> {
             let help = "add `strength`; \"0 Pa\" for surfaces that resist sliding but not parting";
             self.fault("contact.shear_strength", "`strength` is missing", message, help);
         }
+        if contact.energy.is_some() && contact.strength.is_none() {
+            let message = "`contact.energy` is given without `strength`".to_owned();
+            let help =
+                "add `strength`: where contacts spread, their rim is pulled, and without strength nothing holds it";
+            self.fault("contact.energy", "`strength` is missing", message, help);
+        }
         let mut named: Vec<Pair> = Vec::new();
         for (index, between) in contact.between.iter().enumerate() {
             let path = format!("contact.between[{index}].types");

@@ -4,6 +4,7 @@ use super::gather::gather;
 use super::model::ContactModel;
 use super::rows::{Pull, write_rows};
 use super::scratch::ContactScratch;
+use super::spread::add_spreading;
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
 use crate::contact::{Contacts, edges_still_touch};
@@ -27,6 +28,7 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     if model.integrator.method.is_inertial() {
         s.pulls.fill(Pull::default());
     }
+    add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.force);
     for (row, pull) in s.rows.iter().zip(&s.pulls) {
         for (atom, weight) in row.atoms.iter().zip(row.weights) {
             s.force[*atom as usize] += weight * pull.force();

@@ -12,6 +12,7 @@ mod model;
 mod momentum;
 mod rows;
 mod scratch;
+mod spread;
 mod state;
 mod sweep;
 #[cfg(test)]

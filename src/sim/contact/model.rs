@@ -12,6 +12,8 @@ pub struct Strength {
     pub tensile: f64,
     /// The shear at which they slide, pN/µm².
     pub shear: f64,
+    /// What an area of contact releases, pN/µm, eq. (adhesion.9): contacts spread against the tension of the surfaces.
+    pub energy: f64,
 }
 
 /// Contacts of a model.
@@ -86,6 +88,17 @@ impl ContactModel {
     pub fn stick_to_plane(&mut self, kind: usize, plane: usize, strength: Strength) {
         let planes = self.scene.planes.len();
         self.on_planes[kind * planes + plane] = strength;
+    }
+
+    /// How strongly two bodies stick.
+    pub(super) fn strength_between(&self, body: usize, other: usize) -> Strength {
+        let [kind, other] = [body, other].map(|body| self.kind_of(body as u32));
+        self.between[kind * self.areas.len() + other]
+    }
+
+    /// How strongly a body sticks to a plane.
+    pub(super) fn strength_on(&self, body: usize, plane: u32) -> Strength {
+        self.on_planes[self.kind_of(body as u32) * self.scene.planes.len() + plane as usize]
     }
 
     /// The numbers of the atoms of a kind.

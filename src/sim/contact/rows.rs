@@ -41,7 +41,7 @@ pub struct Pull {
 }
 
 /// Both sides of an interface have atoms that touch the other: each carries half of its strength.
-const SHARE: f64 = 0.5;
+pub(super) const SHARE: f64 = 0.5;
 
 /// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them.
 pub fn write_rows(
@@ -84,10 +84,11 @@ pub fn write_rows(
         let [i, j, k] = scene.facet_atoms(contact.body, contact.facet);
         let [u, v, w] = contact.weights();
         let own = contact.body as usize == body;
-        let (kind, other) = (model.kind_of(body as u32), model.kind_of(contact.body));
-        let strength = if own { Strength::default() } else { model.between[kind * model.areas.len() + other] };
+        let other = contact.body as usize;
+        let strength = if own { Strength::default() } else { model.strength_between(body, other) };
+        let kind = model.kind_of(body as u32);
         let area = SHARE * model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
-        let area = area * controls.adhesion_of(body) * controls.adhesion_of(contact.body as usize);
+        let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
         add(
             [contact.atom, i, j, k],
             [1.0, -u, -v, -w],
@@ -125,7 +126,7 @@ pub fn write_rows(
         }
         let same = before.planes.get(first).filter(|bond| (bond.atom, bond.plane) == key);
         let kind = model.kind_of(body as u32);
-        let strength = model.on_planes[kind * scene.planes.len() + contact.plane as usize];
+        let strength = model.strength_on(body, contact.plane);
         let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
         let area = area * controls.adhesion_of(body);
         add(

@@ -17,6 +17,8 @@ pub struct ContactScratch {
     pub start: Vec<Vec3>,
     /// Force of the contacts on the atoms where the step began, pN.
     pub force: Vec<Vec3>,
+    /// What the surface at each atom releases an area of contact, pN/µm.
+    pub(super) relief: Vec<f64>,
     /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on planes.
     pub rows: Vec<Row>,
     /// What each row carries.
@@ -50,6 +52,7 @@ impl ContactScratch {
         self.moved.fill([f64::NAN; 4]);
         self.gradient.fill([f64::NAN; 4]);
         self.push.fill(f64::NAN);
+        self.relief.fill(f64::NAN);
         self.momentum.poison();
         self.sweeps = u32::MAX;
     }

@@ -1,0 +1,103 @@
+//! The energy of adhesion: surfaces in contact release energy with their area, which spreads contacts.
+
+use super::model::{ContactModel, Strength};
+use super::rows::SHARE;
+use crate::Vec3;
+use crate::contact::Contacts;
+use crate::sim::chemistry::Controls;
+
+/// Adds the forces of the energy that contacts release, eq. (adhesion.9), to those of all atoms. `relief` is scratch, one number an
+/// atom.
+pub fn add_spreading(
+    model: &ContactModel,
+    found: &Contacts,
+    controls: &Controls,
+    positions: &[Vec3],
+    relief: &mut Vec<f64>,
+    force: &mut [Vec3],
+) {
+    let releases = |strength: &Strength| strength.energy > 0.0;
+    if !model.between.iter().chain(&model.on_planes).any(releases) {
+        return;
+    }
+    relieve(model, found, controls, relief);
+    for body in &model.scene.bodies {
+        let shape = &model.scene.shapes[body.shape as usize];
+        let atoms = body.first_atom as usize..body.first_atom as usize + shape.atoms;
+        let (relief, x, force) = (&relief[atoms.clone()], &positions[atoms.clone()], &mut force[atoms]);
+        if relief.iter().all(|relief| *relief == 0.0) {
+            continue;
+        }
+        spread(&shape.facets, relief, x, force);
+    }
+}
+
+/// The forces of E = −Σ A (w_i + w_j + w_k)/3 over facets of area A, with `relief` w kept as it is.
+fn spread(facets: &[[u32; 3]], relief: &[f64], x: &[Vec3], force: &mut [Vec3]) {
+    for corners in facets {
+        let [i, j, k] = corners.map(|corner| corner as usize);
+        let mean = (relief[i] + relief[j] + relief[k]) / 3.0;
+        let normal = (x[j] - x[i]).cross(&(x[k] - x[i]));
+        if let Some(normal) = normal.try_normalize(1e-300).filter(|_| mean > 0.0) {
+            for (corner, edge) in [(i, x[k] - x[j]), (j, x[i] - x[k]), (k, x[j] - x[i])] {
+                force[corner] += 0.5 * mean * normal.cross(&edge);
+            }
+        }
+    }
+}
+
+/// What the surface at each atom releases an area, pN/µm: the most of what its contacts do.
+fn relieve(model: &ContactModel, found: &Contacts, controls: &Controls, relief: &mut Vec<f64>) {
+    let scene = &model.scene;
+    relief.clear();
+    relief.resize(scene.atoms, 0.0);
+    let body_of = |atom: u32| scene.bodies.partition_point(|body| body.first_atom <= atom) - 1;
+    for contact in &found.atoms {
+        let (body, other) = (body_of(contact.atom), contact.body as usize);
+        if body != other {
+            let strength = model.strength_between(body, other);
+            let energy = SHARE * strength.energy * controls.adhesion_of(body) * controls.adhesion_of(other);
+            let relief = &mut relief[contact.atom as usize];
+            *relief = relief.max(energy);
+        }
+    }
+    for contact in &found.planes {
+        let body = body_of(contact.atom);
+        let energy = model.strength_on(body, contact.plane).energy * controls.adhesion_of(body);
+        let relief = &mut relief[contact.atom as usize];
+        *relief = relief.max(energy);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{facet_areas, icosphere};
+
+    #[test]
+    fn forces_are_the_gradient_of_the_energy_that_contacts_release() {
+        let mut surface = icosphere(5.0, 1);
+        let relief: Vec<f64> =
+            (0..surface.positions.len()).map(|i| if i % 3 == 0 { 0.0 } else { 7.0 * (i as f64).sin().abs() }).collect();
+        let energy = |surface: &crate::geometry::Surface| -> f64 {
+            let areas = facet_areas(surface);
+            let mean = |facet: &[u32; 3]| facet.iter().map(|&i| relief[i as usize]).sum::<f64>() / 3.0;
+            -areas.iter().zip(&surface.facets).map(|(area, facet)| area * mean(facet)).sum::<f64>()
+        };
+        let mut force = vec![Vec3::zeros(); surface.positions.len()];
+        spread(&surface.facets, &relief, &surface.positions, &mut force);
+        for (atom, axis) in [(0, 0), (7, 1), (20, 2), (41, 0)] {
+            let mut at = |shift: f64| {
+                surface.positions[atom][axis] += shift;
+                let energy = energy(&surface);
+                surface.positions[atom][axis] -= shift;
+                energy
+            };
+            let slope = (at(1e-4) - at(-1e-4)) / 2e-4;
+            // Central differences: (1e-4)² times the third derivative, and round-off of 1e3 · 1e-16 / 1e-4.
+            assert!((slope + force[atom][axis]).abs() < 1e-6, "{slope} against {}", force[atom][axis]);
+        }
+        let sum: Vec3 = force.iter().sum();
+        assert!(sum.norm() < 1e-10, "{sum}");
+    }
+}
