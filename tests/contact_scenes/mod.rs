@@ -377,7 +377,7 @@ impl Scene {
         kind.volume = match of.volume {
             Volume::Free => VolumeRule::Free,
             Volume::Exact if self.purpose == Purposed::Overfull => {
-                VolumeRule::Exact(Course::through(vec![(0.0, 1.0), (self.until, 4.0)]).unwrap())
+                VolumeRule::Exact(Course::through(vec![(0.0, 1.0), (self.until, 40.0)]).unwrap())
             }
             Volume::Exact => VolumeRule::Exact(Course::constant(1.0)),
             Volume::Compressible(modulus) => VolumeRule::Compressible { modulus, course: Course::constant(1.0) },
