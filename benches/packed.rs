@@ -65,7 +65,7 @@ fn population(cells: usize, largest: f64) -> (Model, State) {
     let near = 0.1 * model.kinds[0].edge;
     let mut contact = ContactModel::new(&model.kinds, &[], Reach { proximity: near, depth: near, margin: near });
     contact.stick(0, 0, Strength { tensile: 0.2, shear: 0.2, energy: 0.0 });
-    model.contact = Some(contact.as_exact_as(size));
+    model.contact = Some(contact.suited_to(size));
     let side = (1..).find(|side: &usize| side.pow(3).div_ceil(2) >= cells).expect("a cube large enough");
     let sites = (0..side.pow(3)).map(|site| [site / side / side, site / side % side, site % side]);
     let middle = Vec3::repeat(0.5 * (side - 1) as f64);

@@ -90,9 +90,11 @@ fn play(scene: &Scene) -> Result<Seen, Wrong> {
     for halved in 0..20 {
         match (play_steps(scene, &model, &start), &mut model.integrator.size) {
             // What the message asks for.
-            (Err((_, Some(Trouble::TooFast { .. }))), StepSize::Fixed(step)) => *step *= 0.5,
+            (Err((_, Some(trouble))), StepSize::Fixed(step)) if matches!(*trouble, Trouble::TooFast { .. }) => {
+                *step *= 0.5;
+            }
             (Err((words, trouble)), _) => {
-                let open = match trouble {
+                let open = match trouble.as_deref() {
                     Some(Trouble::Pressed { .. }) => Some(Open::Depth),
                     Some(Trouble::Contact { .. }) => Some(Open::Rest),
                     Some(_) => None,
@@ -112,7 +114,10 @@ fn play(scene: &Scene) -> Result<Seen, Wrong> {
     Err(Wrong::from("no fixed step is short enough".to_owned()))
 }
 
-fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, Seen), (String, Option<Trouble>)> {
+/// What is wrong, with the trouble that the step had.
+type Failure = (String, Option<Box<Trouble>>);
+
+fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, Seen), Failure> {
     let start = &press(scene, model, start)?;
     let mut state = start.clone();
     let mut ws = Workspace::new(model);
@@ -124,14 +129,14 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
     while state.time < model.until && state.step < start.step + most {
         match step(model, &mut state, &mut ws) {
             Ok(_) => {}
-            Err(trouble @ Trouble::TooFast { .. }) => return Err((format!("{trouble}"), Some(trouble))),
+            Err(trouble @ Trouble::TooFast { .. }) => return Err((format!("{trouble}"), Some(Box::new(trouble)))),
             Err(trouble @ (Trouble::Pressed { .. } | Trouble::Contact { .. } | Trouble::Volume { .. }))
                 if scene.purpose == Purposed::Overfull =>
             {
                 seen.trouble = Some(trouble);
                 break;
             }
-            Err(trouble) => return Err((format!("step {}: {trouble}", state.step), Some(trouble))),
+            Err(trouble) => return Err((format!("step {}: {trouble}", state.step), Some(Box::new(trouble)))),
         }
         let cells = measure_cells(model, &state);
         let at = |words: String| (format!("step {}: {words}", state.step), None);
@@ -175,7 +180,7 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
 }
 
 /// Presses two cells together that are left alone afterwards.
-fn press(scene: &Scene, model: &Model, start: &State) -> Result<State, (String, Option<Trouble>)> {
+fn press(scene: &Scene, model: &Model, start: &State) -> Result<State, Failure> {
     let (mut model, mut state) = (model.clone(), start.clone());
     if scene.pressed > 0.0 {
         for kind in &mut model.kinds {
@@ -184,7 +189,8 @@ fn press(scene: &Scene, model: &Model, start: &State) -> Result<State, (String, 
         }
         let mut ws = Workspace::new(&model);
         while state.time < 0.5 * model.until && state.step < scene.steps / 2 {
-            step(&model, &mut state, &mut ws).map_err(|trouble| (format!("pressed: {trouble}"), Some(trouble)))?;
+            step(&model, &mut state, &mut ws)
+                .map_err(|trouble| (format!("pressed: {trouble}"), Some(Box::new(trouble))))?;
         }
     }
     Ok(state)

@@ -321,12 +321,12 @@ impl Scene {
         let mut contact = ContactModel::new(&kinds, &planes, Reach { proximity: near, depth: near, margin: near });
         for (one, row) in self.between.iter().enumerate() {
             for (other, &[tensile, shear]) in row.iter().enumerate() {
-                contact.stick(one, other, Strength { tensile, shear });
+                contact.stick(one, other, Strength { tensile, shear, energy: 0.0 });
             }
         }
         for (one, row) in self.on_planes.iter().enumerate() {
             for (plane, &[tensile, shear]) in row.iter().enumerate() {
-                contact.stick_to_plane(one, plane, Strength { tensile, shear });
+                contact.stick_to_plane(one, plane, Strength { tensile, shear, energy: 0.0 });
             }
         }
         let size = match (self.method, self.size) {

@@ -81,7 +81,7 @@ pub fn compile(document: &Document) -> Result<Compiled> {
         seed: experiment.seed,
         kinks: kinks(&kinds),
         integrator,
-        contact: contact.map(|contact| contact.as_exact_as(integrator.size)),
+        contact: contact.map(|contact| contact.suited_to(integrator.size)),
         kinds,
         chemistry,
         planes,

@@ -35,8 +35,11 @@ pub struct ContactModel {
     pub(super) first_atom: Vec<usize>,
 }
 
-/// Sweeps over the contacts after which a step is given up.
+/// Sweeps over the contacts after which a step is given up; a shorter one costs less than more of them.
 const MOST_SWEEPS: u32 = 200;
+
+/// The same for fixed steps, which cannot be made shorter: contacts that are almost the same may need a thousand.
+const MOST_SWEEPS_FIXED: u32 = 4000;
 
 /// What a sweep may still move, over the mean edge, where steps are fixed.
 const TOLERANCE: f64 = 1e-4;
@@ -69,10 +72,11 @@ impl ContactModel {
         }
     }
 
-    /// The same with sweeps as exact as adaptive steps are: they need not end closer than the step's error.
-    pub fn as_exact_as(mut self, steps: StepSize) -> Self {
-        if let StepSize::Adaptive { tolerance, .. } = steps {
-            self.tolerance *= SHARE_OF_ERROR * tolerance / TOLERANCE;
+    /// The same with sweeps that suit the steps: no more exact than adaptive steps are, and as many as fixed steps need.
+    pub fn suited_to(mut self, steps: StepSize) -> Self {
+        match steps {
+            StepSize::Adaptive { tolerance, .. } => self.tolerance *= SHARE_OF_ERROR * tolerance / TOLERANCE,
+            StepSize::Fixed(_) => self.most_sweeps = MOST_SWEEPS_FIXED,
         }
         self
     }
