@@ -14,7 +14,7 @@ fn segregation(seed: u32, sets: &[&str]) -> [f64; 2] {
     let seed_set = format!("seed={seed}");
     // Only the end counts here.
     let sets: Vec<String> =
-        sets.iter().copied().chain([seed_set.as_str(), "output.every=40 s"]).map(str::to_owned).collect();
+        sets.iter().copied().chain([seed_set.as_str(), "output.every=60 s"]).map(str::to_owned).collect();
     let document = Document::read(&path, &sets).expect("a good document");
     let scratch = tempfile::tempdir().expect("a folder");
     let result = scratch.path().join("result.h5");

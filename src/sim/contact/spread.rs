@@ -32,15 +32,16 @@ pub fn add_spreading(
     }
 }
 
-/// The forces of E = −Σ A (w_i + w_j + w_k)/3 over facets of area A, with `relief` w kept as it is.
+/// The forces of E = −Σ A min(w_i, w_j, w_k) over facets of area A, with `relief` w kept as it is. A facet that is not in
+/// contact with all its corners is pulled as those outside are: with a part of the relief it would grow without touching anything.
 fn spread(facets: &[[u32; 3]], relief: &[f64], x: &[Vec3], force: &mut [Vec3]) {
     for corners in facets {
         let [i, j, k] = corners.map(|corner| corner as usize);
-        let mean = (relief[i] + relief[j] + relief[k]) / 3.0;
+        let least = relief[i].min(relief[j]).min(relief[k]);
         let normal = (x[j] - x[i]).cross(&(x[k] - x[i]));
-        if let Some(normal) = normal.try_normalize(1e-300).filter(|_| mean > 0.0) {
+        if let Some(normal) = normal.try_normalize(1e-300).filter(|_| least > 0.0) {
             for (corner, edge) in [(i, x[k] - x[j]), (j, x[i] - x[k]), (k, x[j] - x[i])] {
-                force[corner] += 0.5 * mean * normal.cross(&edge);
+                force[corner] += 0.5 * least * normal.cross(&edge);
             }
         }
     }
@@ -81,8 +82,8 @@ mod tests {
             (0..surface.positions.len()).map(|i| if i % 3 == 0 { 0.0 } else { 7.0 * (i as f64).sin().abs() }).collect();
         let energy = |surface: &crate::geometry::Surface| -> f64 {
             let areas = facet_areas(surface);
-            let mean = |facet: &[u32; 3]| facet.iter().map(|&i| relief[i as usize]).sum::<f64>() / 3.0;
-            -areas.iter().zip(&surface.facets).map(|(area, facet)| area * mean(facet)).sum::<f64>()
+            let least = |facet: &[u32; 3]| facet.iter().map(|&i| relief[i as usize]).fold(f64::INFINITY, f64::min);
+            -areas.iter().zip(&surface.facets).map(|(area, facet)| area * least(facet)).sum::<f64>()
         };
         let mut force = vec![Vec3::zeros(); surface.positions.len()];
         spread(&surface.facets, &relief, &surface.positions, &mut force);
