@@ -1,4 +1,5 @@
-//! The energy of adhesion: surfaces in contact release energy with their area, which spreads contacts.
+//! The energy of adhesion: surfaces in contact release energy with their area, which spreads contacts until surfaces under
+//! tension meet at the angle of eq. (adhesion.10).
 
 use super::model::{ContactModel, Strength};
 use super::rows::SHARE;
