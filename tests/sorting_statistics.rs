@@ -67,7 +67,8 @@ fn types_that_stick_to_themselves_only_are_segregated() {
 #[test]
 #[ignore = "slow: twenty runs of 10 to 20 s each"]
 fn types_that_stick_alike_are_mixed_at_random() {
-    // With seed 12 steps fall below a millisecond after 190 s: that run would take an hour.
+    // With seed 12 a triplet of a cell becomes collinear at 100 s and steps fall below a millisecond: that run would take
+    // half an hour.
     let (_, p) = all_seeds(SEEDS.filter(|seed| *seed != 12), &["contact.between[2].strength=0.3 pN/um^2"]);
     // Types are exchangeable here, so that one in twenty sets of seeds would be below by chance.
     assert!(p > 0.05);
