@@ -96,3 +96,17 @@ fn forces_that_were_not_recorded_cannot_be_shown() {
     assert!(text("force").contains("no forces"), "{}", text("force"));
     assert!(text("colour").contains("nothing in"), "{}", text("colour"));
 }
+
+#[test]
+fn a_picture_has_up_what_its_document_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, document) = result(folder.path(), "");
+    let seen = |up: [f64; 3]| {
+        let mut picture = Picture { width: 160, height: 90, ..Picture::default() };
+        (picture.view.from, picture.view.up) = ([0.0, -1.0, 0.0], up);
+        let image = still(&file, &document, &picture).unwrap();
+        (0..160).flat_map(|x| (0..90).map(move |y| (x, y))).map(|(x, y)| image.pixel(x, y)).collect::<Vec<_>>()
+    };
+    // Two cells side by side, or one above the other.
+    assert!(seen([0.0, 0.0, 1.0]) != seen([1.0, 0.0, 0.0]));
+}
