@@ -9,7 +9,7 @@ use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
 use pseudopod::mechanics::bending::{Bending, RestAngle};
 use pseudopod::mechanics::lanes::{LANES, Lane, Real, Vectors, VectorsMut};
 use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
-use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
+use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory, reference};
 use pseudopod::mechanics::springs::{Spring, Springs};
 use pseudopod::mechanics::stiffness::StiffnessMatrix;
 use pseudopod::mechanics::tension::Tension;
@@ -151,21 +151,55 @@ fn every_force_is_the_gradient_of_its_energy() {
         let positions = shaken(&cell().positions, case.shake * EDGE, 1);
         let (energy, forces) = case.force.on(&positions);
         assert!(energy > 1e-3, "{}: the test must wake the force, its energy is {energy}", case.name);
-        let step = 1e-5;
-        let energy_at = |i: usize, axis: usize, by: f64| {
-            let mut moved = positions.clone();
-            moved[i][axis] += by;
-            case.force.on(&moved).0
-        };
-        for i in 0..positions.len() {
-            for axis in 0..3 {
-                let difference = (energy_at(i, axis, step) - energy_at(i, axis, -step)) / (2.0 * step);
-                let error = (forces[i][axis] + difference).abs() / largest(&forces);
-                // Central differences: 1e-10 of the third derivative, which is largest in the barrier, and round-off 1e-16/1e-5.
-                assert!(error < 1e-7, "{}, atom {i}, axis {axis}: off by {error:e} of the largest force", case.name);
-            }
-        }
+        // Central differences: 1e-10 of the third derivative, which is largest in the barrier, and round-off 1e-16/1e-5.
+        let (error, place) = gradient_error(&case.force, &positions, &forces);
+        assert!(error < 1e-7, "{}, {place}: off by {error:e} of the largest force", case.name);
     }
+}
+
+/// The largest difference between forces and the central difference of the energy over the largest force, and where.
+fn gradient_error(force: &Force, positions: &[Vec3], forces: &[Vec3]) -> (f64, String) {
+    let step = 1e-5;
+    let energy_at = |i: usize, axis: usize, by: f64| {
+        let mut moved = positions.to_vec();
+        moved[i][axis] += by;
+        force.on(&moved).0
+    };
+    let places = (0..positions.len()).flat_map(|i| (0..3).map(move |axis| (i, axis)));
+    let errors = places.map(|(i, axis)| {
+        let difference = (energy_at(i, axis, step) - energy_at(i, axis, -step)) / (2.0 * step);
+        ((forces[i][axis] + difference).abs() / largest(forces), format!("atom {i}, axis {axis}"))
+    });
+    errors.fold((0.0, String::new()), |worst, next| if next.0 > worst.0 { next } else { worst })
+}
+
+/// The cell with one atom moved onto the middle between two others of its neighbour's ring and beyond, eq. (shape.5).
+#[test]
+fn shape_memory_stays_smooth_where_a_triplet_collapses_and_turns_over() {
+    let surface = cell();
+    let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.iter().map(|ring| ring.atoms.clone()).collect();
+    let memory = ShapeMemory::new(&surface.positions, &rings, 1.3, Reaction::Exact);
+    let corner = [rings[0][0], rings[0][1], rings[0][2]].map(|i| i as usize);
+    let [a, b, c] = corner.map(|i| surface.positions[i]);
+    let mut largest_force = Vec::new();
+    for share in [0.5, 0.9, 0.99, 1.0, 1.001, 1.1] {
+        let mut positions = surface.positions.clone();
+        positions[corner[1]] = b + share * (0.5 * (a + c) - b);
+        let (energy, forces) = Force::ShapeMemory(memory.clone()).on(&positions);
+        let (error, place) = gradient_error(&Force::ShapeMemory(memory.clone()), &positions, &forces);
+        // As above; the third derivative near the collapse is larger by (1/0.2)^2.
+        assert!(error < 1e-6, "{share} of the way, {place}: off by {error:e} of the largest force");
+        let mut plain = vec![Vec3::zeros(); positions.len()];
+        let plain_energy = reference::add_forces(&memory, &positions, &mut plain);
+        assert!((energy - plain_energy).abs() < 1e-12 * energy, "{share}: energy {energy} and plainly {plain_energy}");
+        for (force, plain) in forces.iter().zip(&plain) {
+            assert!((force - plain).norm() < 1e-11 * largest(&forces), "{share}: {force:?} and plainly {plain:?}");
+        }
+        largest_force.push(largest(&forces));
+    }
+    // With 1/|N| forces would grow without bound on the last tenth of the way; they grow as they did before it.
+    let worst = largest_force[1..].iter().fold(0.0_f64, |most, &f| most.max(f));
+    assert!(worst < 1.25 * largest_force[1], "forces on the way to the line: {largest_force:?}");
 }
 
 #[test]

@@ -29,6 +29,9 @@ struct Triplet {
     c: u32,
     /// β_t / m, µm.
     height: f64,
+    /// (τ|N|)² at rest, µm⁴, and its inverse: below it the normal shrinks, eq. (shape.5).
+    flat: f64,
+    per_flat: f64,
 }
 
 /// The shape memory of a mesh, ready for all cells that share it.
@@ -49,16 +52,21 @@ pub struct ShapeMemory {
 /// eight neighbours) they are computed again.
 const KEPT: usize = 56;
 
+/// τ of eq. (shape.5): the share of its area at rest below which a triplet's normal shrinks smoothly to nothing.
+const FLAT: f64 = 0.2;
+
 /// Sine of the smallest angle of a triplet; flatter ones count as collinear.
 const COLLINEAR: f64 = 1e-6;
 
-/// A triplet's two edges, its unit normal and one over twice its area.
+/// A triplet's two edges, its normal without and with the factor p of eq. (shape.5), one over what N was divided by, and r².
 #[derive(Clone, Copy)]
 struct Span<T> {
     u: V3<T>,
     v: V3<T>,
+    unit: V3<T>,
     normal: V3<T>,
     inverse: T,
+    narrow: T,
 }
 
 impl ShapeMemory {
@@ -87,8 +95,10 @@ impl ShapeMemory {
             for j in i + 1..n {
                 for k in j + 1..n {
                     let corner = [around[i], around[j], around[k]];
-                    let Some((coordinates, height)) = project(positions, atom, corner) else { continue };
-                    self.triplets.push(Triplet { a: corner[0], b: corner[1], c: corner[2], height });
+                    let Some((coordinates, height, size)) = project(positions, atom, corner) else { continue };
+                    let flat = (FLAT * size).powi(2);
+                    let [a, b, c] = corner;
+                    self.triplets.push(Triplet { a, b, c, height, flat, per_flat: 1.0 / flat });
                     for (slot, share) in [i, j, k].into_iter().zip(coordinates) {
                         weights[slot].1 += share;
                     }
@@ -124,9 +134,8 @@ impl ShapeMemory {
     #[inline(always)]
     pub fn add_forces<T: Real>(&self, x: &Vectors<T>, f: &mut VectorsMut<T>) -> T {
         let token = x.token;
-        let nothing =
-            Span { u: V3::zero(token), v: V3::zero(token), normal: V3::zero(token), inverse: T::constant(token, 0.0) };
-        let mut kept = [nothing; KEPT];
+        let (zero, none) = (V3::zero(token), T::constant(token, 0.0));
+        let mut kept = [Span { u: zero, v: zero, unit: zero, normal: zero, inverse: none, narrow: none }; KEPT];
         let mut energy = T::constant(token, 0.0);
         for atom in 0..self.first_triplet.len() - 1 {
             let triplets = &self.triplets[self.first_triplet[atom] as usize..self.first_triplet[atom + 1] as usize];
@@ -170,7 +179,9 @@ impl ShapeMemory {
         let part = |t: &Triplet| {
             let [a, b, c] = [t.a, t.b, t.c].map(|i| x[i as usize]);
             let (u, v) = (b - a, c - a);
-            t.height.abs() * (u.norm() + v.norm()) / u.cross(&v).norm().max(f64::MIN_POSITIVE)
+            let area = u.cross(&v).norm_squared();
+            let narrow = (area * t.per_flat).min(1.0);
+            t.height.abs() * (u.norm() + v.norm()) * shrink(narrow) / area.max(t.flat).sqrt()
         };
         triplets.iter().map(part).sum()
     }
@@ -202,14 +213,26 @@ fn span<T: Real>(x: &Vectors<T>, t: &Triplet) -> Span<T> {
     let u = x.get(t.b as usize) - a;
     let v = x.get(t.c as usize) - a;
     let cross = u.cross(v);
-    let inverse = T::constant(x.token, 1.0) / cross.squared().sqrt();
-    Span { u, v, normal: cross.times(inverse), inverse }
+    let area = cross.squared();
+    let inverse = T::constant(x.token, 1.0) / area.max(T::constant(x.token, t.flat)).sqrt();
+    let narrow = (area * t.per_flat).min(T::constant(x.token, 1.0));
+    let unit = cross.times(inverse);
+    let factor = narrow * narrow * 0.375 - narrow * 1.25 + 1.875;
+    Span { u, v, unit, normal: unit.times(factor), inverse, narrow }
+}
+
+/// p(r) of eq. (shape.5) from r²: 1, without slope or curvature, where r is 1.
+fn shrink(narrow: f64) -> f64 {
+    1.875 - 1.25 * narrow + 0.375 * narrow * narrow
 }
 
 /// The answer of a triplet's corners to the tilt of their normal.
 #[inline(always)]
 fn add_tilt<T: Real>(f: &mut VectorsMut<T>, t: &Triplet, span: &Span<T>, pull: V3<T>) {
-    let across = pull - span.normal.times(span.normal.dot(pull));
+    let narrow = span.narrow;
+    let factor = narrow * narrow * 0.375 - narrow * 1.25 + 1.875;
+    let along = narrow * -1.5 + 2.5;
+    let across = pull.times(factor) - span.unit.times(span.unit.dot(pull) * along);
     let g = across.times(span.inverse * t.height);
     let on_b = span.v.cross(g);
     let on_c = g.cross(span.u);
@@ -218,8 +241,8 @@ fn add_tilt<T: Real>(f: &mut VectorsMut<T>, t: &Triplet, span: &Span<T>, pull: V
     f.sub(t.c as usize, on_c);
 }
 
-/// Barycentric coordinates of an atom's projection on a triplet and its signed height, or nothing for a collinear one.
-fn project(positions: &[Vec3], atom: usize, corner: [u32; 3]) -> Option<([f64; 3], f64)> {
+/// Barycentric coordinates of an atom's projection on a triplet, its signed height and |N|, or nothing for a collinear one.
+fn project(positions: &[Vec3], atom: usize, corner: [u32; 3]) -> Option<([f64; 3], f64, f64)> {
     let [a, b, c] = corner.map(|i| positions[i as usize]);
     let (u, v, p) = (b - a, c - a, positions[atom] - a);
     let cross = u.cross(&v);
@@ -230,7 +253,7 @@ fn project(positions: &[Vec3], atom: usize, corner: [u32; 3]) -> Option<([f64; 3
     let normal = cross / size;
     let on_c = u.cross(&p).dot(&normal) / size;
     let on_b = p.cross(&v).dot(&normal) / size;
-    Some(([1.0 - on_b - on_c, on_b, on_c], p.dot(&normal)))
+    Some(([1.0 - on_b - on_c, on_b, on_c], p.dot(&normal), size))
 }
 
 /// The plain scalar reference of [`ShapeMemory::add_forces`]: the equations as the book writes them, one atom and one
@@ -254,7 +277,7 @@ pub mod reference {
             }
             for t in triplets {
                 let (a, b, c) = (x[t.a as usize], x[t.b as usize], x[t.c as usize]);
-                target += t.height * (b - a).cross(&(c - a)).normalize();
+                target += t.height * normal(t, &(b - a).cross(&(c - a)));
             }
             let offset = target - x[atom];
             let pull = memory.stiffness * offset;
@@ -269,9 +292,7 @@ pub mod reference {
             for t in triplets {
                 let (a, b, c) = (x[t.a as usize], x[t.b as usize], x[t.c as usize]);
                 let (u, v) = (b - a, c - a);
-                let cross = u.cross(&v);
-                let normal = cross.normalize();
-                let g = (pull - normal * normal.dot(&pull)) * (t.height / cross.norm());
+                let g = t.height * tilt(t, &u.cross(&v), &pull);
                 let (on_b, on_c) = (v.cross(&g), g.cross(&u));
                 f[t.a as usize] += on_b + on_c;
                 f[t.b as usize] -= on_b;
@@ -279,5 +300,22 @@ pub mod reference {
             }
         }
         energy
+    }
+
+    /// n of eq. (shape.5).
+    fn normal(t: &Triplet, cross: &Vec3) -> Vec3 {
+        let (size, least) = (cross.norm(), t.flat.sqrt());
+        if size >= least { cross / size } else { cross * (shrink((size / least).powi(2)) / least) }
+    }
+
+    /// The derivative of n by N applied to a vector, eq. (shape.6).
+    fn tilt(t: &Triplet, cross: &Vec3, pull: &Vec3) -> Vec3 {
+        let (size, least) = (cross.norm(), t.flat.sqrt());
+        if size >= least {
+            let unit = cross / size;
+            return (pull - unit * unit.dot(pull)) / size;
+        }
+        let r = (size / least).powi(2);
+        (shrink(r) * pull - cross * (cross.dot(pull) * (2.5 - 1.5 * r) / (least * least))) / least
     }
 }
