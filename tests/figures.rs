@@ -93,6 +93,11 @@ fn twenty_five_cells_become_one_aggregate() {
 }
 
 #[test]
+fn no_facet_folds_in_a_packed_aggregate_stirred_for_1000_s() {
+    experiment_keeps_its_word("aggregation", "stirred.toml");
+}
+
+#[test]
 fn a_strong_pair_holds_where_a_weak_one_parts() {
     experiment_keeps_its_word("sticky_pair", "experiment.toml");
 }

@@ -186,7 +186,7 @@ pub struct Barrier {
 
 impl Default for Barrier {
     fn default() -> Self {
-        Self { active: true, stiffness: None, area: 0.2, angle: Angle::new(2.0 * std::f64::consts::PI / 3.0) }
+        Self { active: true, stiffness: None, area: 0.2, angle: Angle::new(0.5 * std::f64::consts::PI) }
     }
 }
 

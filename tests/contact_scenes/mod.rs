@@ -333,6 +333,10 @@ impl Scene {
             (Method::Explicit, StepSize::Fixed(step)) => StepSize::Fixed(step.min(0.5 * stable_step(&kinds))),
             (_, size) => size,
         };
+        if let StepSize::Fixed(_) = size {
+            // As documents allow it: a fixed step cannot be made shorter.
+            contact.most_sweeps = 4000;
+        }
         let integrator = Integrator { method: self.method, size };
         let model = Model {
             seed: self.seed,
