@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::error::words;
-use crate::experiment::contact::{Contact, Pair};
+use crate::experiment::contact::{Contact, ContactModel, Pair};
 use crate::experiment::{Segregation, When};
 
 impl Check<'_> {
@@ -19,12 +19,14 @@ impl Check<'_> {
             let message = "`chemistry.contact` has the name under which contacts are recorded".to_owned();
             self.fault("chemistry.contact", "taken", message, "give the system another name");
         }
-        if contact.shear_strength.is_some() && contact.strength.is_none() {
+        self.contact_model(contact);
+        let adhesives = contact.model == ContactModel::Adhesives;
+        if adhesives && contact.shear_strength.is_some() && contact.strength.is_none() {
             let message = "`contact.shear_strength` is given without `strength`".to_owned();
             let help = "add `strength`; \"0 Pa\" for surfaces that resist sliding but not parting";
             self.fault("contact.shear_strength", "`strength` is missing", message, help);
         }
-        if contact.energy.is_some() && contact.strength.is_none() {
+        if adhesives && contact.energy.is_some() && contact.strength.is_none() {
             let message = "`contact.energy` is given without `strength`".to_owned();
             let help =
                 "add `strength`: where contacts spread, their rim is pulled, and without strength nothing holds it";
@@ -48,8 +50,50 @@ impl Check<'_> {
             }
             named.push(pair);
         }
-        if !contact.between.is_empty() && contact.strength.is_none() {
+        if adhesives && !contact.between.is_empty() && contact.strength.is_none() {
             self.forgotten(contact, &named);
+        }
+    }
+
+    /// Keys that belong to another model than the one that is named, and keys that it needs.
+    fn contact_model(&mut self, contact: &Contact) {
+        let links = contact.model == ContactModel::Links;
+        let mut strengths = vec![
+            ("contact.strength".to_owned(), contact.strength.is_some()),
+            ("contact.shear_strength".to_owned(), contact.shear_strength.is_some()),
+            ("contact.energy".to_owned(), contact.energy.is_some()),
+        ];
+        let mut of_links = vec![
+            ("contact.link".to_owned(), contact.link.is_some()),
+            ("contact.range".to_owned(), contact.range.is_some()),
+        ];
+        for (index, between) in contact.between.iter().enumerate() {
+            let path = format!("contact.between[{index}]");
+            strengths.push((format!("{path}.strength"), between.strength.is_some()));
+            strengths.push((format!("{path}.shear_strength"), between.shear_strength.is_some()));
+            strengths.push((format!("{path}.energy"), between.energy.is_some()));
+            of_links.push((format!("{path}.link"), between.link.is_some()));
+            let on_plane = matches!(between.pair(&self.document.experiment), Some(Pair::OnPlane(..)));
+            if links && on_plane {
+                let message = format!("`{path}` names a plane, and links join facets of cells");
+                let help = "leave the pair out: cells rest on planes and slide there";
+                self.fault(&format!("{path}.types"), "a plane has no facets", message, help);
+            } else if links && between.link.is_none() {
+                let message = format!("`{path}` does not say how stiff its links are");
+                self.fault(&path, "`link` is missing", message, "add `link`; \"0 pN/um\" does not bind");
+            } else if !links && between.strength.is_none() {
+                let message = format!("`{path}` does not say how strongly the two stick");
+                self.fault(&path, "`strength` is missing", message, "add `strength`; \"0 Pa\" does not stick");
+            }
+        }
+        let (strange, help) = match links {
+            true => (strengths, "links bind by `link`, a stiffness; leave this out, or `model` for contacts that stick"),
+            false => (of_links, "add model = \"links\" to [contact], or leave this out"),
+        };
+        let model = if links { "\"links\"" } else { "\"adhesives\", the default" };
+        for (path, _) in strange.iter().filter(|(_, is_there)| *is_there) {
+            let message = format!("`{path}` means nothing in the contact model {model}");
+            self.fault(path, "of another model", message, help);
         }
     }
 

@@ -1,7 +1,8 @@
 //! What touches where a step begins, and what it carried in the step before.
 
 use super::gather::gather;
-use super::model::ContactModel;
+use super::links::{links_at, pull_links};
+use super::model::{ContactModel, Law};
 use super::rows::{Pull, write_rows};
 use super::scratch::ContactScratch;
 use super::spread::add_spreading;
@@ -22,6 +23,8 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     }
     s.detector.detect(&contact.scene, &s.start, &mut s.found);
     keep_edges(contact, &state.contact, &s.start, &mut s.found);
+    let ContactScratch { found, start, linked, links, .. } = s;
+    links_at(contact, &state.chemistry.controls, &state.contact.links, found, start, linked, links);
     write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, &mut s.rows, &mut s.pulls);
     s.force.clear();
     s.force.resize(contact.scene.atoms, Vec3::zeros());
@@ -49,15 +52,33 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
     found.edges.sort_unstable_by_key(|edge| edge.edges);
 }
 
-/// Adds the force that contacts carried to the forces of a block of a kind.
+/// Sets the forces of the links of the step where the atoms are now: they change while a step is made, and its error
+/// estimate must see that.
+pub fn stretch_links(model: &Model, state: &State, s: &mut ContactScratch) {
+    let Some(contact) = model.contact.as_ref().filter(|contact| matches!(contact.law, Law::Links(_))) else { return };
+    s.places.resize(contact.scene.atoms, Vec3::zeros());
+    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+        gather(kind, &now.positions, &mut s.places[contact.atoms_of(number)], |x| x);
+    }
+    s.link_force.clear();
+    s.link_force.resize(contact.scene.atoms, Vec3::zeros());
+    pull_links(contact, &state.chemistry.controls, &s.links, &s.places, &mut s.link_force);
+}
+
+/// Adds the force that contacts carried, and that of links, to the forces of a block of a kind.
 pub fn add_contact_forces(model: &Model, number: usize, block: usize, scratch: &ContactScratch, f: &mut [f64]) {
     let (Some(contact), kind) = (&model.contact, &model.kinds[number]) else { return };
-    let forces = &scratch.force[contact.atoms_of(number)];
+    let atoms = contact.atoms_of(number);
+    let forces = &scratch.force[atoms.clone()];
+    let pulls = scratch.link_force.get(atoms);
     for lane in 0..kind.lanes {
         let cell = (block * kind.lanes + lane).min(kind.cells - 1);
-        for (atom, force) in forces[cell * kind.atoms()..(cell + 1) * kind.atoms()].iter().enumerate() {
-            for axis in 0..3 {
-                f[(3 * atom + axis) * kind.lanes + lane] += force[axis];
+        let own = cell * kind.atoms()..(cell + 1) * kind.atoms();
+        for forces in [Some(forces), pulls].into_iter().flatten() {
+            for (atom, force) in forces[own.clone()].iter().enumerate() {
+                for axis in 0..3 {
+                    f[(3 * atom + axis) * kind.lanes + lane] += force[axis];
+                }
             }
         }
     }
@@ -68,7 +89,8 @@ pub fn keep_contacts(model: &Model, state: &mut State, ws: &Workspace) {
     if model.contact.is_none() {
         return;
     }
-    let (s, ContactState { atoms, edges, planes }) = (&ws.contact, &mut state.contact);
+    let (s, ContactState { atoms, edges, planes, links }) = (&ws.contact, &mut state.contact);
+    links.clone_from(&s.links);
     let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
     let (of_atoms, others) = s.pulls.split_at(s.found.atoms.len());
     let (of_edges, of_planes) = others.split_at(s.found.edges.len());
