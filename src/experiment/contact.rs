@@ -27,23 +27,25 @@ pub fn pair_series<'a>(types: &[&'a str], planes: &[&'a str]) -> Vec<String> {
     names
 }
 
-/// What keeps cells together that touch. Under each model cells do not pass each other.
+/// What cells do that touch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(inline)]
 pub enum ContactModel {
-    /// Contacts that bear a pull and a shear, by `strength`.
+    /// Contacts bear any push, and a pull and a shear by `strength`.
     #[default]
     Adhesives,
-    /// Springs between the atoms of facets that collided, by `link`; they break beyond `range`.
+    /// Contacts bear any push, and springs hold the atoms of facets that collided, by `link`; they break beyond `range`.
     Links,
+    /// Contacts push by `penalty` times their depth, and pull within the proximity, by `strength`: to compare with.
+    Penalty,
 }
 
 /// Contacts of cells with each other, with themselves and with planes. Without this table cells pass through each other.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contact {
-    /// What keeps cells together that touch.
+    /// What cells do that touch.
     pub model: ContactModel,
     /// Gap below which surfaces touch; a tenth of the smallest mean edge when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -70,6 +72,10 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub range: Option<Length>,
+    /// Model penalty: push of a contact over its depth.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub penalty: Option<LineStiffness>,
     /// Strengths or links of single pairs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub between: Vec<Between>,

@@ -49,7 +49,7 @@ impl Touch {
         // Where links bind, cells that merely touch do not belong together.
         let first = match contact.law {
             Law::Links(_) => clusters(bodies, self.links.iter().map(|link| link.bodies)),
-            Law::Adhesives => clusters(bodies, frame.pairs.iter().map(|pair| [pair.cell, pair.other])),
+            _ => clusters(bodies, frame.pairs.iter().map(|pair| [pair.cell, pair.other])),
         };
         for (cell, record) in frame.cells.iter_mut().enumerate() {
             record.contact_share = f64::from(touching[cell]) / contact.scene.shape(cell as u32).atoms as f64;

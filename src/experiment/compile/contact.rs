@@ -4,7 +4,7 @@ use super::super::contact::{ContactModel as Text, Pair};
 use super::super::{Document, Experiment};
 use crate::contact::Reach;
 use crate::error::{Error, Fault, Result, short};
-use crate::sim::contact::{ContactModel, Law, LinkTable, Strength};
+use crate::sim::contact::{ContactModel, Law, LinkTable, Penalty, Strength};
 use crate::sim::{Kind, Plane};
 use crate::units::{LineStiffness, Stress};
 
@@ -34,16 +34,27 @@ pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
         let place = document.place("contact.proximity", "above half of the mean edge");
         return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
     }
-    Ok(Some(Reach { proximity, depth: proximity, margin: proximity }))
+    let depth = if text.model == Text::Penalty { PENALTY_DEPTH * edge } else { proximity };
+    Ok(Some(Reach { proximity, depth, margin: proximity }))
 }
+
+/// How deep contacts are found where nothing but a penalty keeps cells apart, over the smallest mean edge.
+const PENALTY_DEPTH: f64 = 0.5;
 
 /// Contacts with the strengths of the document.
 pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach: Reach) -> Option<ContactModel> {
     let text = experiment.contact.as_ref()?;
     let mut model = ContactModel::new(kinds, planes, reach);
-    if text.model == Text::Links {
-        model.law = Law::Links(links(experiment, kinds));
-        return Some(model);
+    match text.model {
+        Text::Adhesives => {}
+        Text::Links => {
+            model.law = Law::Links(links(experiment, kinds));
+            return Some(model);
+        }
+        Text::Penalty => {
+            let stiffness = text.penalty.map_or(0.0, |penalty| penalty.value());
+            model.law = Law::Penalty(Penalty { stiffness, range: reach.proximity });
+        }
     }
     if let Some(strength) = text.strength {
         let strength = strength_of(strength, text.shear_strength, text.energy);

@@ -3,6 +3,7 @@
 use super::gather::gather;
 use super::links::{links_at, pull_links};
 use super::model::{ContactModel, Law};
+use super::penalty::press;
 use super::rows::{Pull, write_rows};
 use super::scratch::ContactScratch;
 use super::spread::add_spreading;
@@ -28,7 +29,7 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, &mut s.rows, &mut s.pulls);
     s.force.clear();
     s.force.resize(contact.scene.atoms, Vec3::zeros());
-    if model.integrator.method.is_inertial() {
+    if model.integrator.method.is_inertial() || matches!(contact.law, Law::Penalty(_)) {
         s.pulls.fill(Pull::default());
     }
     add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.force);
@@ -52,25 +53,28 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
     found.edges.sort_unstable_by_key(|edge| edge.edges);
 }
 
-/// Sets the forces of the links of the step where the atoms are now: they change while a step is made, and its error
-/// estimate must see that.
-pub fn stretch_links(model: &Model, state: &State, s: &mut ContactScratch) {
-    let Some(contact) = model.contact.as_ref().filter(|contact| matches!(contact.law, Law::Links(_))) else { return };
+/// Sets the forces of links and penalties where the atoms are now: they change while a step is made, and its error estimate
+/// must see that.
+pub fn pull_contacts(model: &Model, state: &State, s: &mut ContactScratch) {
+    let Some(contact) = model.contact.as_ref().filter(|contact| contact.law != Law::Adhesives) else { return };
     s.places.resize(contact.scene.atoms, Vec3::zeros());
     for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
         gather(kind, &now.positions, &mut s.places[contact.atoms_of(number)], |x| x);
     }
-    s.link_force.clear();
-    s.link_force.resize(contact.scene.atoms, Vec3::zeros());
-    pull_links(contact, &state.chemistry.controls, &s.links, &s.places, &mut s.link_force);
+    s.live_force.clear();
+    s.live_force.resize(contact.scene.atoms, Vec3::zeros());
+    match &contact.law {
+        Law::Penalty(penalty) => press(penalty, &s.rows, &s.start, &s.places, &mut s.live_force),
+        _ => pull_links(contact, &state.chemistry.controls, &s.links, &s.places, &mut s.live_force),
+    };
 }
 
-/// Adds the force that contacts carried, and that of links, to the forces of a block of a kind.
+/// Adds the force that contacts carried, and what links and penalties do, to the forces of a block of a kind.
 pub fn add_contact_forces(model: &Model, number: usize, block: usize, scratch: &ContactScratch, f: &mut [f64]) {
     let (Some(contact), kind) = (&model.contact, &model.kinds[number]) else { return };
     let atoms = contact.atoms_of(number);
     let forces = &scratch.force[atoms.clone()];
-    let pulls = scratch.link_force.get(atoms);
+    let pulls = scratch.live_force.get(atoms);
     for lane in 0..kind.lanes {
         let cell = (block * kind.lanes + lane).min(kind.cells - 1);
         let own = cell * kind.atoms()..(cell + 1) * kind.atoms();

@@ -56,7 +56,10 @@ impl Link {
 
     /// The sum of the squared lengths of its springs, µm².
     fn squared(&self, positions: &[Vec3]) -> f64 {
-        self.pairs.iter().map(|[one, other]| (positions[*one as usize] - positions[*other as usize]).norm_squared()).sum()
+        self.pairs
+            .iter()
+            .map(|[one, other]| (positions[*one as usize] - positions[*other as usize]).norm_squared())
+            .sum()
     }
 }
 
@@ -92,7 +95,9 @@ pub fn links_at(
         }
         if body as u32 != near.body {
             let facet = facing(scene, body as u32, near, positions);
-            facet.into_iter().for_each(|facet| add(Link::between(scene, [body as u32, near.body], [facet, near.facet], positions)));
+            facet
+                .into_iter()
+                .for_each(|facet| add(Link::between(scene, [body as u32, near.body], [facet, near.facet], positions)));
         }
     }
     for near in found.edges.iter().filter(|near| near.bodies[0] != near.bodies[1]) {

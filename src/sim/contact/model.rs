@@ -1,6 +1,7 @@
 //! Who can touch whom, and how strongly they stick.
 
 use super::links::LinkTable;
+use super::penalty::Penalty;
 use crate::contact::{self, Reach, Scene, Shape, Sides};
 use crate::geometry;
 use crate::mechanics::integrator::StepSize;
@@ -18,14 +19,16 @@ pub struct Strength {
     pub energy: f64,
 }
 
-/// What keeps surfaces together that touch. Under each of them surfaces do not pass each other.
+/// What surfaces do that touch.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Law {
-    /// Contacts bear a pull and a shear, [`Strength`].
+    /// Contacts bear any push, and a pull and a shear, [`Strength`].
     #[default]
     Adhesives,
-    /// Springs between the atoms of facets that collided.
+    /// Contacts bear any push; springs hold the atoms of facets that collided.
     Links(LinkTable),
+    /// Contacts push by their depth, and pull within the proximity.
+    Penalty(Penalty),
 }
 
 /// Contacts of a model.

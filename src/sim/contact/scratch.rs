@@ -24,8 +24,8 @@ pub struct ContactScratch {
     pub(super) linked: Vec<bool>,
     /// Positions in the stage that is being made, µm.
     pub(super) places: Vec<Vec3>,
-    /// Force of the links on the atoms in that stage, pN; empty where there are no links.
-    pub(super) link_force: Vec<Vec3>,
+    /// Force of links or penalties on the atoms in that stage, pN; empty where there are none.
+    pub(super) live_force: Vec<Vec3>,
     /// What the surface at each atom releases an area of contact, pN/µm.
     pub(super) relief: Vec<f64>,
     /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on planes.
@@ -58,7 +58,7 @@ impl ContactScratch {
         self.held.clear();
         self.links.clear();
         self.linked.clear();
-        [&mut self.places, &mut self.link_force].into_iter().for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
+        [&mut self.places, &mut self.live_force].into_iter().for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
         self.start.fill(Vec3::repeat(f64::NAN));
         self.force.fill(Vec3::repeat(f64::NAN));
         self.moved.fill([f64::NAN; 4]);

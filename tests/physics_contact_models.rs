@@ -1,5 +1,5 @@
-//! Dynamic links against what is known of springs: forces from an energy, equal and opposite, broken beyond their range, and
-//! part of the state.
+//! Dynamic links and penalties, the contacts to compare with: forces from an energy, equal and opposite; links that break
+//! beyond their range and are part of the state.
 
 use pseudopod::Vec3;
 use pseudopod::contact::{Contacts, Detector, Reach};
@@ -10,7 +10,9 @@ use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::chemistry::Controls;
-use pseudopod::sim::contact::{ContactModel, Law, Link, LinkTable, links_at, pull_links};
+use pseudopod::sim::contact::{
+    ContactModel, Law, Link, LinkTable, Penalty, Row, Strength, links_at, press, pull_links,
+};
 use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::{Kind, Load, Model, State, VolumeRule, Workspace, step};
 
@@ -82,7 +84,8 @@ fn pair(model: &Model) -> State {
         detect(contact, &all).smallest_gap()
     };
     // Down from where nothing touches.
-    let apart = (0..400).map(|i| 12.0 - 0.01 * f64::from(i)).find(|apart| gap(*apart) < 0.3 * 0.1 * model.kinds[0].edge);
+    let apart =
+        (0..400).map(|i| 12.0 - 0.01 * f64::from(i)).find(|apart| gap(*apart) < 0.3 * 0.1 * model.kinds[0].edge);
     State::new(model, &places(apart.expect("they touch")))
 }
 
@@ -269,4 +272,96 @@ fn links_go_on_from_a_checkpoint_to_the_same_bits_with_any_number_of_threads() {
     let mut parts: State = postcard::from_bytes(&kept).unwrap();
     on(1, &mut parts, 23);
     assert_eq!(whole, parts);
+}
+
+/// The same model with penalties and this strength.
+fn penalty(until: f64, strength: f64) -> Model {
+    let mut model = model(vec![cell("a"), cell("b")], until, |_, _| false);
+    let contact = model.contact.as_mut().unwrap();
+    contact.law = Law::Penalty(Penalty { stiffness: 50.0, range: contact.scene.reach.proximity });
+    contact.scene.reach.depth = 0.5 * model.kinds[0].edge;
+    contact.stick(0, 1, Strength { tensile: strength, shear: 0.0, energy: 0.0 });
+    model
+}
+
+#[test]
+fn a_penalty_pushes_by_its_depth_and_pulls_within_its_range_with_one_smooth_energy() {
+    let law = Penalty { stiffness: 50.0, range: 0.4 };
+    assert_eq!(law.at(-0.1, 3.0).0, 5.0);
+    assert_eq!((law.at(0.0, 3.0).0, law.at(0.5, 3.0)), (0.0, (0.0, 0.0)));
+    assert!((law.at(0.2, 3.0).0 + 3.0).abs() < 1e-14, "the most is borne halfway");
+    for gap in [-0.3, -0.01, 0.01, 0.1, 0.3, 0.39] {
+        let slope = (law.at(gap + 1e-5, 3.0).1 - law.at(gap - 1e-5, 3.0).1) / 2e-5;
+        // The third derivative of the energy is 8 · 3 / 0.4², times 1e-10 / 6.
+        assert!((slope + law.at(gap, 3.0).0).abs() < 1e-8, "{gap}: {slope}");
+    }
+    for joint in [0.0, 0.4] {
+        let [below, above] = [joint - 1e-12, joint + 1e-12].map(|gap| law.at(gap, 3.0).1);
+        assert!((below - above).abs() < 1e-9, "nothing jumps at {joint}");
+    }
+}
+
+#[test]
+fn forces_of_penalties_are_the_gradient_of_their_energy_without_net_force_or_torque() {
+    let model = penalty(1.0, 0.5);
+    let mut state = pair(&model);
+    let mut ws = Workspace::new(&model);
+    // What was found where that step began: gaps within the range.
+    step(&model, &mut state, &mut ws).unwrap();
+    let rows: Vec<Row> = ws.contact.rows.clone();
+    let (start, law) = (ws.contact.start.clone(), Penalty { stiffness: 50.0, range: 0.05 * model.kinds[0].edge });
+    let mut x = start.clone();
+    let pressed = |x: &[Vec3]| {
+        let mut force = vec![Vec3::zeros(); x.len()];
+        (press(&law, &rows, &start, x, &mut force), force)
+    };
+    let force = pressed(&x).1;
+    let size: f64 = force.iter().map(Vec3::norm).sum();
+    assert!(size > 1e-3, "there is something to test: {size}");
+    let torque: Vec3 = x.iter().zip(&force).map(|(x, f)| x.cross(f)).sum();
+    // Normals are kept with seven digits.
+    assert!(force.iter().sum::<Vec3>().norm() < 1e-12 * size && torque.norm() < 1e-5 * size, "{torque} of {size}");
+    // Once where they pull, once where they are moved into each other and push.
+    for into in [0.0, 0.3] {
+        x[12..].iter_mut().for_each(|x| x.x -= into);
+        let force = pressed(&x).1;
+        for atom in 0..x.len() {
+            for axis in 0..3 {
+                let mut at = |shift: f64| {
+                    x[atom][axis] += shift;
+                    let energy = pressed(&x).0;
+                    x[atom][axis] -= shift;
+                    energy
+                };
+                let slope = (at(1e-6) - at(-1e-6)) / 2e-6;
+                assert!((slope + force[atom][axis]).abs() < 1e-6 * size, "{slope} against {}", force[atom][axis]);
+            }
+        }
+    }
+}
+
+#[test]
+fn cells_pressed_by_a_penalty_stay_apart_give_or_take_a_depth_and_stick_within_its_range() {
+    let edge = cell("a").edge;
+    let mut model = penalty(100.0, 1.0);
+    let atoms: Vec<(u32, f64)> = (0..12).map(|atom| (atom, 1.0 / 12.0)).collect();
+    // Pressed together with 5 pN for 40 s, then left alone.
+    let course = || Course::through(vec![(0.0, 5.0), (40.0, 5.0), (41.0, 0.0), (100.0, 0.0)]).unwrap();
+    for (kind, direction) in model.kinds.iter_mut().zip([Vec3::x(), -Vec3::x()]) {
+        kind.loads = vec![Load { name: "press".into(), atoms: atoms.clone(), direction, force: course() }];
+    }
+    model.kinks = vec![40.0, 41.0, 100.0];
+    let mut state = pair(&model);
+    let mut ws = Workspace::new(&model);
+    let mut deepest: f64 = 0.0;
+    while state.time < model.until {
+        step(&model, &mut state, &mut ws).unwrap();
+        deepest = deepest.min(ws.contact.found.smallest_gap());
+    }
+    let depth = -deepest / edge;
+    println!("{depth} edges deep in {} steps", state.step);
+    // One contact that carries all would be 5 pN / 50 pN/um deep, 0.02 edges; when they meet it is less than thrice that.
+    assert!(depth > 1e-4 && depth < 0.06, "{depth}");
+    let gap = ws.contact.found.smallest_gap();
+    assert!(gap < model.contact.as_ref().unwrap().scene.reach.proximity, "they still touch: {gap}");
 }
