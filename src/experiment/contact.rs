@@ -63,12 +63,11 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
-    /// Model links: stiffness of the springs between the atoms of two facets that collided, for any two types; none are linked
-    /// when absent.
+    /// Model links: stiffness of the springs between facets that collided, for any two types; none when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub link: Option<LineStiffness>,
-    /// Model links: root mean square length of its three springs above which a link breaks; the smallest mean edge when absent.
+    /// Model links: mean length of its springs above which a link breaks; the smallest mean edge when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub range: Option<Length>,
@@ -99,7 +98,7 @@ pub struct Between {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
-    /// Model links: stiffness of the springs between the atoms of two facets that collided; "0 pN/um" does not bind.
+    /// Model links: stiffness of the springs between facets that collided; "0 pN/um" does not bind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub link: Option<LineStiffness>,

@@ -94,10 +94,9 @@ pub fn links_at(
             body += 1;
         }
         if body as u32 != near.body {
-            let facet = facing(scene, body as u32, near, positions);
-            facet
-                .into_iter()
-                .for_each(|facet| add(Link::between(scene, [body as u32, near.body], [facet, near.facet], positions)));
+            if let Some(facet) = facing(scene, body as u32, near, positions) {
+                add(Link::between(scene, [body as u32, near.body], [facet, near.facet], positions));
+            }
         }
     }
     for near in found.edges.iter().filter(|near| near.bodies[0] != near.bodies[1]) {

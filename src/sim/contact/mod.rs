@@ -3,6 +3,9 @@
 //! Contacts are found where the step begins. What they carried in the last step acts as a force while the cells move
 //! freely; then a projection finds what is missing, by projected Gauss–Seidel over all contacts and all volumes in a fixed
 //! order, eq. (adhesion.3). At rest nothing is missing, and the force is the true one, whatever the step.
+//!
+//! Two other models are there to compare with: springs that link facets in place of strengths, and penalties in place of the
+//! projection. Their forces are those of where the atoms are in each stage of a step.
 
 mod depth;
 mod find;
