@@ -93,10 +93,10 @@ pub fn links_at(
         while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= near.atom) {
             body += 1;
         }
-        if body as u32 != near.body {
-            if let Some(facet) = facing(scene, body as u32, near, positions) {
-                add(Link::between(scene, [body as u32, near.body], [facet, near.facet], positions));
-            }
+        if body as u32 != near.body
+            && let Some(facet) = facing(scene, body as u32, near, positions)
+        {
+            add(Link::between(scene, [body as u32, near.body], [facet, near.facet], positions));
         }
     }
     for near in found.edges.iter().filter(|near| near.bodies[0] != near.bodies[1]) {
