@@ -154,6 +154,32 @@ y = ["contact.count", "contact.deepest", "aggregates"]
 "#;
 
 #[test]
+fn aggregates_are_what_links_join_and_pairs_are_what_touches() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (stiffness, joined, together) in
+        [("5 pN/um", [0.0, 0.0, 2.0, 0.0], 3.0), ("0 pN/um", [0.0, 1.0, 2.0, 3.0], 1.0)]
+    {
+        let model = format!("model = \"links\"\nlink = \"{stiffness}\"");
+        let text = ROW.replace("strength = \"1 Pa\"", &model).replace("\"contact.count\"", "\"contact.links\"");
+        let document = Document::parse("row.toml", &text, Path::new("."), &[]).expect("a good document");
+        let result = folder.path().join("row.vtkhdf");
+        let options = RunOptions { result: result.clone(), overwrite: Overwrite::Replace, threads: Some(1) };
+        run(&document, &options, &mut Quiet).expect("a run");
+        let file = ResultFile::open(&result).expect("a result");
+        let aggregate = file.cell_series("aggregate").expect("a series");
+        assert!(aggregate.rows().into_iter().all(|row| row.to_vec() == joined), "{stiffness}: {aggregate}");
+        assert!(file.scene_series("largest_aggregate").expect("a series").iter().all(|cells| *cells == together));
+        assert!(
+            file.scene_series("contact.links")
+                .expect("a series")
+                .iter()
+                .all(|links| (*links > 0.0) == (together > 1.0))
+        );
+        assert_eq!(file.pairs(0).expect("pairs").len(), 2, "they touch, linked or not");
+    }
+}
+
+#[test]
 fn aggregates_and_shares_of_contact_are_recorded() {
     let folder = tempfile::tempdir().expect("a folder");
     let result = folder.path().join("row.vtkhdf");

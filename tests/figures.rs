@@ -53,6 +53,16 @@ fn two_thousand_cells_wander_as_furth_says() {
 }
 
 #[test]
+fn linked_types_clump_in_one_aggregate_where_they_are_drawn_together() {
+    experiment_keeps_its_word("links_36", "experiment.toml");
+}
+
+#[test]
+fn linked_cells_that_are_hardly_drawn_together_make_small_aggregates() {
+    experiment_keeps_its_word("links_36", "weak.toml");
+}
+
+#[test]
 fn links_stiffen_a_compressed_cell() {
     experiment_keeps_its_word("compression", "experiment.toml");
 }

@@ -67,6 +67,8 @@ pub struct Scene {
     pub reach: Reach,
     /// Number of atoms of all bodies.
     pub atoms: usize,
+    /// Number of facets of all bodies.
+    pub facets: usize,
     pub(super) levels: Vec<Levels>,
     /// The first body of each batch, and the number of bodies.
     pub(super) batches: Vec<u32>,
@@ -107,7 +109,7 @@ impl Scene {
         }
         number(facets.max(edges));
         batches.push(bodies.len() as u32);
-        Self { shapes, bodies, planes, reach, atoms, levels, batches }
+        Self { shapes, bodies, planes, reach, atoms, facets, levels, batches }
     }
 
     /// The mesh of a body.

@@ -142,7 +142,7 @@ impl Shape {
     }
 
     /// The facets around an atom, sorted.
-    pub(super) fn around(&self, atom: usize) -> &[u32] {
+    pub fn around(&self, atom: usize) -> &[u32] {
         &self.around[self.around_first[atom] as usize..self.around_first[atom + 1] as usize]
     }
 

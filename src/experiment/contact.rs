@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 pub const CONTACT_SERIES: [&str; 5] =
     ["contact.sweeps", "contact.deepest", "contact.count", "aggregates", "largest_aggregate"];
 
+/// The series of the scene that a run with links records besides: links between facets.
+pub const LINK_SERIES: &str = "contact.links";
+
 /// Names of the series that a result with contacts has for types of cells, by their order in the document, and planes:
 /// areas and numbers of contacts by pair, shares and clusters.
 pub fn pair_series<'a>(types: &[&'a str], planes: &[&'a str]) -> Vec<String> {
@@ -24,10 +27,26 @@ pub fn pair_series<'a>(types: &[&'a str], planes: &[&'a str]) -> Vec<String> {
     names
 }
 
+/// What cells do that touch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum ContactModel {
+    /// Contacts bear any push, and a pull and a shear by `strength`.
+    #[default]
+    Adhesives,
+    /// Contacts bear any push, and springs hold the atoms of facets that collided, by `link`; they break beyond `range`.
+    Links,
+    /// Contacts push by `penalty` times their depth, and pull within the proximity, by `strength`: to compare with.
+    Penalty,
+}
+
 /// Contacts of cells with each other, with themselves and with planes. Without this table cells pass through each other.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contact {
+    /// What cells do that touch.
+    pub model: ContactModel,
     /// Gap below which surfaces touch; a tenth of the smallest mean edge when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
@@ -44,7 +63,19 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
-    /// Strengths of single pairs.
+    /// Model links: stiffness of the springs between facets that collided, for any two types; none when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub link: Option<LineStiffness>,
+    /// Model links: mean length of its springs above which a link breaks; the smallest mean edge when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub range: Option<Length>,
+    /// Model penalty: push of a contact over its depth.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub penalty: Option<LineStiffness>,
+    /// Strengths or links of single pairs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub between: Vec<Between>,
 }
@@ -55,9 +86,10 @@ pub struct Contact {
 pub struct Between {
     /// Two types of cells, or a type and a plane; the same type twice for its cells among themselves.
     pub types: [String; 2],
-    /// Pull over area of contact at which they part.
+    /// Pull over area of contact at which they part; needed unless the model is links.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
-    pub strength: Stress,
+    pub strength: Option<Stress>,
     /// Shear over area of contact at which they slide; as `strength` when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
@@ -66,6 +98,10 @@ pub struct Between {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
+    /// Model links: stiffness of the springs between facets that collided; "0 pN/um" does not bind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub link: Option<LineStiffness>,
 }
 
 /// What two names of a pair mean in an experiment.

@@ -1,10 +1,10 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
 use super::touch::Touch;
-use crate::experiment::{CONTACT_SERIES, Schedule};
+use crate::experiment::{CONTACT_SERIES, LINK_SERIES, Schedule};
 use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
 use crate::sim::chemistry::Members;
-use crate::sim::contact::find_contacts;
+use crate::sim::contact::{Law, find_contacts};
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
 use crate::sim::{Model, State, Workspace, forces};
@@ -30,6 +30,9 @@ pub fn layout_of(model: &Model) -> Layout {
     layout.contacts = model.contact.is_some();
     if layout.contacts {
         layout.scene_series.extend(CONTACT_SERIES.map(|name| (name.to_owned(), "1".to_owned())));
+    }
+    if model.contact.as_ref().is_some_and(|contact| matches!(contact.law, Law::Links(_))) {
+        layout.scene_series.push((LINK_SERIES.to_owned(), "1".to_owned()));
     }
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
     layout.planes = model.planes.iter().map(plane).collect();
@@ -111,7 +114,7 @@ impl Recorder {
         let mut frame = frame_of(model, state, ws, dt);
         frame.scene = self.loads.iter().map(|&(_, k, l)| model.kinds[k].loads[l].force.at(state.time)).collect();
         if let Some(contact) = &model.contact {
-            self.touch.look(model, contact, ws, dt, &mut frame);
+            self.touch.look(model, contact, state, ws, dt, &mut frame);
         }
         if let Some(scratch) = &mut self.force_scratch {
             // What contacts carry is part of the state, and is read from there.

@@ -4,8 +4,8 @@
 use crate::Vec3;
 use crate::contact::{Contacts, Detector, Scene};
 use crate::output::{Frame, Touching, clusters};
-use crate::sim::contact::ContactModel;
-use crate::sim::{Model, Workspace};
+use crate::sim::contact::{ContactModel, Law, Link, links_at};
+use crate::sim::{Model, State, Workspace};
 
 /// Looks at contacts; has scratch of its own.
 #[derive(Default)]
@@ -15,6 +15,8 @@ pub struct Touch {
     positions: Vec<Vec3>,
     /// What each atom touches: the atom, then another body, or the number of bodies and that of a plane.
     partners: Vec<(u32, u32)>,
+    links: Vec<Link>,
+    linked: Vec<bool>,
     /// A cell, what it touches in the same way, and an area.
     areas: Vec<(u32, u32, f64)>,
 }
@@ -22,7 +24,15 @@ pub struct Touch {
 impl Touch {
     /// Fills in what the cells of a frame touch, and adds the series of contacts to those of the scene, in the order of
     /// [`CONTACT_SERIES`](crate::experiment::CONTACT_SERIES); `dt` is the last step, s, 0 when there was none.
-    pub fn look(&mut self, model: &Model, contact: &ContactModel, ws: &Workspace, dt: f64, frame: &mut Frame) {
+    pub fn look(
+        &mut self,
+        model: &Model,
+        contact: &ContactModel,
+        state: &State,
+        ws: &Workspace,
+        dt: f64,
+        frame: &mut Frame,
+    ) {
         self.positions.clear();
         self.positions.extend(frame.positions.iter().map(|p| Vec3::from(*p)));
         self.detector.detect(&contact.scene, &self.positions, &mut self.found);
@@ -34,7 +44,13 @@ impl Touch {
             touching[body_of(&contact.scene, of_atom[0].0) as usize] += u32::from((of_atom[0].1 as usize) < bodies);
         }
         self.measure_areas(contact, frame);
-        let first = clusters(bodies, frame.pairs.iter().map(|pair| [pair.cell, pair.other]));
+        let Self { found, positions, links, linked, .. } = self;
+        links_at(contact, &state.chemistry.controls, &state.contact.links, found, positions, linked, links);
+        // Where links bind, cells that merely touch do not belong together.
+        let first = match contact.law {
+            Law::Links(_) => clusters(bodies, self.links.iter().map(|link| link.bodies)),
+            _ => clusters(bodies, frame.pairs.iter().map(|pair| [pair.cell, pair.other])),
+        };
         for (cell, record) in frame.cells.iter_mut().enumerate() {
             record.contact_share = f64::from(touching[cell]) / contact.scene.shape(cell as u32).atoms as f64;
             record.aggregate = f64::from(first[cell]);
@@ -50,6 +66,9 @@ impl Touch {
             sizes.iter().filter(|size| **size > 0).count() as f64,
             f64::from(sizes.iter().copied().max().unwrap_or(0)),
         ]);
+        if let Law::Links(_) = contact.law {
+            frame.scene.push(self.links.len() as f64);
+        }
     }
 
     /// Finds what each atom touches, its own cell left out; one that touches several facets of a cell counts once.

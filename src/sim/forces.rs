@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::chemistry::Controls;
-use super::contact::add_contact_forces;
+use super::contact::{add_contact_forces, pull_contacts};
 use super::model::{Kind, Model, VolumeRule};
 use super::state::State;
 use super::workspace::Workspace;
@@ -13,6 +13,7 @@ use crate::mechanics::volume;
 /// Sets `force` of every kind to the sum of all forces at time `time` (pN), drag not included, and `energy` to the
 /// elastic energy of every cell. Motility enters as the drag that its velocity overcomes.
 pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
+    pull_contacts(model, state, &mut ws.contact);
     for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(&mut ws.kinds).enumerate() {
         let cells = kind.first_cell..kind.first_cell + kind.cells;
         let drive = &ws.drive[cells];

@@ -1,10 +1,10 @@
 //! Contacts as the step knows them.
 
-use super::super::contact::Pair;
+use super::super::contact::{ContactModel as Text, Pair};
 use super::super::{Document, Experiment};
 use crate::contact::Reach;
 use crate::error::{Error, Fault, Result, short};
-use crate::sim::contact::{ContactModel, Strength};
+use crate::sim::contact::{ContactModel, Law, LinkTable, Penalty, Strength};
 use crate::sim::{Kind, Plane};
 use crate::units::{LineStiffness, Stress};
 
@@ -34,13 +34,28 @@ pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
         let place = document.place("contact.proximity", "above half of the mean edge");
         return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
     }
-    Ok(Some(Reach { proximity, depth: proximity, margin: proximity }))
+    let depth = if text.model == Text::Penalty { PENALTY_DEPTH * edge } else { proximity };
+    Ok(Some(Reach { proximity, depth, margin: proximity }))
 }
+
+/// How deep contacts are found where nothing but a penalty keeps cells apart, over the smallest mean edge.
+const PENALTY_DEPTH: f64 = 0.5;
 
 /// Contacts with the strengths of the document.
 pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach: Reach) -> Option<ContactModel> {
     let text = experiment.contact.as_ref()?;
     let mut model = ContactModel::new(kinds, planes, reach);
+    match text.model {
+        Text::Adhesives => {}
+        Text::Links => {
+            model.law = Law::Links(links(experiment, kinds));
+            return Some(model);
+        }
+        Text::Penalty => {
+            let stiffness = text.penalty.map_or(0.0, |penalty| penalty.value());
+            model.law = Law::Penalty(Penalty { stiffness, range: reach.proximity });
+        }
+    }
     if let Some(strength) = text.strength {
         let strength = strength_of(strength, text.shear_strength, text.energy);
         for kind in 0..kinds.len() {
@@ -48,7 +63,7 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
         }
     }
     for between in &text.between {
-        let strength = strength_of(between.strength, between.shear_strength, between.energy);
+        let strength = strength_of(between.strength.unwrap_or_default(), between.shear_strength, between.energy);
         match between.pair(experiment) {
             Some(Pair::Types(one, other)) => model.stick(one, other, strength),
             Some(Pair::OnPlane(kind, plane)) => model.stick_to_plane(kind, plane, strength),
@@ -61,4 +76,19 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
 fn strength_of(strength: Stress, shear: Option<Stress>, energy: Option<LineStiffness>) -> Strength {
     let energy = energy.map_or(0.0, |energy| energy.value());
     Strength { tensile: strength.value(), shear: shear.unwrap_or(strength).value(), energy }
+}
+
+/// Which types are linked, and how. The document's checks have refused links to planes.
+fn links(experiment: &Experiment, kinds: &[Kind]) -> LinkTable {
+    let smallest = kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
+    let Some(text) = &experiment.contact else { return LinkTable::new(kinds.len(), smallest) };
+    let mut table = LinkTable::new(kinds.len(), text.range.map_or(smallest, |range| range.value()));
+    table.stiffness.fill(text.link.map_or(0.0, |stiffness| stiffness.value()));
+    for between in &text.between {
+        if let (Some(Pair::Types(one, other)), Some(stiffness)) = (between.pair(experiment), between.link) {
+            table.stiffness[one * kinds.len() + other] = stiffness.value();
+            table.stiffness[other * kinds.len() + one] = stiffness.value();
+        }
+    }
+    table
 }

@@ -2,8 +2,8 @@
 
 use super::Check;
 use crate::error::words;
-use crate::experiment::contact::{Contact, Pair};
-use crate::experiment::{Segregation, When};
+use crate::experiment::contact::{Contact, ContactModel, Pair};
+use crate::experiment::{Method, Segregation, When};
 
 impl Check<'_> {
     pub(super) fn contact(&mut self) {
@@ -19,12 +19,15 @@ impl Check<'_> {
             let message = "`chemistry.contact` has the name under which contacts are recorded".to_owned();
             self.fault("chemistry.contact", "taken", message, "give the system another name");
         }
-        if contact.shear_strength.is_some() && contact.strength.is_none() {
+        self.contact_model(contact);
+        let adhesives = contact.model == ContactModel::Adhesives;
+        let sticks = contact.model != ContactModel::Links;
+        if adhesives && contact.shear_strength.is_some() && contact.strength.is_none() {
             let message = "`contact.shear_strength` is given without `strength`".to_owned();
             let help = "add `strength`; \"0 Pa\" for surfaces that resist sliding but not parting";
             self.fault("contact.shear_strength", "`strength` is missing", message, help);
         }
-        if contact.energy.is_some() && contact.strength.is_none() {
+        if adhesives && contact.energy.is_some() && contact.strength.is_none() {
             let message = "`contact.energy` is given without `strength`".to_owned();
             let help =
                 "add `strength`: where contacts spread, their rim is pulled, and without strength nothing holds it";
@@ -48,8 +51,49 @@ impl Check<'_> {
             }
             named.push(pair);
         }
-        if !contact.between.is_empty() && contact.strength.is_none() {
+        if sticks && !contact.between.is_empty() && contact.strength.is_none() {
             self.forgotten(contact, &named);
+        }
+    }
+
+    /// Keys that belong to another model than the one that is named, and what the model needs.
+    fn contact_model(&mut self, contact: &Contact) {
+        let run = &self.document.experiment.run.integrator;
+        let chosen = run.step.is_none() && run.method == Method::Implicit;
+        if contact.model != ContactModel::Adhesives && !chosen {
+            let message = format!(
+                "`contact.model` is {}, whose springs need steps that are chosen by their error",
+                named(contact)
+            );
+            let help = "leave `step` and `method` out of run.integrator, or `model` out of [contact]";
+            self.fault("contact.model", "not with fixed steps", message, help);
+        }
+        if contact.model == ContactModel::Penalty && contact.penalty.is_none() {
+            let message = "`contact.model` is \"penalty\", and nothing says how stiff it is".to_owned();
+            let help = "add `penalty`, the push over depth: \"50 pN/um\", say";
+            self.fault("contact.model", "`penalty` is missing", message, help);
+        }
+        for (index, between) in contact.between.iter().enumerate() {
+            let path = format!("contact.between[{index}]");
+            let on_plane = matches!(between.pair(&self.document.experiment), Some(Pair::OnPlane(..)));
+            if contact.model == ContactModel::Links && on_plane {
+                let message = format!("`{path}` names a plane, and links join facets of cells");
+                let help = "leave the pair out: cells rest on planes and slide there";
+                self.fault(&format!("{path}.types"), "a plane has no facets", message, help);
+            } else if contact.model == ContactModel::Links && between.link.is_none() {
+                let message = format!("`{path}` does not say how stiff its links are");
+                self.fault(&path, "`link` is missing", message, "add `link`; \"0 pN/um\" does not bind");
+            } else if contact.model != ContactModel::Links && between.strength.is_none() {
+                let message = format!("`{path}` does not say how strongly the two stick");
+                self.fault(&path, "`strength` is missing", message, "add `strength`; \"0 Pa\" does not stick");
+            }
+        }
+        for (path, models) in keys_of_models(contact) {
+            if !models.contains(&contact.model) {
+                let owners = models.iter().map(|model| name_of(*model)).collect::<Vec<_>>().join(" or ");
+                let message = format!("`{path}` means nothing in the contact model {}", named(contact));
+                self.fault(&path, "of another model", message, format!("leave it out, or choose model = {owners}"));
+            }
         }
     }
 
@@ -124,4 +168,41 @@ impl Check<'_> {
         let help = "add them, or give `strength` to [contact] for all pairs that are not in the table; \"0 Pa\" does not stick";
         self.fault("contact.between", "the table lacks pairs", message, help);
     }
+}
+
+/// A model as documents name it.
+fn name_of(model: ContactModel) -> &'static str {
+    match model {
+        ContactModel::Adhesives => "\"adhesives\"",
+        ContactModel::Links => "\"links\"",
+        ContactModel::Penalty => "\"penalty\"",
+    }
+}
+
+/// The model of a document in its words.
+fn named(contact: &Contact) -> String {
+    let default = if contact.model == ContactModel::Adhesives { ", the default" } else { "" };
+    format!("{}{default}", name_of(contact.model))
+}
+
+/// The keys of a table of contacts that some models know, as far as they are there, with these models.
+fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
+    use ContactModel::{Adhesives, Links, Penalty};
+    let mut keys: Vec<(String, bool, &[ContactModel])> = vec![
+        ("strength".into(), contact.strength.is_some(), &[Adhesives, Penalty]),
+        ("shear_strength".into(), contact.shear_strength.is_some(), &[Adhesives]),
+        ("energy".into(), contact.energy.is_some(), &[Adhesives]),
+        ("link".into(), contact.link.is_some(), &[Links]),
+        ("range".into(), contact.range.is_some(), &[Links]),
+        ("penalty".into(), contact.penalty.is_some(), &[Penalty]),
+    ];
+    for (index, between) in contact.between.iter().enumerate() {
+        let path = |key: &str| format!("between[{index}].{key}");
+        keys.push((path("strength"), between.strength.is_some(), &[Adhesives, Penalty]));
+        keys.push((path("shear_strength"), between.shear_strength.is_some(), &[Adhesives]));
+        keys.push((path("energy"), between.energy.is_some(), &[Adhesives]));
+        keys.push((path("link"), between.link.is_some(), &[Links]));
+    }
+    keys.retain(|(_, is_there, _)| *is_there);
+    keys.into_iter().map(|(key, _, models)| (format!("contact.{key}"), models)).collect()
 }

@@ -1,7 +1,9 @@
 //! What touches where a step begins, and what it carried in the step before.
 
 use super::gather::gather;
-use super::model::ContactModel;
+use super::links::{links_at, pull_links};
+use super::model::{ContactModel, Law};
+use super::penalty::press;
 use super::rows::{Pull, write_rows};
 use super::scratch::ContactScratch;
 use super::spread::add_spreading;
@@ -22,10 +24,12 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     }
     s.detector.detect(&contact.scene, &s.start, &mut s.found);
     keep_edges(contact, &state.contact, &s.start, &mut s.found);
+    let ContactScratch { found, start, linked, links, .. } = s;
+    links_at(contact, &state.chemistry.controls, &state.contact.links, found, start, linked, links);
     write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, &mut s.rows, &mut s.pulls);
     s.force.clear();
     s.force.resize(contact.scene.atoms, Vec3::zeros());
-    if model.integrator.method.is_inertial() {
+    if model.integrator.method.is_inertial() || matches!(contact.law, Law::Penalty(_)) {
         s.pulls.fill(Pull::default());
     }
     add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.force);
@@ -49,15 +53,36 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
     found.edges.sort_unstable_by_key(|edge| edge.edges);
 }
 
-/// Adds the force that contacts carried to the forces of a block of a kind.
+/// Sets the forces of links and penalties where the atoms are now: they change while a step is made, and its error estimate
+/// must see that.
+pub fn pull_contacts(model: &Model, state: &State, s: &mut ContactScratch) {
+    let Some(contact) = model.contact.as_ref().filter(|contact| contact.law != Law::Adhesives) else { return };
+    s.places.resize(contact.scene.atoms, Vec3::zeros());
+    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+        gather(kind, &now.positions, &mut s.places[contact.atoms_of(number)], |x| x);
+    }
+    s.live_force.clear();
+    s.live_force.resize(contact.scene.atoms, Vec3::zeros());
+    match &contact.law {
+        Law::Penalty(penalty) => press(penalty, &s.rows, &s.start, &s.places, &mut s.live_force),
+        _ => pull_links(contact, &state.chemistry.controls, &s.links, &s.places, &mut s.live_force),
+    };
+}
+
+/// Adds the force that contacts carried, and what links and penalties do, to the forces of a block of a kind.
 pub fn add_contact_forces(model: &Model, number: usize, block: usize, scratch: &ContactScratch, f: &mut [f64]) {
     let (Some(contact), kind) = (&model.contact, &model.kinds[number]) else { return };
-    let forces = &scratch.force[contact.atoms_of(number)];
+    let atoms = contact.atoms_of(number);
+    let forces = &scratch.force[atoms.clone()];
+    let pulls = scratch.live_force.get(atoms);
     for lane in 0..kind.lanes {
         let cell = (block * kind.lanes + lane).min(kind.cells - 1);
-        for (atom, force) in forces[cell * kind.atoms()..(cell + 1) * kind.atoms()].iter().enumerate() {
-            for axis in 0..3 {
-                f[(3 * atom + axis) * kind.lanes + lane] += force[axis];
+        let own = cell * kind.atoms()..(cell + 1) * kind.atoms();
+        for forces in [Some(forces), pulls].into_iter().flatten() {
+            for (atom, force) in forces[own.clone()].iter().enumerate() {
+                for axis in 0..3 {
+                    f[(3 * atom + axis) * kind.lanes + lane] += force[axis];
+                }
             }
         }
     }
@@ -68,7 +93,8 @@ pub fn keep_contacts(model: &Model, state: &mut State, ws: &Workspace) {
     if model.contact.is_none() {
         return;
     }
-    let (s, ContactState { atoms, edges, planes }) = (&ws.contact, &mut state.contact);
+    let (s, ContactState { atoms, edges, planes, links }) = (&ws.contact, &mut state.contact);
+    links.clone_from(&s.links);
     let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
     let (of_atoms, others) = s.pulls.split_at(s.found.atoms.len());
     let (of_edges, of_planes) = others.split_at(s.found.edges.len());

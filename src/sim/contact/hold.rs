@@ -1,7 +1,7 @@
 //! The projection: atoms are moved so that contacts and volumes hold.
 
 use super::gather::{gather, scatter};
-use super::model::ContactModel;
+use super::model::{ContactModel, Law};
 use super::rows::Pull;
 use super::scratch::ContactScratch;
 use super::sweep::{Change, VolumeRow, sweep_contacts, sweep_depths, sweep_volumes};
@@ -28,7 +28,7 @@ pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspa
     let Some(contact) = &model.contact else { return Ok(()) };
     let Workspace { contact: s, kinds, .. } = ws;
     s.sweeps = 0;
-    if s.rows.is_empty() {
+    if s.rows.is_empty() || matches!(contact.law, Law::Penalty(_)) {
         return Ok(());
     }
     prepare(model, contact, dt, state, s, kinds);

@@ -3,13 +3,18 @@
 //! Contacts are found where the step begins. What they carried in the last step acts as a force while the cells move
 //! freely; then a projection finds what is missing, by projected Gauss–Seidel over all contacts and all volumes in a fixed
 //! order, eq. (adhesion.3). At rest nothing is missing, and the force is the true one, whatever the step.
+//!
+//! Two other models are there to compare with: springs that link facets in place of strengths, and penalties in place of the
+//! projection. Their forces are those of where the atoms are in each stage of a step.
 
 mod depth;
 mod find;
 mod gather;
 mod hold;
+mod links;
 mod model;
 mod momentum;
+mod penalty;
 mod rows;
 mod scratch;
 mod spread;
@@ -19,9 +24,11 @@ mod sweep;
 mod sweep_tests;
 
 pub use depth::{check_depth, check_passed};
-pub use find::{add_contact_forces, find_contacts, keep_contacts};
+pub use find::{add_contact_forces, find_contacts, keep_contacts, pull_contacts};
 pub use hold::{hold_contacts, travel};
-pub use model::{ContactModel, Strength};
+pub use links::{Link, LinkTable, links_at, pull_links};
+pub use model::{ContactModel, Law, Strength};
+pub use penalty::{Penalty, press};
 pub use rows::{Pull, Row};
 pub use scratch::ContactScratch;
 pub use state::{AtomBond, ContactState, EdgeBond, PlaneBond};

@@ -1,8 +1,11 @@
 //! Who can touch whom, and how strongly they stick.
 
+use super::links::LinkTable;
+use super::penalty::Penalty;
 use crate::contact::{self, Reach, Scene, Shape, Sides};
 use crate::geometry;
 use crate::mechanics::integrator::StepSize;
+use crate::sim::chemistry::Controls;
 use crate::sim::model::{Kind, Plane};
 
 /// How strongly two surfaces stick, eq. (adhesion.2). It depends neither on the step nor on the mesh.
@@ -16,11 +19,25 @@ pub struct Strength {
     pub energy: f64,
 }
 
+/// What surfaces do that touch.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Law {
+    /// Contacts bear any push, and a pull and a shear, [`Strength`].
+    #[default]
+    Adhesives,
+    /// Contacts bear any push; springs hold the atoms of facets that collided.
+    Links(LinkTable),
+    /// Contacts push by their depth, and pull within the proximity.
+    Penalty(Penalty),
+}
+
 /// Contacts of a model.
 #[derive(Debug, Clone)]
 pub struct ContactModel {
     /// All surfaces and planes: body `i` is cell `i`, shape `i` is kind `i`.
     pub scene: Scene,
+    /// What keeps surfaces together.
+    pub law: Law,
     /// Strength between kinds: `between[kind * kinds + other]`, symmetric.
     pub between: Vec<Strength>,
     /// Strength between kinds and planes: `on_planes[kind * planes + plane]`.
@@ -63,6 +80,7 @@ impl ContactModel {
         }
         Self {
             scene,
+            law: Law::default(),
             between: vec![Strength::default(); kinds.len() * kinds.len()],
             on_planes: vec![Strength::default(); kinds.len() * planes.len()],
             tolerance: TOLERANCE * edge,
@@ -92,6 +110,13 @@ impl ContactModel {
     pub fn stick_to_plane(&mut self, kind: usize, plane: usize, strength: Strength) {
         let planes = self.scene.planes.len();
         self.on_planes[kind * planes + plane] = strength;
+    }
+
+    /// The stiffness of the springs between two bodies, pN/µm.
+    pub(super) fn link_stiffness(&self, table: &LinkTable, bodies: [u32; 2], controls: &Controls) -> f64 {
+        let [kind, other] = bodies.map(|body| self.kind_of(body));
+        let factors = bodies.map(|body| controls.adhesion_of(body as usize));
+        table.stiffness[kind * self.areas.len() + other] * factors[0] * factors[1]
     }
 
     /// How strongly two bodies stick.

@@ -1,5 +1,6 @@
 //! Scratch of the contacts.
 
+use super::links::Link;
 use super::momentum::Momentum;
 use super::rows::{Pull, Row};
 use super::sweep::{V4, VolumeRow};
@@ -17,6 +18,14 @@ pub struct ContactScratch {
     pub start: Vec<Vec3>,
     /// Force of the contacts on the atoms where the step began, pN.
     pub force: Vec<Vec3>,
+    /// Links of the step.
+    pub links: Vec<Link>,
+    /// Facets that have one.
+    pub(super) linked: Vec<bool>,
+    /// Positions in the stage that is being made, µm.
+    pub(super) places: Vec<Vec3>,
+    /// Force of links or penalties on the atoms in that stage, pN; empty where there are none.
+    pub(super) live_force: Vec<Vec3>,
     /// What the surface at each atom releases an area of contact, pN/µm.
     pub(super) relief: Vec<f64>,
     /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on planes.
@@ -47,6 +56,9 @@ impl ContactScratch {
         self.pulls.clear();
         self.volumes.clear();
         self.held.clear();
+        self.links.clear();
+        self.linked.clear();
+        [&mut self.places, &mut self.live_force].into_iter().for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
         self.start.fill(Vec3::repeat(f64::NAN));
         self.force.fill(Vec3::repeat(f64::NAN));
         self.moved.fill([f64::NAN; 4]);

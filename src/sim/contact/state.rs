@@ -1,5 +1,6 @@
 //! What contacts carry from one step to the next.
 
+use super::links::Link;
 use serde::{Deserialize, Serialize};
 
 /// An atom that touches a facet of a body.
@@ -39,7 +40,7 @@ pub struct PlaneBond {
     pub force: [f32; 3],
 }
 
-/// All contacts that carry a force, in the order in which they are found.
+/// All contacts that carry a force, in the order in which they are found, and links.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ContactState {
     /// Atoms on facets.
@@ -48,4 +49,6 @@ pub struct ContactState {
     pub edges: Vec<EdgeBond>,
     /// Atoms on planes.
     pub planes: Vec<PlaneBond>,
+    /// Links between facets, in their order; under other laws none.
+    pub links: Vec<Link>,
 }

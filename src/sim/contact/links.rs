@@ -1,0 +1,168 @@
+//! Dynamic links (Promayon, Martiel and Tracqui 2003): facets of two cells that collide are joined by springs between their
+//! atoms, and let each other go when they are too far apart.
+
+use serde::{Deserialize, Serialize};
+
+use super::model::{ContactModel, Law};
+use crate::Vec3;
+use crate::contact::{AtomContact, Contacts, EdgeContact, Scene};
+use crate::sim::chemistry::Controls;
+
+/// Which kinds are linked, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinkTable {
+    /// Stiffness of the spring between two atoms, pN/µm: `stiffness[kind * kinds + other]`, symmetric; 0 binds nothing.
+    pub stiffness: Vec<f64>,
+    /// Root mean square of the lengths of its three springs above which a link breaks, µm.
+    pub range: f64,
+}
+
+/// Two facets of two cells, each atom of the one joined to an atom of the other, eq. (adhesion.11).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Link {
+    /// The facets, numbered through all cells, the smaller first.
+    pub facets: [u32; 2],
+    /// Their bodies.
+    pub bodies: [u32; 2],
+    /// The pairs of atoms, numbered through all cells; the first of each belongs to the first facet.
+    pub pairs: [[u32; 2]; 3],
+}
+
+/// Ways to give each corner of a facet one of another.
+const WAYS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+
+impl LinkTable {
+    /// A table that links nothing.
+    pub fn new(kinds: usize, range: f64) -> Self {
+        Self { stiffness: vec![0.0; kinds * kinds], range }
+    }
+
+    /// Whether the springs of a link hold, of this summed squared length (µm²).
+    fn holds(&self, squared: f64) -> bool {
+        squared <= 3.0 * self.range * self.range
+    }
+}
+
+impl Link {
+    /// Joins two facets by the pairs of atoms that are nearest to each other taken together.
+    fn between(scene: &Scene, bodies: [u32; 2], facets: [u32; 2], positions: &[Vec3]) -> Self {
+        let (bodies, facets) =
+            if facets[0] < facets[1] { (bodies, facets) } else { ([bodies[1], bodies[0]], [facets[1], facets[0]]) };
+        let [own, other] = [0, 1].map(|side| scene.facet_atoms(bodies[side], facets[side]));
+        let ways = WAYS.map(|way| Self { facets, bodies, pairs: [0, 1, 2].map(|i| [own[i], other[way[i]]]) });
+        let nearest = ways.iter().min_by(|one, way| one.squared(positions).total_cmp(&way.squared(positions)));
+        *nearest.unwrap_or(&ways[0])
+    }
+
+    /// The sum of the squared lengths of its springs, µm².
+    fn squared(&self, positions: &[Vec3]) -> f64 {
+        self.pairs
+            .iter()
+            .map(|[one, other]| (positions[*one as usize] - positions[*other as usize]).norm_squared())
+            .sum()
+    }
+}
+
+/// The links at an instant: those that hold of the ones before, and new ones between facets that collide. A facet has one link at most.
+/// `taken` is scratch.
+pub fn links_at(
+    model: &ContactModel,
+    controls: &Controls,
+    before: &[Link],
+    found: &Contacts,
+    positions: &[Vec3],
+    taken: &mut Vec<bool>,
+    links: &mut Vec<Link>,
+) {
+    links.clear();
+    let Law::Links(table) = &model.law else { return };
+    let scene = &model.scene;
+    taken.clear();
+    taken.resize(scene.facets, false);
+    let mut add = |link: Link| {
+        let free = link.facets.iter().all(|facet| !taken[*facet as usize]);
+        let binds = model.link_stiffness(table, link.bodies, controls) > 0.0;
+        if free && binds && table.holds(link.squared(positions)) {
+            link.facets.iter().for_each(|facet| taken[*facet as usize] = true);
+            links.push(link);
+        }
+    };
+    before.iter().for_each(|link| add(*link));
+    let mut body = 0;
+    for near in &found.atoms {
+        while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= near.atom) {
+            body += 1;
+        }
+        if body as u32 != near.body
+            && let Some(facet) = facing(scene, body as u32, near, positions)
+        {
+            add(Link::between(scene, [body as u32, near.body], [facet, near.facet], positions));
+        }
+    }
+    for near in found.edges.iter().filter(|near| near.bodies[0] != near.bodies[1]) {
+        if let Some(facets) = facing_at_edges(scene, near, positions) {
+            add(Link::between(scene, near.bodies, facets, positions));
+        }
+    }
+    links.sort_unstable();
+}
+
+/// The normal of a facet of a body, not of unit length.
+fn normal_of(scene: &Scene, body: u32, facet: u32, positions: &[Vec3]) -> Vec3 {
+    let [a, b, c] = scene.facet_atoms(body, facet).map(|atom| positions[atom as usize]);
+    (b - a).cross(&(c - a))
+}
+
+/// How much a facet faces a direction: −1 when it looks against it.
+fn along(scene: &Scene, body: u32, facet: u32, direction: &Vec3, positions: &[Vec3]) -> f64 {
+    let normal = normal_of(scene, body, facet, positions);
+    normal.dot(direction) / normal.norm().max(f64::MIN_POSITIVE)
+}
+
+/// The facets around an atom of a body, numbered through the scene.
+fn around(scene: &Scene, body: u32, atom: u32) -> impl Iterator<Item = u32> {
+    let of = scene.bodies[body as usize];
+    scene.shape(body).around((atom - of.first_atom) as usize).iter().map(move |facet| facet + of.first_facet)
+}
+
+/// The facet around an atom in contact that looks most against what it touches.
+fn facing(scene: &Scene, body: u32, near: &AtomContact, positions: &[Vec3]) -> Option<u32> {
+    let turned = |facet: &u32| along(scene, body, *facet, &near.normal, positions);
+    let facets = around(scene, body, near.atom);
+    facets.min_by(|one, other| turned(one).total_cmp(&turned(other)))
+}
+
+/// The facets beside two edges in contact that look most against each other; none at the rim of a sheet.
+fn facing_at_edges(scene: &Scene, near: &EdgeContact, positions: &[Vec3]) -> Option<[u32; 2]> {
+    let most = |side: usize, sign: f64| {
+        let body = near.bodies[side];
+        let [one, other] = scene.edge_atoms(body, near.edges[side]);
+        let beside = around(scene, body, one).filter(|facet| scene.facet_atoms(body, *facet).contains(&other));
+        let turned = |facet: &u32| sign * along(scene, body, *facet, &near.normal, positions);
+        beside.min_by(|one, other| turned(one).total_cmp(&turned(other)))
+    };
+    Some([most(0, 1.0)?, most(1, -1.0)?])
+}
+
+/// Adds the forces of links to those of all atoms, eq. (adhesion.11), and returns their energy, pN·µm: less than nothing where
+/// they hold, and nothing where they break.
+pub fn pull_links(
+    model: &ContactModel,
+    controls: &Controls,
+    links: &[Link],
+    positions: &[Vec3],
+    force: &mut [Vec3],
+) -> f64 {
+    let Law::Links(table) = &model.law else { return 0.0 };
+    let mut energy = 0.0;
+    for link in links {
+        let stiffness = model.link_stiffness(table, link.bodies, controls);
+        for [one, other] in link.pairs.map(|pair| pair.map(|atom| atom as usize)) {
+            let pull = stiffness * (positions[other] - positions[one]);
+            force[one] += pull;
+            force[other] -= pull;
+        }
+        energy += 0.5 * stiffness * (link.squared(positions) - 3.0 * table.range * table.range);
+    }
+    energy
+}
