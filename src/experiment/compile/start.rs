@@ -68,7 +68,8 @@ pub fn settle_start(document: &Document, compiled: &mut Compiled) -> Result<Push
         let (kind, cell) = model.kind_of(body);
         state.kinds[kind].shift(&model.kinds[kind], cell, way);
     }
-    let lengths = moves.iter().map(|way| way.norm()).filter(|length| *length > 0.0);
+    // Pushes from both sides may leave round-off.
+    let lengths = moves.iter().map(|way| way.norm()).filter(|length| *length > 1e-9 * gap);
     Ok(PushedApart { cells: lengths.clone().count(), farthest: lengths.fold(0.0, f64::max) })
 }
 
