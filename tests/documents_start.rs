@@ -225,7 +225,7 @@ mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "50 pN/um" }
 
 #[test]
 fn a_volume_that_does_not_begin_at_rest_is_approached_and_then_exact() {
-    let fixed = "[run.integrator]\nstep = \"5 ms\"\n";
+    let fixed = "[run.integrator]\nstep = \"2 ms\"\n";
     for (ratio, more) in [(1.2, ""), (0.8, ""), (0.97, ""), (1.2, fixed)] {
         let Compiled { model, mut state, .. } = swollen(ratio, more);
         let mut ws = Workspace::new(&model);
