@@ -83,7 +83,7 @@ fn main() {
         "{:16} {:9} {:>6} {:>8} {:>10} {:>10} {:>10} {:>8} {:>9}",
         "scene", "paper", "atoms", "contacts", "ms a step", "tries", "contact ms", "sweeps", "2007, ms"
     );
-    let only = std::env::args().nth(1).filter(|name| !name.starts_with('-'));
+    let only = std::env::args().skip(1).find(|name| !name.starts_with('-'));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     for (name, figure, from, then) in SCENES {
         if only.as_deref().is_none_or(|only| only == name) {
