@@ -156,7 +156,8 @@ fn main() {
     let asked: Vec<String> = std::env::args().skip(1).collect();
     let [large, single] = ["--large", "--single"].map(|word| asked.iter().any(|argument| argument == word));
     let chosen: Vec<usize> = asked.iter().filter_map(|argument| argument.parse().ok()).collect();
-    for (cells, pack) in [(25, 40.0), (100, 20.0), (1000, 6.0), (10_000, 2.0)] {
+    // The pull draws 1 000 and 10 000 cells together by the same part, and a smaller population farther.
+    for (cells, pack) in [(25, 40.0), (100, 20.0), (1000, 6.0), (10_000, 28.0)] {
         for threads in [1, 2] {
             let wanted = if chosen.is_empty() { cells < 10_000 || large } else { chosen.contains(&cells) };
             if wanted && (threads == 1 || !single) {
