@@ -1,7 +1,7 @@
 //! What the table of contacts in a document means, and where cells start that touch.
 
 use pseudopod::Vec3;
-use pseudopod::experiment::{CONTACT_SERIES, Compiled, Document, check_start, compile, pair_series};
+use pseudopod::experiment::{CONTACT_SERIES, Compiled, Document, PushedApart, compile, pair_series, settle_start};
 use pseudopod::output::{Overwrite, ResultFile};
 use pseudopod::run::{Quiet, RunOptions, run};
 use pseudopod::sim::contact::Strength;
@@ -39,8 +39,9 @@ fn document(more: &str) -> Document {
 
 fn compiled(more: &str) -> Compiled {
     let document = document(more);
-    let compiled = compile(&document).expect("a good document");
-    check_start(&document, &compiled).expect("a start without overlap");
+    let mut compiled = compile(&document).expect("a good document");
+    let pushed = settle_start(&document, &mut compiled).expect("a start without overlap");
+    assert_eq!(pushed, PushedApart::default());
     compiled
 }
 

@@ -3,7 +3,7 @@
 //! `PSEUDOPOD_BLESS=1 cargo test --test messages_experiments` writes the texts anew; read the difference before committing it.
 
 use pseudopod::error::{Error, Paint, render};
-use pseudopod::experiment::{Document, check_start, compile};
+use pseudopod::experiment::{Document, compile, settle_start};
 use std::path::{Path, PathBuf};
 
 fn experiments(folder: &str) -> Vec<PathBuf> {
@@ -16,7 +16,7 @@ fn experiments(folder: &str) -> Vec<PathBuf> {
 
 fn compiled(path: &Path) -> Result<(), Error> {
     let document = Document::read(path, &[])?;
-    check_start(&document, &compile(&document)?)
+    settle_start(&document, &mut compile(&document)?).map(drop)
 }
 
 /// Holds the messages of the experiments of a folder, of which there are so many at least.
@@ -49,5 +49,5 @@ fn every_bad_experiment_with_chemistry_gets_the_message_beside_it() {
 
 #[test]
 fn every_bad_experiment_with_contacts_gets_the_message_beside_it() {
-    every_message_is_that_beside("contact", 4);
+    every_message_is_that_beside("contact", 7);
 }

@@ -2,7 +2,7 @@
 
 use super::report::{Report, path_text};
 use crate::error::{Error, Result};
-use crate::experiment::{Document, check_start, compile};
+use crate::experiment::{Document, compile, settle_start};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -31,16 +31,18 @@ pub fn run(args: &CheckArgs) -> Result<Report> {
     for path in &args.documents {
         // Faults of meshes and steps show only once the cells are built.
         let checked = Document::read(path, &args.sets).and_then(|document| {
-            compile(&document).and_then(|compiled| check_start(&document, &compiled))?;
-            Ok(document)
+            let pushed = compile(&document).and_then(|mut compiled| settle_start(&document, &mut compiled))?;
+            Ok((document, pushed))
         });
         match checked {
-            Ok(document) => {
+            Ok((document, pushed)) => {
                 let cells: usize = document.experiment.cells.values().map(|cell| cell.count()).sum();
                 let (types, title) = (document.experiment.cells.len(), &document.experiment.title);
                 // Writing to a text cannot fail.
                 let _ = writeln!(words, "{}: good: \"{title}\", {}", path.display(), counted(cells, types));
-                good.push(json!({ "path": path_text(path), "title": title, "cells": cells, "types": types }));
+                // Writing to a text cannot fail.
+                let _ = pushed.notice().map_or(Ok(()), |notice| writeln!(words, "{}: {notice}", path.display()));
+                good.push(json!({ "path": path_text(path), "title": title, "cells": cells, "types": types, "cells_pushed_apart": pushed.cells }));
             }
             Err(Error::Input(found)) => faults.extend(found),
             Err(other) => return Err(other),

@@ -119,7 +119,7 @@ pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<Report> {
     let mut words = String::new();
     // Writing to a text cannot fail.
     if !how.quiet {
-        let (name, Outcome { steps, frames, made, limited, wall_time }) = (result.display(), outcome);
+        let (name, Outcome { steps, frames, made, limited, wall_time, .. }) = (result.display(), outcome);
         let _ = writeln!(words, "{name}: {steps} steps, {frames} frames, {wall_time:.1} s");
         if *limited > 0 {
             let _ = writeln!(words, "contacts limited {limited} of {made} steps");
@@ -139,6 +139,8 @@ pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<Report> {
         .fact("steps", outcome.steps)
         .fact("frames", outcome.frames)
         .fact("steps_limited_by_contacts", outcome.limited)
+        .fact("cells_pushed_apart", outcome.pushed.cells)
+        .fact("farthest_push_um", outcome.pushed.farthest)
         .fact("wall_time_s", outcome.wall_time)
         .fact("summary", measures.collect::<serde_json::Map<_, _>>()))
 }

@@ -1,9 +1,12 @@
 //! Exact answers for the start of a run: whether a point is inside a closed surface, and which surfaces overlap.
 
+use rayon::prelude::*;
+
 use super::boxes::Bounds;
 use super::neighbours::Neighbours;
 use super::scene::Scene;
 use super::shape::Sides;
+use super::way::centre;
 use crate::Vec3;
 
 /// How often a closed surface winds around a point: 1 inside, 0 outside, for a surface that faces outwards.
@@ -58,37 +61,40 @@ pub fn find_overlaps(scene: &Scene, positions: &[Vec3]) -> Vec<Overlap> {
         .collect();
     let mut neighbours = Neighbours::default();
     neighbours.find(&bounds);
-    let mut overlaps = Vec::new();
-    for first in 0..scene.bodies.len() as u32 {
-        for &second in neighbours.of(first).iter().filter(|&&second| second > first) {
-            let inside = |inner: u32, outer: u32| atoms_inside(scene, positions, inner, outer, &bounds[outer as usize]);
-            let through =
-                |edges: u32, facets: u32| crossings(scene, positions, edges, facets, &bounds[facets as usize]);
-            let overlap = Overlap {
-                bodies: [first, second],
-                atoms_inside: [inside(first, second), inside(second, first)],
-                crossings: through(first, second) + through(second, first),
-            };
-            if overlap.atoms_inside != [0, 0] || overlap.crossings > 0 {
-                overlaps.push(overlap);
-            }
-        }
-    }
-    overlaps
+    let with_later = |first: u32| {
+        let later = neighbours.of(first).iter().filter(move |&&second| second > first);
+        later.filter_map(|&second| overlap_of(scene, positions, [first, second], &bounds)).collect::<Vec<_>>()
+    };
+    let of_bodies: Vec<Vec<Overlap>> = (0..scene.bodies.len() as u32).into_par_iter().map(with_later).collect();
+    of_bodies.concat()
 }
 
-/// How many atoms of a body are inside another; none when that is open.
-fn atoms_inside(scene: &Scene, positions: &[Vec3], inner: u32, outer: u32, bounds: &Bounds) -> u32 {
-    let shape = scene.shape(outer);
-    if !shape.closed || shape.sides == Sides::Both {
-        return 0;
-    }
-    let there = scene.of_body(outer, positions);
-    let is_inside = |place: &&Vec3| {
-        Bounds::around(std::slice::from_ref(*place), 0.0).meets(bounds)
-            && winding_number(**place, there, &shape.facets).abs() > 0.5
+/// How two bodies overlap, if they do.
+fn overlap_of(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], bounds: &[Bounds]) -> Option<Overlap> {
+    let [first, second] = bodies;
+    let inside = |inner: u32, outer: u32| {
+        let within = |place: &&Vec3| is_inside(scene, positions, **place, outer, &bounds[outer as usize]);
+        scene.of_body(inner, positions).iter().filter(within).count() as u32
     };
-    scene.of_body(inner, positions).iter().filter(is_inside).count() as u32
+    let through = |edges: u32, facets: u32| crossings(scene, positions, edges, facets, &bounds[facets as usize]);
+    let atoms_inside = [inside(first, second), inside(second, first)];
+    let crossings = through(first, second) + through(second, first);
+    (atoms_inside != [0, 0] || crossings > 0).then_some(Overlap { bodies, atoms_inside, crossings })
+}
+
+/// Whether a place is inside a body, whose box is given; never when the body is open.
+pub(super) fn is_inside(scene: &Scene, positions: &[Vec3], place: Vec3, body: u32, bounds: &Bounds) -> bool {
+    let shape = scene.shape(body);
+    shape.closed
+        && shape.sides == Sides::Outer
+        && Bounds::around(&[place], 0.0).meets(bounds)
+        && winding_number(place, scene.of_body(body, positions), &shape.facets).abs() > 0.5
+}
+
+/// Whether the mean of the atoms of a body is inside another, which is closed.
+pub fn centre_is_inside(scene: &Scene, positions: &[Vec3], inner: u32, outer: u32) -> bool {
+    let bounds = Bounds::around(scene.of_body(outer, positions), 0.0);
+    is_inside(scene, positions, centre(scene.of_body(inner, positions)), outer, &bounds)
 }
 
 /// How often edges of one body pass through facets of another.
@@ -107,7 +113,7 @@ fn crossings(scene: &Scene, positions: &[Vec3], with_edges: u32, with_facets: u3
 
 /// Whether a segment passes through a facet: its ends on different sides of the plane, and the line on the same side of
 /// all three sides of the facet.
-fn passes_through(from: Vec3, to: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
+pub(super) fn passes_through(from: Vec3, to: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
     let height = |point: Vec3| (b - a).cross(&(c - a)).dot(&(point - a));
     if height(from) * height(to) >= 0.0 {
         return false;

@@ -2,8 +2,9 @@
 //! inside each other. It knows shapes and positions only; what contacts do is for others.
 //!
 //! A [`Scene`] says what can touch and from how far, a [`Detector`] keeps pairs from step to step and writes
-//! [`Contacts`]; [`find_overlaps`] answers for the start of a run, [`atom_meets_facet`] and [`edges_meet`] check a step.
+//! [`Contacts`]; [`find_overlaps`] and [`push_apart`] are for the start of a run, [`atom_meets_facet`] and [`edges_meet`] check a step.
 
+mod apart;
 mod atom_facet;
 mod boxes;
 mod closest;
@@ -18,12 +19,14 @@ mod reference;
 mod scene;
 mod shape;
 mod swept;
+mod way;
 
+pub use apart::{Yielding, push_apart};
 pub use closest::{FacetPoint, Feature, closest_on_facet, closest_on_segments};
 pub use detect::{Detection, Detector};
 pub use edge_edge::edges_still_touch;
 pub use found::{AtomContact, Contacts, EdgeContact, PlaneContact};
-pub use inside::{Overlap, find_overlaps, winding_number};
+pub use inside::{Overlap, centre_is_inside, find_overlaps, winding_number};
 pub use passages::{Coverage, Pair, Passage};
 pub use reference::detect_all_pairs;
 pub use scene::{Body, Plane, Reach, Scene};

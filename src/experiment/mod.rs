@@ -48,7 +48,7 @@ mod values;
 
 pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
-pub use compile::{Compiled, Schedule, check_start, compile};
+pub use compile::{Compiled, PushedApart, Schedule, compile, settle_start};
 pub use contact::{Between, CONTACT_SERIES, Contact, ContactModel, LINK_SERIES, pair_series};
 pub use document::Document;
 pub(crate) use document::near_file;

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Compiled, Document, check_start, compile};
+use crate::experiment::{Compiled, Document, PushedApart, compile, settle_start};
 use crate::output::{Frame, Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
 use crate::sim::contact::check_passed;
 use crate::sim::{State, Trouble, Workspace, begin_chemistry, step};
@@ -41,6 +41,8 @@ pub struct Outcome {
     pub limited: u64,
     /// Wall-clock seconds of this call.
     pub wall_time: f64,
+    /// Cells that this call pushed apart before it began.
+    pub pushed: PushedApart,
 }
 
 /// Set by the first Ctrl-C or termination signal; a run then ends at the next step with a checkpoint.
@@ -55,8 +57,8 @@ pub static STOP: AtomicBool = AtomicBool::new(false);
 pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
     let pool = pool_of(options.threads)?;
     let document = &document.with_equations();
-    let compiled = compile(document)?;
-    check_start(document, &compiled)?;
+    let mut compiled = compile(document)?;
+    let pushed = settle_start(document, &mut compiled)?;
     let (source, title) = (&document.source, &document.experiment.title);
     let header = Header {
         equations: document.equations.clone().into_iter().collect(),
@@ -64,7 +66,9 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
     };
     let layout = layout_of(&compiled.model);
     let writer = ResultWriter::create(&options.result, &header, &layout, options.overwrite)?;
+    pushed.notice().iter().for_each(|notice| report.notice(notice));
     within(pool, || drive(compiled, writer, &options.result, report, Start::Fresh))
+        .map(|outcome| Outcome { pushed, ..outcome })
         .map_err(|error| can_go_on(error, &options.result))
 }
 
@@ -79,7 +83,9 @@ pub fn finished_already(result: &Path) -> Result<Option<Outcome>> {
     }
     let file = ResultFile::open(result)?;
     let steps = file.steps()?.last().copied().unwrap_or(0);
-    Ok(file.ending().finished.then_some(Outcome { steps, frames: file.frames(), made: 0, limited: 0, wall_time: 0.0 }))
+    let done =
+        Outcome { steps, frames: file.frames(), made: 0, limited: 0, wall_time: 0.0, pushed: PushedApart::default() };
+    Ok(file.ending().finished.then_some(done))
 }
 
 /// Goes on with a run that was stopped or killed, from its last checkpoint. A finished run stays as it is.
@@ -237,7 +243,8 @@ fn drive(
     let wall_time = began.elapsed().as_secs_f64();
     let frames = writer.frames();
     finish(writer, result, wall_time)?;
-    Ok(Outcome { steps: state.step, frames, made: state.step - first, limited, wall_time })
+    let pushed = PushedApart::default();
+    Ok(Outcome { steps: state.step, frames, made: state.step - first, limited, wall_time, pushed })
 }
 
 /// Whether a multiple of `interval` lies in (before, after].

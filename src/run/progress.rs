@@ -7,6 +7,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// Listens to a run.
 pub trait Report: Send {
+    /// Something to know before the run begins.
+    fn notice(&mut self, words: &str);
     /// The run begins, or goes on, at `time` and will end at `until`, s.
     fn begin(&mut self, time: f64, until: f64);
     /// A step ended at `time`, s.
@@ -20,6 +22,7 @@ pub trait Report: Send {
 pub struct Quiet;
 
 impl Report for Quiet {
+    fn notice(&mut self, _: &str) {}
     fn begin(&mut self, _: f64, _: f64) {}
     fn step(&mut self, _: f64, _: u64) {}
     fn end(&mut self) {}
@@ -56,6 +59,10 @@ impl Default for Progress {
 }
 
 impl Report for Progress {
+    fn notice(&mut self, words: &str) {
+        eprintln!("{words}");
+    }
+
     fn begin(&mut self, time: f64, until: f64) {
         (self.start, self.until, self.began, self.told) = (time, until, Instant::now(), Instant::now());
     }

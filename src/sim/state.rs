@@ -79,6 +79,17 @@ impl KindState {
         }
     }
 
+    /// Moves a cell as a whole, µm.
+    pub fn shift(&mut self, kind: &Kind, cell: usize, way: &Vec3) {
+        // Lanes beyond the last cell repeat it.
+        let end = if cell + 1 == kind.cells { kind.blocks() * kind.lanes } else { cell + 1 };
+        for slot in cell..end {
+            for atom in 0..kind.atoms() {
+                (0..3).for_each(|axis| self.positions[index(kind, slot, atom, axis)] += way[axis]);
+            }
+        }
+    }
+
     /// Positions of the atoms of a cell, µm.
     pub fn cell(&self, kind: &Kind, cell: usize) -> Vec<Vec3> {
         (0..kind.atoms()).map(|atom| vector(kind, &self.positions, cell, atom)).collect()

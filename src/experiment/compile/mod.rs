@@ -8,9 +8,10 @@ mod overlap;
 mod place;
 mod room;
 mod select;
+mod start;
 mod steps;
 
-pub use overlap::check_start;
+pub use start::{PushedApart, settle_start};
 
 use super::{CellType, Document, Experiment, Space, Spread, VolumeRule as Rule};
 use crate::Vec3;

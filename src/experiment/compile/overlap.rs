@@ -1,9 +1,8 @@
-//! Whether cells that touch each other overlap where they start.
+//! Words for cells that overlap where they start.
 
 use super::super::Document;
-use super::Compiled;
 use crate::Vec3;
-use crate::contact::{Overlap, find_overlaps};
+use crate::contact::{Overlap, Scene, centre_is_inside};
 use crate::error::{Error, Fault, Result, short};
 use crate::geometry::bounding_box;
 use crate::sim::Model;
@@ -13,42 +12,44 @@ use crate::sim::contact::ContactModel;
 const MOST: usize = 5;
 
 /// Two surfaces that overlap, or a cell behind a plane.
-struct Found {
+pub struct Found {
     /// The kind whose place is to be changed.
-    kind: usize,
-    words: String,
+    pub kind: usize,
+    /// What is wrong.
+    pub words: String,
 }
 
-/// Refuses a start in which cells overlap or reach behind planes, where the experiment has contacts. For the start of a
-/// run only: a run that goes on was good at its start.
+/// Refuses a start with these; good when there are none.
 ///
 /// # Errors
 /// [`Error::Input`] with the cells that overlap.
-pub fn check_start(document: &Document, compiled: &Compiled) -> Result<()> {
-    let Compiled { model, state, .. } = compiled;
-    let Some(contact) = &model.contact else { return Ok(()) };
-    let cells = model.kinds.iter().zip(&state.kinds);
-    let positions: Vec<Vec3> =
-        cells.flat_map(|(kind, now)| (0..kind.cells).flat_map(|cell| now.cell(kind, cell))).collect();
-    let overlaps = find_overlaps(&contact.scene, &positions);
-    let mut found: Vec<Found> = overlaps.iter().map(|overlap| told(model, overlap)).collect();
-    found.extend(behind_planes(model, contact, &positions));
+pub fn refusal(document: &Document, model: &Model, head: &str, found: &[Found]) -> Result<()> {
     let Some(first) = found.first() else { return Ok(()) };
     let kind = &model.kinds[first.kind];
     let mut list: Vec<&str> = found.iter().take(MOST).map(|found| found.words.as_str()).collect();
     let more = format!("and {} more", found.len().saturating_sub(MOST));
     list.extend((found.len() > MOST).then_some(more.as_str()));
     let extent = bounding_box(&kind.rest.positions).map_or(0.0, |(low, high)| (high - low).max());
-    let fault = Fault::new(format!("cells overlap at the start, and contacts keep them so: {}", list.join("; "))).help(
-        format!(
-            "place them apart: cells of type `{}` are {} um wide, and a grid needs a `spacing` above that; \
-             random_from and random_to find places that do not overlap",
-            kind.name,
-            short(extent)
-        ),
-    );
+    let fault = Fault::new(format!("{head}{}", list.join("; "))).help(format!(
+        "place them apart: cells of type `{}` are {} um wide, and a grid needs a `spacing` above that; \
+         random_from and random_to find places that do not overlap",
+        kind.name,
+        short(extent)
+    ));
     let place = document.key_place(&format!("cells.{}.placement", kind.name), "these cells");
     Err(Error::input(place.into_iter().fold(fault, Fault::at)))
+}
+
+/// Whether one of two cells is wholly inside the other, or most of its atoms or its centre are: then none knows the way
+/// out that was meant. A sheet has no centre in this sense.
+pub fn too_deep(scene: &Scene, positions: &[Vec3], overlap: &Overlap) -> bool {
+    let [first, second] = overlap.bodies;
+    let is_in = |inner: u32, outer: u32, inside: u32| {
+        let shape = scene.shape(inner);
+        2 * inside as usize > shape.atoms || (shape.closed && centre_is_inside(scene, positions, inner, outer))
+    };
+    let [inside_second, inside_first] = overlap.atoms_inside;
+    overlap.nested().is_some() || is_in(first, second, inside_second) || is_in(second, first, inside_first)
 }
 
 fn name_of(model: &Model, body: u32) -> String {
@@ -57,7 +58,7 @@ fn name_of(model: &Model, body: u32) -> String {
 }
 
 /// What overlaps how.
-fn told(model: &Model, overlap: &Overlap) -> Found {
+pub fn told(model: &Model, overlap: &Overlap) -> Found {
     let [first, second] = overlap.bodies;
     let [inside_second, inside_first] = overlap.atoms_inside;
     let (inner, outer, inside) = match overlap.nested() {
@@ -78,7 +79,7 @@ fn told(model: &Model, overlap: &Overlap) -> Found {
 }
 
 /// Cells that reach farther behind a plane than a step may move an atom.
-fn behind_planes(model: &Model, contact: &ContactModel, positions: &[Vec3]) -> Vec<Found> {
+pub fn behind_planes(model: &Model, contact: &ContactModel, positions: &[Vec3]) -> Vec<Found> {
     let mut found = Vec::new();
     let mut atoms = positions;
     for body in 0..model.cells() as u32 {

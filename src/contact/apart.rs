@@ -1,0 +1,109 @@
+//! Pushes bodies that overlap apart, each as a whole: for the start of a run.
+
+use rayon::prelude::*;
+
+use super::inside::{Overlap, find_overlaps};
+use super::scene::Scene;
+use super::way::way_apart;
+use crate::Vec3;
+
+/// What bodies may do while they are pushed apart.
+#[derive(Debug, Clone, Copy)]
+pub struct Yielding<'a> {
+    /// How much each body resists: two bodies move in inverse proportion. Infinite: it stays where it is.
+    pub resistance: &'a [f64],
+    /// What is left between two bodies that were pushed, µm.
+    pub gap: f64,
+    /// The farthest that a body moves in a round, µm: less than would bring it past another unseen.
+    pub stride: f64,
+    /// Rounds after which what still overlaps is left so.
+    pub rounds: u32,
+}
+
+/// Moves bodies as wholes until none overlaps another. In a round every pair that overlaps asks for the shortest way
+/// apart along the line of centres, or along the normal of their overlap where that is clearly shorter; a body makes the
+/// sum of what its pairs ask for. No body is moved behind a plane, or farther behind it than it was. Returns how far each
+/// has been moved, µm, and what still overlaps. Deterministic, whatever the threads.
+///
+/// # Panics
+/// When there are not as many positions as atoms, or not as many resistances as bodies.
+pub fn push_apart(scene: &Scene, positions: &mut [Vec3], yielding: &Yielding) -> (Vec<Vec3>, Vec<Overlap>) {
+    assert_eq!(yielding.resistance.len(), scene.bodies.len(), "one resistance for each body");
+    let bodies = 0..scene.bodies.len() as u32;
+    let floors: Vec<Vec<f64>> =
+        bodies.clone().map(|body| heights(scene, body, positions).map(|height| height.min(0.0)).collect()).collect();
+    let mut moves = vec![Vec3::zeros(); scene.bodies.len()];
+    let mut left = find_overlaps(scene, positions);
+    for _ in 0..yielding.rounds {
+        if left.is_empty() {
+            break;
+        }
+        let ways: Vec<Vec3> =
+            left.par_iter().map(|overlap| way_apart(scene, positions, overlap.bodies, yielding.gap)).collect();
+        let mut steps = vec![Vec3::zeros(); scene.bodies.len()];
+        for (overlap, way) in left.iter().zip(ways) {
+            let [first, second] = overlap.bodies.map(|body| body as usize);
+            let [share, other] = shares(yielding.resistance[first], yielding.resistance[second]);
+            steps[first] += share * way;
+            steps[second] -= other * way;
+        }
+        for body in bodies.clone().filter(|body| steps[*body as usize] != Vec3::zeros()) {
+            let step = steps[body as usize].cap_magnitude(yielding.stride);
+            moves[body as usize] += step;
+            shift(scene, body, positions, step);
+        }
+        for (body, way) in bodies.clone().zip(&mut moves).filter(|(_, way)| **way != Vec3::zeros()) {
+            *way += back_before_planes(scene, body, positions, &floors[body as usize]);
+        }
+        left = find_overlaps(scene, positions);
+    }
+    (moves, left)
+}
+
+/// What two bodies move of the way between them.
+fn shares(resistance: f64, other: f64) -> [f64; 2] {
+    match (resistance.is_finite(), other.is_finite()) {
+        (true, true) => [other / (resistance + other), resistance / (resistance + other)],
+        (true, false) => [1.0, 0.0],
+        (false, true) => [0.0, 1.0],
+        (false, false) => [0.0, 0.0],
+    }
+}
+
+/// Heights of a body's lowest atom over each plane, µm.
+fn heights<'a>(scene: &'a Scene, body: u32, positions: &'a [Vec3]) -> impl Iterator<Item = f64> + 'a {
+    let atoms = scene.of_body(body, positions);
+    scene
+        .planes
+        .iter()
+        .map(move |plane| atoms.iter().map(|x| (x - plane.point).dot(&plane.normal)).fold(f64::INFINITY, f64::min))
+}
+
+fn shift(scene: &Scene, body: u32, positions: &mut [Vec3], step: Vec3) {
+    let first = scene.bodies[body as usize].first_atom as usize;
+    let atoms = scene.shape(body).atoms;
+    positions[first..first + atoms].iter_mut().for_each(|x| *x += step);
+}
+
+/// Times that a body is put back before all planes; where two of them meet, one puts it behind the other a little.
+const TURNS: u32 = 8;
+
+/// Puts a body back to where no plane is passed, and tells how far.
+fn back_before_planes(scene: &Scene, body: u32, positions: &mut [Vec3], floors: &[f64]) -> Vec3 {
+    let mut back = Vec3::zeros();
+    for _ in 0..TURNS {
+        let mut good = true;
+        for (number, plane) in scene.planes.iter().enumerate() {
+            let height = heights(scene, body, positions).nth(number).unwrap_or(f64::INFINITY);
+            if height < floors[number] {
+                let step = (floors[number] - height) * plane.normal;
+                shift(scene, body, positions, step);
+                (back, good) = (back + step, false);
+            }
+        }
+        if good {
+            break;
+        }
+    }
+    back
+}
