@@ -3,7 +3,7 @@
 
 use super::closest::{FacetPoint, Feature, closest_on_facet};
 use super::found::{AtomContact, push};
-use super::lists::by_body;
+use super::lists::{Moved, by_body, level, number};
 use super::scene::Scene;
 use super::shape::{NONE, Shape, Sides};
 use crate::Vec3;
@@ -35,12 +35,15 @@ pub(super) fn find_atom_contacts(
     body: u32,
     atom: u32,
     list: &[u32],
+    moved: &Moved,
     lows: &mut Vec<Low>,
     contacts: &mut Vec<AtomContact>,
 ) {
-    let number = scene.bodies[body as usize].first_atom + atom;
-    let place = positions[number as usize];
+    let numbered = scene.bodies[body as usize].first_atom + atom;
+    let place = positions[numbered as usize];
     for (other, facets) in by_body(list) {
+        let limit = moved.limit(body, other);
+        let facets = facets.iter().filter(|facet| level(**facet) <= limit).map(|facet| number(*facet));
         let surface = Other {
             shape: scene.shape(other),
             positions: scene.of_body(other, positions),
@@ -54,7 +57,7 @@ pub(super) fn find_atom_contacts(
             push(
                 contacts,
                 AtomContact {
-                    atom: number,
+                    atom: numbered,
                     facet: first_facet + low.facet,
                     body: other,
                     feature: low.point.feature,
@@ -83,10 +86,17 @@ impl Other<'_> {
     }
 
     /// Finds the places where the distance is least, within `range` µm, in the order of facets; the nearest comes back.
-    fn find_lows(&self, place: Vec3, facets: &[u32], range: f64, lows: &mut Vec<Low>) -> Option<Low> {
+    #[inline]
+    fn find_lows(
+        &self,
+        place: Vec3,
+        facets: impl Iterator<Item = u32>,
+        range: f64,
+        lows: &mut Vec<Low>,
+    ) -> Option<Low> {
         let farthest = range * range;
         let mut nearest: Option<Low> = None;
-        for &facet in facets {
+        for facet in facets {
             let corners = self.corners(facet);
             let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
             let height = normal.dot(&(place - corners[0]));
