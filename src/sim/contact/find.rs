@@ -3,8 +3,8 @@
 use super::gather::gather;
 use super::model::ContactModel;
 use super::rows::{Pull, write_rows};
-use super::scratch::ContactScratch;
-use super::spread::add_spreading;
+use super::scratch::{ContactScratch, empty_for};
+use super::spread::{add, add_spreading};
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
 use crate::contact::{Contacts, edges_still_touch};
@@ -23,15 +23,22 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     s.detector.detect(&contact.scene, &s.start, &mut s.found);
     keep_edges(contact, &state.contact, &s.start, &mut s.found);
     write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, &mut s.rows, &mut s.pulls);
-    s.force.clear();
-    s.force.resize(contact.scene.atoms, Vec3::zeros());
     if model.integrator.method.is_inertial() {
         s.pulls.fill(Pull::default());
     }
-    add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.force);
+    carry_forces(model, state, ws);
+}
+
+/// Writes the forces that contacts carry where the step begins, over what the projection of a try has left there.
+pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
+    let Some(contact) = &model.contact else { return };
+    let s = &mut ws.contact;
+    s.moved.clear();
+    s.moved.resize(contact.scene.atoms, [0.0; 4]);
+    add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.moved);
     for (row, pull) in s.rows.iter().zip(&s.pulls) {
         for (atom, weight) in row.atoms.iter().zip(row.weights) {
-            s.force[*atom as usize] += weight * pull.force();
+            add(&mut s.moved[*atom as usize], &(weight * pull.carried()));
         }
     }
 }
@@ -52,7 +59,7 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
 /// Adds the force that contacts carried to the forces of a block of a kind.
 pub fn add_contact_forces(model: &Model, number: usize, block: usize, scratch: &ContactScratch, f: &mut [f64]) {
     let (Some(contact), kind) = (&model.contact, &model.kinds[number]) else { return };
-    let forces = &scratch.force[contact.atoms_of(number)];
+    let forces = &scratch.moved[contact.atoms_of(number)];
     for lane in 0..kind.lanes {
         let cell = (block * kind.lanes + lane).min(kind.cells - 1);
         for (atom, force) in forces[cell * kind.atoms()..(cell + 1) * kind.atoms()].iter().enumerate() {
@@ -72,16 +79,16 @@ pub fn keep_contacts(model: &Model, state: &mut State, ws: &Workspace) {
     let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
     let (of_atoms, others) = s.pulls.split_at(s.found.atoms.len());
     let (of_edges, of_planes) = others.split_at(s.found.edges.len());
-    atoms.clear();
+    empty_for(atoms, s.found.atoms.len());
     for (pull, contact) in of_atoms.iter().zip(&s.found.atoms) {
         atoms.push(AtomBond { atom: contact.atom, body: contact.body, facet: contact.facet, force: xyz(pull) });
     }
-    edges.clear();
+    empty_for(edges, s.found.edges.len());
     for (pull, contact) in of_edges.iter().zip(&s.found.edges) {
         let normal = contact.normal.into();
         edges.push(EdgeBond { edges: contact.edges, bodies: contact.bodies, normal, force: xyz(pull) });
     }
-    planes.clear();
+    empty_for(planes, s.found.planes.len());
     for (pull, contact) in of_planes.iter().zip(&s.found.planes) {
         planes.push(PlaneBond { atom: contact.atom, plane: contact.plane, force: xyz(pull) });
     }

@@ -19,7 +19,7 @@ mod sweep;
 mod sweep_tests;
 
 pub use depth::{check_depth, check_passed};
-pub use find::{add_contact_forces, find_contacts, keep_contacts};
+pub use find::{add_contact_forces, carry_forces, find_contacts, keep_contacts};
 pub use hold::{hold_contacts, travel};
 pub use model::{ContactModel, Strength};
 pub use rows::{Pull, Row};
