@@ -20,6 +20,14 @@ pub(super) struct Low {
     squared: f64,
 }
 
+/// On which side of a low place the atom is.
+#[derive(Clone, Copy)]
+struct Side {
+    inside: bool,
+    /// The normal that tells the sides apart, where it was needed.
+    normal: Option<Vec3>,
+}
+
 /// The other surface, as an atom sees it.
 struct Other<'a> {
     shape: &'a Shape,
@@ -52,8 +60,8 @@ pub(super) fn find_atom_contacts(
         lows.clear();
         let Some(nearest) = surface.find_lows(place, facets, scene.reach.range(), lows) else { continue };
         let first_facet = scene.bodies[other as usize].first_facet;
-        let mut add = |low: &Low, inside: bool| {
-            let (gap, normal) = surface.gap(low, inside);
+        let mut add = |low: &Low, side: Side| {
+            let (gap, normal) = surface.gap(low, side);
             push(
                 contacts,
                 AtomContact {
@@ -67,15 +75,19 @@ pub(super) fn find_atom_contacts(
                 },
             );
         };
-        if surface.is_inside(&nearest) {
+        let side = surface.side(&nearest);
+        if side.inside {
             if nearest.squared <= scene.reach.depth.powi(2) {
-                add(&nearest, true);
+                add(&nearest, side);
             }
-        } else {
-            let proximity = scene.reach.proximity.powi(2);
-            lows.iter()
-                .filter(|low| low.squared < proximity && !surface.is_inside(low))
-                .for_each(|low| add(low, false));
+            continue;
+        }
+        let proximity = scene.reach.proximity.powi(2);
+        for low in lows.iter().filter(|low| low.squared < proximity) {
+            let side = if low.facet == nearest.facet { side } else { surface.side(low) };
+            if !side.inside {
+                add(low, side);
+            }
         }
     }
 }
@@ -167,11 +179,12 @@ impl Other<'_> {
 
     /// Whether the atom is behind the surface there. Never on its own surface, where both sides have two outsides, nor
     /// beyond the rim of an open one.
-    fn is_inside(&self, low: &Low) -> bool {
+    fn side(&self, low: &Low) -> Side {
         if self.own.is_some() || self.shape.sides == Sides::Both {
-            return false;
+            return Side { inside: false, normal: None };
         }
-        self.pseudonormal(low).is_some_and(|normal| low.point.offset.dot(&normal) < 0.0)
+        let normal = self.pseudonormal(low);
+        Side { inside: normal.is_some_and(|normal| low.point.offset.dot(&normal) < 0.0), normal }
     }
 
     /// The normal that tells the sides apart: that of the face, the mean over an edge, the mean weighted with angles
@@ -209,7 +222,7 @@ impl Other<'_> {
     }
 
     /// The signed gap (µm) and the unit normal towards the outside.
-    fn gap(&self, low: &Low, inside: bool) -> (f64, Vec3) {
+    fn gap(&self, low: &Low, Side { inside, normal }: Side) -> (f64, Vec3) {
         let offset = low.point.offset;
         let sign = if inside { -1.0 } else { 1.0 };
         let distance = low.squared.sqrt();
@@ -217,7 +230,7 @@ impl Other<'_> {
         let size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
         if low.point.feature == Feature::Face || distance <= COSINE_ROUND_OFF * size {
             // The offset is too short for a direction here, or less exact than the facet's own normal.
-            let normal = self.pseudonormal(low).and_then(|normal| normal.try_normalize(0.0));
+            let normal = normal.or_else(|| self.pseudonormal(low)).and_then(|normal| normal.try_normalize(0.0));
             let normal = normal.or_else(|| offset.try_normalize(0.0).map(|way| way * sign)).unwrap_or(Vec3::z());
             let height = offset.dot(&normal);
             return if (height < 0.0) == inside { (height, normal) } else { (-height, -normal) };

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::atom_facet::{Low, find_atom_contacts};
-use super::boxes::{Bounds, Pack};
+use super::boxes::{Bounds, Pack, Steps};
 use super::edge_edge::find_edge_contacts;
 use super::found::{Contacts, PlaneContact, push};
 use super::lists::{Boxes, Lists, Moved, levels_over};
@@ -195,6 +195,8 @@ impl Detector {
         for found in &self.found {
             self.boxes.bounds.extend_from_slice(&found.bounds);
         }
+        self.boxes.steps.clear();
+        self.boxes.steps.extend(self.boxes.bounds.iter().map(Steps::of));
         let boxes = &self.boxes;
         self.lists
             .par_iter_mut()
@@ -214,7 +216,8 @@ impl Detector {
                 + size_of::<Bounds>() * found.bounds.capacity()
         };
         let found: usize = self.found.iter().map(of_found).sum();
-        let bounds = size_of::<Bounds>() * self.boxes.bounds.capacity();
+        let bounds =
+            size_of::<Bounds>() * self.boxes.bounds.capacity() + size_of::<Steps>() * self.boxes.steps.capacity();
         let then = 12 * self.collected_at.capacity() + 8 * self.moved_of.capacity();
         packs + lists + found + bounds + self.boxes.neighbours.bytes() + then
     }

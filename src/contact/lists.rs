@@ -1,7 +1,7 @@
 //! The pairs kept across steps: for every atom the facets, and for every edge the edges, that it may touch before it
 //! has moved half of the margin.
 
-use super::boxes::{Bounds, Pack};
+use super::boxes::{Bounds, Pack, Steps};
 use super::closest::{closest_on_facet, closest_on_segments};
 use super::found::push;
 use super::neighbours::Neighbours;
@@ -67,6 +67,8 @@ pub(super) struct Boxes {
     pub packs: Vec<Vec<Pack>>,
     /// One box per body.
     pub bounds: Vec<Bounds>,
+    /// The steps in which packs are measured, one of each body.
+    pub steps: Vec<Steps>,
     /// Who may touch whom.
     pub neighbours: Neighbours,
 }
@@ -139,6 +141,8 @@ impl Lists {
             first_atom += shape.atoms as u32;
             first_edge += shape.edges.len() as u32;
         }
+        give_back(&mut self.facets);
+        give_back(&mut self.edges);
     }
 
     /// The facets of one other body (or its own) that an atom may touch.
@@ -240,13 +244,20 @@ fn visit(scene: &Scene, body: u32, boxes: &Boxes, bounds: &Bounds, found: &mut i
     let levels = &scene.levels[of.shape as usize];
     let packs = &boxes.packs[of.batch as usize][of.first_pack as usize..][..levels.packs()];
     let order = &scene.shapes[of.shape as usize].order;
-    levels.visit(packs, bounds, &mut |slot| found(order[slot]));
+    levels.visit(packs, &boxes.steps[body as usize], bounds, &mut |slot| found(order[slot]));
 }
 
 /// The level of a pair at a squared distance (µm²), in the bits of a word that it has.
 #[inline]
 fn level_at(squared: f64, range: f64, scale: f64) -> u32 {
     (((squared.sqrt() - range) * scale).clamp(0.0, HIGHEST) as u32) << NUMBER_BITS
+}
+
+/// Gives memory back that only a wider margin needed.
+fn give_back(list: &mut Vec<u32>) {
+    if list.capacity() > list.len() + list.len() / 2 + 64 {
+        list.shrink_to(list.len() + list.len() / 8);
+    }
 }
 
 /// Removes a mark with nothing after it.
