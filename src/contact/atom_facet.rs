@@ -3,7 +3,7 @@
 
 use super::closest::{FacetPoint, Feature, closest_on_facet};
 use super::found::{AtomContact, push};
-use super::lists::by_body;
+use super::lists::{Moved, by_body, level, number};
 use super::scene::Scene;
 use super::shape::{NONE, Shape, Sides};
 use crate::Vec3;
@@ -18,6 +18,14 @@ pub(super) struct Low {
     facet: u32,
     point: FacetPoint,
     squared: f64,
+}
+
+/// On which side of a low place the atom is.
+#[derive(Clone, Copy)]
+struct Side {
+    inside: bool,
+    /// The normal that tells the sides apart, where it was needed.
+    normal: Option<Vec3>,
 }
 
 /// The other surface, as an atom sees it.
@@ -35,12 +43,15 @@ pub(super) fn find_atom_contacts(
     body: u32,
     atom: u32,
     list: &[u32],
+    moved: &Moved,
     lows: &mut Vec<Low>,
     contacts: &mut Vec<AtomContact>,
 ) {
-    let number = scene.bodies[body as usize].first_atom + atom;
-    let place = positions[number as usize];
+    let numbered = scene.bodies[body as usize].first_atom + atom;
+    let place = positions[numbered as usize];
     for (other, facets) in by_body(list) {
+        let limit = moved.limit(body, other);
+        let facets = facets.iter().filter(|facet| level(**facet) <= limit).map(|facet| number(*facet));
         let surface = Other {
             shape: scene.shape(other),
             positions: scene.of_body(other, positions),
@@ -49,12 +60,12 @@ pub(super) fn find_atom_contacts(
         lows.clear();
         let Some(nearest) = surface.find_lows(place, facets, scene.reach.range(), lows) else { continue };
         let first_facet = scene.bodies[other as usize].first_facet;
-        let mut add = |low: &Low, inside: bool| {
-            let (gap, normal) = surface.gap(low, inside);
+        let mut add = |low: &Low, side: Side| {
+            let (gap, normal) = surface.gap(low, side);
             push(
                 contacts,
                 AtomContact {
-                    atom: number,
+                    atom: numbered,
                     facet: first_facet + low.facet,
                     body: other,
                     feature: low.point.feature,
@@ -64,15 +75,19 @@ pub(super) fn find_atom_contacts(
                 },
             );
         };
-        if surface.is_inside(&nearest) {
+        let side = surface.side(&nearest);
+        if side.inside {
             if nearest.squared <= scene.reach.depth.powi(2) {
-                add(&nearest, true);
+                add(&nearest, side);
             }
-        } else {
-            let proximity = scene.reach.proximity.powi(2);
-            lows.iter()
-                .filter(|low| low.squared < proximity && !surface.is_inside(low))
-                .for_each(|low| add(low, false));
+            continue;
+        }
+        let proximity = scene.reach.proximity.powi(2);
+        for low in lows.iter().filter(|low| low.squared < proximity) {
+            let side = if low.facet == nearest.facet { side } else { surface.side(low) };
+            if !side.inside {
+                add(low, side);
+            }
         }
     }
 }
@@ -83,10 +98,17 @@ impl Other<'_> {
     }
 
     /// Finds the places where the distance is least, within `range` µm, in the order of facets; the nearest comes back.
-    fn find_lows(&self, place: Vec3, facets: &[u32], range: f64, lows: &mut Vec<Low>) -> Option<Low> {
+    #[inline]
+    fn find_lows(
+        &self,
+        place: Vec3,
+        facets: impl Iterator<Item = u32>,
+        range: f64,
+        lows: &mut Vec<Low>,
+    ) -> Option<Low> {
         let farthest = range * range;
         let mut nearest: Option<Low> = None;
-        for &facet in facets {
+        for facet in facets {
             let corners = self.corners(facet);
             let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
             let height = normal.dot(&(place - corners[0]));
@@ -157,11 +179,12 @@ impl Other<'_> {
 
     /// Whether the atom is behind the surface there. Never on its own surface, where both sides have two outsides, nor
     /// beyond the rim of an open one.
-    fn is_inside(&self, low: &Low) -> bool {
+    fn side(&self, low: &Low) -> Side {
         if self.own.is_some() || self.shape.sides == Sides::Both {
-            return false;
+            return Side { inside: false, normal: None };
         }
-        self.pseudonormal(low).is_some_and(|normal| low.point.offset.dot(&normal) < 0.0)
+        let normal = self.pseudonormal(low);
+        Side { inside: normal.is_some_and(|normal| low.point.offset.dot(&normal) < 0.0), normal }
     }
 
     /// The normal that tells the sides apart: that of the face, the mean over an edge, the mean weighted with angles
@@ -199,7 +222,7 @@ impl Other<'_> {
     }
 
     /// The signed gap (µm) and the unit normal towards the outside.
-    fn gap(&self, low: &Low, inside: bool) -> (f64, Vec3) {
+    fn gap(&self, low: &Low, Side { inside, normal }: Side) -> (f64, Vec3) {
         let offset = low.point.offset;
         let sign = if inside { -1.0 } else { 1.0 };
         let distance = low.squared.sqrt();
@@ -207,7 +230,7 @@ impl Other<'_> {
         let size = (corners[1] - corners[0]).norm() + (corners[2] - corners[0]).norm();
         if low.point.feature == Feature::Face || distance <= COSINE_ROUND_OFF * size {
             // The offset is too short for a direction here, or less exact than the facet's own normal.
-            let normal = self.pseudonormal(low).and_then(|normal| normal.try_normalize(0.0));
+            let normal = normal.or_else(|| self.pseudonormal(low)).and_then(|normal| normal.try_normalize(0.0));
             let normal = normal.or_else(|| offset.try_normalize(0.0).map(|way| way * sign)).unwrap_or(Vec3::z());
             let height = offset.dot(&normal);
             return if (height < 0.0) == inside { (height, normal) } else { (-height, -normal) };

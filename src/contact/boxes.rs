@@ -55,42 +55,79 @@ impl Bounds {
     }
 }
 
-/// Eight boxes side by side; lanes without a box contain nothing.
+/// The places of a body's box in steps from 0 to 126 along each axis. Rounding keeps the order of numbers, so that boxes
+/// that meet also meet in steps.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Steps {
+    low: [f32; 3],
+    scale: [f32; 3],
+}
+
+/// The last step.
+const LAST: u8 = 126;
+
+/// A step that is behind all.
+const BEHIND: u8 = 127;
+
+/// The highest bit of each of eight bytes.
+const HIGH_BITS: u64 = 0x8080_8080_8080_8080;
+
+impl Steps {
+    /// The steps of a body with this box.
+    pub fn of(body: &Bounds) -> Self {
+        Self { low: body.low, scale: [0, 1, 2].map(|axis| f32::from(LAST) / (body.high[axis] - body.low[axis])) }
+    }
+
+    #[inline]
+    fn boxed(&self, bounds: &Bounds) -> Stepped {
+        let step = |x: f32, axis: usize| (((x - self.low[axis]) * self.scale[axis]) as u8).min(LAST);
+        Stepped {
+            low: [step(bounds.low[0], 0), step(bounds.low[1], 1), step(bounds.low[2], 2)],
+            high: [step(bounds.high[0], 0), step(bounds.high[1], 1), step(bounds.high[2], 2)],
+        }
+    }
+}
+
+/// A box in steps of a body's own box.
+#[derive(Debug, Clone, Copy)]
+struct Stepped {
+    low: [u8; 3],
+    high: [u8; 3],
+}
+
+/// Eight boxes side by side, one in each byte, in steps of the box of their body; bytes without a box contain nothing. The
+/// highest bit of the high ends is set, so that eight differences fit into one subtraction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pack {
-    low: [[f32; 8]; 3],
-    high: [[f32; 8]; 3],
+    low: [u64; 3],
+    high: [u64; 3],
 }
 
 impl Pack {
-    pub const EMPTY: Self = Self { low: [[f32::INFINITY; 8]; 3], high: [[f32::NEG_INFINITY; 8]; 3] };
+    pub const EMPTY: Self = Self { low: [u64::from_le_bytes([BEHIND; 8]); 3], high: [HIGH_BITS; 3] };
 
-    fn set(&mut self, lane: usize, bounds: &Bounds) {
+    fn set(&mut self, lane: usize, bounds: &Stepped) {
+        let put = |word: &mut u64, byte: u8| *word = *word & !(0xFF << (8 * lane)) | u64::from(byte) << (8 * lane);
         for axis in 0..3 {
-            self.low[axis][lane] = bounds.low[axis];
-            self.high[axis][lane] = bounds.high[axis];
+            put(&mut self.low[axis], bounds.low[axis]);
+            put(&mut self.high[axis], bounds.high[axis] | 0x80);
         }
     }
 
     /// The box of all lanes.
-    fn bounds(&self) -> Bounds {
-        Bounds {
-            low: self.low.map(|lanes| lanes.into_iter().fold(f32::INFINITY, f32::min)),
-            high: self.high.map(|lanes| lanes.into_iter().fold(f32::NEG_INFINITY, f32::max)),
+    fn bounds(&self) -> Stepped {
+        Stepped {
+            low: self.low.map(|lanes| lanes.to_le_bytes().into_iter().fold(BEHIND, u8::min)),
+            high: self.high.map(|lanes| (lanes & !HIGH_BITS).to_le_bytes().into_iter().fold(0, u8::max)),
         }
     }
 
-    /// The lanes whose box meets another: the lowest bit of each byte.
+    /// The lanes whose box meets another, given by its ends in every byte, the high ones marked as in a pack: the highest
+    /// bit of each byte.
     #[inline]
-    fn meeting(&self, bounds: &Bounds) -> u64 {
-        let mut meets = [1u8; 8];
-        for axis in 0..3 {
-            let (low, high) = (bounds.low[axis], bounds.high[axis]);
-            for lane in 0..8 {
-                meets[lane] &= u8::from(self.low[axis][lane] <= high) & u8::from(low <= self.high[axis][lane]);
-            }
-        }
-        u64::from_le_bytes(meets)
+    fn meeting(&self, low: &[u64; 3], high: &[u64; 3]) -> u64 {
+        let meets = |axis: usize| (high[axis] - self.low[axis]) & (self.high[axis] - low[axis]);
+        meets(0) & meets(1) & meets(2) & HIGH_BITS
     }
 }
 
@@ -131,8 +168,14 @@ impl Levels {
     /// Puts the boxes of a body's facets into its packs; the box of the whole body comes back.
     pub fn measure(&self, shape: &Shape, positions: &[Vec3], packs: &mut [Pack]) -> Bounds {
         packs.fill(Pack::EMPTY);
+        if positions.is_empty() {
+            return Bounds::EMPTY;
+        }
+        let body = Bounds::around(positions, 0.0);
+        let steps = Steps::of(&body);
         for (slot, &facet) in shape.order.iter().enumerate() {
-            packs[slot / 8].set(slot % 8, &Bounds::around(&shape.corners(facet, positions), 0.0));
+            let facet = Bounds::around(&shape.corners(facet, positions), 0.0);
+            packs[slot / 8].set(slot % 8, &steps.boxed(&facet));
         }
         for level in 1..self.count {
             let (below, here) = packs.split_at_mut(self.first[level] as usize);
@@ -140,30 +183,38 @@ impl Levels {
                 here[child / 8].set(child % 8, &pack.bounds());
             }
         }
-        packs[self.of_level(self.count - 1)].iter().map(Pack::bounds).fold(Bounds::EMPTY, |all, one| Bounds {
-            low: [0, 1, 2].map(|axis| all.low[axis].min(one.low[axis])),
-            high: [0, 1, 2].map(|axis| all.high[axis].max(one.high[axis])),
-        })
+        body
     }
 
-    /// Calls `found` with the slot (in [`Shape::order`]) of every facet whose box meets `bounds`.
+    /// Calls `found` with the slot (in [`Shape::order`]) of every facet whose box meets `bounds`; `steps` are those of the
+    /// box that measuring gave.
     #[inline]
-    pub fn visit(&self, packs: &[Pack], bounds: &Bounds, found: &mut impl FnMut(usize)) {
+    pub fn visit(&self, packs: &[Pack], steps: &Steps, bounds: &Bounds, found: &mut impl FnMut(usize)) {
+        let Stepped { low, high } = steps.boxed(bounds);
+        let everywhere = |byte: u8| u64::from_le_bytes([byte; 8]);
+        let ends = [low.map(everywhere), high.map(|byte| everywhere(byte | 0x80))];
         let top = self.count - 1;
         for index in 0..self.of_level(top).len() {
-            self.visit_pack(packs, top, index, bounds, found);
+            self.visit_pack(packs, top, index, &ends, found);
         }
     }
 
-    fn visit_pack(&self, packs: &[Pack], level: usize, index: usize, bounds: &Bounds, found: &mut impl FnMut(usize)) {
-        let mut lanes = packs[self.first[level] as usize + index].meeting(bounds);
+    fn visit_pack(
+        &self,
+        packs: &[Pack],
+        level: usize,
+        index: usize,
+        ends: &[[u64; 3]; 2],
+        found: &mut impl FnMut(usize),
+    ) {
+        let mut lanes = packs[self.first[level] as usize + index].meeting(&ends[0], &ends[1]);
         while lanes != 0 {
             let child = 8 * index + lanes.trailing_zeros() as usize / 8;
             lanes &= lanes - 1;
             if level == 0 {
                 found(child);
             } else {
-                self.visit_pack(packs, level - 1, child, bounds, found);
+                self.visit_pack(packs, level - 1, child, ends, found);
             }
         }
     }

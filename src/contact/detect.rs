@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::atom_facet::{Low, find_atom_contacts};
-use super::boxes::{Bounds, Pack};
+use super::boxes::{Bounds, Pack, Steps};
 use super::edge_edge::find_edge_contacts;
 use super::found::{Contacts, PlaneContact, push};
-use super::lists::{Boxes, Lists};
+use super::lists::{Boxes, Lists, Moved, levels_over};
 use super::scene::Scene;
 use crate::Vec3;
 
@@ -34,6 +34,8 @@ pub struct Detector {
     looks: u32,
     /// Where the atoms were when the pairs were collected, µm.
     collected_at: Vec<[f32; 3]>,
+    /// The farthest that an atom of each body has moved since then, µm.
+    moved_of: Vec<f64>,
     /// One per batch: what several threads find before it is put in order, and scratch.
     found: Vec<Found>,
     lows: Vec<Low>,
@@ -58,6 +60,14 @@ const WIDEST: f64 = 6.0;
 /// A position rounded to four bytes an axis is off by less than this share of its coordinates.
 const ROUNDING: f64 = 1.1e-7;
 
+/// Bodies whose motion one job measures: it takes less than a microsecond each.
+const BODIES_PER_JOB: usize = 16;
+
+/// The larger of two numbers, or whatever is not a number.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
 impl Detector {
     /// Finds all contacts at these positions (µm, one per atom of the scene) and writes them over `contacts`. For a
     /// scene that is not that of the last call, [`forget`](Self::forget) the pairs first.
@@ -69,23 +79,27 @@ impl Detector {
     /// When there are not as many positions as atoms.
     pub fn detect(&mut self, scene: &Scene, positions: &[Vec3], contacts: &mut Contacts) -> Detection {
         assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
-        let moved = self.moved(scene, positions);
+        let mut moved_of = std::mem::take(&mut self.moved_of);
+        let moved = self.moved(scene, positions, &mut moved_of);
         let collected = moved.is_nan() || moved > 0.5 * self.margin;
         if collected {
             self.margin = self.next_margin(scene, moved);
             self.looks = 0;
             self.collect(scene, positions);
+            moved_of.clear();
+            moved_of.resize(scene.bodies.len(), 0.0);
         }
         self.looks += 1;
         contacts.clear();
+        let since = Moved { of_bodies: &moved_of, scale: levels_over(self.margin, scene.reach.range()) };
         if rayon::current_num_threads() == 1 {
             for (batch, lists) in self.lists.iter().enumerate() {
-                look(scene, positions, batch, lists, &mut self.lows, contacts);
+                look(scene, positions, batch, lists, &since, &mut self.lows, contacts);
             }
         } else {
             self.found.par_iter_mut().zip(&self.lists).enumerate().for_each(|(batch, (found, lists))| {
                 found.contacts.clear();
-                look(scene, positions, batch, lists, &mut found.lows, &mut found.contacts);
+                look(scene, positions, batch, lists, &since, &mut found.lows, &mut found.contacts);
             });
             for Found { contacts: found, .. } in &self.found {
                 contacts.atoms.extend_from_slice(&found.atoms);
@@ -93,6 +107,7 @@ impl Detector {
                 contacts.planes.extend_from_slice(&found.planes);
             }
         }
+        self.moved_of = moved_of;
         Detection { collected, moved, pairs: self.lists.iter().map(Lists::words).sum() }
     }
 
@@ -126,32 +141,27 @@ impl Detector {
     }
 
     /// The largest displacement since the pairs were collected, rounding included, µm; infinite when there are none
-    /// for this scene, NaN or infinite when a position is not finite.
-    pub(super) fn moved(&self, scene: &Scene, positions: &[Vec3]) -> f64 {
+    /// for this scene, NaN or infinite when a position is not finite. That of each body is written to `of_bodies`.
+    pub(super) fn moved(&self, scene: &Scene, positions: &[Vec3], of_bodies: &mut Vec<f64>) -> f64 {
         if self.collected_at.len() != positions.len() || self.lists.len() + 1 != scene.batches.len() {
             return f64::INFINITY;
         }
-        let farthest = |batch: usize| {
-            let atoms = scene.atoms_of(batch);
+        let farthest = |body: u32| {
+            let first = scene.bodies[body as usize].first_atom as usize;
             let mut farthest = 0.0;
-            for (now, then) in positions[atoms.clone()].iter().zip(&self.collected_at[atoms]) {
+            for (now, then) in scene.of_body(body, positions).iter().zip(&self.collected_at[first..]) {
                 let mut squared = 0.0;
                 for axis in 0..3 {
                     let way = (now[axis] - f64::from(then[axis])).abs() + ROUNDING * now[axis].abs();
                     squared += way * way;
                 }
-                // A comparison that NaN fails.
-                farthest = if squared <= farthest { farthest } else { squared };
+                farthest = larger(farthest, squared);
             }
-            farthest
+            farthest.sqrt()
         };
-        let squared = (0..self.lists.len()).into_par_iter().map(farthest).reduce(
-            || 0.0,
-            |one: f64, other| {
-                if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
-            },
-        );
-        squared.sqrt()
+        let bodies = 0..scene.bodies.len() as u32;
+        bodies.into_par_iter().with_min_len(BODIES_PER_JOB).map(farthest).collect_into_vec(of_bodies);
+        of_bodies.iter().copied().fold(0.0, larger)
     }
 
     /// Collects the pairs of all batches.
@@ -174,8 +184,8 @@ impl Detector {
             }
         });
         // Bodies may touch when the boxes grown by half of the reach meet.
-        let reach = scene.reach.range() + self.margin;
-        let half = 0.5 * reach;
+        let margin = self.margin;
+        let half = 0.5 * (scene.reach.range() + margin);
         self.boxes.bounds.clear();
         for found in &self.found {
             self.boxes.bounds.extend(found.bounds.iter().map(|bounds| bounds.grown(half)));
@@ -185,11 +195,13 @@ impl Detector {
         for found in &self.found {
             self.boxes.bounds.extend_from_slice(&found.bounds);
         }
+        self.boxes.steps.clear();
+        self.boxes.steps.extend(self.boxes.bounds.iter().map(Steps::of));
         let boxes = &self.boxes;
         self.lists
             .par_iter_mut()
             .enumerate()
-            .for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes, reach));
+            .for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes, margin));
         self.collected_at.clear();
         self.collected_at.extend(positions.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32]));
     }
@@ -204,27 +216,44 @@ impl Detector {
                 + size_of::<Bounds>() * found.bounds.capacity()
         };
         let found: usize = self.found.iter().map(of_found).sum();
-        let bounds = size_of::<Bounds>() * self.boxes.bounds.capacity();
-        packs + lists + found + bounds + self.boxes.neighbours.bytes() + 12 * self.collected_at.capacity()
+        let bounds =
+            size_of::<Bounds>() * self.boxes.bounds.capacity() + size_of::<Steps>() * self.boxes.steps.capacity();
+        let then = 12 * self.collected_at.capacity() + 8 * self.moved_of.capacity();
+        packs + lists + found + bounds + self.boxes.neighbours.bytes() + then
     }
 }
 
 /// Looks at the pairs of a batch and adds its contacts.
-fn look(scene: &Scene, positions: &[Vec3], batch: usize, lists: &Lists, lows: &mut Vec<Low>, contacts: &mut Contacts) {
-    let (mut atom_of_batch, mut edge_of_batch) = (0, 0);
-    for body in scene.bodies_of(batch) {
-        let shape = scene.shape(body);
-        for atom in 0..shape.atoms {
-            let list = lists.facets(atom_of_batch);
-            atom_of_batch += 1;
-            if !list.is_empty() {
-                find_atom_contacts(scene, positions, body, atom as u32, list, lows, &mut contacts.atoms);
-            }
+fn look(
+    scene: &Scene,
+    positions: &[Vec3],
+    batch: usize,
+    lists: &Lists,
+    moved: &Moved,
+    lows: &mut Vec<Low>,
+    contacts: &mut Contacts,
+) {
+    let bodies = scene.bodies_of(batch);
+    let Some(first) = scene.bodies.get(bodies.start as usize).filter(|_| !bodies.is_empty()) else { return };
+    let mut body = bodies.start;
+    for (atom, list) in lists.facets() {
+        let mut atom = first.first_atom + atom - scene.bodies[body as usize].first_atom;
+        while atom as usize >= scene.shape(body).atoms {
+            atom -= scene.shape(body).atoms as u32;
+            body += 1;
         }
-        for edge in 0..shape.edges.len() {
-            find_edge_contacts(scene, positions, body, edge as u32, lists.edges(edge_of_batch), &mut contacts.edges);
-            edge_of_batch += 1;
+        find_atom_contacts(scene, positions, body, atom, list, moved, lows, &mut contacts.atoms);
+    }
+    let mut body = bodies.start;
+    for (edge, list) in lists.edges() {
+        let mut edge = first.first_edge + edge - scene.bodies[body as usize].first_edge;
+        while edge as usize >= scene.shape(body).edges.len() {
+            edge -= scene.shape(body).edges.len() as u32;
+            body += 1;
         }
+        find_edge_contacts(scene, positions, body, edge, list, moved, &mut contacts.edges);
+    }
+    for body in bodies {
         find_plane_contacts(scene, positions, body, &mut contacts.planes);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::closest::LEAST_SINE_SQUARED;
 use super::found::{EdgeContact, push};
-use super::lists::by_body;
+use super::lists::{Moved, by_body, level, number};
 use super::scene::Scene;
 use super::shape::{NONE, Shape, Sides};
 use crate::Vec3;
@@ -47,6 +47,26 @@ impl<'a> Ridge<'a> {
     }
 }
 
+/// The first edge of pairs, with what all of them need of it.
+struct First<'a> {
+    ridge: Ridge<'a>,
+    flanks: [Vec3; 2],
+    is_one_sided: bool,
+    is_convex: bool,
+}
+
+impl<'a> First<'a> {
+    fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
+        let ridge = Ridge::of(shape, positions, edge);
+        Self {
+            flanks: ridge.flanks(),
+            is_one_sided: shape.sides == Sides::Outer && !ridge.is_rim(),
+            is_convex: ridge.is_convex(),
+            ridge,
+        }
+    }
+}
+
 /// Adds the contacts of an edge (numbered in its body) with the edges of a list, eq. (contacts.4).
 pub(super) fn find_edge_contacts(
     scene: &Scene,
@@ -54,31 +74,32 @@ pub(super) fn find_edge_contacts(
     body: u32,
     edge: u32,
     list: &[u32],
+    moved: &Moved,
     contacts: &mut Vec<EdgeContact>,
 ) {
-    if list.is_empty() {
-        return;
-    }
-    let shape = scene.shape(body);
-    let first = Ridge::of(shape, scene.of_body(body, positions), edge);
-    let flanks = first.flanks();
-    let first_is_one_sided = shape.sides == Sides::Outer && !first.is_rim();
-    let first_is_convex = first.is_convex();
+    let mut first = None;
     for (other, edges) in by_body(list) {
-        let (there, places) = (scene.shape(other), scene.of_body(other, positions));
-        let surfaces_are_one_sided = first_is_one_sided && there.sides == Sides::Outer && other != body;
-        if surfaces_are_one_sided && !first_is_convex && there.closed {
+        let limit = moved.limit(body, other);
+        let mut candidates = edges.iter().filter(|edge| level(**edge) <= limit).map(|edge| number(*edge)).peekable();
+        if candidates.peek().is_none() {
             continue;
         }
-        for &candidate in edges {
+        let first = first.get_or_insert_with(|| First::of(scene.shape(body), scene.of_body(body, positions), edge));
+        let (there, places) = (scene.shape(other), scene.of_body(other, positions));
+        let surfaces_are_one_sided = first.is_one_sided && there.sides == Sides::Outer && other != body;
+        if surfaces_are_one_sided && !first.is_convex && there.closed {
+            continue;
+        }
+        for candidate in candidates {
             let second = Ridge::of(there, places, candidate);
             let one_sided = surfaces_are_one_sided && !second.is_rim();
-            let Some((along, gap, normal)) = cross(&first, &flanks, &second, one_sided, scene) else { continue };
-            let number = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
+            let crossing = cross(&first.ridge, &first.flanks, &second, one_sided, scene);
+            let Some((along, gap, normal)) = crossing else { continue };
+            let numbered = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
             push(
                 contacts,
                 EdgeContact {
-                    edges: [number(body, edge), number(other, candidate)],
+                    edges: [numbered(body, edge), numbered(other, candidate)],
                     bodies: [body, other],
                     along,
                     gap,
@@ -113,11 +134,11 @@ fn cross(
     if height * height > range * range * squared {
         return None;
     }
+    let close = scene.reach.proximity * CLOSE;
+    let is_close = height * height < close * close * squared;
     // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
     // or its opposite must do for all four.
     let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
-    let close = scene.reach.proximity * CLOSE;
-    let is_close = height * height < close * close * squared;
     if a * b < 0.0 && !is_close {
         return None;
     }

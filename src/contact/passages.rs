@@ -1,7 +1,7 @@
 //! A check after a step: what passed through what, among the pairs kept.
 
 use super::detect::Detector;
-use super::lists::by_body;
+use super::lists::{by_body, number};
 use super::scene::Scene;
 use super::swept::{atom_meets_facet, edges_meet};
 use crate::Vec3;
@@ -58,46 +58,47 @@ impl Detector {
     ) -> Coverage {
         assert_eq!([before.len(), after.len()], [scene.atoms; 2], "one position per atom of the scene");
         passages.clear();
-        let half = 0.5 * self.margin();
-        if self.moved(scene, before).is_infinite() {
+        let (half, mut moved_of) = (0.5 * self.margin(), Vec::new());
+        if self.moved(scene, before, &mut moved_of).is_infinite() {
             return Coverage::Partial;
         }
         for (batch, lists) in self.lists().iter().enumerate() {
-            let (mut atom_of_batch, mut edge_of_batch) = (0, 0);
-            for body in scene.bodies_of(batch) {
-                for _ in 0..scene.shape(body).atoms {
-                    let atom = scene.atoms_of(batch).start + atom_of_batch;
-                    for (other, facets) in by_body(lists.facets(atom_of_batch)) {
-                        for facet in facets.iter().map(|facet| facet + scene.bodies[other as usize].first_facet) {
-                            let corners = scene.facet_atoms(other, facet);
-                            let facet_at = [before, after].map(|at| corners.map(|corner| at[corner as usize]));
-                            if let Some(share) = atom_meets_facet([before[atom], after[atom]], facet_at, thickness) {
-                                let pair = Pair::AtomFacet { atom: atom as u32, facet };
-                                passages.push(Passage { pair, bodies: [body, other], share });
-                            }
+            let Some(first) = scene.bodies.get(scene.bodies_of(batch).start as usize) else { continue };
+            for (atom, list) in lists.facets() {
+                let atom = first.first_atom + atom;
+                let body = scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1;
+                for (other, facets) in by_body(list) {
+                    for facet in facets.iter().map(|word| number(*word) + scene.bodies[other as usize].first_facet) {
+                        let corners = scene.facet_atoms(other, facet);
+                        let facet_at = [before, after].map(|at| corners.map(|corner| at[corner as usize]));
+                        let atom_at = [before, after].map(|at| at[atom as usize]);
+                        if let Some(share) = atom_meets_facet(atom_at, facet_at, thickness) {
+                            passages.push(Passage {
+                                pair: Pair::AtomFacet { atom, facet },
+                                bodies: [body, other],
+                                share,
+                            });
                         }
                     }
-                    atom_of_batch += 1;
                 }
-                for edge in 0..scene.shape(body).edges.len() as u32 {
-                    let edge = edge + scene.bodies[body as usize].first_edge;
-                    let ends = |body: u32, edge: u32| {
-                        let atoms = scene.edge_atoms(body, edge);
-                        [before, after].map(|at| atoms.map(|atom| at[atom as usize]))
-                    };
-                    for (other, edges) in by_body(lists.edges(edge_of_batch)) {
-                        for second in edges.iter().map(|second| second + scene.bodies[other as usize].first_edge) {
-                            if let Some(share) = edges_meet(ends(body, edge), ends(other, second), thickness) {
-                                let pair = Pair::Edges([edge, second]);
-                                passages.push(Passage { pair, bodies: [body, other], share });
-                            }
+            }
+            for (edge, list) in lists.edges() {
+                let edge = first.first_edge + edge;
+                let body = scene.bodies.partition_point(|body| body.first_edge <= edge) as u32 - 1;
+                let ends = |body: u32, edge: u32| {
+                    let atoms = scene.edge_atoms(body, edge);
+                    [before, after].map(|at| atoms.map(|atom| at[atom as usize]))
+                };
+                for (other, edges) in by_body(list) {
+                    for second in edges.iter().map(|word| number(*word) + scene.bodies[other as usize].first_edge) {
+                        if let Some(share) = edges_meet(ends(body, edge), ends(other, second), thickness) {
+                            passages.push(Passage { pair: Pair::Edges([edge, second]), bodies: [body, other], share });
                         }
                     }
-                    edge_of_batch += 1;
                 }
             }
         }
-        let covered = [before, after].iter().all(|positions| self.moved(scene, positions) <= half);
+        let covered = [before, after].iter().all(|positions| self.moved(scene, positions, &mut moved_of) <= half);
         if covered { Coverage::Complete } else { Coverage::Partial }
     }
 }

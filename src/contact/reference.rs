@@ -4,7 +4,7 @@ use super::atom_facet::find_atom_contacts;
 use super::detect::find_plane_contacts;
 use super::edge_edge::find_edge_contacts;
 use super::found::Contacts;
-use super::lists::BODY;
+use super::lists::{BODY, Moved};
 use super::scene::Scene;
 use crate::Vec3;
 
@@ -27,7 +27,16 @@ pub fn detect_all_pairs(scene: &Scene, positions: &[Vec3], contacts: &mut Contac
                     list.extend(facets.iter().filter(|&&facet| facet & BODY != 0 || !shape.is_near(atom, facet)));
                     facets = &list;
                 }
-                find_atom_contacts(scene, positions, body, atom, facets, &mut lows, &mut contacts.atoms);
+                find_atom_contacts(
+                    scene,
+                    positions,
+                    body,
+                    atom,
+                    facets,
+                    &Moved::UNKNOWN,
+                    &mut lows,
+                    &mut contacts.atoms,
+                );
             }
         }
         for edge in 0..shape.edges.len() as u32 {
@@ -36,7 +45,7 @@ pub fn detect_all_pairs(scene: &Scene, positions: &[Vec3], contacts: &mut Contac
                 list.push(other | BODY);
                 let edges = 0..scene.shape(other).edges.len() as u32;
                 list.extend(edges.filter(|&e| other != body || (e > edge && !shape.are_edges_near(edge, e))));
-                find_edge_contacts(scene, positions, body, edge, &list, &mut contacts.edges);
+                find_edge_contacts(scene, positions, body, edge, &list, &Moved::UNKNOWN, &mut contacts.edges);
             }
         }
         find_plane_contacts(scene, positions, body, &mut contacts.planes);

@@ -2,7 +2,7 @@
 
 use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::enforce_constraints;
-use super::contact::{check_depth, find_contacts, hold_contacts, keep_contacts, travel};
+use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, keep_contacts, travel};
 use super::forces::add_forces;
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
@@ -75,6 +75,7 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
             return Ok(StepReport { dt: dt_now, refused, error: with_contacts, limited });
         }
         restore(state, ws);
+        carry_forces(model, state, ws);
         dt = next;
     }
     Err(Trouble::StepTooSmall { time: state.time, dt })

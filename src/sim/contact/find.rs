@@ -5,8 +5,8 @@ use super::links::{links_at, pull_links};
 use super::model::{ContactModel, Law};
 use super::penalty::press;
 use super::rows::{Pull, write_rows};
-use super::scratch::ContactScratch;
-use super::spread::add_spreading;
+use super::scratch::{ContactScratch, empty_for};
+use super::spread::{add, add_spreading};
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
 use crate::contact::{Contacts, edges_still_touch};
@@ -27,15 +27,22 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     let ContactScratch { found, start, linked, links, .. } = s;
     links_at(contact, &state.chemistry.controls, &state.contact.links, found, start, linked, links);
     write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, &mut s.rows, &mut s.pulls);
-    s.force.clear();
-    s.force.resize(contact.scene.atoms, Vec3::zeros());
     if model.integrator.method.is_inertial() || matches!(contact.law, Law::Penalty(_)) {
         s.pulls.fill(Pull::default());
     }
-    add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.force);
+    carry_forces(model, state, ws);
+}
+
+/// Writes the forces that contacts carry where the step begins, over what the projection of a try has left there.
+pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
+    let Some(contact) = &model.contact else { return };
+    let s = &mut ws.contact;
+    s.moved.clear();
+    s.moved.resize(contact.scene.atoms, [0.0; 4]);
+    add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.moved);
     for (row, pull) in s.rows.iter().zip(&s.pulls) {
         for (atom, weight) in row.atoms.iter().zip(row.weights) {
-            s.force[*atom as usize] += weight * pull.force();
+            add(&mut s.moved[*atom as usize], &(weight * pull.carried()));
         }
     }
 }
@@ -73,16 +80,15 @@ pub fn pull_contacts(model: &Model, state: &State, s: &mut ContactScratch) {
 pub fn add_contact_forces(model: &Model, number: usize, block: usize, scratch: &ContactScratch, f: &mut [f64]) {
     let (Some(contact), kind) = (&model.contact, &model.kinds[number]) else { return };
     let atoms = contact.atoms_of(number);
-    let forces = &scratch.force[atoms.clone()];
+    let forces = &scratch.moved[atoms.clone()];
     let pulls = scratch.live_force.get(atoms);
     for lane in 0..kind.lanes {
         let cell = (block * kind.lanes + lane).min(kind.cells - 1);
         let own = cell * kind.atoms()..(cell + 1) * kind.atoms();
-        for forces in [Some(forces), pulls].into_iter().flatten() {
-            for (atom, force) in forces[own.clone()].iter().enumerate() {
-                for axis in 0..3 {
-                    f[(3 * atom + axis) * kind.lanes + lane] += force[axis];
-                }
+        for (atom, number) in own.enumerate() {
+            for axis in 0..3 {
+                let pull = pulls.map_or(0.0, |pulls| pulls[number][axis]);
+                f[(3 * atom + axis) * kind.lanes + lane] += forces[number][axis] + pull;
             }
         }
     }
@@ -98,16 +104,16 @@ pub fn keep_contacts(model: &Model, state: &mut State, ws: &Workspace) {
     let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
     let (of_atoms, others) = s.pulls.split_at(s.found.atoms.len());
     let (of_edges, of_planes) = others.split_at(s.found.edges.len());
-    atoms.clear();
+    empty_for(atoms, s.found.atoms.len());
     for (pull, contact) in of_atoms.iter().zip(&s.found.atoms) {
         atoms.push(AtomBond { atom: contact.atom, body: contact.body, facet: contact.facet, force: xyz(pull) });
     }
-    edges.clear();
+    empty_for(edges, s.found.edges.len());
     for (pull, contact) in of_edges.iter().zip(&s.found.edges) {
         let normal = contact.normal.into();
         edges.push(EdgeBond { edges: contact.edges, bodies: contact.bodies, normal, force: xyz(pull) });
     }
-    planes.clear();
+    empty_for(planes, s.found.planes.len());
     for (pull, contact) in of_planes.iter().zip(&s.found.planes) {
         planes.push(PlaneBond { atom: contact.atom, plane: contact.plane, force: xyz(pull) });
     }

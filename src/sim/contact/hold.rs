@@ -2,9 +2,10 @@
 
 use super::gather::{gather, scatter};
 use super::model::{ContactModel, Law};
-use super::rows::Pull;
+use super::momentum::go_on;
+use super::rows::{Pull, Row};
 use super::scratch::ContactScratch;
-use super::sweep::{Change, VolumeRow, sweep_contacts, sweep_depths, sweep_volumes};
+use super::sweep::{Change, V4, VolumeRow, sweep_contacts, sweep_depths, sweep_volumes};
 use crate::Vec3;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
@@ -32,9 +33,9 @@ pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspa
         return Ok(());
     }
     prepare(model, contact, dt, state, s, kinds);
-    let left = sweep(contact, s);
+    let left = sweep(model, contact, s, kinds);
     if s.rows.iter().any(|row| row.gap() < 0.0) {
-        mend(contact, s);
+        mend(model, contact, s, kinds);
     }
     for (number, (kind, now)) in model.kinds.iter().zip(&mut state.kinds).enumerate() {
         let first = contact.atoms_of(number).start;
@@ -62,7 +63,6 @@ fn prepare(
     kinds: &mut [KindScratch],
 ) {
     s.moved.resize(contact.scene.atoms, [0.0; 4]);
-    s.gradient.resize(contact.scene.atoms, [0.0; 4]);
     s.volumes.clear();
     s.held.clear();
     for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
@@ -112,49 +112,103 @@ fn add_volumes(kind: &Kind, x: &[f64], first: usize, mobility: f64, s: &mut Cont
     {
         volume::measure_block(&kind.rest.facets, x, &kind.held, gradient, volumes);
     }
-    let own = &mut s.gradient[first..first + kind.cells * kind.atoms()];
-    gather(kind, &w.spare, own, |g| [g.x, g.y, g.z, 0.0]);
-    for cell in 0..kind.cells {
-        let first = first + cell * kind.atoms();
-        let end = first + kind.atoms();
+    let own = vectors(kind, &mut w.gradient);
+    gather(kind, &w.spare, own, <[f64; 3]>::from);
+    for (cell, g) in own.chunks_exact(kind.atoms()).enumerate() {
+        let (start, end) = (cell * kind.atoms(), (cell + 1) * kind.atoms());
         let (mut along, mut squared) = (0.0, 0.0);
-        for (g, d) in s.gradient[first..end].iter().zip(&s.moved[first..end]) {
+        for (g, d) in g.iter().zip(&s.moved[first + start..first + end]) {
             along += (0..3).map(|axis| g[axis] * d[axis]).sum::<f64>();
             squared += (0..3).map(|axis| g[axis] * g[axis]).sum::<f64>();
         }
         let offset = w.left[cell] - w.target[cell] - along;
-        s.volumes.push(VolumeRow { first, end, offset, inverse: 1.0 / squared, mobility });
+        s.volumes.push(VolumeRow { first: start, end, offset, inverse: 1.0 / squared, mobility });
+    }
+}
+
+/// The start of an array of a kind that the free step has done with, as one vector for each of its atoms.
+fn vectors<'a>(kind: &Kind, array: &'a mut [f64]) -> &'a mut [[f64; 3]] {
+    &mut array.as_chunks_mut().0[..kind.cells * kind.atoms()]
+}
+
+/// What the sweeps need of a kind; the vectors stand in arrays that the free step has done with.
+struct Part<'a> {
+    volumes: &'a [VolumeRow],
+    /// Gradients of the volumes, µm².
+    gradient: &'a [[f64; 3]],
+    moved: &'a mut [V4],
+    /// Displacements before the sweep, µm.
+    before: &'a mut [[f64; 3]],
+    /// The last direction, µm.
+    way: &'a mut [[f64; 3]],
+}
+
+/// Does something for each kind, in their order, with the number of its first atom.
+fn for_each_part(
+    model: &Model,
+    contact: &ContactModel,
+    (volumes, moved): (&[VolumeRow], &mut [V4]),
+    kinds: &mut [KindScratch],
+    mut work: impl FnMut(usize, Part),
+) {
+    let mut next = 0;
+    for (number, (kind, w)) in model.kinds.iter().zip(kinds).enumerate() {
+        let count = if matches!(kind.volume, VolumeRule::Exact(_)) { kind.cells } else { 0 };
+        let range = contact.atoms_of(number);
+        let part = Part {
+            volumes: &volumes[next..next + count],
+            gradient: vectors(kind, &mut w.gradient),
+            moved: &mut moved[range.clone()],
+            before: vectors(kind, &mut w.first),
+            way: vectors(kind, &mut w.swell),
+        };
+        work(range.start, part);
+        next += count;
     }
 }
 
 /// Sweeps until nothing moves any more; returns what the last sweep changed.
-fn sweep(contact: &ContactModel, s: &mut ContactScratch) -> Change {
-    s.momentum.begin(&s.moved);
+fn sweep(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &mut [KindScratch]) -> Change {
+    for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |_, part| {
+        part.before.iter_mut().zip(part.moved).for_each(|(before, &mut [x, y, z, _])| *before = [x, y, z]);
+        part.way.fill([0.0; 3]);
+    });
+    s.momentum.begin();
     let (mut change, mut share) = (Change::default(), 0.0);
     for number in 1..=contact.most_sweeps {
         change = Change::default();
         sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, share, &mut change);
-        for &(atom, axis) in &s.held {
-            s.moved[atom as usize][axis as usize] = s.momentum.displacement(atom)[axis as usize];
-        }
-        sweep_volumes(&s.volumes, &s.gradient, &mut s.moved, &mut change);
+        let mut held = s.held.iter().peekable();
+        for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |first, part| {
+            while let Some((atom, axis)) = held.next_if(|(atom, _)| (*atom as usize) < first + part.moved.len()) {
+                let (atom, axis) = (*atom as usize - first, *axis as usize);
+                part.moved[atom][axis] = part.before[atom][axis];
+            }
+            sweep_volumes(part.volumes, part.gradient, part.moved, &mut change);
+        });
         s.sweeps = number;
         // A change that is not a number is no rest either.
         if change.largest <= contact.tolerance || number == contact.most_sweeps {
             break;
         }
-        share = s.momentum.go_on(change.work, &mut s.moved);
+        share = s.momentum.share(change.work);
+        for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |_, part| {
+            go_on(share, part.moved, part.before, part.way);
+        });
     }
     change
 }
 
 /// Pushes out what is inside.
-fn mend(contact: &ContactModel, s: &mut ContactScratch) {
-    s.push.clear();
-    s.push.resize(s.rows.len(), 0.0);
+fn mend(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &mut [KindScratch]) {
+    let is_deep = |(_, row): &(u32, &Row)| row.give > 0.0 && row.gap() < 0.0;
+    s.deep.clear();
+    s.deep.extend((0..).zip(&s.rows).filter(is_deep).map(|(number, _)| (number, 0.0)));
     for _ in 0..MENDING {
-        sweep_depths(&s.rows, &mut s.push, &mut s.moved, MENDED * contact.scene.safe_travel());
-        sweep_volumes(&s.volumes, &s.gradient, &mut s.moved, &mut Change::default());
+        sweep_depths(&s.rows, &mut s.deep, &mut s.moved, MENDED * contact.scene.safe_travel());
+        for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |_, part| {
+            sweep_volumes(part.volumes, part.gradient, part.moved, &mut Change::default());
+        });
     }
 }
 

@@ -24,7 +24,7 @@ mod sweep;
 mod sweep_tests;
 
 pub use depth::{check_depth, check_passed};
-pub use find::{add_contact_forces, find_contacts, keep_contacts, pull_contacts};
+pub use find::{add_contact_forces, carry_forces, find_contacts, keep_contacts, pull_contacts};
 pub use hold::{hold_contacts, travel};
 pub use links::{Link, LinkTable, links_at, pull_links};
 pub use model::{ContactModel, Law, Strength};

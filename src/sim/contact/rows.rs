@@ -1,6 +1,7 @@
 //! Contacts as rows of the system that the sweeps solve.
 
 use super::model::{ContactModel, Strength};
+use super::scratch::empty_for;
 use super::state::ContactState;
 use crate::Vec3;
 use crate::contact::Contacts;
@@ -52,8 +53,9 @@ pub fn write_rows(
     rows: &mut Vec<Row>,
     pulls: &mut Vec<Pull>,
 ) {
-    rows.clear();
-    pulls.clear();
+    let count = found.atoms.len() + found.edges.len() + found.planes.len();
+    empty_for(rows, count);
+    empty_for(pulls, count);
     let mut add = |atoms, weights, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], force: [f32; 3]| {
         let normal_and_gap = [normal.x as f32, normal.y as f32, normal.z as f32, gap as f32];
         let row =
@@ -166,7 +168,16 @@ impl Row {
 impl Pull {
     /// The force on the first side, pN.
     pub fn force(&self) -> Vec3 {
-        let [x, y, z, _] = self.force.map(f64::from);
-        Vec3::new(x, y, z)
+        vector(&self.force)
     }
+
+    /// The force on the first side where the step began, pN.
+    pub(super) fn carried(&self) -> Vec3 {
+        vector(&self.carried)
+    }
+}
+
+fn vector(numbers: &[f32; 4]) -> Vec3 {
+    let [x, y, z, _] = numbers.map(f64::from);
+    Vec3::new(x, y, z)
 }

@@ -16,8 +16,6 @@ pub struct ContactScratch {
     pub found: Contacts,
     /// Positions where the step began, µm.
     pub start: Vec<Vec3>,
-    /// Force of the contacts on the atoms where the step began, pN.
-    pub force: Vec<Vec3>,
     /// Links of the step.
     pub links: Vec<Link>,
     /// Facets that have one.
@@ -32,16 +30,15 @@ pub struct ContactScratch {
     pub rows: Vec<Row>,
     /// What each row carries.
     pub pulls: Vec<Pull>,
-    /// Displacement of the atoms over the step, µm, and their displacement over force, µm/pN.
+    /// While the atoms move freely, the force of the contacts on them where the step began, pN, and 0; in the projection,
+    /// their displacement over the step, µm, and their displacement over force, µm/pN.
     pub(super) moved: Vec<V4>,
-    /// Gradients of the volumes, µm², and 0.
-    pub(super) gradient: Vec<V4>,
     /// Volumes to keep.
     pub(super) volumes: Vec<VolumeRow>,
     /// Atoms and axes that are held.
     pub(super) held: Vec<(u32, u32)>,
-    /// Pushes that mend depths, pN.
-    pub(super) push: Vec<f64>,
+    /// Rows that are inside, and the pushes that mend them, pN.
+    pub(super) deep: Vec<(u32, f64)>,
     pub(super) momentum: Momentum,
     /// Sweeps of the last projection.
     pub sweeps: u32,
@@ -60,12 +57,19 @@ impl ContactScratch {
         self.linked.clear();
         [&mut self.places, &mut self.live_force].into_iter().for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
         self.start.fill(Vec3::repeat(f64::NAN));
-        self.force.fill(Vec3::repeat(f64::NAN));
         self.moved.fill([f64::NAN; 4]);
-        self.gradient.fill([f64::NAN; 4]);
-        self.push.fill(f64::NAN);
+        self.deep.clear();
         self.relief.fill(f64::NAN);
         self.momentum.poison();
         self.sweeps = u32::MAX;
+    }
+}
+
+/// Empties a list that will have this many items. Where it must grow it takes an eighth more, where a `Vec` would double: rows
+/// are much of the memory of a packed population.
+pub(super) fn empty_for<T>(list: &mut Vec<T>, count: usize) {
+    list.clear();
+    if list.capacity() < count {
+        list.reserve_exact(count + count / 8);
     }
 }

@@ -18,7 +18,7 @@ pub type V4 = [f64; 4];
 /// A volume that is kept while contacts move atoms.
 #[derive(Debug, Clone, Copy)]
 pub struct VolumeRow {
-    /// Its first atom.
+    /// Its first atom, counted from the first of its kind.
     pub first: usize,
     /// One behind its last atom.
     pub end: usize,
@@ -161,14 +161,14 @@ impl NullaryFnOnce for Sweep<'_> {
     }
 }
 
-/// Puts all volumes back to first order, eq. (adhesion.6). The fourth number of gradients is 0.
-pub fn sweep_volumes(volumes: &[VolumeRow], gradient: &[V4], moved: &mut [V4], change: &mut Change) {
+/// Puts all volumes back to first order, eq. (adhesion.6); `gradient` are those of the volumes, µm².
+pub fn sweep_volumes(volumes: &[VolumeRow], gradient: &[[f64; 3]], moved: &mut [V4], change: &mut Change) {
     Arch::new().dispatch(SweepVolumes { volumes, gradient, moved, change });
 }
 
 struct SweepVolumes<'a> {
     volumes: &'a [VolumeRow],
-    gradient: &'a [V4],
+    gradient: &'a [[f64; 3]],
     moved: &'a mut [V4],
     change: &'a mut Change,
 }
@@ -184,10 +184,12 @@ impl NullaryFnOnce for SweepVolumes<'_> {
             let moved = &mut self.moved[volume.first..volume.end];
             let mut along = [0.0; 4];
             for (g, d) in gradient.iter().zip(&*moved) {
+                let g = [g[0], g[1], g[2], 0.0];
                 along = map(|i| along[i] + g[i] * d[i]);
             }
             let back = -(volume.offset + ((along[0] + along[1]) + along[2])) * volume.inverse;
             for (d, g) in moved.iter_mut().zip(gradient) {
+                let g = [g[0], g[1], g[2], 0.0];
                 *d = map(|i| d[i] + back * g[i]);
             }
             // As far as all atoms move along a gradient that is the same for all.
@@ -199,9 +201,11 @@ impl NullaryFnOnce for SweepVolumes<'_> {
 }
 
 /// Pushes out what is inside, by no more than `most` (µm), and leaves no force behind: what curved ways let slip is
-/// mended by place, not by force, eq. (adhesion.7). `pushes` is the force of each row that would do it, zero at first.
-pub fn sweep_depths(rows: &[Row], pushes: &mut [f64], moved: &mut [V4], most: f64) {
-    for (row, pushed) in rows.iter().zip(pushes).filter(|(row, _)| row.give > 0.0 && row.gap() < 0.0) {
+/// mended by place, not by force, eq. (adhesion.7). `deep` are the rows that are inside and can move, each with the force that
+/// would do it, zero at first.
+pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], most: f64) {
+    for (row, pushed) in deep {
+        let row = &rows[*row as usize];
         let mut normal = wide(&row.normal_and_gap);
         normal[3] = 0.0;
         let wanted = (row.gap() + most).min(0.0);

@@ -101,7 +101,7 @@ fn a_sweep_in_wide_registers_is_that_of_the_book() {
 fn a_sweep_over_volumes_meets_every_linear_target() {
     let (mut moved, ..) = scene(3);
     let mut dice = Stream::new(4, Purpose::Placement, 0, 0);
-    let gradient: Vec<V4> = (0..ATOMS).map(|_| vector(&mut dice)).map(|g| [g.x, g.y, g.z, 0.0]).collect();
+    let gradient: Vec<[f64; 3]> = (0..ATOMS).map(|_| vector(&mut dice).into()).collect();
     let volume = |first: usize, end: usize, offset: f64| {
         let squared: f64 = gradient[first..end].iter().flatten().map(|g| g * g).sum();
         VolumeRow { first, end, offset, inverse: 1.0 / squared, mobility: 0.2 }
