@@ -355,20 +355,23 @@ fn forces_of_penalties_are_the_gradient_of_their_energy_without_net_force_or_tor
     }
 }
 
-#[test]
-fn what_penalties_bear_of_a_load_and_drag_bears_of_the_rest_add_up() {
+/// What is left of the impulse of a load on the second cell, over that impulse, when what penalties and drag bore is taken off.
+fn impulse_left(tolerance: f64) -> f64 {
     let mut model = penalty(40.0, 0.0);
     press_together(&mut model);
+    model.integrator.size = StepSize::Adaptive { tolerance, largest: 0.5 };
     let mut state = pair(&model);
     let mut ws = Workspace::new(&model);
     let mean = |state: &State| positions(&model, state)[12..].iter().sum::<Vec3>() / 12.0;
-    // The pushes on the second cell by their depths, as they are where a step begins.
-    let borne = |ws: &Workspace| -> Vec3 {
-        let pushes = ws.contact.rows.iter().map(|row| {
-            let own = row.atoms.iter().zip(row.weights).filter(|(atom, _)| **atom >= 12);
-            own.map(|(_, weight)| weight).sum::<f64>() * 50.0 * (-row.gap()).max(0.0) * row.normal()
-        });
-        pushes.sum()
+    let law = Penalty { stiffness: 50.0, range: model.contact.as_ref().unwrap().scene.reach.proximity };
+    // The push on the second cell with the contacts of a step, the mean of its begin and its end.
+    let borne = |ws: &Workspace, state: &State| -> Vec3 {
+        let at = |x: &[Vec3]| {
+            let mut force = vec![Vec3::zeros(); x.len()];
+            press(&law, &ws.contact.rows, &ws.contact.start, x, &mut force);
+            force[12..].iter().sum::<Vec3>()
+        };
+        0.5 * (at(&ws.contact.start) + at(&positions(&model, state)))
     };
     let (mut impulse, mut began) = (Vec3::zeros(), None);
     while state.time < 38.0 {
@@ -377,13 +380,19 @@ fn what_penalties_bear_of_a_load_and_drag_bears_of_the_rest_add_up() {
         }
         let report = step(&model, &mut state, &mut ws).unwrap();
         if began.is_some() {
-            impulse += report.dt * (borne(&ws) - 5.0 * Vec3::x());
+            impulse += report.dt * (borne(&ws, &state) - 5.0 * Vec3::x());
         }
     }
     let (time, place) = began.expect("there are steps after 30 s");
     let load = 5.0 * (state.time - time);
     let left = impulse - 20.0 * (mean(&state) - place);
     println!("{left:?} left of {load} pN s, in {} steps", state.step);
-    // Forces are taken where steps begin, and change by a few percent in a step here and there.
-    assert!(left.norm() < 0.01 * load, "{left}");
+    left.norm() / load
+}
+
+#[test]
+fn what_penalties_bear_of_a_load_and_what_drag_bears_add_up_as_steps_get_short() {
+    // The push is the mean of those at a step's begin and end; what the scheme makes of it differs by what it changes in a step.
+    let [long, short] = [1e-3, 1e-4].map(impulse_left);
+    assert!(short < 0.5 * long && short < 0.01, "{long} and {short}");
 }
