@@ -110,13 +110,6 @@ pub(super) fn find_edge_contacts(
     }
 }
 
-/// Part of the proximity below which edges that hardly miss each other's ends, or are near an end and have facets that hardly
-/// rise, are taken as touching.
-const CLOSE: f64 = 0.25;
-
-/// How far the facets of such edges may rise towards the other edge, as a sine.
-const CLOSE_SLACK: f64 = 0.1;
-
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
 #[inline]
 fn cross(
@@ -127,6 +120,12 @@ fn cross(
     scene: &Scene,
 ) -> Option<([f64; 2], f64, Vec3)> {
     let normal = first.along.cross(&second.along);
+    // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
+    // or its opposite must do for all four. Most pairs fail here, whatever their distance.
+    let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
+    if a * b < 0.0 {
+        return None;
+    }
     let squared = normal.norm_squared();
     let between = first.start - second.start;
     let height = normal.dot(&between);
@@ -134,69 +133,38 @@ fn cross(
     if height * height > range * range * squared {
         return None;
     }
-    let close = scene.reach.proximity * CLOSE;
-    let is_close = height * height < close * close * squared;
-    // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
-    // or its opposite must do for all four.
-    let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
-    if a * b < 0.0 && !is_close {
-        return None;
-    }
     let on_first = -between.cross(&second.along).dot(&normal);
     let on_second = -between.cross(&first.along).dot(&normal);
-    let misses = on_first < 0.0 || on_first > squared || on_second < 0.0 || on_second > squared;
-    if misses && !is_close {
+    if on_first < 0.0 || on_first > squared || on_second < 0.0 || on_second > squared {
         return None;
     }
     let [left, right] = second.flanks();
     let (c, d) = (-normal.dot(&left), -normal.dot(&right));
     let (lowest, highest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
-    let rises = lowest < 0.0 && highest > 0.0;
-    if rises && !is_close {
+    if lowest < 0.0 && highest > 0.0 {
         return None;
     }
     if squared <= LEAST_SINE_SQUARED * first.along.norm_squared() * second.along.norm_squared() {
         return None;
     }
-    let facing = if lowest == 0.0 && highest == 0.0 { 1f64.copysign(height) } else { 1f64.copysign(highest + lowest) };
+    let facing = if highest > 0.0 {
+        1.0
+    } else if lowest < 0.0 {
+        -1.0
+    } else {
+        1f64.copysign(height)
+    };
     let length = squared.sqrt();
     let (gap, normal) = (facing * height / length, normal * (facing / length));
     if gap >= scene.reach.proximity || gap < -scene.reach.depth {
         return None;
-    }
-    let along = [on_first / squared, on_second / squared];
-    if misses || rises {
-        let touches = hardly_misses(first, along[0], close) && hardly_misses(second, along[1], close);
-        let slides_off = ends_near(first, along[0], 2.0 * close) || ends_near(second, along[1], 2.0 * close);
-        if gap < 0.0 || !touches || !slides_off || rises_by(first, second, &normal, CLOSE_SLACK) {
-            return None;
-        }
     }
     let fits = if one_sided {
         first.is_convex() && second.is_convex() && (gap >= 0.0 || is_really_inside(first, second, normal))
     } else {
         gap >= 0.0
     };
-    fits.then_some((along, gap, normal))
-}
-
-/// Whether a place along an edge, 0 at its start and 1 at its end, is on it or beyond its ends by less than `slack` µm.
-fn hardly_misses(ridge: &Ridge, along: f64, slack: f64) -> bool {
-    let beyond = (-along).max(along - 1.0);
-    beyond <= 0.0 || beyond * beyond * ridge.along.norm_squared() < slack * slack
-}
-
-/// Whether an end of the edge is nearer to a place along it than `reach` µm.
-fn ends_near(ridge: &Ridge, along: f64, reach: f64) -> bool {
-    let left = along.min(1.0 - along).max(0.0);
-    left * left * ridge.along.norm_squared() < reach * reach
-}
-
-/// Whether a facet of one edge rises towards the other edge by more than `slack`, as a sine.
-fn rises_by(first: &Ridge, second: &Ridge, normal: &Vec3, slack: f64) -> bool {
-    let rises = |flank: &Vec3, along: f64| along < -slack * flank.norm();
-    first.flanks().iter().any(|flank| rises(flank, normal.dot(flank)))
-        || second.flanks().iter().any(|flank| rises(flank, -normal.dot(flank)))
+    fits.then(|| ([on_first / squared, on_second / squared], gap, normal))
 }
 
 /// Whether each edge is behind both facets of the other: on ridges sharper than a right angle an edge may be below the
@@ -232,13 +200,20 @@ pub fn edges_still_touch(
     let between = first.start - second.start;
     let on_first = -between.cross(&second.along).dot(&across);
     let on_second = -between.cross(&first.along).dot(&across);
-    let along = [on_first / squared, on_second / squared];
-    let close = CLOSE * scene.reach.proximity;
-    if !hardly_misses(&first, along[0], close) || !hardly_misses(&second, along[1], close) {
+    if on_first < 0.0 || on_first > squared || on_second < 0.0 || on_second > squared {
         return None;
     }
     let normal = across * (1f64.copysign(across.dot(normal)) / squared.sqrt());
     let gap = normal.dot(&between);
+    let rises = |flank: &Vec3, along: f64| along < -SLACK * flank.norm();
+    let turned = first.flanks().iter().any(|flank| rises(flank, normal.dot(flank)))
+        || second.flanks().iter().any(|flank| rises(flank, -normal.dot(flank)));
     let near = gap < scene.reach.proximity && gap >= -scene.reach.depth;
-    (near && !rises_by(&first, &second, &normal, SLACK)).then_some(EdgeContact { edges, bodies, along, gap, normal })
+    (near && !turned).then(|| EdgeContact {
+        edges,
+        bodies,
+        along: [on_first / squared, on_second / squared],
+        gap,
+        normal,
+    })
 }
