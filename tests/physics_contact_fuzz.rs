@@ -38,11 +38,11 @@ enum Open {
 /// Scenes of the short test that break an open promise.
 const KNOWN: &[(u64, Open)] = &[
     (13, Open::Depth),
+    (23, Open::Depth),
     (25, Open::Energy),
-    (31, Open::Rest),
     (37, Open::Depth),
     (40, Open::Energy),
-    (42, Open::Rest),
+    (43, Open::Depth),
     (57, Open::Depth),
     (58, Open::Energy),
 ];
