@@ -25,7 +25,7 @@ const DEEPEST: f64 = 0.02;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Open {
     /// An edge that crosses another slides off its end, or the facets beside it rise: no contact sees the crossing any
-    /// more, it deepens, and is found again some steps later at 2 to 5 % of an edge, or more where cells are crushed.
+    /// more, it deepens, and is found again some steps later at 2 to 9 % of an edge, or more where cells are crushed.
     Depth,
     /// What gives way (eq. adhesion.5) is a spring that softens as steps grow, and returns more than it took; and contacts
     /// begin a step with the force that they carried, which in steps that are long beside the relaxation of a cell dies

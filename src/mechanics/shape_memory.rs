@@ -217,20 +217,21 @@ fn span<T: Real>(x: &Vectors<T>, t: &Triplet) -> Span<T> {
     let inverse = T::constant(x.token, 1.0) / area.max(T::constant(x.token, t.flat)).sqrt();
     let narrow = (area * t.per_flat).min(T::constant(x.token, 1.0));
     let unit = cross.times(inverse);
-    let factor = narrow * narrow * 0.375 - narrow * 1.25 + 1.875;
+    let factor = shrink(narrow);
     Span { u, v, unit, normal: unit.times(factor), inverse, narrow }
 }
 
 /// p(r) of eq. (shape.5) from r²: 1, without slope or curvature, where r is 1.
-fn shrink(narrow: f64) -> f64 {
-    1.875 - 1.25 * narrow + 0.375 * narrow * narrow
+#[inline(always)]
+fn shrink<T: Real>(narrow: T) -> T {
+    narrow * narrow * 0.375 - narrow * 1.25 + 1.875
 }
 
 /// The answer of a triplet's corners to the tilt of their normal.
 #[inline(always)]
 fn add_tilt<T: Real>(f: &mut VectorsMut<T>, t: &Triplet, span: &Span<T>, pull: V3<T>) {
     let narrow = span.narrow;
-    let factor = narrow * narrow * 0.375 - narrow * 1.25 + 1.875;
+    let factor = shrink(narrow);
     let along = narrow * -1.5 + 2.5;
     let across = pull.times(factor) - span.unit.times(span.unit.dot(pull) * along);
     let g = across.times(span.inverse * t.height);

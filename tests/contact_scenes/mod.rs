@@ -335,7 +335,7 @@ impl Scene {
         };
         if let StepSize::Fixed(_) = size {
             // As documents allow it: a fixed step cannot be made shorter.
-            contact.most_sweeps = 4000;
+            contact = contact.suited_to(size);
         }
         let integrator = Integrator { method: self.method, size };
         let model = Model {
