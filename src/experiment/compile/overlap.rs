@@ -19,11 +19,11 @@ pub struct Found {
     pub words: String,
 }
 
-/// Refuses a start with these; good when there are none.
+/// Refuses a start with these; good when there are none. `else_do` is what helps besides placing cells apart, from a comma on.
 ///
 /// # Errors
 /// [`Error::Input`] with the cells that overlap.
-pub fn refusal(document: &Document, model: &Model, head: &str, found: &[Found]) -> Result<()> {
+pub fn refusal(document: &Document, model: &Model, head: &str, found: &[Found], else_do: &str) -> Result<()> {
     let Some(first) = found.first() else { return Ok(()) };
     let kind = &model.kinds[first.kind];
     let mut list: Vec<&str> = found.iter().take(MOST).map(|found| found.words.as_str()).collect();
@@ -31,7 +31,7 @@ pub fn refusal(document: &Document, model: &Model, head: &str, found: &[Found]) 
     list.extend((found.len() > MOST).then_some(more.as_str()));
     let extent = bounding_box(&kind.rest.positions).map_or(0.0, |(low, high)| (high - low).max());
     let fault = Fault::new(format!("{head}{}", list.join("; "))).help(format!(
-        "place them apart: cells of type `{}` are {} um wide, and a grid needs a `spacing` above that; \
+        "place them apart{else_do}: cells of type `{}` are {} um wide, and a grid needs a `spacing` above that; \
          random_from and random_to find places that do not overlap",
         kind.name,
         short(extent)

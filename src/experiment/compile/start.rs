@@ -60,10 +60,11 @@ pub fn settle_start(document: &Document, compiled: &mut Compiled) -> Result<Push
     let (moves, left) = push_apart(&contact.scene, &mut positions, &yielding);
     let list = |overlaps: &[Overlap]| overlaps.iter().map(|overlap| told(model, overlap)).collect::<Vec<Found>>();
     let head = format!("cells overlap at the start, and {ROUNDS} rounds of pushing have not parted them all: ");
-    refusal(document, model, &head, &list(&left))?;
+    let room = if model.planes.is_empty() { "" } else { ", or give them more room between the planes" };
+    refusal(document, model, &head, &list(&left), room)?;
     let far = too_far(model, &moves);
     let head = "cells overlap at the start, and to part them some would have to move farther than their radius: ";
-    refusal(document, model, head, &far)?;
+    refusal(document, model, head, &far, "")?;
     for (body, way) in moves.iter().enumerate() {
         let (kind, cell) = model.kind_of(body);
         state.kinds[kind].shift(&model.kinds[kind], cell, way);
@@ -87,13 +88,25 @@ fn refuse_what_cannot_move(
     let behind = behind_planes(model, contact, positions);
     if !behind.is_empty() {
         let all: Vec<Found> = found(&|_| true).into_iter().chain(behind).collect();
-        return refusal(document, model, "cells overlap or reach behind planes at the start: ", &all);
+        return refusal(
+            document,
+            model,
+            "cells overlap or reach behind planes at the start: ",
+            &all,
+            ", or move the plane",
+        );
     }
     let deep = found(&|overlap| too_deep(&contact.scene, positions, overlap));
-    refusal(document, model, "cells overlap at the start, too deep in each other to be pushed apart: ", &deep)?;
+    refusal(document, model, "cells overlap at the start, too deep in each other to be pushed apart: ", &deep, "")?;
     let is_held = |body: u32| model.kinds[model.kind_of(body as usize).0].is_held();
     let held = found(&|overlap| overlap.bodies.iter().all(|body| is_held(*body)));
-    refusal(document, model, "cells overlap at the start that are held and cannot be pushed apart: ", &held)
+    refusal(
+        document,
+        model,
+        "cells overlap at the start that are held and cannot be pushed apart: ",
+        &held,
+        ", or hold one of them only",
+    )
 }
 
 /// A number of each cell's kind for each cell.
