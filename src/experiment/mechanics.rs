@@ -123,6 +123,11 @@ pub struct Membrane {
     /// Surface tension.
     #[serde(default)]
     pub tension: LineStiffness,
+    /// Stiffness with which an atom is drawn along the surface to each neighbour, so that a surface without shear keeps its
+    /// mesh in order; its shape is left alone. For closed meshes.
+    #[serde(default)]
+    #[schemars(extend("x-minimum" = 0))]
+    pub ordering: LineStiffness,
 }
 
 impl Membrane {
@@ -130,7 +135,7 @@ impl Membrane {
     pub fn new(law: Law, shear: LineStiffness, area: LineStiffness) -> Self {
         let (none, bending_rest) = (LineStiffness::ZERO, BendingRest::Shape);
         let (hardening, bending) = (0.0, Energy::ZERO);
-        Self { law, shear, area, hardening, total_area: none, bending, bending_rest, tension: none }
+        Self { law, shear, area, hardening, total_area: none, bending, bending_rest, tension: none, ordering: none }
     }
 }
 

@@ -5,6 +5,7 @@ use super::barrier::Barrier;
 use super::bending::Bending;
 use super::lanes::{BlockWork, Real, Vectors, VectorsMut, dispatch};
 use super::membrane::Membrane;
+use super::ordering::Ordering;
 use super::shape_memory::ShapeMemory;
 use super::springs::Springs;
 use super::stiffness::StiffnessMatrix;
@@ -22,6 +23,8 @@ pub struct Elasticity {
     pub membrane: Vec<Membrane>,
     /// Surface tension and the modulus of the total area.
     pub tension: Vec<Tension>,
+    /// Pulls along a surface that keep its atoms in order.
+    pub ordering: Vec<Ordering>,
     /// Bending of a membrane.
     pub bending: Vec<Bending>,
     /// Springs on edges and links between any two atoms.
@@ -44,6 +47,7 @@ impl Elasticity {
         self.angles.iter().for_each(|force| force.add_stiffness(&mut matrix));
         self.membrane.iter().for_each(|force| force.add_stiffness(x, &mut matrix));
         self.tension.iter().for_each(|force| force.add_stiffness(&mut matrix));
+        self.ordering.iter().for_each(|force| force.add_stiffness(x, &mut matrix));
         self.bending.iter().for_each(|force| force.add_stiffness(&mut matrix));
         self.springs.iter().for_each(|force| force.add_stiffness(&mut matrix));
         self.barrier.iter().for_each(|force| force.add_stiffness(&mut matrix));
@@ -79,6 +83,9 @@ impl BlockWork for Work<'_> {
                 sum += force.add_forces(&x, &mut f);
             }
             for force in &self.elasticity.tension {
+                sum += force.add_forces(&x, &mut f);
+            }
+            for force in &self.elasticity.ordering {
                 sum += force.add_forces(&x, &mut f);
             }
             for force in &self.elasticity.bending {

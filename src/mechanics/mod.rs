@@ -13,6 +13,7 @@ pub mod implicit;
 pub mod integrator;
 pub mod lanes;
 pub mod membrane;
+pub mod ordering;
 pub mod rigid;
 pub mod shape_memory;
 pub mod shape_modulus;

@@ -14,6 +14,7 @@ use crate::mechanics::barrier::{Barrier, BarrierRules};
 use crate::mechanics::bending::{Bending, RestAngle};
 use crate::mechanics::elasticity::Elasticity;
 use crate::mechanics::membrane::{Membrane, MembraneLaw};
+use crate::mechanics::ordering::Ordering;
 use crate::mechanics::shape_memory::{Reaction, ShapeMemory};
 use crate::mechanics::shape_modulus::stiffness_of_modulus;
 use crate::mechanics::springs::{Spring, Springs};
@@ -121,6 +122,16 @@ fn add_membrane(
     if text.tension.value() != 0.0 || text.total_area.value() != 0.0 {
         let (tension, total) = (text.tension.value(), text.total_area.value());
         elasticity.tension.push(Tension::new(&rest.positions, &rest.facets, tension, total));
+    }
+    if text.ordering.value() > 0.0 {
+        if topology.is_closed() {
+            elasticity.ordering.push(Ordering::new(rest.positions.len(), &rest.facets, text.ordering.value()));
+        } else {
+            let fault = Fault::new("a surface with a border cannot be ordered: its border would be drawn inwards")
+                .help("take `ordering` out, or give the membrane a small `shear` and `area`");
+            let place = document.place(&format!("{key}.mechanics.membrane.ordering"), "on an open mesh");
+            faults.push(place.into_iter().fold(fault, Fault::at));
+        }
     }
     if text.bending.value() > 0.0 {
         let angle = match text.bending_rest {
