@@ -1,4 +1,4 @@
-//! Every message about chemistry or contacts that do not fit their experiment is kept beside the experiment.
+//! Every message about chemistry, contacts or mechanics that do not fit their experiment is kept beside the experiment.
 //!
 //! `PSEUDOPOD_BLESS=1 cargo test --test messages_experiments` writes the texts anew; read the difference before committing it.
 
@@ -50,4 +50,9 @@ fn every_bad_experiment_with_chemistry_gets_the_message_beside_it() {
 #[test]
 fn every_bad_experiment_with_contacts_gets_the_message_beside_it() {
     every_message_is_that_beside("contact", 7);
+}
+
+#[test]
+fn every_bad_experiment_with_mechanics_gets_the_message_beside_it() {
+    every_message_is_that_beside("mechanics", 1);
 }

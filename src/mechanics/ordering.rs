@@ -94,7 +94,7 @@ impl Ordering {
     }
 }
 
-/// The pull to all neighbours over the stiffness, eq. (order.1), and the matrix Q of eq. (order.3) that keeps what of it lies
+/// The pull to all neighbours over the stiffness, eq. (order.1), and the matrix Q of eqs. (order.2) and (order.3) that keeps what of it lies
 /// along the surface; `per_square` is one over the mean squared length of edges.
 #[inline(always)]
 fn along_surface<T: Real>(x: &Vectors<T>, atom: usize, ring: &[[u32; 2]], per_square: T) -> (V3<T>, Symmetric<T>) {
