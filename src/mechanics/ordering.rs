@@ -94,8 +94,8 @@ impl Ordering {
     }
 }
 
-/// The pull to all neighbours over the stiffness, eq. (order.1), and the matrix Q of eqs. (order.2) and (order.3) that keeps what of it lies
-/// along the surface; `per_square` is one over the mean squared length of edges.
+/// The pull to all neighbours over the stiffness, eq. (order.1), and the matrix Q of eqs. (order.2) and (order.3) that keeps
+/// what of it lies along the surface; `per_square` is one over the mean squared length of edges.
 #[inline(always)]
 fn along_surface<T: Real>(x: &Vectors<T>, atom: usize, ring: &[[u32; 2]], per_square: T) -> (V3<T>, Symmetric<T>) {
     let token = x.token;
@@ -130,7 +130,7 @@ fn along_surface<T: Real>(x: &Vectors<T>, atom: usize, ring: &[[u32; 2]], per_sq
         normal.y * across.z + normal.z * across.y,
     ];
     for (entry, pair) in flat.iter_mut().zip(pairs) {
-        *entry = *entry - pair;
+        *entry -= pair;
     }
     (0..3).for_each(|axis| flat[axis] += one);
     let mut q = inverse(&flat);
@@ -143,7 +143,7 @@ fn along_surface<T: Real>(x: &Vectors<T>, atom: usize, ring: &[[u32; 2]], per_sq
         normal.y * normal.z,
     ];
     for (entry, outer) in q.iter_mut().zip(outer) {
-        *entry = *entry - outer;
+        *entry -= outer;
     }
     (pull, q)
 }
@@ -185,7 +185,7 @@ fn solved<T: Real>(mut system: [[T; 7]; 6]) -> [T; 6] {
         for below in pivot + 1..6 {
             let share = system[below][pivot] / row[pivot];
             for column in pivot..7 {
-                system[below][column] = system[below][column] - row[column] * share;
+                system[below][column] -= row[column] * share;
             }
         }
     }
@@ -193,7 +193,7 @@ fn solved<T: Real>(mut system: [[T; 7]; 6]) -> [T; 6] {
     for row in (0..6).rev() {
         for column in row + 1..6 {
             let known = solution[column];
-            solution[row] = solution[row] - known * system[row][column];
+            solution[row] -= known * system[row][column];
         }
         solution[row] = solution[row] / system[row][row];
     }
