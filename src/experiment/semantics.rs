@@ -124,12 +124,13 @@ impl Check<'_> {
         if known().any(|name| name == text) {
             return;
         }
-        if contacts && (text == LINK_SERIES || ADHESIVE_SERIES.contains(&text)) {
+        let is_of_law = text == LINK_SERIES || ADHESIVE_SERIES.contains(&text);
+        if contacts && is_of_law {
             let message = format!("`{path}`: there is no series \"{text}\" in this contact model");
             let model = if text == LINK_SERIES { "links" } else { "virtual_adhesives" };
             return self.fault(path, "not recorded", message, format!("add model = \"{model}\" to [contact]"));
         }
-        let is_of_contacts = CONTACT_SERIES.contains(&text) || pairs.iter().any(|name| name == text);
+        let is_of_contacts = is_of_law || CONTACT_SERIES.contains(&text) || pairs.iter().any(|name| name == text);
         if is_of_contacts && !self.document.experiment.chemistry.contains_key("contact") {
             let message = format!("`{path}`: there is no series \"{text}\" without contacts");
             return self.fault(path, "not recorded", message, "add [contact] to the document");

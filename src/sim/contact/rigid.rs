@@ -32,7 +32,7 @@ pub(super) struct Rigid {
     grounded: bool,
 }
 
-/// A rigid motion from where the step began.
+/// A rigid motion from where the step began, eq. (adhesion.13).
 struct Motion {
     shift: Vec3,
     turn: Rotation3<f64>,
