@@ -181,6 +181,24 @@ fn aggregates_are_what_links_join_and_pairs_are_what_touches() {
 }
 
 #[test]
+fn adhesives_and_the_atoms_of_the_largest_are_recorded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (kappa, together) in [("1 um", true), ("0 um", false)] {
+        let model = format!("model = \"virtual_adhesives\"\nkappa = \"{kappa}\"");
+        let text = ROW.replace("strength = \"1 Pa\"", &model).replace("\"contact.count\"", "\"contact.adhesives\"");
+        let text = text.replacen("[run]\n", "[run]\nintegrator = { step = \"0.05 s\" }\n", 1);
+        let document = Document::parse("row.toml", &text, Path::new("."), &[]).expect("a good document");
+        let result = folder.path().join("row.vtkhdf");
+        let options = RunOptions { result: result.clone(), overwrite: Overwrite::Replace, threads: Some(1) };
+        run(&document, &options, &mut Quiet).expect("a run");
+        let file = ResultFile::open(&result).expect("a result");
+        let last = |name: &str| *file.scene_series(name).expect("a series").last().expect("a frame");
+        let (adhesives, largest) = (last("contact.adhesives"), last("contact.largest_adhesive"));
+        assert_eq!((adhesives > 0.0, largest >= 2.0), (together, together), "{kappa}: {adhesives}, {largest}");
+    }
+}
+
+#[test]
 fn aggregates_and_shares_of_contact_are_recorded() {
     let folder = tempfile::tempdir().expect("a folder");
     let result = folder.path().join("row.vtkhdf");

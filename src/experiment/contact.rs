@@ -12,6 +12,9 @@ pub const CONTACT_SERIES: [&str; 5] =
 /// The series of the scene that a run with links records besides: links between facets.
 pub const LINK_SERIES: &str = "contact.links";
 
+/// The series of the scene that a run with virtual adhesives records besides: adhesives, atoms of the largest.
+pub const ADHESIVE_SERIES: [&str; 2] = ["contact.adhesives", "contact.largest_adhesive"];
+
 /// Names of the series that a result with contacts has for types of cells, by their order in the document, and planes:
 /// areas and numbers of contacts by pair, shares and clusters.
 pub fn pair_series<'a>(types: &[&'a str], planes: &[&'a str]) -> Vec<String> {
@@ -39,6 +42,20 @@ pub enum ContactModel {
     Links,
     /// Contacts push by `penalty` times their depth, and pull within the proximity, by `strength`: to compare with.
     Penalty,
+    /// Contacts bear any push, and atoms that touch move as one rigid body until a step would take one farther than `kappa` from it.
+    VirtualAdhesives,
+}
+
+/// Which virtual adhesives merge where their atoms are neighbours on a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum Zones {
+    /// All.
+    #[default]
+    Merged,
+    /// Those of the same two cells, or the same cell and plane; an atom that touches several belongs to the nearest.
+    Pairs,
 }
 
 /// Contacts of cells with each other, with themselves and with planes. Without this table cells pass through each other.
@@ -75,7 +92,15 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub penalty: Option<LineStiffness>,
-    /// Strengths or links of single pairs.
+    /// Model virtual_adhesives: what an atom's own displacement in a step may differ from that of its adhesive before it is
+    /// released, for any two types; nothing sticks when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub kappa: Option<Length>,
+    /// Model virtual_adhesives: which of them merge; "merged" when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zones: Option<Zones>,
+    /// Strengths, links or kappas of single pairs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub between: Vec<Between>,
 }
@@ -86,7 +111,7 @@ pub struct Contact {
 pub struct Between {
     /// Two types of cells, or a type and a plane; the same type twice for its cells among themselves.
     pub types: [String; 2],
-    /// Pull over area of contact at which they part; needed unless the model is links.
+    /// Pull over area of contact at which they part; needed in the models adhesives and penalty.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub strength: Option<Stress>,
@@ -102,6 +127,10 @@ pub struct Between {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub link: Option<LineStiffness>,
+    /// Model virtual_adhesives: the difference of displacements at which an atom is released; "0 um" does not stick.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub kappa: Option<Length>,
 }
 
 /// What two names of a pair mean in an experiment.

@@ -1,7 +1,7 @@
 //! Checks that need more than one key: what requires, excludes or names what.
 
 use super::check::Reference;
-use super::contact::{CONTACT_SERIES, ContactModel, LINK_SERIES, pair_series};
+use super::contact::{ADHESIVE_SERIES, CONTACT_SERIES, ContactModel, LINK_SERIES, pair_series};
 use super::document::{Document, near_file};
 use crate::error::Fault;
 use crate::error::words;
@@ -111,9 +111,11 @@ impl Check<'_> {
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> = cells.flat_map(|cell| &cell.loads).map(|load| format!("load.{}", load.name)).collect();
         let contacts = self.document.experiment.contact.is_some();
-        let links = self.document.experiment.contact.as_ref().is_some_and(|found| found.model == ContactModel::Links);
+        let law = |law: ContactModel| self.document.experiment.contact.as_ref().is_some_and(|found| found.model == law);
+        let (links, adhesives) = (law(ContactModel::Links), law(ContactModel::VirtualAdhesives));
         let of_links = [LINK_SERIES].into_iter().filter(|_| links);
-        let of_contacts = CONTACT_SERIES.into_iter().filter(|_| contacts).chain(of_links);
+        let of_adhesives = ADHESIVE_SERIES.into_iter().filter(|_| adhesives);
+        let of_contacts = CONTACT_SERIES.into_iter().filter(|_| contacts).chain(of_links).chain(of_adhesives);
         let of_pairs = pairs.iter().filter(|_| contacts);
         let known = || {
             let own = CELL_SERIES.into_iter().chain(of_contacts.clone()).chain(["time"]);
@@ -122,11 +124,13 @@ impl Check<'_> {
         if known().any(|name| name == text) {
             return;
         }
-        if text == LINK_SERIES && contacts {
+        let is_of_law = text == LINK_SERIES || ADHESIVE_SERIES.contains(&text);
+        if contacts && is_of_law {
             let message = format!("`{path}`: there is no series \"{text}\" in this contact model");
-            return self.fault(path, "not recorded", message, "add model = \"links\" to [contact]");
+            let model = if text == LINK_SERIES { "links" } else { "virtual_adhesives" };
+            return self.fault(path, "not recorded", message, format!("add model = \"{model}\" to [contact]"));
         }
-        let is_of_contacts = CONTACT_SERIES.contains(&text) || pairs.iter().any(|name| name == text);
+        let is_of_contacts = is_of_law || CONTACT_SERIES.contains(&text) || pairs.iter().any(|name| name == text);
         if is_of_contacts && !self.document.experiment.chemistry.contains_key("contact") {
             let message = format!("`{path}`: there is no series \"{text}\" without contacts");
             return self.fault(path, "not recorded", message, "add [contact] to the document");

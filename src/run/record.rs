@@ -1,7 +1,7 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
 use super::touch::Touch;
-use crate::experiment::{CONTACT_SERIES, LINK_SERIES, Schedule};
+use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES, Schedule};
 use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
 use crate::sim::chemistry::Members;
 use crate::sim::contact::{Law, find_contacts};
@@ -31,9 +31,12 @@ pub fn layout_of(model: &Model) -> Layout {
     if layout.contacts {
         layout.scene_series.extend(CONTACT_SERIES.map(|name| (name.to_owned(), "1".to_owned())));
     }
-    if model.contact.as_ref().is_some_and(|contact| matches!(contact.law, Law::Links(_))) {
-        layout.scene_series.push((LINK_SERIES.to_owned(), "1".to_owned()));
-    }
+    let of_law: &[&str] = match model.contact.as_ref().map(|contact| &contact.law) {
+        Some(Law::Links(_)) => &[LINK_SERIES],
+        Some(Law::VirtualAdhesives(_)) => &ADHESIVE_SERIES,
+        _ => &[],
+    };
+    layout.scene_series.extend(of_law.iter().map(|name| ((*name).to_owned(), "1".to_owned())));
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
     layout.planes = model.planes.iter().map(plane).collect();
     add_chemistry(model, &mut layout);

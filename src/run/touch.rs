@@ -66,8 +66,14 @@ impl Touch {
             sizes.iter().filter(|size| **size > 0).count() as f64,
             f64::from(sizes.iter().copied().max().unwrap_or(0)),
         ]);
-        if let Law::Links(_) = contact.law {
-            frame.scene.push(self.links.len() as f64);
+        match contact.law {
+            Law::Links(_) => frame.scene.push(self.links.len() as f64),
+            Law::VirtualAdhesives(_) => {
+                let adhesives = || state.contact.adhesives.chunk_by(|one, other| one.adhesive == other.adhesive);
+                let largest = adhesives().map(<[_]>::len).max().unwrap_or(0);
+                frame.scene.extend([adhesives().count() as f64, largest as f64]);
+            }
+            Law::Adhesives | Law::Penalty(_) => {}
         }
     }
 

@@ -1,10 +1,10 @@
 //! Contacts as the step knows them.
 
-use super::super::contact::{ContactModel as Text, Pair};
+use super::super::contact::{ContactModel as Text, Pair, Zones as ZonesText};
 use super::super::{Document, Experiment};
 use crate::contact::Reach;
 use crate::error::{Error, Fault, Result, short};
-use crate::sim::contact::{ContactModel, Law, LinkTable, Penalty, Strength};
+use crate::sim::contact::{AdhesiveTable, ContactModel, Law, LinkTable, Penalty, Strength, Zones};
 use crate::sim::{Kind, Plane};
 use crate::units::{LineStiffness, Stress};
 
@@ -55,6 +55,10 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
             let stiffness = text.penalty.map_or(0.0, |penalty| penalty.value());
             model.law = Law::Penalty(Penalty { stiffness, range: reach.proximity });
         }
+        Text::VirtualAdhesives => {
+            model.law = Law::VirtualAdhesives(adhesives(experiment, kinds.len(), planes.len()));
+            return Some(model);
+        }
     }
     if let Some(strength) = text.strength {
         let strength = strength_of(strength, text.shear_strength, text.energy);
@@ -76,6 +80,29 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
 fn strength_of(strength: Stress, shear: Option<Stress>, energy: Option<LineStiffness>) -> Strength {
     let energy = energy.map_or(0.0, |energy| energy.value());
     Strength { tensile: strength.value(), shear: shear.unwrap_or(strength).value(), energy }
+}
+
+/// Which types are glued to each other and to planes, and how well. As with strengths, cells stick to planes that are named only.
+fn adhesives(experiment: &Experiment, kinds: usize, planes: usize) -> AdhesiveTable {
+    let text = experiment.contact.as_ref();
+    let all = text.and_then(|text| text.kappa).map_or(0.0, |kappa| kappa.value());
+    let zones = match text.and_then(|text| text.zones).unwrap_or_default() {
+        ZonesText::Merged => Zones::Merged,
+        ZonesText::Pairs => Zones::Pairs,
+    };
+    let mut table = AdhesiveTable { between: vec![all; kinds * kinds], on_planes: vec![0.0; kinds * planes], zones };
+    for between in text.map_or(&[][..], |text| &text.between) {
+        let kappa = between.kappa.map_or(0.0, |kappa| kappa.value());
+        match between.pair(experiment) {
+            Some(Pair::Types(one, other)) => {
+                table.between[one * kinds + other] = kappa;
+                table.between[other * kinds + one] = kappa;
+            }
+            Some(Pair::OnPlane(kind, plane)) => table.on_planes[kind * planes + plane] = kappa,
+            None => {}
+        }
+    }
+    table
 }
 
 /// Which types are linked, and how. The document's checks have refused links to planes.

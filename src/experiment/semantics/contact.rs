@@ -21,7 +21,11 @@ impl Check<'_> {
         }
         self.contact_model(contact);
         let adhesives = contact.model == ContactModel::Adhesives;
-        let sticks = contact.model != ContactModel::Links;
+        let says_all = match contact.model {
+            ContactModel::Links => true,
+            ContactModel::VirtualAdhesives => contact.kappa.is_some(),
+            ContactModel::Adhesives | ContactModel::Penalty => contact.strength.is_some(),
+        };
         if adhesives && contact.shear_strength.is_some() && contact.strength.is_none() {
             let message = "`contact.shear_strength` is given without `strength`".to_owned();
             let help = "add `strength`; \"0 Pa\" for surfaces that resist sliding but not parting";
@@ -51,7 +55,7 @@ impl Check<'_> {
             }
             named.push(pair);
         }
-        if sticks && !contact.between.is_empty() && contact.strength.is_none() {
+        if !says_all && !contact.between.is_empty() {
             self.forgotten(contact, &named);
         }
     }
@@ -60,7 +64,15 @@ impl Check<'_> {
     fn contact_model(&mut self, contact: &Contact) {
         let run = &self.document.experiment.run.integrator;
         let chosen = run.step.is_none() && run.method == Method::Implicit;
-        if contact.model != ContactModel::Adhesives && !chosen {
+        if contact.model == ContactModel::VirtualAdhesives && run.step.is_none() {
+            let message = format!(
+                "`contact.model` is {}, whose `kappa` is a displacement in a step, and no step is given",
+                named(contact)
+            );
+            let help = "give `step` to run.integrator: \"0.1 s\", say; or take model = \"adhesives\", whose strength does not depend on it";
+            self.fault("contact.model", "needs fixed steps", message, help);
+        }
+        if matches!(contact.model, ContactModel::Links | ContactModel::Penalty) && !chosen {
             let message = format!(
                 "`contact.model` is {}, whose springs need steps that are chosen by their error",
                 named(contact)
@@ -83,7 +95,12 @@ impl Check<'_> {
             } else if contact.model == ContactModel::Links && between.link.is_none() {
                 let message = format!("`{path}` does not say how stiff its links are");
                 self.fault(&path, "`link` is missing", message, "add `link`; \"0 pN/um\" does not bind");
-            } else if contact.model != ContactModel::Links && between.strength.is_none() {
+            } else if contact.model == ContactModel::VirtualAdhesives && between.kappa.is_none() {
+                let message = format!("`{path}` does not say how well the two are glued");
+                self.fault(&path, "`kappa` is missing", message, "add `kappa`; \"0 um\" does not stick");
+            } else if matches!(contact.model, ContactModel::Adhesives | ContactModel::Penalty)
+                && between.strength.is_none()
+            {
                 let message = format!("`{path}` does not say how strongly the two stick");
                 self.fault(&path, "`strength` is missing", message, "add `strength`; \"0 Pa\" does not stick");
             }
@@ -165,7 +182,11 @@ impl Check<'_> {
         }
         let pairs = words::all_of(missing.iter().map(String::as_str));
         let message = format!("`contact.between` does not say how strongly {pairs} stick");
-        let help = "add them, or give `strength` to [contact] for all pairs that are not in the table; \"0 Pa\" does not stick";
+        let (key, none) =
+            if contact.model == ContactModel::VirtualAdhesives { ("kappa", "0 um") } else { ("strength", "0 Pa") };
+        let help = format!(
+            "add them, or give `{key}` to [contact] for all pairs that are not in the table; \"{none}\" does not stick"
+        );
         self.fault("contact.between", "the table lacks pairs", message, help);
     }
 }
@@ -176,6 +197,7 @@ fn name_of(model: ContactModel) -> &'static str {
         ContactModel::Adhesives => "\"adhesives\"",
         ContactModel::Links => "\"links\"",
         ContactModel::Penalty => "\"penalty\"",
+        ContactModel::VirtualAdhesives => "\"virtual_adhesives\"",
     }
 }
 
@@ -187,7 +209,7 @@ fn named(contact: &Contact) -> String {
 
 /// The keys of a table of contacts that some models know, as far as they are there, with these models.
 fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
-    use ContactModel::{Adhesives, Links, Penalty};
+    use ContactModel::{Adhesives, Links, Penalty, VirtualAdhesives};
     let mut keys: Vec<(String, bool, &[ContactModel])> = vec![
         ("strength".into(), contact.strength.is_some(), &[Adhesives, Penalty]),
         ("shear_strength".into(), contact.shear_strength.is_some(), &[Adhesives]),
@@ -195,6 +217,8 @@ fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
         ("link".into(), contact.link.is_some(), &[Links]),
         ("range".into(), contact.range.is_some(), &[Links]),
         ("penalty".into(), contact.penalty.is_some(), &[Penalty]),
+        ("kappa".into(), contact.kappa.is_some(), &[VirtualAdhesives]),
+        ("zones".into(), contact.zones.is_some(), &[VirtualAdhesives]),
     ];
     for (index, between) in contact.between.iter().enumerate() {
         let path = |key: &str| format!("between[{index}].{key}");
@@ -202,6 +226,7 @@ fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
         keys.push((path("shear_strength"), between.shear_strength.is_some(), &[Adhesives]));
         keys.push((path("energy"), between.energy.is_some(), &[Adhesives]));
         keys.push((path("link"), between.link.is_some(), &[Links]));
+        keys.push((path("kappa"), between.kappa.is_some(), &[VirtualAdhesives]));
     }
     keys.retain(|(_, is_there, _)| *is_there);
     keys.into_iter().map(|(key, _, models)| (format!("contact.{key}"), models)).collect()

@@ -24,12 +24,14 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     }
     s.detector.detect(&contact.scene, &s.start, &mut s.found);
     keep_edges(contact, &state.contact, &s.start, &mut s.found);
-    let ContactScratch { found, start, linked, links, .. } = s;
+    let ContactScratch { found, start, linked, links, adhesives, .. } = s;
     links_at(contact, &state.chemistry.controls, &state.contact.links, found, start, linked, links);
+    adhesives.find(contact, &model.kinds, &state.chemistry.controls, &state.contact, found, start, state.time);
     write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, &mut s.rows, &mut s.pulls);
     if model.integrator.method.is_inertial() || matches!(contact.law, Law::Penalty(_)) {
         s.pulls.fill(Pull::default());
     }
+    s.adhesives.take_over(&mut s.rows, &mut s.pulls, &s.start);
     carry_forces(model, state, ws);
 }
 
@@ -44,6 +46,9 @@ pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
         for (atom, weight) in row.atoms.iter().zip(row.weights) {
             add(&mut s.moved[*atom as usize], &(weight * pull.carried()));
         }
+    }
+    for one in &s.adhesives.atoms {
+        add(&mut s.moved[one.atom as usize], &Vec3::from(one.force));
     }
 }
 
@@ -63,7 +68,8 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
 /// Sets the forces of links and penalties where the atoms are now: they change while a step is made, and its error estimate
 /// must see that.
 pub fn pull_contacts(model: &Model, state: &State, s: &mut ContactScratch) {
-    let Some(contact) = model.contact.as_ref().filter(|contact| contact.law != Law::Adhesives) else { return };
+    let is_live = |law: &Law| matches!(law, Law::Links(_) | Law::Penalty(_));
+    let Some(contact) = model.contact.as_ref().filter(|contact| is_live(&contact.law)) else { return };
     s.places.resize(contact.scene.atoms, Vec3::zeros());
     for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
         gather(kind, &now.positions, &mut s.places[contact.atoms_of(number)], |x| x);
@@ -95,11 +101,11 @@ pub fn add_contact_forces(model: &Model, number: usize, block: usize, scratch: &
 }
 
 /// Keeps what contacts carry for the next step.
-pub fn keep_contacts(model: &Model, state: &mut State, ws: &Workspace) {
-    if model.contact.is_none() {
-        return;
-    }
-    let (s, ContactState { atoms, edges, planes, links }) = (&ws.contact, &mut state.contact);
+pub fn keep_contacts(model: &Model, state: &mut State, ws: &mut Workspace) {
+    let Some(contact) = &model.contact else { return };
+    let s = &mut ws.contact;
+    s.adhesives.keep(contact, &state.chemistry.controls, &s.found, &s.moved, &mut state.contact);
+    let ContactState { atoms, edges, planes, links, .. } = &mut state.contact;
     links.clone_from(&s.links);
     let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
     let (of_atoms, others) = s.pulls.split_at(s.found.atoms.len());

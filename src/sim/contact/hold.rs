@@ -10,7 +10,7 @@ use crate::Vec3;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
 use crate::sim::model::{Kind, Model, VolumeRule};
-use crate::sim::state::{State, index};
+use crate::sim::state::{State, index, vector};
 use crate::sim::trouble::Trouble;
 use crate::sim::workspace::{KindScratch, Workspace};
 
@@ -19,6 +19,9 @@ const MENDING: usize = 8;
 
 /// What a step mends of a depth at most, over the travel that is safe.
 const MENDED: f64 = 0.25;
+
+/// What exact volumes may leave of a change in the shape of an adhesive, over what a sweep may still move.
+const SETTLED: f64 = 1e-3;
 
 /// Moves the atoms from where they went freely so that contacts and volumes hold, to first order in what they are
 /// moved; the exact volumes are for the stage after this.
@@ -37,6 +40,18 @@ pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspa
     if s.rows.iter().any(|row| row.gap() < 0.0) {
         mend(model, contact, s, kinds);
     }
+    s.adhesives.place_all(&s.start, &mut s.moved);
+    put_back(model, contact, s, state);
+    if left.largest <= contact.tolerance {
+        return Ok(());
+    }
+    let owners = s.rows[left.worst].atoms.map(|atom| contact.owner(atom));
+    let cells = [owners[0], owners[3]].map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
+    Err(Trouble::Contact { cells, time: state.time + dt, left: left.largest, sweeps: s.sweeps })
+}
+
+/// Puts the atoms where their displacements take them.
+fn put_back(model: &Model, contact: &ContactModel, s: &ContactScratch, state: &mut State) {
     for (number, (kind, now)) in model.kinds.iter().zip(&mut state.kinds).enumerate() {
         let first = contact.atoms_of(number).start;
         let place = |atom: usize| {
@@ -45,12 +60,33 @@ pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspa
         };
         scatter(kind, place, &mut now.positions);
     }
-    if left.largest <= contact.tolerance {
-        return Ok(());
+}
+
+/// Gives adhesives their shapes back that exact volumes have changed; says whether there was something to do, so that volumes must
+/// be made exact again.
+pub fn settle_adhesives(model: &Model, state: &mut State, ws: &mut Workspace) -> bool {
+    let (Some(contact), s) = (&model.contact, &mut ws.contact) else { return false };
+    if s.adhesives.atoms.is_empty() {
+        return false;
     }
-    let owners = s.rows[left.worst].atoms.map(|atom| contact.owner(atom));
-    let cells = [owners[0], owners[3]].map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
-    Err(Trouble::Contact { cells, time: state.time + dt, left: left.largest, sweeps: s.sweeps })
+    take_displacements(model, contact, state, s);
+    let moved = s.adhesives.place_all(&s.start, &mut s.moved) > SETTLED * contact.tolerance;
+    if moved {
+        put_back(model, contact, s, state);
+    }
+    moved
+}
+
+/// Displacements over the step as the atoms stand now; what is kept beside them stays.
+fn take_displacements(model: &Model, contact: &ContactModel, state: &State, s: &mut ContactScratch) {
+    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+        let range = contact.atoms_of(number);
+        let (first, moved) = (range.start, &mut s.moved[range]);
+        for (atom, moved) in moved.iter_mut().enumerate() {
+            let way = vector(kind, &now.positions, atom / kind.atoms(), atom % kind.atoms()) - s.start[first + atom];
+            (moved[0], moved[1], moved[2]) = (way.x, way.y, way.z);
+        }
+    }
 }
 
 /// Displacements, mobilities, volumes and stiffnesses before the first sweep.
@@ -87,6 +123,7 @@ fn prepare(
         row.give = gives.sum::<f64>() as f32;
         row.stiffness = 1.0 / row.give;
     }
+    s.adhesives.begin();
 }
 
 /// Lists what is held of a kind; atoms that are held along every axis get no mobility.
@@ -178,6 +215,7 @@ fn sweep(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &
     for number in 1..=contact.most_sweeps {
         change = Change::default();
         sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, share, &mut change);
+        s.adhesives.sweep(&s.start, &mut s.moved, share, &mut change);
         let mut held = s.held.iter().peekable();
         for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |first, part| {
             while let Some((atom, axis)) = held.next_if(|(atom, _)| (*atom as usize) < first + part.moved.len()) {
@@ -206,6 +244,7 @@ fn mend(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &m
     s.deep.extend((0..).zip(&s.rows).filter(is_deep).map(|(number, _)| (number, 0.0)));
     for _ in 0..MENDING {
         sweep_depths(&s.rows, &mut s.deep, &mut s.moved, MENDED * contact.scene.safe_travel());
+        s.adhesives.place_all(&s.start, &mut s.moved);
         for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |_, part| {
             sweep_volumes(part.volumes, part.gradient, part.moved, &mut Change::default());
         });

@@ -4,8 +4,8 @@
 //! freely; then a projection finds what is missing, by projected Gauss–Seidel over all contacts and all volumes in a fixed
 //! order, eq. (adhesion.3). At rest nothing is missing, and the force is the true one, whatever the step.
 //!
-//! Two other models are there to compare with: springs that link facets in place of strengths, and penalties in place of the
-//! projection. Their forces are those of where the atoms are in each stage of a step.
+//! Three other models are there to compare with: springs that link facets in place of strengths, penalties in place of the
+//! projection, whose forces are those of where the atoms are in each stage of a step, and zones of contact that are rigid.
 
 mod depth;
 mod find;
@@ -15,6 +15,7 @@ mod links;
 mod model;
 mod momentum;
 mod penalty;
+mod rigid;
 mod rows;
 mod scratch;
 mod spread;
@@ -22,13 +23,15 @@ mod state;
 mod sweep;
 #[cfg(test)]
 mod sweep_tests;
+mod zones;
 
 pub use depth::{check_depth, check_passed};
 pub use find::{add_contact_forces, carry_forces, find_contacts, keep_contacts, pull_contacts};
-pub use hold::{hold_contacts, travel};
+pub use hold::{hold_contacts, settle_adhesives, travel};
 pub use links::{Link, LinkTable, links_at, pull_links};
 pub use model::{ContactModel, Law, Strength};
 pub use penalty::{Penalty, press};
 pub use rows::{Pull, Row};
 pub use scratch::ContactScratch;
 pub use state::{AtomBond, ContactState, EdgeBond, PlaneBond};
+pub use zones::{AdhesiveAtom, AdhesiveScratch, AdhesiveTable, Zones};

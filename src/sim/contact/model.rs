@@ -2,6 +2,7 @@
 
 use super::links::LinkTable;
 use super::penalty::Penalty;
+use super::zones::AdhesiveTable;
 use crate::contact::{self, Reach, Scene, Shape, Sides};
 use crate::geometry;
 use crate::mechanics::integrator::StepSize;
@@ -29,6 +30,8 @@ pub enum Law {
     Links(LinkTable),
     /// Contacts push by their depth, and pull within the proximity.
     Penalty(Penalty),
+    /// Contacts bear any push; atoms that touch move in rigid zones.
+    VirtualAdhesives(AdhesiveTable),
 }
 
 /// Contacts of a model.
@@ -145,6 +148,11 @@ impl ContactModel {
     pub(super) fn owner(&self, atom: u32) -> (usize, usize) {
         let kind = self.first_atom.partition_point(|first| *first <= atom as usize) - 1;
         (kind, (atom as usize - self.first_atom[kind]) / self.areas[kind].len())
+    }
+
+    /// The body of an atom.
+    pub(super) fn body_of(&self, atom: u32) -> u32 {
+        self.scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1
     }
 
     /// The kind of a body.

@@ -4,6 +4,7 @@ use super::links::Link;
 use super::momentum::Momentum;
 use super::rows::{Pull, Row};
 use super::sweep::{V4, VolumeRow};
+use super::zones::AdhesiveScratch;
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
 
@@ -18,7 +19,9 @@ pub struct ContactScratch {
     pub start: Vec<Vec3>,
     /// Links of the step.
     pub links: Vec<Link>,
-    /// Facets that have one.
+    /// Virtual adhesives of the step.
+    pub adhesives: AdhesiveScratch,
+    /// Facets that have a link.
     pub(super) linked: Vec<bool>,
     /// Positions in the stage that is being made, µm.
     pub(super) places: Vec<Vec3>,
@@ -55,6 +58,7 @@ impl ContactScratch {
         self.held.clear();
         self.links.clear();
         self.linked.clear();
+        self.adhesives.poison();
         [&mut self.places, &mut self.live_force].into_iter().for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
         self.start.fill(Vec3::repeat(f64::NAN));
         self.moved.fill([f64::NAN; 4]);

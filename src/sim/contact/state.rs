@@ -1,6 +1,7 @@
 //! What contacts carry from one step to the next.
 
 use super::links::Link;
+use super::zones::AdhesiveAtom;
 use serde::{Deserialize, Serialize};
 
 /// An atom that touches a facet of a body.
@@ -40,7 +41,7 @@ pub struct PlaneBond {
     pub force: [f32; 3],
 }
 
-/// All contacts that carry a force, in the order in which they are found, and links.
+/// All contacts that carry a force, in the order in which they are found, links and virtual adhesives.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ContactState {
     /// Atoms on facets.
@@ -51,4 +52,8 @@ pub struct ContactState {
     pub planes: Vec<PlaneBond>,
     /// Links between facets, in their order; under other laws none.
     pub links: Vec<Link>,
+    /// Atoms of virtual adhesives, adhesive by adhesive; under other laws none.
+    pub adhesives: Vec<AdhesiveAtom>,
+    /// Atoms that adhesives released and that still touch, in their order.
+    pub released: Vec<u32>,
 }

@@ -1,0 +1,373 @@
+//! Virtual adhesives (Carra, Martiel and Promayon 2007): atoms of cells that touch are cloned into rigid bodies, which recruit,
+//! merge, lose atoms and die.
+
+use serde::{Deserialize, Serialize};
+
+use super::model::{ContactModel, Law};
+use super::rigid::Rigid;
+use super::rows::{Pull, Row};
+use super::state::ContactState;
+use crate::Vec3;
+use crate::contact::{AtomContact, Contacts};
+use crate::sim::chemistry::Controls;
+use crate::sim::model::Kind;
+
+/// Which surfaces are glued, and how well.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AdhesiveTable {
+    /// What an atom's own displacement in a step may differ from that of its adhesive, µm: `between[kind * kinds + other]`,
+    /// symmetric; 0 glues nothing.
+    pub between: Vec<f64>,
+    /// The same for kinds and planes: `on_planes[kind * planes + plane]`.
+    pub on_planes: Vec<f64>,
+    /// Which adhesives merge.
+    pub zones: Zones,
+}
+
+/// Which adhesives grow together where their atoms are neighbours on the mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Zones {
+    /// All, as printed.
+    #[default]
+    Merged,
+    /// Those of the same two objects; an atom that touches several belongs to the nearest.
+    Pairs,
+}
+
+/// An atom in an adhesive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AdhesiveAtom {
+    /// The adhesive: the number of the least of its atoms.
+    pub adhesive: u32,
+    /// The atom, numbered through all cells.
+    pub atom: u32,
+    /// When it was cloned, s.
+    pub since: f64,
+    /// Force of the adhesive on it, pN; those of an adhesive have neither sum nor torque.
+    pub force: [f64; 3],
+}
+
+/// No number.
+const NONE: u32 = u32::MAX;
+
+/// What an atom is in a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    /// It touches nothing that sticks.
+    Far,
+    /// It touches, but was released and not pressed since.
+    Released,
+    /// It has a clone.
+    Cloned,
+}
+
+/// The adhesives of a step, and what is needed to find them; empty under other laws.
+#[derive(Debug, Clone, Default)]
+pub struct AdhesiveScratch {
+    /// Their atoms, adhesive by adhesive, with the forces that they carried where the step began.
+    pub atoms: Vec<AdhesiveAtom>,
+    /// The adhesives as rigid bodies.
+    pub(super) bodies: Vec<Rigid>,
+    /// Drag of each of their atoms, pN·s/µm.
+    pub(super) drags: Vec<f64>,
+    /// Force on each now, pN.
+    pub(super) forces: Vec<Vec3>,
+    /// What the last sweep changed of it.
+    pub(super) changes: Vec<Vec3>,
+    /// The direction that speeds the sweeps up.
+    pub(super) ways: Vec<Vec3>,
+    /// For all atoms: where they stand in `atoms`, or `NONE`.
+    place: Vec<u32>,
+    roles: Vec<Role>,
+    kappa: Vec<f64>,
+    /// An atom of the same adhesive; the least one in the end.
+    parent: Vec<u32>,
+    /// The nearest two objects, and how near.
+    pair: Vec<([u32; 2], f64)>,
+    /// Atoms that touch a plane that sticks.
+    grounded: Vec<bool>,
+}
+
+impl AdhesiveScratch {
+    /// Finds the adhesives of a step: those before, with what touches now.
+    pub(super) fn find(
+        &mut self,
+        model: &ContactModel,
+        kinds: &[Kind],
+        controls: &Controls,
+        before: &ContactState,
+        found: &Contacts,
+        positions: &[Vec3],
+        time: f64,
+    ) {
+        self.atoms.clear();
+        self.bodies.clear();
+        let Law::VirtualAdhesives(table) = &model.law else { return };
+        self.clone_atoms(model, table, controls, before, found);
+        self.join(model, table, controls, before, found);
+        self.list(before, time);
+        self.make_bodies(model, kinds, positions);
+    }
+
+    /// Who touches what sticks, how well, and in which pair.
+    fn clone_atoms(
+        &mut self,
+        model: &ContactModel,
+        table: &AdhesiveTable,
+        controls: &Controls,
+        before: &ContactState,
+        found: &Contacts,
+    ) {
+        let count = model.scene.atoms;
+        reset(&mut self.roles, count, Role::Far);
+        reset(&mut self.kappa, count, 0.0);
+        reset(&mut self.pair, count, ([NONE; 2], f64::INFINITY));
+        reset(&mut self.grounded, count, false);
+        let mut add = |atom: u32, kappa: f64, pair: [u32; 2], gap: f64, pressed: bool| {
+            let i = atom as usize;
+            self.kappa[i] = self.kappa[i].max(kappa);
+            if (gap, pair) < (self.pair[i].1, self.pair[i].0) {
+                self.pair[i] = (pair, gap);
+            }
+            let released = !pressed && before.released.binary_search(&atom).is_ok();
+            if !released {
+                self.roles[i] = Role::Cloned;
+            } else if self.roles[i] == Role::Far {
+                self.roles[i] = Role::Released;
+            }
+        };
+        for near in &found.atoms {
+            let (body, kappa) = kappa_of(model, table, controls, near);
+            if kappa > 0.0 {
+                let at = before.atoms.partition_point(|bond| bond.atom < near.atom);
+                let mut bonds = before.atoms[at..].iter().take_while(|bond| bond.atom == near.atom);
+                let pressed = bonds.any(|bond| bond.body == near.body && bond.force != [0.0; 3]);
+                let pair = [body.min(near.body), body.max(near.body)];
+                corners(model, near).into_iter().for_each(|atom| add(atom, kappa, pair, near.gap, pressed));
+            }
+        }
+        for near in &found.planes {
+            let kappa = kappa_on(model, table, controls, near.atom, near.plane);
+            if kappa > 0.0 {
+                let at = before.planes.partition_point(|bond| (bond.atom, bond.plane) < (near.atom, near.plane));
+                let same = before.planes.get(at).filter(|bond| (bond.atom, bond.plane) == (near.atom, near.plane));
+                let pressed = same.is_some_and(|bond| bond.force != [0.0; 3]);
+                let pair = [model.body_of(near.atom), model.scene.bodies.len() as u32 + near.plane];
+                add(near.atom, kappa, pair, near.gap, pressed);
+                self.grounded[near.atom as usize] = true;
+            }
+        }
+    }
+
+    /// Joins atoms that touch each other, that were in one adhesive, and that are neighbours on a mesh.
+    fn join(
+        &mut self,
+        model: &ContactModel,
+        table: &AdhesiveTable,
+        controls: &Controls,
+        before: &ContactState,
+        found: &Contacts,
+    ) {
+        let zones = table.zones;
+        self.parent.clear();
+        self.parent.extend(0..model.scene.atoms as u32);
+        let (roles, pair, parent) = (&self.roles, &self.pair, &mut self.parent);
+        let cloned = |atom: u32| roles[atom as usize] == Role::Cloned;
+        let mut unite = |one: u32, other: u32| {
+            let alike = || zones == Zones::Merged || pair[one as usize].0 == pair[other as usize].0;
+            if cloned(one) && cloned(other) && alike() {
+                let (one, other) = (root(parent, one), root(parent, other));
+                parent[one.max(other) as usize] = one.min(other);
+            }
+        };
+        for near in found.atoms.iter().filter(|near| kappa_of(model, table, controls, near).1 > 0.0) {
+            let [first, others @ ..] = corners(model, near);
+            others.into_iter().for_each(|other| unite(first, other));
+        }
+        for adhesive in before.adhesives.chunk_by(|one, other| one.adhesive == other.adhesive) {
+            // Those of one adhesive may be of several pairs: each is joined with the next that is of its own.
+            for (number, one) in adhesive.iter().enumerate() {
+                let mut others = adhesive[number + 1..].iter().map(|other| other.atom).filter(|atom| cloned(*atom));
+                let alike = |atom: &u32| zones == Zones::Merged || pair[*atom as usize].0 == pair[one.atom as usize].0;
+                if let Some(other) = others.find(alike) {
+                    unite(one.atom, other);
+                }
+            }
+        }
+        for body in &model.scene.bodies {
+            let shape = &model.scene.shapes[body.shape as usize];
+            for [one, other] in &shape.edges {
+                unite(body.first_atom + one, body.first_atom + other);
+            }
+        }
+    }
+
+    /// Lists adhesives of two atoms and more; one on a plane may have a single one.
+    fn list(&mut self, before: &ContactState, time: f64) {
+        reset(&mut self.place, self.roles.len(), NONE);
+        for (number, old) in (0..).zip(&before.adhesives) {
+            self.place[old.atom as usize] = number;
+        }
+        for atom in 0..self.roles.len() as u32 {
+            if self.roles[atom as usize] == Role::Cloned {
+                let adhesive = root(&mut self.parent, atom);
+                let old = before.adhesives.get(self.place[atom as usize] as usize);
+                let (since, force) = old.map_or((time, [0.0; 3]), |old| (old.since, old.force));
+                self.atoms.push(AdhesiveAtom { adhesive, atom, since, force });
+            }
+        }
+        self.atoms.sort_unstable_by_key(|one| (one.adhesive, one.atom));
+        keep_living(&mut self.atoms, |atom| self.grounded[atom as usize]);
+        self.place.fill(NONE);
+        for (number, one) in (0..).zip(&self.atoms) {
+            self.place[one.atom as usize] = number;
+        }
+    }
+
+    /// The adhesives as rigid bodies that resist as the drag of their atoms does, and carried forces without sum and torque.
+    fn make_bodies(&mut self, model: &ContactModel, kinds: &[Kind], positions: &[Vec3]) {
+        self.drags.clear();
+        for one in &self.atoms {
+            let kind = model.owner(one.atom).0;
+            let atom = (one.atom as usize - model.first_atom[kind]) % kinds[kind].atoms();
+            let held = kinds[kind].held.get(3 * atom..3 * atom + 3).is_some_and(|axes| axes == [0.0; 3]);
+            self.drags.push(if held { f64::INFINITY } else { kinds[kind].drag });
+        }
+        let mut first = 0;
+        for adhesive in self.atoms.chunk_by(|one, other| one.adhesive == other.adhesive) {
+            let range = first..first + adhesive.len();
+            let grounded = adhesive.iter().any(|one| self.grounded[one.atom as usize]);
+            let places = adhesive.iter().map(|one| positions[one.atom as usize]);
+            self.bodies.push(Rigid::of(range.clone(), &mut self.drags[range.clone()], places, grounded));
+            first = range.end;
+        }
+    }
+
+    /// Hands what contacts between atoms of one adhesive carried over to it, and takes these contacts out of the sweeps: where
+    /// nothing moves against each other there is nothing to keep apart.
+    pub(super) fn take_over(&mut self, rows: &mut [Row], pulls: &mut [Pull], positions: &[Vec3]) {
+        if self.atoms.is_empty() {
+            return;
+        }
+        for (row, pull) in rows.iter_mut().zip(pulls) {
+            let places = row.atoms.map(|atom| self.place[atom as usize]);
+            let adhesive = |place: u32| self.atoms.get(place as usize).map(|one| one.adhesive);
+            let first = adhesive(places[0]);
+            let real = |i: usize| row.weights[i] != 0.0;
+            let on_plane = row.atoms[0] == row.atoms[3];
+            let grounded = !on_plane || self.grounded[row.atoms[0] as usize];
+            if first.is_none() || !grounded || (0..4).any(|i| real(i) && adhesive(places[i]) != first) {
+                continue;
+            }
+            for i in (0..4).filter(|i| real(*i)) {
+                let force = &mut self.atoms[places[i] as usize].force;
+                let carried = row.weights[i] * pull.carried();
+                (0..3).for_each(|axis| force[axis] += carried[axis]);
+            }
+            row.weights = [0.0; 4];
+            *pull = Pull::default();
+        }
+        for body in &self.bodies {
+            body.balance(&mut self.atoms[body.range()], &self.drags[body.range()], positions);
+        }
+    }
+
+    /// Keeps the adhesives for the next step without the atoms that they lose, eq. (adhesion.15); `moved` has displacement over
+    /// force of all atoms as its fourth number.
+    pub(super) fn keep(
+        &mut self,
+        model: &ContactModel,
+        controls: &Controls,
+        found: &Contacts,
+        moved: &[[f64; 4]],
+        kept: &mut ContactState,
+    ) {
+        let Law::VirtualAdhesives(table) = &model.law else { return };
+        for (one, force) in self.atoms.iter_mut().zip(&self.forces) {
+            one.force = (*force).into();
+        }
+        let mut part = |atom: u32, out: Vec3| {
+            let Some(one) = self.atoms.get(self.place[atom as usize] as usize) else { return };
+            // What it would have moved alone, less what it moved.
+            let free = -moved[atom as usize][3] * Vec3::from(one.force);
+            if free.dot(&out) > 0.0 && free.norm() > self.kappa[atom as usize] {
+                self.roles[atom as usize] = Role::Released;
+            }
+        };
+        for near in found.atoms.iter().filter(|near| kappa_of(model, table, controls, near).1 > 0.0) {
+            let [atom, facet @ ..] = corners(model, near);
+            part(atom, near.normal);
+            facet.into_iter().for_each(|atom| part(atom, -near.normal));
+        }
+        for near in &found.planes {
+            if kappa_on(model, table, controls, near.atom, near.plane) > 0.0 {
+                part(near.atom, model.scene.planes[near.plane as usize].normal);
+            }
+        }
+        let roles = &self.roles;
+        kept.released.clear();
+        kept.released.extend((0..).zip(roles).filter(|(_, role)| **role == Role::Released).map(|(atom, _)| atom));
+        kept.adhesives.clear();
+        kept.adhesives.extend(self.atoms.iter().filter(|one| roles[one.atom as usize] == Role::Cloned));
+        keep_living(&mut kept.adhesives, |atom| self.grounded[atom as usize]);
+    }
+
+    /// Forgets everything.
+    pub(super) fn poison(&mut self) {
+        *self = Self::default();
+    }
+}
+
+/// The atom and the corners of the facet that it touches.
+fn corners(model: &ContactModel, near: &AtomContact) -> [u32; 4] {
+    let [i, j, k] = model.scene.facet_atoms(near.body, near.facet);
+    [near.atom, i, j, k]
+}
+
+/// The body of an atom that touches a facet, and how well the two are glued; a body not to itself.
+fn kappa_of(model: &ContactModel, table: &AdhesiveTable, controls: &Controls, near: &AtomContact) -> (u32, f64) {
+    let body = model.body_of(near.atom);
+    let [kind, other] = [body, near.body].map(|body| model.kind_of(body));
+    let factors = controls.adhesion_of(body as usize) * controls.adhesion_of(near.body as usize);
+    let kappa = table.between[kind * model.areas.len() + other] * factors;
+    (body, if body == near.body { 0.0 } else { kappa })
+}
+
+/// How well an atom is glued to a plane.
+fn kappa_on(model: &ContactModel, table: &AdhesiveTable, controls: &Controls, atom: u32, plane: u32) -> f64 {
+    let body = model.body_of(atom);
+    let kappa = table.on_planes[model.kind_of(body) * model.scene.planes.len() + plane as usize];
+    kappa * controls.adhesion_of(body as usize)
+}
+
+/// Takes out adhesives of fewer than two atoms, but for those on a plane, and names the others by their least atom.
+fn keep_living(atoms: &mut Vec<AdhesiveAtom>, grounded: impl Fn(u32) -> bool) {
+    let (mut from, mut to) = (0, 0);
+    while from < atoms.len() {
+        let count = atoms[from..].iter().take_while(|one| one.adhesive == atoms[from].adhesive).count();
+        if count > 1 || grounded(atoms[from].atom) {
+            let adhesive = atoms[from].atom;
+            for one in from..from + count {
+                atoms[to] = AdhesiveAtom { adhesive, ..atoms[one] };
+                to += 1;
+            }
+        }
+        from += count;
+    }
+    atoms.truncate(to);
+    atoms.sort_unstable_by_key(|one| (one.adhesive, one.atom));
+}
+
+/// The least atom joined with one; shortens the way there.
+fn root(parent: &mut [u32], mut atom: u32) -> u32 {
+    while parent[atom as usize] != atom {
+        parent[atom as usize] = parent[parent[atom as usize] as usize];
+        atom = parent[atom as usize];
+    }
+    atom
+}
+
+fn reset<T: Clone>(list: &mut Vec<T>, count: usize, value: T) {
+    list.clear();
+    list.resize(count, value);
+}
