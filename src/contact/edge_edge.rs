@@ -17,14 +17,14 @@ struct Ridge<'a> {
 }
 
 impl<'a> Ridge<'a> {
-    #[inline]
+    #[inline(always)]
     fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
         let [start, end] = shape.ends(edge, positions);
         Self { positions, start, along: end - start, across: shape.across[edge as usize] }
     }
 
     /// From the start to the atoms across; zero where there is none.
-    #[inline]
+    #[inline(always)]
     fn flanks(&self) -> [Vec3; 2] {
         let flank = |atom: u32| if atom == NONE { Vec3::zeros() } else { self.positions[atom as usize] - self.start };
         [flank(self.across[0]), flank(self.across[1])]
@@ -36,12 +36,14 @@ impl<'a> Ridge<'a> {
     }
 
     /// The normals of the two facets, µm², not scaled.
+    #[inline(always)]
     fn normals(&self) -> [Vec3; 2] {
         let [left, right] = self.flanks();
         [self.along.cross(&left), right.cross(&self.along)]
     }
 
     /// Whether the surface bends away from its outside here.
+    #[inline(always)]
     fn is_convex(&self) -> bool {
         self.normals()[0].dot(&self.flanks()[1]) < 0.0
     }
@@ -56,6 +58,7 @@ struct First<'a> {
 }
 
 impl<'a> First<'a> {
+    #[inline(always)]
     fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
         let ridge = Ridge::of(shape, positions, edge);
         Self {
@@ -68,6 +71,7 @@ impl<'a> First<'a> {
 }
 
 /// Adds the contacts of an edge (numbered in its body) with the edges of a list, eq. (contacts.4).
+#[inline(always)]
 pub(super) fn find_edge_contacts(
     scene: &Scene,
     positions: &[Vec3],
@@ -111,7 +115,7 @@ pub(super) fn find_edge_contacts(
 }
 
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
-#[inline]
+#[inline(always)]
 fn cross(
     first: &Ridge,
     flanks: &[Vec3; 2],

@@ -34,24 +34,21 @@ pub(super) fn level(word: u32) -> u32 {
 
 /// How far bodies have moved since the pairs were collected: pairs that cannot have come to touch are passed over.
 pub(super) struct Moved<'a> {
-    /// The farthest that an atom of each body has moved, µm.
-    pub of_bodies: &'a [f64],
-    /// Levels in a µm; 0 when pairs have none.
-    pub scale: f64,
+    /// No less than how far an atom of each body has moved, in levels; none when pairs have no levels.
+    pub of_bodies: &'a [u32],
 }
 
 impl Moved<'_> {
     /// Nothing is known: no pair is passed over.
-    pub const UNKNOWN: Self = Self { of_bodies: &[], scale: 0.0 };
+    pub const UNKNOWN: Self = Self { of_bodies: &[] };
 
-    /// The highest level of a pair of two bodies that may touch now. One more than their motion says, so that rounding
-    /// never hides a pair.
+    /// The highest level of a pair of two bodies that may touch now.
     #[inline]
     pub fn limit(&self, body: u32, other: u32) -> u32 {
-        if self.scale == 0.0 {
+        if self.of_bodies.is_empty() {
             return u32::MAX;
         }
-        ((self.of_bodies[body as usize] + self.of_bodies[other as usize]) * self.scale) as u32 + 1
+        self.of_bodies[body as usize] + self.of_bodies[other as usize]
     }
 }
 

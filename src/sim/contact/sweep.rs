@@ -41,8 +41,9 @@ pub struct Change {
     pub work: f64,
 }
 
+/// Four numbers from their places.
 #[inline(always)]
-fn map(f: impl Fn(usize) -> f64) -> V4 {
+pub(super) fn map(f: impl Fn(usize) -> f64) -> V4 {
     [f(0), f(1), f(2), f(3)]
 }
 
