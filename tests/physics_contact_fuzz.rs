@@ -80,6 +80,8 @@ struct Seen {
     all_sweeps: u64,
     /// How often the fixed step was halved because an atom would have gone too far.
     halved: u32,
+    /// How much of the box the volumes of the cells are in the end; 0 without a box.
+    fill: f64,
     /// How the run ended early.
     trouble: Option<Trouble>,
 }
@@ -145,6 +147,7 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
         seen.all_sweeps += u64::from(ws.contact.sweeps);
         seen.sweeps = seen.sweeps.max(ws.contact.sweeps);
         check_cells(model, &cells, &mut seen).map_err(at)?;
+        seen.fill = fill(scene, model, &cells);
         check_depth(model, &ws, &mut seen).map_err(at)?;
         check_strength(scene, model, &ws, &mut seen).map_err(at)?;
         if scene.purpose == Purposed::Alone {
@@ -165,7 +168,7 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
     find_contacts(model, &state, &mut ws);
     check_depth(model, &ws, &mut seen).map_err(|words| (format!("at the end: {words}"), None))?;
     let cells = measure_cells(model, &state);
-    check_inside(model, &cells).map_err(|words| (format!("at the end: {words}"), None))?;
+    check_inside(model, &cells).map_err(|words| (format!("at the end: {words}, fill {:.3}", seen.fill), None))?;
     if scene.purpose == Purposed::Alone {
         // Round-off of positions of some 10 um in so many steps.
         let most = 1e-14 * seen.steps as f64;
@@ -218,6 +221,15 @@ fn check_cells(model: &Model, cells: &[CellMeasure], seen: &mut Seen) -> Result<
     Ok(())
 }
 
+/// The part of a closed box that is filled.
+fn fill(scene: &Scene, model: &Model, cells: &[CellMeasure]) -> f64 {
+    if scene.purpose != Purposed::Overfull {
+        return 0.0;
+    }
+    let widths = model.planes.chunks(2).map(|pair| (pair[0].point - pair[1].point).norm());
+    cells.iter().map(|cell| cell.volume).sum::<f64>() / widths.product::<f64>()
+}
+
 /// Gaps where the step began.
 fn check_depth(model: &Model, ws: &Workspace, seen: &mut Seen) -> Result<(), String> {
     let (found, scene) = (&ws.contact.found, &model.contact.as_ref().unwrap().scene);
@@ -230,7 +242,10 @@ fn check_depth(model: &Model, ws: &Workspace, seen: &mut Seen) -> Result<(), Str
         let depth = -gap / edge(one).min(edge(other));
         seen.deepest = seen.deepest.max(depth);
         if depth > DEEPEST {
-            return Err(format!("cells {one} and {other} are {depth:.4} edges deep in each other"));
+            return Err(format!(
+                "cells {one} and {other} are {depth:.4} edges deep in each other, fill {:.3}",
+                seen.fill
+            ));
         }
     }
     Ok(())
