@@ -41,7 +41,6 @@ struct Other<'a> {
 }
 
 /// Adds the contacts of an atom (numbered in its body) with the facets of a list, eq. (contacts.1) to (contacts.3).
-#[inline(always)]
 pub(super) fn find_atom_contacts(
     scene: &Scene,
     positions: &[Vec3],
@@ -95,13 +94,12 @@ pub(super) fn find_atom_contacts(
 }
 
 impl Other<'_> {
-    #[inline(always)]
     fn corners(&self, facet: u32) -> [Vec3; 3] {
         self.shape.corners(facet, self.positions)
     }
 
     /// Finds the places where the distance is least, within `range` µm, in the order of facets; the nearest comes back.
-    #[inline(always)]
+    #[inline]
     fn find_lows(
         &self,
         place: Vec3,

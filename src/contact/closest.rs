@@ -32,7 +32,7 @@ pub struct FacetPoint {
 ///
 /// The regions around a triangle are told apart as by Ericson, Real-Time Collision Detection (2005), 5.1.5. A facet
 /// without area is treated as its three sides, a facet shrunk to a point as that point.
-#[inline(always)]
+#[inline]
 pub fn closest_on_facet(point: Vec3, [a, b, c]: [Vec3; 3]) -> FacetPoint {
     let (ab, ac, ap) = (b - a, c - a, point - a);
     let at = |second: f64, third: f64, feature| FacetPoint {

@@ -1,6 +1,5 @@
 //! Finding all contacts of a scene: pairs are collected when something has moved far enough, and looked at each time.
 
-use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
 use super::atom_facet::{Low, find_atom_contacts};
@@ -37,8 +36,6 @@ pub struct Detector {
     collected_at: Vec<[f32; 3]>,
     /// The farthest that an atom of each body has moved since then, µm.
     moved_of: Vec<f64>,
-    /// The same in levels of pairs.
-    levels_of: Vec<u32>,
     /// One per batch: what several threads find before it is put in order, and scratch.
     found: Vec<Found>,
     lows: Vec<Low>,
@@ -94,23 +91,15 @@ impl Detector {
         }
         self.looks += 1;
         contacts.clear();
-        self.levels_of.clear();
-        let scale = levels_over(self.margin, scene.reach.range());
-        if scale > 0.0 {
-            // One more than the motion says, so that rounding never hides a pair.
-            self.levels_of.extend(moved_of.iter().map(|moved| (moved * scale) as u32 + 1));
-        }
-        let since = Moved { of_bodies: &self.levels_of };
+        let since = Moved { of_bodies: &moved_of, scale: levels_over(self.margin, scene.reach.range()) };
         if rayon::current_num_threads() == 1 {
             for (batch, lists) in self.lists.iter().enumerate() {
-                let lows = &mut self.lows;
-                Arch::new().dispatch(Look { scene, positions, batch, lists, moved: &since, lows, contacts });
+                look(scene, positions, batch, lists, &since, &mut self.lows, contacts);
             }
         } else {
             self.found.par_iter_mut().zip(&self.lists).enumerate().for_each(|(batch, (found, lists))| {
                 found.contacts.clear();
-                let Found { contacts, lows, .. } = found;
-                Arch::new().dispatch(Look { scene, positions, batch, lists, moved: &since, lows, contacts });
+                look(scene, positions, batch, lists, &since, &mut found.lows, &mut found.contacts);
             });
             for Found { contacts: found, .. } in &self.found {
                 contacts.atoms.extend_from_slice(&found.atoms);
@@ -229,51 +218,43 @@ impl Detector {
         let found: usize = self.found.iter().map(of_found).sum();
         let bounds =
             size_of::<Bounds>() * self.boxes.bounds.capacity() + size_of::<Steps>() * self.boxes.steps.capacity();
-        let then = 12 * self.collected_at.capacity() + 8 * self.moved_of.capacity() + 4 * self.levels_of.capacity();
+        let then = 12 * self.collected_at.capacity() + 8 * self.moved_of.capacity();
         packs + lists + found + bounds + self.boxes.neighbours.bytes() + then
     }
 }
 
 /// Looks at the pairs of a batch and adds its contacts.
-struct Look<'a> {
-    scene: &'a Scene,
-    positions: &'a [Vec3],
+fn look(
+    scene: &Scene,
+    positions: &[Vec3],
     batch: usize,
-    lists: &'a Lists,
-    moved: &'a Moved<'a>,
-    lows: &'a mut Vec<Low>,
-    contacts: &'a mut Contacts,
-}
-
-impl NullaryFnOnce for Look<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { scene, positions, batch, lists, moved, lows, contacts } = self;
-        let bodies = scene.bodies_of(batch);
-        let Some(first) = scene.bodies.get(bodies.start as usize).filter(|_| !bodies.is_empty()) else { return };
-        let mut body = bodies.start;
-        for (atom, list) in lists.facets() {
-            let mut atom = first.first_atom + atom - scene.bodies[body as usize].first_atom;
-            while atom as usize >= scene.shape(body).atoms {
-                atom -= scene.shape(body).atoms as u32;
-                body += 1;
-            }
-            find_atom_contacts(scene, positions, body, atom, list, moved, lows, &mut contacts.atoms);
+    lists: &Lists,
+    moved: &Moved,
+    lows: &mut Vec<Low>,
+    contacts: &mut Contacts,
+) {
+    let bodies = scene.bodies_of(batch);
+    let Some(first) = scene.bodies.get(bodies.start as usize).filter(|_| !bodies.is_empty()) else { return };
+    let mut body = bodies.start;
+    for (atom, list) in lists.facets() {
+        let mut atom = first.first_atom + atom - scene.bodies[body as usize].first_atom;
+        while atom as usize >= scene.shape(body).atoms {
+            atom -= scene.shape(body).atoms as u32;
+            body += 1;
         }
-        let mut body = bodies.start;
-        for (edge, list) in lists.edges() {
-            let mut edge = first.first_edge + edge - scene.bodies[body as usize].first_edge;
-            while edge as usize >= scene.shape(body).edges.len() {
-                edge -= scene.shape(body).edges.len() as u32;
-                body += 1;
-            }
-            find_edge_contacts(scene, positions, body, edge, list, moved, &mut contacts.edges);
+        find_atom_contacts(scene, positions, body, atom, list, moved, lows, &mut contacts.atoms);
+    }
+    let mut body = bodies.start;
+    for (edge, list) in lists.edges() {
+        let mut edge = first.first_edge + edge - scene.bodies[body as usize].first_edge;
+        while edge as usize >= scene.shape(body).edges.len() {
+            edge -= scene.shape(body).edges.len() as u32;
+            body += 1;
         }
-        for body in bodies {
-            find_plane_contacts(scene, positions, body, &mut contacts.planes);
-        }
+        find_edge_contacts(scene, positions, body, edge, list, moved, &mut contacts.edges);
+    }
+    for body in bodies {
+        find_plane_contacts(scene, positions, body, &mut contacts.planes);
     }
 }
 

@@ -18,14 +18,14 @@ struct Ridge<'a> {
 }
 
 impl<'a> Ridge<'a> {
-    #[inline(always)]
+    #[inline]
     fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
         let [start, end] = shape.ends(edge, positions);
         Self { positions, start, along: end - start, across: shape.across[edge as usize] }
     }
 
     /// From the start to the atoms across; zero where there is none.
-    #[inline(always)]
+    #[inline]
     fn flanks(&self) -> [Vec3; 2] {
         let flank = |atom: u32| if atom == NONE { Vec3::zeros() } else { self.positions[atom as usize] - self.start };
         [flank(self.across[0]), flank(self.across[1])]
@@ -42,7 +42,6 @@ impl<'a> Ridge<'a> {
     }
 
     /// The normals of the two facets, µm², not scaled.
-    #[inline(always)]
     fn normals(&self) -> [Vec3; 2] {
         let [left, right] = self.flanks();
         [self.along.cross(&left), right.cross(&self.along)]
@@ -54,7 +53,6 @@ impl<'a> Ridge<'a> {
     }
 
     /// Whether the surface bends away from its outside here.
-    #[inline(always)]
     fn is_convex(&self) -> bool {
         self.normals()[0].dot(&self.flanks()[1]) < 0.0
     }
@@ -69,7 +67,6 @@ struct First<'a> {
 }
 
 impl<'a> First<'a> {
-    #[inline(always)]
     fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
         let ridge = Ridge::of(shape, positions, edge);
         Self {
@@ -82,7 +79,6 @@ impl<'a> First<'a> {
 }
 
 /// Adds the contacts of an edge (numbered in its body) with the edges of a list, eq. (contacts.4).
-#[inline(always)]
 pub(super) fn find_edge_contacts(
     scene: &Scene,
     positions: &[Vec3],
@@ -146,7 +142,7 @@ fn are_inside(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], places: [Vec3
 const RISE: f64 = 0.1;
 
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
-#[inline(always)]
+#[inline]
 fn cross(
     first: &Ridge,
     flanks: &[Vec3; 2],

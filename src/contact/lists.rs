@@ -34,21 +34,24 @@ pub(super) fn level(word: u32) -> u32 {
 
 /// How far bodies have moved since the pairs were collected: pairs that cannot have come to touch are passed over.
 pub(super) struct Moved<'a> {
-    /// No less than how far an atom of each body has moved, in levels; none when pairs have no levels.
-    pub of_bodies: &'a [u32],
+    /// The farthest that an atom of each body has moved, µm.
+    pub of_bodies: &'a [f64],
+    /// Levels in a µm; 0 when pairs have none.
+    pub scale: f64,
 }
 
 impl Moved<'_> {
     /// Nothing is known: no pair is passed over.
-    pub const UNKNOWN: Self = Self { of_bodies: &[] };
+    pub const UNKNOWN: Self = Self { of_bodies: &[], scale: 0.0 };
 
-    /// The highest level of a pair of two bodies that may touch now.
+    /// The highest level of a pair of two bodies that may touch now. One more than their motion says, so that rounding
+    /// never hides a pair.
     #[inline]
     pub fn limit(&self, body: u32, other: u32) -> u32 {
-        if self.of_bodies.is_empty() {
+        if self.scale == 0.0 {
             return u32::MAX;
         }
-        self.of_bodies[body as usize] + self.of_bodies[other as usize]
+        ((self.of_bodies[body as usize] + self.of_bodies[other as usize]) * self.scale) as u32 + 1
     }
 }
 

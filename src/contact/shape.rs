@@ -148,14 +148,14 @@ impl Shape {
 
     /// The positions of a facet's corners, of the positions of the body's atoms. (Written out: `map` over an array is
     /// not inlined here, and this is the innermost loop.)
-    #[inline(always)]
+    #[inline]
     pub(super) fn corners(&self, facet: u32, positions: &[Vec3]) -> [Vec3; 3] {
         let [a, b, c] = self.facets[facet as usize];
         [positions[a as usize], positions[b as usize], positions[c as usize]]
     }
 
     /// The positions of an edge's ends.
-    #[inline(always)]
+    #[inline]
     pub(super) fn ends(&self, edge: u32, positions: &[Vec3]) -> [Vec3; 2] {
         let [a, b] = self.edges[edge as usize];
         [positions[a as usize], positions[b as usize]]

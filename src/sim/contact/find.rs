@@ -62,9 +62,7 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
             found.edges.extend(edges_still_touch(&contact.scene, positions, bond.edges, bond.bodies, &normal));
         }
     }
-    if found.edges.len() > count {
-        found.edges.sort_unstable_by_key(|edge| edge.edges);
-    }
+    found.edges.sort_unstable_by_key(|edge| edge.edges);
 }
 
 /// Sets the forces of links and penalties where the atoms are now: they change while a step is made, and its error estimate

@@ -1,9 +1,7 @@
 //! What makes the sweeps fast: conjugate directions (Silcowitz-Hansen, Niebe and Erleben 2010). What a sweep changes is
 //! taken for a gradient, and a share of the last direction is added to it.
 
-use pulp::{Arch, NullaryFnOnce};
-
-use super::sweep::{V4, map};
+use super::sweep::V4;
 
 /// After a sweep that changed this much more than the one before, the iteration starts again. Where two contacts are almost
 /// the same, as edges that meet where another crosses them, one hands its load to the other in many sweeps that change the
@@ -39,29 +37,12 @@ impl Momentum {
 /// Goes on from displacements after a sweep along a share of the last direction: `before` are those before the sweep, and
 /// become those before the next.
 pub fn go_on(share: f64, moved: &mut [V4], before: &mut [[f64; 3]], way: &mut [[f64; 3]]) {
-    Arch::new().dispatch(GoOn { share, moved, before, way });
-}
-
-struct GoOn<'a> {
-    share: f64,
-    moved: &'a mut [V4],
-    before: &'a mut [[f64; 3]],
-    way: &'a mut [[f64; 3]],
-}
-
-impl NullaryFnOnce for GoOn<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { share, moved, before, way } = self;
-        for ((now, before), way) in moved.iter_mut().zip(before).zip(way) {
-            let ([x, y, z], [u, v, w]) = (*before, *way);
-            let (was, last) = ([x, y, z, now[3]], [u, v, w, 0.0]);
-            let old = map(|i| share * last[i]);
-            let next = map(|i| now[i] + old[i]);
-            let [u, v, w, _] = map(|i| old[i] + (now[i] - was[i]));
-            (*now, *way, *before) = (next, [u, v, w], [next[0], next[1], next[2]]);
+    for ((now, before), way) in moved.iter_mut().zip(before).zip(way) {
+        for i in 0..3 {
+            let (change, old) = (now[i] - before[i], share * way[i]);
+            now[i] += old;
+            way[i] = old + change;
+            before[i] = now[i];
         }
     }
 }

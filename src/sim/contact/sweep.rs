@@ -41,9 +41,8 @@ pub struct Change {
     pub work: f64,
 }
 
-/// Four numbers from their places.
 #[inline(always)]
-pub(super) fn map(f: impl Fn(usize) -> f64) -> V4 {
+fn map(f: impl Fn(usize) -> f64) -> V4 {
     [f(0), f(1), f(2), f(3)]
 }
 
