@@ -12,10 +12,6 @@ use crate::Vec3;
 /// between two facets is never refused by both.
 const COSINE_ROUND_OFF: f64 = 1e-9;
 
-/// Part of the proximity by which an atom may be behind a place that is not the nearest and yet touch it: what sweeps
-/// leave. Without it the walls of a corner would take turns, and what one bears would be dropped.
-const SLIGHT: f64 = 0.01;
-
 /// A place on a surface where the distance to an atom is least.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Low {
@@ -79,14 +75,17 @@ pub(super) fn find_atom_contacts(
                 },
             );
         };
-        let reach = &scene.reach;
-        let [proximity, depth, slight] =
-            [reach.proximity, reach.depth, SLIGHT * reach.proximity].map(|distance| distance * distance);
-        for low in &*lows {
-            let side = surface.side(low);
-            // Slightly behind two walls of a corner the atom must come out of both.
-            let deepest = if low.squared == nearest.squared { depth } else { slight };
-            if low.squared <= if side.inside { deepest } else { proximity } {
+        let side = surface.side(&nearest);
+        if side.inside {
+            if nearest.squared <= scene.reach.depth.powi(2) {
+                add(&nearest, side);
+            }
+            continue;
+        }
+        let proximity = scene.reach.proximity.powi(2);
+        for low in lows.iter().filter(|low| low.squared < proximity) {
+            let side = if low.facet == nearest.facet { side } else { surface.side(low) };
+            if !side.inside {
                 add(low, side);
             }
         }

@@ -2,7 +2,6 @@
 
 use super::closest::LEAST_SINE_SQUARED;
 use super::found::{EdgeContact, push};
-use super::inside::winding_number;
 use super::lists::{Moved, by_body, level, number};
 use super::scene::Scene;
 use super::shape::{NONE, Shape, Sides};
@@ -31,11 +30,6 @@ impl<'a> Ridge<'a> {
         [flank(self.across[0]), flank(self.across[1])]
     }
 
-    /// A place along the edge, from 0 to 1.
-    fn at(&self, along: f64) -> Vec3 {
-        self.start + along * self.along
-    }
-
     /// Whether one of the facets is missing.
     fn is_rim(&self) -> bool {
         self.across.contains(&NONE)
@@ -45,11 +39,6 @@ impl<'a> Ridge<'a> {
     fn normals(&self) -> [Vec3; 2] {
         let [left, right] = self.flanks();
         [self.along.cross(&left), right.cross(&self.along)]
-    }
-
-    /// Between the two unit normals, not scaled.
-    fn outward(&self) -> Vec3 {
-        self.normals().iter().map(|normal| normal.normalize()).sum()
     }
 
     /// Whether the surface bends away from its outside here.
@@ -106,11 +95,6 @@ pub(super) fn find_edge_contacts(
             let one_sided = surfaces_are_one_sided && !second.is_rim();
             let crossing = cross(&first.ridge, &first.flanks, &second, one_sided, scene);
             let Some((along, gap, normal)) = crossing else { continue };
-            let is_deep = one_sided && gap < -LOOK_BEHIND * scene.reach.depth;
-            let places_crossed = || [first.ridge.at(along[0]), second.at(along[1])];
-            if is_deep && !are_inside(scene, positions, [body, other], places_crossed()) {
-                continue;
-            }
             let numbered = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
             push(
                 contacts,
@@ -126,21 +110,6 @@ pub(super) fn find_edge_contacts(
     }
 }
 
-/// Part of the depth down to which contacts are found beyond which edges are looked at again, [`are_inside`].
-const LOOK_BEHIND: f64 = 0.02;
-
-/// Whether the places where two edges cross are each inside the other's cell. Where a cell is thin, an edge that touches
-/// its far side is behind the facets of the near one too.
-fn are_inside(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], places: [Vec3; 2]) -> bool {
-    (0..2).all(|side| {
-        let (other, there) = (bodies[1 - side], scene.shape(bodies[1 - side]));
-        !there.closed || winding_number(places[side], scene.of_body(other, positions), &there.facets) > 0.5
-    })
-}
-
-/// How far facets may rise towards the other edge, as a sine, for two edges that do not cross yet to be taken for touching.
-const RISE: f64 = 0.1;
-
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
 #[inline]
 fn cross(
@@ -151,17 +120,15 @@ fn cross(
     scene: &Scene,
 ) -> Option<([f64; 2], f64, Vec3)> {
     let normal = first.along.cross(&second.along);
-    let squared = normal.norm_squared();
-    let between = first.start - second.start;
-    let height = normal.dot(&between);
-    let near = scene.reach.proximity;
-    let is_near = one_sided && height * height <= near * near * squared;
     // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
     // or its opposite must do for all four. Most pairs fail here, whatever their distance.
     let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
-    if a * b < 0.0 && !is_near {
+    if a * b < 0.0 {
         return None;
     }
+    let squared = normal.norm_squared();
+    let between = first.start - second.start;
+    let height = normal.dot(&between);
     let range = scene.reach.range();
     if height * height > range * range * squared {
         return None;
@@ -174,16 +141,13 @@ fn cross(
     let [left, right] = second.flanks();
     let (c, d) = (-normal.dot(&left), -normal.dot(&right));
     let (lowest, highest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
-    let rises = lowest < 0.0 && highest > 0.0;
-    if rises && !is_near {
+    if lowest < 0.0 && highest > 0.0 {
         return None;
     }
     if squared <= LEAST_SINE_SQUARED * first.along.norm_squared() * second.along.norm_squared() {
         return None;
     }
-    let facing = if rises {
-        1f64.copysign(normal.dot(&(second.outward() - first.outward())))
-    } else if highest > 0.0 {
+    let facing = if highest > 0.0 {
         1.0
     } else if lowest < 0.0 {
         -1.0
@@ -195,22 +159,12 @@ fn cross(
     if gap >= scene.reach.proximity || gap < -scene.reach.depth {
         return None;
     }
-    let fits = if rises {
-        gap >= 0.0 && first.is_convex() && second.is_convex() && !have_turned(first, second, &normal, RISE)
-    } else if one_sided {
+    let fits = if one_sided {
         first.is_convex() && second.is_convex() && (gap >= 0.0 || is_really_inside(first, second, normal))
     } else {
         gap >= 0.0
     };
     fits.then(|| ([on_first / squared, on_second / squared], gap, normal))
-}
-
-/// Whether a facet of one edge rises towards the other edge, along the normal from the second to the first, by more than
-/// this sine.
-fn have_turned(first: &Ridge, second: &Ridge, normal: &Vec3, slack: f64) -> bool {
-    let rises = |flank: &Vec3, along: f64| along < -slack * flank.norm();
-    first.flanks().iter().any(|flank| rises(flank, normal.dot(flank)))
-        || second.flanks().iter().any(|flank| rises(flank, -normal.dot(flank)))
 }
 
 /// Whether each edge is behind both facets of the other: on ridges sharper than a right angle an edge may be below the
@@ -251,8 +205,11 @@ pub fn edges_still_touch(
     }
     let normal = across * (1f64.copysign(across.dot(normal)) / squared.sqrt());
     let gap = normal.dot(&between);
+    let rises = |flank: &Vec3, along: f64| along < -SLACK * flank.norm();
+    let turned = first.flanks().iter().any(|flank| rises(flank, normal.dot(flank)))
+        || second.flanks().iter().any(|flank| rises(flank, -normal.dot(flank)));
     let near = gap < scene.reach.proximity && gap >= -scene.reach.depth;
-    (near && !have_turned(&first, &second, &normal, SLACK)).then(|| EdgeContact {
+    (near && !turned).then(|| EdgeContact {
         edges,
         bodies,
         along: [on_first / squared, on_second / squared],

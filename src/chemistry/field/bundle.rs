@@ -1,6 +1,6 @@
 //! Sixteen lines of boxes, or fewer, along one axis: from the grid to where they are solved and back.
 
-use super::shared::{Columns, Shared};
+use super::shared::{Columns, Next, Shared};
 use super::sweep::WIDTH;
 use super::transpose::{transpose_in, transpose_out};
 
@@ -24,6 +24,15 @@ impl Lines {
             // SAFETY: this function's contract.
             Self::Columns { first, stride, count: WIDTH, .. } => Some(unsafe { Columns::new(values, first, stride) }),
             _ => None,
+        }
+    }
+
+    /// The lines after these, if they are as many.
+    #[inline(always)]
+    pub fn next<'a>(self, values: &'a Shared<'a>) -> Next<'a> {
+        match self {
+            Self::Rows { first, n, count } => Next { values, first: first + n * count, stride: WIDTH },
+            Self::Columns { first, stride, count, .. } => Next { values, first: first + count, stride },
         }
     }
 

@@ -22,6 +22,11 @@ impl<'a> Shared<'a> {
         Self { first: values.as_mut_ptr(), len: values.len(), values: PhantomData }
     }
 
+    /// How many values there are.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
     /// A part of the values.
     ///
     /// # Safety
@@ -41,6 +46,19 @@ impl<'a> Shared<'a> {
             use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
             // SAFETY: nothing is read; the processor ignores addresses that are not the program's.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(self.first.wrapping_add(at).cast()) };
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = at;
+    }
+
+    /// The same for a value that will be needed a while later: it is not to take the place of what is needed first.
+    #[inline(always)]
+    pub fn ask_for_later(&self, at: usize) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
+            // SAFETY: as above.
+            unsafe { _mm_prefetch::<_MM_HINT_T1>(self.first.wrapping_add(at).cast()) };
         }
         #[cfg(not(target_arch = "x86_64"))]
         let _ = at;
@@ -76,5 +94,26 @@ impl<'a> Columns<'a> {
     pub fn ask(&self, i: usize) {
         self.values.ask(self.first + i * self.stride);
         self.values.ask(self.first + i * self.stride + WIDTH - 1);
+    }
+}
+
+/// The lines that are solved after others, which the memory is asked for while those are solved: there is nothing to
+/// wait for then. Grids beyond the cache would spend half of the time waiting.
+#[derive(Clone, Copy)]
+pub struct Next<'a> {
+    /// All values.
+    pub values: &'a Shared<'a>,
+    /// Where they begin.
+    pub first: usize,
+    /// From sixteen of their values to the next sixteen.
+    pub stride: usize,
+}
+
+impl Next<'_> {
+    /// Asks the memory for sixteen values.
+    #[inline(always)]
+    pub fn ask(&self, i: usize) {
+        self.values.ask_for_later(self.first + i * self.stride);
+        self.values.ask_for_later(self.first + i * self.stride + WIDTH - 1);
     }
 }

@@ -5,7 +5,7 @@
 use pulp::Simd;
 
 use super::factors::{Line, Ring};
-use super::shared::Columns;
+use super::shared::{Columns, Next};
 
 /// Lines that are solved side by side.
 pub const WIDTH: usize = 16;
@@ -33,13 +33,20 @@ struct Thirds<'a, T> {
 
 /// One step of diffusion along the lines in the first [`section`] of scratch, times a factor. Leaves Y in the second
 /// section and the result in the third, and returns the least value of the result. If columns are given the lines are
-/// first taken from there, and unless they are rings the result is left there and not in the third section.
+/// first taken from there, and unless they are rings the result is left there and not in the third section. The memory is
+/// asked for the lines that come next.
 #[inline(always)]
-pub fn sweep<S: Simd>(simd: S, line: &Line, factor: f64, scratch: &mut [f64], columns: Option<Columns>) -> f64 {
+pub fn sweep<S: Simd>(
+    simd: S,
+    line: &Line,
+    factor: f64,
+    scratch: &mut [f64],
+    (columns, next): (Option<Columns>, Option<Next>),
+) -> f64 {
     match WIDTH / S::F64_LANES {
-        1 => all_lines::<S, 1>(simd, line, factor, scratch, columns),
-        2 => all_lines::<S, 2>(simd, line, factor, scratch, columns),
-        _ => all_lines::<S, 4>(simd, line, factor, scratch, columns),
+        1 => all_lines::<S, 1>(simd, line, factor, scratch, (columns, next)),
+        2 => all_lines::<S, 2>(simd, line, factor, scratch, (columns, next)),
+        _ => all_lines::<S, 4>(simd, line, factor, scratch, (columns, next)),
     }
 }
 
@@ -60,7 +67,7 @@ fn all_lines<S: Simd, const K: usize>(
     line: &Line,
     factor: f64,
     scratch: &mut [f64],
-    columns: Option<Columns>,
+    (columns, next): (Option<Columns>, Option<Next>),
 ) -> f64 {
     let n = line.complex.len();
     let row = WIDTH / S::F64_LANES;
@@ -70,7 +77,7 @@ fn all_lines<S: Simd, const K: usize>(
     let mut thirds = Thirds { values, re, im, row };
     let mut least = simd.splat_f64s(f64::INFINITY);
     for part in (0..row).step_by(K) {
-        forward::<S, K>(simd, line, &mut thirds, part, columns);
+        forward::<S, K>(simd, line, &mut thirds, part, (columns, next.filter(|_| part == 0)));
     }
     for part in (0..row).step_by(K) {
         let low = if let Some(ring) = &line.ring {
@@ -92,7 +99,7 @@ fn forward<S: Simd, const K: usize>(
     line: &Line,
     t: &mut Thirds<S::f64s>,
     part: usize,
-    columns: Option<Columns>,
+    (columns, next): (Option<Columns>, Option<Next>),
 ) {
     let zero = simd.splat_f64s(0.0);
     let (mut gr, mut gi) = ([zero; K], [zero; K]);
@@ -103,6 +110,9 @@ fn forward<S: Simd, const K: usize>(
         if let Some(columns) = columns {
             *b = *part_of::<_, K>(columns.row::<S>(i), part);
             columns.ask(i + AHEAD);
+        }
+        if let Some(next) = next {
+            next.ask(i);
         }
         let (re, im) = (part_of_mut::<_, K>(re, part), part_of_mut::<_, K>(im, part));
         let (cr, ci) = (simd.splat_f64s(c[0]), simd.splat_f64s(c[1]));
@@ -294,13 +304,13 @@ mod tests {
             let (n, stride) = (line.real.len(), WIDTH + 3);
             let mut scratch = vec![0.0; 3 * section(n)];
             scratch[..n * WIDTH].copy_from_slice(start);
-            let least = sweep(simd, line, 0.9, &mut scratch, None);
+            let least = sweep(simd, line, 0.9, &mut scratch, (None, None));
             let apart = scratch[2 * section(n)..][..n * WIDTH].to_vec();
             let mut grid: Vec<f64> = start.chunks(WIDTH).flat_map(|row| [row, &[7.0; 3]].concat()).collect();
             let shared = Shared::new(&mut grid);
             // SAFETY: nobody else looks at the grid.
             let columns = unsafe { Columns::new(&shared, 0, stride) };
-            let least_in_place = sweep(simd, line, 0.9, &mut scratch, Some(columns));
+            let least_in_place = sweep(simd, line, 0.9, &mut scratch, (Some(columns), None));
             let ring = line.ring.is_some();
             let in_place = if ring { scratch[2 * section(n)..][..n * WIDTH].to_vec() } else { Vec::new() };
             let rows = grid.chunks(stride).inspect(|row| assert_eq!(row[WIDTH..], [7.0; 3]));

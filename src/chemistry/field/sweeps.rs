@@ -16,6 +16,8 @@ use super::sweep::{WIDTH, section, sweep};
 
 /// Fewest values for which threads are worth waking.
 const WORTH_THREADS: usize = 1 << 15;
+/// Fewest values for which the memory is asked for lines in advance: those that no cache near a core holds.
+const WORTH_ASKING: usize = 1 << 19;
 /// Parts that the work of a phase is cut into when threads share it.
 pub const PARTS: usize = 32;
 
@@ -90,7 +92,8 @@ impl WithSimd for Solve<'_> {
             // SAFETY: as above.
             unsafe { lines.gather(values, scratch) };
         }
-        let least = sweep(simd, line, factor, scratch, columns);
+        let next = (values.len() >= WORTH_ASKING).then(|| lines.next(values));
+        let least = sweep(simd, line, factor, scratch, (columns, next));
         let result = 2 * section(n)..2 * section(n) + n * WIDTH;
         let negative = least < 0.0 && range == Range::NonNegative;
         if negative {
