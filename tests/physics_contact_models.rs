@@ -1,6 +1,8 @@
 //! Dynamic links and penalties, the contacts to compare with: forces from an energy, equal and opposite; links that break
 //! beyond their range and are part of the state.
 
+mod same_bits;
+
 use pseudopod::Vec3;
 use pseudopod::contact::{Contacts, Detector, Reach};
 use pseudopod::geometry::{Topology, icosphere, mean_edge_length};
@@ -15,6 +17,7 @@ use pseudopod::sim::contact::{
 };
 use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::{Kind, Load, Model, State, VolumeRule, Workspace, step};
+use same_bits::{go_on, through_a_checkpoint};
 
 /// Radius of the cells, µm.
 const RADIUS: f64 = 5.0;
@@ -256,23 +259,12 @@ fn links_bear_exactly_the_load_and_break_above_what_their_range_allows() {
 #[test]
 fn links_go_on_from_a_checkpoint_to_the_same_bits_with_any_number_of_threads() {
     let model = model(vec![cell("a"), cell("b")], 30.0, |_, _| true);
-    let on = |threads: usize, state: &mut State, steps: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let mut ws = Workspace::new(&model);
-        pool.install(|| {
-            for _ in 0..steps {
-                ws.poison(&model);
-                step(&model, state, &mut ws).unwrap();
-            }
-        });
-    };
     let (mut whole, mut parts) = (pair(&model), pair(&model));
-    on(1, &mut whole, 40);
-    on(2, &mut parts, 17);
+    go_on(&model, &mut whole, 1, 40);
+    go_on(&model, &mut parts, 2, 17);
     assert!(!parts.contact.links.is_empty());
-    let kept = postcard::to_stdvec(&parts).unwrap();
-    let mut parts: State = postcard::from_bytes(&kept).unwrap();
-    on(1, &mut parts, 23);
+    let mut parts = through_a_checkpoint(&parts);
+    go_on(&model, &mut parts, 1, 23);
     assert_eq!(whole, parts);
 }
 

@@ -68,7 +68,7 @@ fn the_pull_lies_along_the_surface_without_net_force_and_torque() {
 }
 
 #[test]
-fn the_pull_vanishes_where_the_mesh_is_regular_and_is_small_on_a_refined_sphere() {
+fn the_pull_vanishes_where_the_mesh_is_regular_and_is_less_than_that_of_one_edge_on_a_refined_sphere() {
     let worst = |level| {
         let surface = icosphere(5.0, level);
         forces(&surface).iter().map(Vec3::norm).fold(0.0, f64::max) / (STIFFNESS * geometry::mean_edge_length(&surface))
@@ -161,6 +161,9 @@ fn a_drawn_out_drop_rounds_up_and_has_the_least_surface_of_its_volume() {
         area.powi(3) / geometry::volume(surface).powi(2)
     };
     println!("area^3 / volume^2 over that of the icosphere: {}", shape(&end) / shape(&round));
-    // The pressure of a drop is γ dA/dV: with the area of its volume it has 2γ/R, to what another order of the atoms makes of facets.
-    assert!((shape(&end) / shape(&round) - 1.0).abs() < 0.005);
+    // The pressure of a drop is γ dA/dV: with the area of its volume it has 2γ/R. Flat facets make A³/V² of an icosphere larger than
+    // that of a ball, 36π, by `facets`; another order of the atoms may change that by a part of it, for which a fifth is left.
+    let facets = shape(&round) / (36.0 * std::f64::consts::PI) - 1.0;
+    println!("facets make {facets} of it");
+    assert!((shape(&end) / shape(&round) - 1.0).abs() < 0.2 * facets);
 }

@@ -274,7 +274,8 @@ fn rewrite(node: &Node, wanted: &str) -> Option<String> {
 /// Adds what a key is for, in the words of its type.
 fn with_purpose(fault: Fault, schema: &Map<String, Json>) -> Fault {
     match schema.get("description").and_then(Json::as_str) {
-        Some(purpose) => fault.help(format!("the key is for: {purpose}")),
+        // Where the lines of the schema's text end means nothing in a message.
+        Some(purpose) => fault.help(format!("the key is for: {}", purpose.replace('\n', " "))),
         None => fault.help("write another value; `pseudopod schema` tells what is allowed"),
     }
 }

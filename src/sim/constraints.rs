@@ -1,7 +1,9 @@
-//! The stage that makes constraints exact after the atoms moved: planes and the volume of every cell.
+//! The stage that makes constraints exact after the atoms moved: planes, the shapes of virtual adhesives, and the volume of
+//! every cell, which comes last.
 
 use rayon::prelude::*;
 
+use super::contact::settle_adhesives;
 use super::model::{Model, VolumeRule};
 use super::projection::{ProjectScratch, project_cell};
 use super::state::State;
@@ -10,6 +12,9 @@ use crate::mechanics::volume;
 
 /// The volume error that a step may leave, relative to the target.
 pub const VOLUME_TOLERANCE: f64 = 1e-10;
+
+/// Turns of exact volumes and shapes of adhesives in a step; each leaves a small part of what the one before left.
+const TURNS: usize = 4;
 
 /// A cell whose volume could not be restored.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +25,17 @@ pub struct VolumeFailure {
     pub cell: usize,
     /// Relative error left.
     pub error: f64,
+}
+
+/// Makes planes and volumes exact, in turns with the shapes of virtual adhesives where there are any; volumes come last.
+pub fn make_exact(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), VolumeFailure> {
+    for _ in 0..TURNS {
+        enforce_constraints(model, state, ws)?;
+        if !settle_adhesives(model, state, ws) {
+            return Ok(());
+        }
+    }
+    enforce_constraints(model, state, ws)
 }
 
 /// Puts atoms back outside the planes and every exact volume back on its target.

@@ -1,10 +1,8 @@
 //! One step of the simulation, on one screen.
 
 use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
-use super::constraints::enforce_constraints;
-use super::contact::{
-    carry_forces, check_depth, find_contacts, hold_contacts, keep_contacts, settle_adhesives, travel,
-};
+use super::constraints::make_exact;
+use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, keep_contacts, travel};
 use super::forces::add_forces;
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
@@ -83,9 +81,6 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
     Err(Trouble::StepTooSmall { time: state.time, dt })
 }
 
-/// Turns of exact volumes and shapes of adhesives in a step; each leaves a small part of what the one before left.
-const TURNS: usize = 4;
-
 /// The stages of a step.
 fn try_step(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<Estimate, Trouble> {
     let end = state.time + dt;
@@ -101,23 +96,12 @@ fn try_step(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Re
     keep_free_positions(state, ws);
     check_finite(model, end, state)?;
     hold_contacts(model, dt, state, ws)?;
-    make_exact(model, end, state, ws)?;
+    make_exact(model, state, ws).map_err(|failure| Trouble::of_volume(model, end, failure))?;
     if model.integrator.method.is_inertial() {
         correct_velocities(model, dt, state, ws);
     }
     check_finite(model, end, state)?;
     limit_travel(model, dt, error, state, ws)
-}
-
-/// Makes planes and volumes exact, in turns with the shapes of virtual adhesives; volumes come last.
-fn make_exact(model: &Model, end: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
-    for _ in 0..TURNS {
-        enforce_constraints(model, state, ws).map_err(|failure| Trouble::of_volume(model, end, failure))?;
-        if !settle_adhesives(model, state, ws) {
-            return Ok(());
-        }
-    }
-    enforce_constraints(model, state, ws).map_err(|failure| Trouble::of_volume(model, end, failure))
 }
 
 /// Adds what contacts say about the step.

@@ -42,11 +42,7 @@ impl<'a> Shared<'a> {
     #[inline(always)]
     pub fn ask(&self, at: usize) {
         #[cfg(target_arch = "x86_64")]
-        {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            // SAFETY: nothing is read; the processor ignores addresses that are not the program's.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(self.first.wrapping_add(at).cast()) };
-        }
+        self.prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(at);
         #[cfg(not(target_arch = "x86_64"))]
         let _ = at;
     }
@@ -55,13 +51,16 @@ impl<'a> Shared<'a> {
     #[inline(always)]
     pub fn ask_for_later(&self, at: usize) {
         #[cfg(target_arch = "x86_64")]
-        {
-            use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
-            // SAFETY: as above.
-            unsafe { _mm_prefetch::<_MM_HINT_T1>(self.first.wrapping_add(at).cast()) };
-        }
+        self.prefetch::<{ std::arch::x86_64::_MM_HINT_T1 }>(at);
         #[cfg(not(target_arch = "x86_64"))]
         let _ = at;
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    fn prefetch<const HINT: i32>(&self, at: usize) {
+        // SAFETY: nothing is read; the processor ignores addresses that are not the program's.
+        unsafe { std::arch::x86_64::_mm_prefetch::<HINT>(self.first.wrapping_add(at).cast()) };
     }
 }
 

@@ -15,6 +15,7 @@ mod links;
 mod model;
 mod momentum;
 mod penalty;
+mod recruit;
 mod rigid;
 mod rows;
 mod scratch;

@@ -3,12 +3,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::model::{ContactModel, Law};
+use super::model::ContactModel;
+use super::recruit::{Glue, reset, root};
 use super::rigid::Rigid;
 use super::rows::{Pull, Row};
 use super::state::ContactState;
 use crate::Vec3;
-use crate::contact::{AtomContact, Contacts};
+use crate::contact::Contacts;
 use crate::sim::chemistry::Controls;
 use crate::sim::model::Kind;
 
@@ -48,11 +49,11 @@ pub struct AdhesiveAtom {
 }
 
 /// No number.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 /// What an atom is in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Role {
+pub(super) enum Role {
     /// It touches nothing that sticks.
     Far,
     /// It touches, but was released and not pressed since.
@@ -77,15 +78,15 @@ pub struct AdhesiveScratch {
     /// The direction that speeds the sweeps up.
     pub(super) ways: Vec<Vec3>,
     /// For all atoms: where they stand in `atoms`, or `NONE`.
-    place: Vec<u32>,
-    roles: Vec<Role>,
-    kappa: Vec<f64>,
+    pub(super) place: Vec<u32>,
+    pub(super) roles: Vec<Role>,
+    pub(super) kappa: Vec<f64>,
     /// An atom of the same adhesive; the least one in the end.
-    parent: Vec<u32>,
+    pub(super) parent: Vec<u32>,
     /// The nearest two objects, and how near.
-    pair: Vec<([u32; 2], f64)>,
+    pub(super) pair: Vec<([u32; 2], f64)>,
     /// Atoms that touch a plane that sticks.
-    grounded: Vec<bool>,
+    pub(super) grounded: Vec<bool>,
 }
 
 impl AdhesiveScratch {
@@ -102,104 +103,11 @@ impl AdhesiveScratch {
     ) {
         self.atoms.clear();
         self.bodies.clear();
-        let Law::VirtualAdhesives(table) = &model.law else { return };
-        self.clone_atoms(model, table, controls, before, found);
-        self.join(model, table, controls, before, found);
+        let Some(glue) = Glue::of(model, controls) else { return };
+        self.clone_atoms(&glue, before, found);
+        self.join(&glue, before, found);
         self.list(before, time);
         self.make_bodies(model, kinds, positions);
-    }
-
-    /// Who touches what sticks, how well, and in which pair.
-    fn clone_atoms(
-        &mut self,
-        model: &ContactModel,
-        table: &AdhesiveTable,
-        controls: &Controls,
-        before: &ContactState,
-        found: &Contacts,
-    ) {
-        let count = model.scene.atoms;
-        reset(&mut self.roles, count, Role::Far);
-        reset(&mut self.kappa, count, 0.0);
-        reset(&mut self.pair, count, ([NONE; 2], f64::INFINITY));
-        reset(&mut self.grounded, count, false);
-        let mut add = |atom: u32, kappa: f64, pair: [u32; 2], gap: f64, pressed: bool| {
-            let i = atom as usize;
-            self.kappa[i] = self.kappa[i].max(kappa);
-            if (gap, pair) < (self.pair[i].1, self.pair[i].0) {
-                self.pair[i] = (pair, gap);
-            }
-            let released = !pressed && before.released.binary_search(&atom).is_ok();
-            if !released {
-                self.roles[i] = Role::Cloned;
-            } else if self.roles[i] == Role::Far {
-                self.roles[i] = Role::Released;
-            }
-        };
-        for near in &found.atoms {
-            let (body, kappa) = kappa_of(model, table, controls, near);
-            if kappa > 0.0 {
-                let at = before.atoms.partition_point(|bond| bond.atom < near.atom);
-                let mut bonds = before.atoms[at..].iter().take_while(|bond| bond.atom == near.atom);
-                let pressed = bonds.any(|bond| bond.body == near.body && bond.force != [0.0; 3]);
-                let pair = [body.min(near.body), body.max(near.body)];
-                corners(model, near).into_iter().for_each(|atom| add(atom, kappa, pair, near.gap, pressed));
-            }
-        }
-        for near in &found.planes {
-            let kappa = kappa_on(model, table, controls, near.atom, near.plane);
-            if kappa > 0.0 {
-                let at = before.planes.partition_point(|bond| (bond.atom, bond.plane) < (near.atom, near.plane));
-                let same = before.planes.get(at).filter(|bond| (bond.atom, bond.plane) == (near.atom, near.plane));
-                let pressed = same.is_some_and(|bond| bond.force != [0.0; 3]);
-                let pair = [model.body_of(near.atom), model.scene.bodies.len() as u32 + near.plane];
-                add(near.atom, kappa, pair, near.gap, pressed);
-                self.grounded[near.atom as usize] = true;
-            }
-        }
-    }
-
-    /// Joins atoms that touch each other, that were in one adhesive, and that are neighbours on a mesh.
-    fn join(
-        &mut self,
-        model: &ContactModel,
-        table: &AdhesiveTable,
-        controls: &Controls,
-        before: &ContactState,
-        found: &Contacts,
-    ) {
-        let zones = table.zones;
-        self.parent.clear();
-        self.parent.extend(0..model.scene.atoms as u32);
-        let (roles, pair, parent) = (&self.roles, &self.pair, &mut self.parent);
-        let cloned = |atom: u32| roles[atom as usize] == Role::Cloned;
-        let mut unite = |one: u32, other: u32| {
-            let alike = || zones == Zones::Merged || pair[one as usize].0 == pair[other as usize].0;
-            if cloned(one) && cloned(other) && alike() {
-                let (one, other) = (root(parent, one), root(parent, other));
-                parent[one.max(other) as usize] = one.min(other);
-            }
-        };
-        for near in found.atoms.iter().filter(|near| kappa_of(model, table, controls, near).1 > 0.0) {
-            let [first, others @ ..] = corners(model, near);
-            others.into_iter().for_each(|other| unite(first, other));
-        }
-        for adhesive in before.adhesives.chunk_by(|one, other| one.adhesive == other.adhesive) {
-            // Those of one adhesive may be of several pairs: each is joined with the next that is of its own.
-            for (number, one) in adhesive.iter().enumerate() {
-                let mut others = adhesive[number + 1..].iter().map(|other| other.atom).filter(|atom| cloned(*atom));
-                let alike = |atom: &u32| zones == Zones::Merged || pair[*atom as usize].0 == pair[one.atom as usize].0;
-                if let Some(other) = others.find(alike) {
-                    unite(one.atom, other);
-                }
-            }
-        }
-        for body in &model.scene.bodies {
-            let shape = &model.scene.shapes[body.shape as usize];
-            for [one, other] in &shape.edges {
-                unite(body.first_atom + one, body.first_atom + other);
-            }
-        }
     }
 
     /// Lists adhesives of two atoms and more; one on a plane may have a single one.
@@ -282,7 +190,7 @@ impl AdhesiveScratch {
         moved: &[[f64; 4]],
         kept: &mut ContactState,
     ) {
-        let Law::VirtualAdhesives(table) = &model.law else { return };
+        let Some(glue) = Glue::of(model, controls) else { return };
         for (one, force) in self.atoms.iter_mut().zip(&self.forces) {
             one.force = (*force).into();
         }
@@ -294,13 +202,13 @@ impl AdhesiveScratch {
                 self.roles[atom as usize] = Role::Released;
             }
         };
-        for near in found.atoms.iter().filter(|near| kappa_of(model, table, controls, near).1 > 0.0) {
-            let [atom, facet @ ..] = corners(model, near);
+        for near in found.atoms.iter().filter(|near| glue.kappa_of(near).1 > 0.0) {
+            let [atom, facet @ ..] = glue.corners(near);
             part(atom, near.normal);
             facet.into_iter().for_each(|atom| part(atom, -near.normal));
         }
         for near in &found.planes {
-            if kappa_on(model, table, controls, near.atom, near.plane) > 0.0 {
+            if glue.kappa_on(near.atom, near.plane) > 0.0 {
                 part(near.atom, model.scene.planes[near.plane as usize].normal);
             }
         }
@@ -316,28 +224,6 @@ impl AdhesiveScratch {
     pub(super) fn poison(&mut self) {
         *self = Self::default();
     }
-}
-
-/// The atom and the corners of the facet that it touches.
-fn corners(model: &ContactModel, near: &AtomContact) -> [u32; 4] {
-    let [i, j, k] = model.scene.facet_atoms(near.body, near.facet);
-    [near.atom, i, j, k]
-}
-
-/// The body of an atom that touches a facet, and how well the two are glued; a body not to itself.
-fn kappa_of(model: &ContactModel, table: &AdhesiveTable, controls: &Controls, near: &AtomContact) -> (u32, f64) {
-    let body = model.body_of(near.atom);
-    let [kind, other] = [body, near.body].map(|body| model.kind_of(body));
-    let factors = controls.adhesion_of(body as usize) * controls.adhesion_of(near.body as usize);
-    let kappa = table.between[kind * model.areas.len() + other] * factors;
-    (body, if body == near.body { 0.0 } else { kappa })
-}
-
-/// How well an atom is glued to a plane.
-fn kappa_on(model: &ContactModel, table: &AdhesiveTable, controls: &Controls, atom: u32, plane: u32) -> f64 {
-    let body = model.body_of(atom);
-    let kappa = table.on_planes[model.kind_of(body) * model.scene.planes.len() + plane as usize];
-    kappa * controls.adhesion_of(body as usize)
 }
 
 /// Takes out adhesives of fewer than two atoms, but for those on a plane, and names the others by their least atom.
@@ -356,18 +242,4 @@ fn keep_living(atoms: &mut Vec<AdhesiveAtom>, grounded: impl Fn(u32) -> bool) {
     }
     atoms.truncate(to);
     atoms.sort_unstable_by_key(|one| (one.adhesive, one.atom));
-}
-
-/// The least atom joined with one; shortens the way there.
-fn root(parent: &mut [u32], mut atom: u32) -> u32 {
-    while parent[atom as usize] != atom {
-        parent[atom as usize] = parent[parent[atom as usize] as usize];
-        atom = parent[atom as usize];
-    }
-    atom
-}
-
-fn reset<T: Clone>(list: &mut Vec<T>, count: usize, value: T) {
-    list.clear();
-    list.resize(count, value);
 }

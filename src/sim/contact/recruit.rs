@@ -1,0 +1,140 @@
+//! Recruits atoms to virtual adhesives: who touches what sticks is cloned, and joins what it touches and its neighbours.
+
+use super::model::{ContactModel, Law};
+use super::state::ContactState;
+use super::zones::{AdhesiveScratch, AdhesiveTable, NONE, Role, Zones};
+use crate::contact::{AtomContact, Contacts};
+use crate::sim::chemistry::Controls;
+
+/// How well surfaces are glued, with the factors that chemistry sets.
+pub(super) struct Glue<'a> {
+    model: &'a ContactModel,
+    table: &'a AdhesiveTable,
+    controls: &'a Controls,
+}
+
+impl<'a> Glue<'a> {
+    /// That of a model; none under other laws.
+    pub(super) fn of(model: &'a ContactModel, controls: &'a Controls) -> Option<Self> {
+        let Law::VirtualAdhesives(table) = &model.law else { return None };
+        Some(Self { model, table, controls })
+    }
+
+    /// The atom and the corners of the facet that it touches.
+    pub(super) fn corners(&self, near: &AtomContact) -> [u32; 4] {
+        let [i, j, k] = self.model.scene.facet_atoms(near.body, near.facet);
+        [near.atom, i, j, k]
+    }
+
+    /// The body of an atom that touches a facet, and how well the two are glued; a body not to itself.
+    pub(super) fn kappa_of(&self, near: &AtomContact) -> (u32, f64) {
+        let body = self.model.body_of(near.atom);
+        let [kind, other] = [body, near.body].map(|body| self.model.kind_of(body));
+        let factors = self.controls.adhesion_of(body as usize) * self.controls.adhesion_of(near.body as usize);
+        let kappa = self.table.between[kind * self.model.areas.len() + other] * factors;
+        (body, if body == near.body { 0.0 } else { kappa })
+    }
+
+    /// How well an atom is glued to a plane.
+    pub(super) fn kappa_on(&self, atom: u32, plane: u32) -> f64 {
+        let body = self.model.body_of(atom);
+        let kappa = self.table.on_planes[self.model.kind_of(body) * self.model.scene.planes.len() + plane as usize];
+        kappa * self.controls.adhesion_of(body as usize)
+    }
+}
+
+impl AdhesiveScratch {
+    /// Who touches what sticks, how well, and in which pair.
+    pub(super) fn clone_atoms(&mut self, glue: &Glue, before: &ContactState, found: &Contacts) {
+        let (model, count) = (glue.model, glue.model.scene.atoms);
+        reset(&mut self.roles, count, Role::Far);
+        reset(&mut self.kappa, count, 0.0);
+        reset(&mut self.pair, count, ([NONE; 2], f64::INFINITY));
+        reset(&mut self.grounded, count, false);
+        let mut add = |atom: u32, kappa: f64, pair: [u32; 2], gap: f64, pressed: bool| {
+            let i = atom as usize;
+            self.kappa[i] = self.kappa[i].max(kappa);
+            if (gap, pair) < (self.pair[i].1, self.pair[i].0) {
+                self.pair[i] = (pair, gap);
+            }
+            let released = !pressed && before.released.binary_search(&atom).is_ok();
+            if !released {
+                self.roles[i] = Role::Cloned;
+            } else if self.roles[i] == Role::Far {
+                self.roles[i] = Role::Released;
+            }
+        };
+        for near in &found.atoms {
+            let (body, kappa) = glue.kappa_of(near);
+            if kappa > 0.0 {
+                let at = before.atoms.partition_point(|bond| bond.atom < near.atom);
+                let mut bonds = before.atoms[at..].iter().take_while(|bond| bond.atom == near.atom);
+                let pressed = bonds.any(|bond| bond.body == near.body && bond.force != [0.0; 3]);
+                let pair = [body.min(near.body), body.max(near.body)];
+                glue.corners(near).into_iter().for_each(|atom| add(atom, kappa, pair, near.gap, pressed));
+            }
+        }
+        for near in &found.planes {
+            let kappa = glue.kappa_on(near.atom, near.plane);
+            if kappa > 0.0 {
+                let at = before.planes.partition_point(|bond| (bond.atom, bond.plane) < (near.atom, near.plane));
+                let same = before.planes.get(at).filter(|bond| (bond.atom, bond.plane) == (near.atom, near.plane));
+                let pressed = same.is_some_and(|bond| bond.force != [0.0; 3]);
+                let pair = [model.body_of(near.atom), model.scene.bodies.len() as u32 + near.plane];
+                add(near.atom, kappa, pair, near.gap, pressed);
+                self.grounded[near.atom as usize] = true;
+            }
+        }
+    }
+
+    /// Joins atoms that touch each other, that were in one adhesive, and that are neighbours on a mesh.
+    pub(super) fn join(&mut self, glue: &Glue, before: &ContactState, found: &Contacts) {
+        let (model, zones) = (glue.model, glue.table.zones);
+        self.parent.clear();
+        self.parent.extend(0..model.scene.atoms as u32);
+        let (roles, pair, parent) = (&self.roles, &self.pair, &mut self.parent);
+        let cloned = |atom: u32| roles[atom as usize] == Role::Cloned;
+        let mut unite = |one: u32, other: u32| {
+            let alike = || zones == Zones::Merged || pair[one as usize].0 == pair[other as usize].0;
+            if cloned(one) && cloned(other) && alike() {
+                let (one, other) = (root(parent, one), root(parent, other));
+                parent[one.max(other) as usize] = one.min(other);
+            }
+        };
+        for near in found.atoms.iter().filter(|near| glue.kappa_of(near).1 > 0.0) {
+            let [first, others @ ..] = glue.corners(near);
+            others.into_iter().for_each(|other| unite(first, other));
+        }
+        for adhesive in before.adhesives.chunk_by(|one, other| one.adhesive == other.adhesive) {
+            // Those of one adhesive may be of several pairs: each is joined with the next that is of its own.
+            for (number, one) in adhesive.iter().enumerate() {
+                let mut others = adhesive[number + 1..].iter().map(|other| other.atom).filter(|atom| cloned(*atom));
+                let alike = |atom: &u32| zones == Zones::Merged || pair[*atom as usize].0 == pair[one.atom as usize].0;
+                if let Some(other) = others.find(alike) {
+                    unite(one.atom, other);
+                }
+            }
+        }
+        for body in &model.scene.bodies {
+            let shape = &model.scene.shapes[body.shape as usize];
+            for [one, other] in &shape.edges {
+                unite(body.first_atom + one, body.first_atom + other);
+            }
+        }
+    }
+}
+
+/// The least atom joined with one; shortens the way there.
+pub(super) fn root(parent: &mut [u32], mut atom: u32) -> u32 {
+    while parent[atom as usize] != atom {
+        parent[atom as usize] = parent[parent[atom as usize] as usize];
+        atom = parent[atom as usize];
+    }
+    atom
+}
+
+/// Makes a list as long as this, all alike.
+pub(super) fn reset<T: Clone>(list: &mut Vec<T>, count: usize, value: T) {
+    list.clear();
+    list.resize(count, value);
+}
