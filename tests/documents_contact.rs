@@ -394,12 +394,18 @@ fn recorded_forces_have_those_of_contacts_among_them() {
         forces[..42].iter().fold(Vec3::zeros(), |sum, force| sum + Vec3::from(*force))
     };
     // Before they meet the load is all there is. Then the sum of all forces is what drag takes, 2 pN s/µm times the
-    // velocity, which is the mean over the last step: pressed cells hardly move, so that little is left of 8 pN. Between
-    // the mean over that step and its end the balance shifts by thousandths of a pN.
+    // velocity, which is the mean over the last step: between that and the end of the step the balance shifts by thousandths
+    // of a pN, and by more where a contact catches just then. A pressed pair hardly moves, so that little is left of 8 pN, until
+    // it rolls off the poles after 14 s.
     assert!((on_left(0).x - 8.0).abs() < 1e-4, "{}", on_left(0));
-    let last = file.frames() - 1;
-    let velocity = |axis: &str| file.cell_series(&format!("velocity_{axis}")).expect("a series")[[last, 0]];
-    let drag = 2.0 * Vec3::from(["x", "y", "z"].map(velocity));
-    assert!(drag.norm() < 2.0, "the pair is at rest but for rolling: {drag}");
-    assert!((on_left(last) - drag).norm() < 0.02, "{} against {drag}", on_left(last));
+    let mut shifts: Vec<f64> = (4..=14)
+        .map(|frame| {
+            let velocity = |axis: &str| file.cell_series(&format!("velocity_{axis}")).expect("a series")[[frame, 0]];
+            let drag = 2.0 * Vec3::from(["x", "y", "z"].map(velocity));
+            assert!(drag.norm() < 3.0, "the pair is at rest at {frame} s but for rolling: {drag}");
+            (on_left(frame) - drag).norm()
+        })
+        .collect();
+    shifts.sort_unstable_by(f64::total_cmp);
+    assert!(shifts[5] < 0.01 && shifts[10] < 0.2, "pN: {shifts:?}");
 }

@@ -122,6 +122,44 @@ fn two_crossing_ridges_touch_by_their_edges_with_a_signed_gap() {
     }
 }
 
+/// A ridge along x in the plane z = 0, convex from above, with one facet that falls away and one that rises by this sine.
+fn leaning_ridge(sine: f64) -> Surface {
+    // From the end of the ridge to the atom across it is √2 along the plane.
+    let height = (2.0 * sine * sine / (1.0 - sine * sine)).sqrt();
+    let positions = vec![-Vec3::x(), Vec3::x(), Vec3::new(0.0, 1.0, height), Vec3::new(0.0, -1.0, -1.0)];
+    Surface { positions, facets: vec![[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]] }
+}
+
+#[test]
+fn ridges_that_have_not_passed_each_other_touch_though_a_facet_rises_a_little() {
+    let cases = [
+        (0.09, 0.15, true),
+        (0.09, 0.0, true),
+        // Passed by less than a hundredth of the proximity, and by more.
+        (0.09, -0.0019, true),
+        (0.09, -0.0021, false),
+        (0.11, 0.15, false),
+        // Nearer than the depth and the margin, but not than the proximity.
+        (0.09, 0.21, false),
+    ];
+    for (sine, gap, touches) in cases {
+        let direction = Vec3::new(0.6, 0.8, 0.0);
+        for stage in [
+            pair(&leaning_ridge(sine), &tent(direction, gap, -1.0), REACH),
+            pair(&tent(direction, gap, -1.0), &leaning_ridge(sine), REACH),
+        ] {
+            let contacts = detect(&stage);
+            let crossing = contacts.edges.iter().find(|contact| contact.along == [0.5, 0.5]);
+            assert_eq!(crossing.is_some(), touches, "sine {sine}, gap {gap}: {:?}", contacts.edges);
+            if let Some(contact) = crossing {
+                let upwards = if stage.positions[2].z > 0.0 && stage.positions[3].z == -1.0 { -1.0 } else { 1.0 };
+                assert!((contact.gap - gap).abs() < 1e-12, "{contact:?}");
+                assert!((contact.normal - upwards * Vec3::z()).norm() < 1e-12, "{contact:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn parallel_edges_and_collapsed_facets_give_numbers() {
     let parallel = detect(&pair(&tent(Vec3::x(), 0.0, 1.0), &tent(Vec3::x(), 0.1, -1.0), REACH));

@@ -41,6 +41,11 @@ impl<'a> Ridge<'a> {
         [self.along.cross(&left), right.cross(&self.along)]
     }
 
+    /// Between the unit normals of the two facets, not scaled.
+    fn outward(&self) -> Vec3 {
+        self.normals().iter().map(|normal| normal.normalize()).sum()
+    }
+
     /// Whether the surface bends away from its outside here.
     fn is_convex(&self) -> bool {
         self.normals()[0].dot(&self.flanks()[1]) < 0.0
@@ -110,6 +115,12 @@ pub(super) fn find_edge_contacts(
     }
 }
 
+/// How far facets may rise towards the other edge, as a sine, where the edges have not passed each other.
+const RISE: f64 = 0.1;
+
+/// How far edges with such facets may have passed each other, over the proximity: what sweeps leave.
+const PASSED: f64 = 0.01;
+
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
 #[inline]
 fn cross(
@@ -120,17 +131,15 @@ fn cross(
     scene: &Scene,
 ) -> Option<([f64; 2], f64, Vec3)> {
     let normal = first.along.cross(&second.along);
-    // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
-    // or its opposite must do for all four. Most pairs fail here, whatever their distance.
-    let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
-    if a * b < 0.0 {
-        return None;
-    }
     let squared = normal.norm_squared();
     let between = first.start - second.start;
     let height = normal.dot(&between);
-    let range = scene.reach.range();
-    if height * height > range * range * squared {
+    let is_within = |distance: f64| height * height <= distance * distance * squared;
+    let may_rise = one_sided && is_within(scene.reach.proximity);
+    // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
+    // or its opposite must do for all four. Most pairs fail here, whatever their distance.
+    let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
+    if (a * b < 0.0 && !may_rise) || !is_within(scene.reach.range()) {
         return None;
     }
     let on_first = -between.cross(&second.along).dot(&normal);
@@ -141,13 +150,16 @@ fn cross(
     let [left, right] = second.flanks();
     let (c, d) = (-normal.dot(&left), -normal.dot(&right));
     let (lowest, highest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
-    if lowest < 0.0 && highest > 0.0 {
+    let rises = lowest < 0.0 && highest > 0.0;
+    if rises && !may_rise {
         return None;
     }
     if squared <= LEAST_SINE_SQUARED * first.along.norm_squared() * second.along.norm_squared() {
         return None;
     }
-    let facing = if highest > 0.0 {
+    let facing = if rises {
+        1f64.copysign(normal.dot(&(second.outward() - first.outward())))
+    } else if highest > 0.0 {
         1.0
     } else if lowest < 0.0 {
         -1.0
@@ -159,12 +171,24 @@ fn cross(
     if gap >= scene.reach.proximity || gap < -scene.reach.depth {
         return None;
     }
-    let fits = if one_sided {
-        first.is_convex() && second.is_convex() && (gap >= 0.0 || is_really_inside(first, second, normal))
-    } else {
+    let fits = if !one_sided {
         gap >= 0.0
+    } else if !first.is_convex() || !second.is_convex() {
+        false
+    } else if rises {
+        gap >= -PASSED * scene.reach.proximity && !have_turned(first, second, &normal, RISE)
+    } else {
+        gap >= 0.0 || is_really_inside(first, second, normal)
     };
     fits.then(|| ([on_first / squared, on_second / squared], gap, normal))
+}
+
+/// Whether a facet of one edge rises towards the other edge, along the normal from the second to the first, by more than
+/// this sine.
+fn have_turned(first: &Ridge, second: &Ridge, normal: &Vec3, slack: f64) -> bool {
+    let rises = |flank: &Vec3, along: f64| along < -slack * flank.norm();
+    first.flanks().iter().any(|flank| rises(flank, normal.dot(flank)))
+        || second.flanks().iter().any(|flank| rises(flank, -normal.dot(flank)))
 }
 
 /// Whether each edge is behind both facets of the other: on ridges sharper than a right angle an edge may be below the
@@ -205,11 +229,8 @@ pub fn edges_still_touch(
     }
     let normal = across * (1f64.copysign(across.dot(normal)) / squared.sqrt());
     let gap = normal.dot(&between);
-    let rises = |flank: &Vec3, along: f64| along < -SLACK * flank.norm();
-    let turned = first.flanks().iter().any(|flank| rises(flank, normal.dot(flank)))
-        || second.flanks().iter().any(|flank| rises(flank, -normal.dot(flank)));
     let near = gap < scene.reach.proximity && gap >= -scene.reach.depth;
-    (near && !turned).then(|| EdgeContact {
+    (near && !have_turned(&first, &second, &normal, SLACK)).then(|| EdgeContact {
         edges,
         bodies,
         along: [on_first / squared, on_second / squared],

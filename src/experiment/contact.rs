@@ -5,9 +5,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Series of the scene that a run with contacts records, in the order of the result: sweeps of the last step over contacts,
-/// the deepest penetration over the smallest mean edge, contacts, aggregates (a cell alone is one), cells of the largest.
-pub const CONTACT_SERIES: [&str; 5] =
-    ["contact.sweeps", "contact.deepest", "contact.count", "aggregates", "largest_aggregate"];
+/// the deepest penetration over the smallest mean edge, contacts, aggregates (a cell alone is one), cells of the largest, and
+/// the energy of what contacts that hold have given way, pN·µm.
+pub const CONTACT_SERIES: [&str; 6] =
+    ["contact.sweeps", "contact.deepest", "contact.count", "aggregates", "largest_aggregate", "contact.energy"];
 
 /// The series of the scene that a run with links records besides: links between facets.
 pub const LINK_SERIES: &str = "contact.links";

@@ -34,6 +34,12 @@ pub struct Elasticity {
 }
 
 impl Elasticity {
+    /// Whether all forces are the gradient of the energy. Not those of the documents' shape memories, nor pulls that keep order.
+    pub fn is_conservative(&self) -> bool {
+        let exact = self.shape_memory.iter().all(ShapeMemory::is_gradient);
+        exact && self.angles.is_empty() && self.ordering.is_empty()
+    }
+
     /// Adds the forces on the atoms of a block (pN) and adds the energy of each lane (pN·µm) to `energy`.
     pub fn add_forces(&self, lanes: usize, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
         dispatch(lanes, Work { elasticity: self, x, f, energy });

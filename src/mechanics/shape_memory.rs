@@ -87,6 +87,11 @@ impl ShapeMemory {
         memory
     }
 
+    /// Whether its forces are the gradient of its energy.
+    pub fn is_gradient(&self) -> bool {
+        self.reaction == Reaction::Exact
+    }
+
     fn remember_atom(&mut self, positions: &[Vec3], atom: usize, around: &[u32]) {
         let first = self.triplets.len();
         let mut weights: Vec<(u32, f64)> = around.iter().map(|&j| (j, 0.0)).collect();

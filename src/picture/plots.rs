@@ -16,7 +16,7 @@ use crate::output::ResultFile;
 const MEASURED: Colour = Colour([0x33, 0x33, 0x33]);
 
 /// Names of series as a reader would say them.
-const READABLE: [(&str, &str); 20] = [
+const READABLE: [(&str, &str); 21] = [
     ("size_x", "extent along x"),
     ("size_y", "extent along y"),
     ("size_z", "extent along z"),
@@ -34,6 +34,7 @@ const READABLE: [(&str, &str); 20] = [
     ("largest_aggregate", "cells of the largest aggregate"),
     ("contact.count", "contacts"),
     ("contact.deepest", "deepest penetration over edge"),
+    ("contact.energy", "energy in contacts"),
     ("contact.sweeps", "sweeps over contacts"),
     ("contact.heterotypic_share", "heterotypic share of contact area"),
     ("contact.segregation", "segregation index"),

@@ -29,7 +29,8 @@ pub fn layout_of(model: &Model) -> Layout {
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     layout.contacts = model.contact.is_some();
     if layout.contacts {
-        layout.scene_series.extend(CONTACT_SERIES.map(|name| (name.to_owned(), "1".to_owned())));
+        let unit = |name: &str| if name == "contact.energy" { "pN um" } else { "1" }.to_owned();
+        layout.scene_series.extend(CONTACT_SERIES.map(|name| (name.to_owned(), unit(name))));
     }
     let of_law: &[&str] = match model.contact.as_ref().map(|contact| &contact.law) {
         Some(Law::Links(_)) => &[LINK_SERIES],

@@ -65,6 +65,7 @@ impl Touch {
             (self.found.atoms.len() + self.found.edges.len() + self.found.planes.len()) as f64,
             sizes.iter().filter(|size| **size > 0).count() as f64,
             f64::from(sizes.iter().copied().max().unwrap_or(0)),
+            state.contact.given(),
         ]);
         match contact.law {
             Law::Links(_) => frame.scene.push(self.links.len() as f64),

@@ -4,6 +4,7 @@ pub mod chemistry;
 pub mod constraints;
 pub mod contact;
 pub mod forces;
+mod gain;
 pub mod implicit;
 pub mod inertial;
 pub mod model;

@@ -4,6 +4,7 @@ use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::make_exact;
 use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, keep_contacts, travel};
 use super::forces::add_forces;
+use super::gain::{AGAIN, energy_before, has_gained};
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
 use super::model::Model;
@@ -48,7 +49,9 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
     remember(state, ws);
     find_contacts(model, state, ws);
     check_depth(model, state, ws)?;
-    let (mut dt, mut limited) = (plan_step(model, state), false);
+    let energy = energy_before(model, state, ws);
+    let planned = plan_step(model, state);
+    let (mut dt, mut limited, mut gains) = (planned, false, 0);
     for refused in 0..TRIES {
         let dt_now = end_at_kinks(model, state.time, dt);
         let Estimate { error, with_contacts } = match try_step(model, dt_now, state, ws) {
@@ -60,11 +63,17 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
             Err(Trouble::Contact { .. }) => Estimate { error: 0.0, with_contacts: f64::INFINITY },
             Err(_) => Estimate { error: f64::INFINITY, with_contacts: f64::INFINITY },
         };
-        let (accepted, next) = judge(model, dt_now, with_contacts);
+        let (mut accepted, mut next) = judge(model, dt_now, with_contacts);
         limited |= next < judge(model, dt_now, error).1;
+        if accepted && gains < AGAIN && has_gained(model, energy, dt_now, state, ws) {
+            // Without mending depths at first, which takes work however short a step is.
+            (accepted, next) = (false, if gains == 0 { dt_now } else { 0.5 * dt_now });
+            limited |= gains > 0;
+            ws.contact.care *= 0.1;
+            gains += 1;
+        }
         if accepted {
-            // A step cut short by a kink says nothing against the step planned before it.
-            let next_step = if dt_now < dt { dt.max(next) } else { next };
+            let next_step = plan_next(model, planned, dt, dt_now, next);
             if let Err(trouble) = advance_chemistry(model, dt_now, state, ws) {
                 restore(state, ws);
                 return Err(trouble);
@@ -156,12 +165,25 @@ fn keep_free_positions(state: &State, ws: &mut Workspace) {
 /// The step to try first.
 fn plan_step(model: &Model, state: &State) -> f64 {
     match model.integrator.size {
+        // What is left of a fixed step that was made shorter.
+        StepSize::Fixed(dt) if state.next_step > 0.0 => state.next_step.min(dt),
         StepSize::Fixed(dt) => dt,
         StepSize::Adaptive { largest, .. } if state.next_step > 0.0 => state.next_step.min(largest),
         StepSize::Adaptive { largest, .. } => {
             let relax = |kind: &super::model::Kind| kind.drag / kind.largest_stiffness.max(f64::MIN_POSITIVE);
             on_ladder(model.kinds.iter().map(relax).fold(largest, f64::min)).min(largest)
         }
+    }
+}
+
+/// The step to plan after one of `dt_now` that was planned as `planned` first and as `dt` last. A step cut short by a kink says
+/// nothing against the step planned before it; one of a fixed size that was made shorter is made up for.
+fn plan_next(model: &Model, planned: f64, dt: f64, dt_now: f64, next: f64) -> f64 {
+    match model.integrator.size {
+        StepSize::Fixed(_) if dt < planned => planned - dt_now,
+        StepSize::Fixed(whole) => whole,
+        StepSize::Adaptive { .. } if dt_now < dt => dt.max(next),
+        StepSize::Adaptive { .. } => next,
     }
 }
 

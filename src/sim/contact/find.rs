@@ -1,6 +1,7 @@
 //! What touches where a step begins, and what it carried in the step before.
 
 use super::gather::gather;
+use super::give::given_after;
 use super::links::{links_at, pull_links};
 use super::model::{ContactModel, Law};
 use super::penalty::press;
@@ -9,7 +10,7 @@ use super::scratch::{ContactScratch, empty_for};
 use super::spread::{add, add_spreading};
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
-use crate::contact::{Contacts, edges_still_touch};
+use crate::contact::{AtomContact, Contacts, PlaneContact, edges_still_touch};
 use crate::sim::model::Model;
 use crate::sim::state::State;
 use crate::sim::workspace::Workspace;
@@ -18,6 +19,7 @@ use crate::sim::workspace::Workspace;
 pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     let Some(contact) = &model.contact else { return };
     let s = &mut ws.contact;
+    s.care = 1.0;
     s.start.resize(contact.scene.atoms, Vec3::zeros());
     for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
         gather(kind, &now.positions, &mut s.start[contact.atoms_of(number)], |x| x);
@@ -111,8 +113,9 @@ pub fn keep_contacts(model: &Model, state: &mut State, ws: &mut Workspace) {
     let (of_atoms, others) = s.pulls.split_at(s.found.atoms.len());
     let (of_edges, of_planes) = others.split_at(s.found.edges.len());
     empty_for(atoms, s.found.atoms.len());
-    for (pull, contact) in of_atoms.iter().zip(&s.found.atoms) {
-        atoms.push(AtomBond { atom: contact.atom, body: contact.body, facet: contact.facet, force: xyz(pull) });
+    for ((pull, row), contact) in of_atoms.iter().zip(&s.rows).zip(&s.found.atoms) {
+        let &AtomContact { atom, body, facet, .. } = contact;
+        atoms.push(AtomBond { atom, body, facet, force: xyz(pull), given: given_after(row, pull) });
     }
     empty_for(edges, s.found.edges.len());
     for (pull, contact) in of_edges.iter().zip(&s.found.edges) {
@@ -120,7 +123,9 @@ pub fn keep_contacts(model: &Model, state: &mut State, ws: &mut Workspace) {
         edges.push(EdgeBond { edges: contact.edges, bodies: contact.bodies, normal, force: xyz(pull) });
     }
     empty_for(planes, s.found.planes.len());
-    for (pull, contact) in of_planes.iter().zip(&s.found.planes) {
-        planes.push(PlaneBond { atom: contact.atom, plane: contact.plane, force: xyz(pull) });
+    let rows = &s.rows[s.rows.len() - of_planes.len()..];
+    for ((pull, row), contact) in of_planes.iter().zip(rows).zip(&s.found.planes) {
+        let &PlaneContact { atom, plane, .. } = contact;
+        planes.push(PlaneBond { atom, plane, force: xyz(pull), given: given_after(row, pull) });
     }
 }

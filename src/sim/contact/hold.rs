@@ -1,6 +1,7 @@
 //! The projection: atoms are moved so that contacts and volumes hold.
 
 use super::gather::{gather, scatter};
+use super::give::set_give;
 use super::model::{ContactModel, Law};
 use super::momentum::go_on;
 use super::rows::{Pull, Row};
@@ -10,7 +11,7 @@ use crate::Vec3;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
 use crate::sim::model::{Kind, Model, VolumeRule};
-use crate::sim::state::{State, index, vector};
+use crate::sim::state::{State, index};
 use crate::sim::trouble::Trouble;
 use crate::sim::workspace::{KindScratch, Workspace};
 
@@ -19,9 +20,6 @@ const MENDING: usize = 8;
 
 /// What a step mends of a depth at most, over the travel that is safe.
 const MENDED: f64 = 0.25;
-
-/// What exact volumes may leave of a change in the shape of an adhesive, over what a sweep may still move.
-const SETTLED: f64 = 1e-3;
 
 /// Moves the atoms from where they went freely so that contacts and volumes hold, to first order in what they are
 /// moved; the exact volumes are for the stage after this.
@@ -37,7 +35,7 @@ pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspa
     }
     prepare(model, contact, dt, state, s, kinds);
     let left = sweep(model, contact, s, kinds);
-    if s.rows.iter().any(|row| row.gap() < 0.0) {
+    if s.care == 1.0 && s.rows.iter().any(|row| row.gap() < 0.0) {
         mend(model, contact, s, kinds);
     }
     s.adhesives.place_all(&s.start, &mut s.moved);
@@ -51,7 +49,7 @@ pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspa
 }
 
 /// Puts the atoms where their displacements take them.
-fn put_back(model: &Model, contact: &ContactModel, s: &ContactScratch, state: &mut State) {
+pub(super) fn put_back(model: &Model, contact: &ContactModel, s: &ContactScratch, state: &mut State) {
     for (number, (kind, now)) in model.kinds.iter().zip(&mut state.kinds).enumerate() {
         let first = contact.atoms_of(number).start;
         let place = |atom: usize| {
@@ -59,33 +57,6 @@ fn put_back(model: &Model, contact: &ContactModel, s: &ContactScratch, state: &m
             s.start[first + atom] + Vec3::new(x, y, z)
         };
         scatter(kind, place, &mut now.positions);
-    }
-}
-
-/// Gives adhesives their shapes back that exact volumes have changed; says whether there was something to do, so that volumes must
-/// be made exact again.
-pub fn settle_adhesives(model: &Model, state: &mut State, ws: &mut Workspace) -> bool {
-    let (Some(contact), s) = (&model.contact, &mut ws.contact) else { return false };
-    if s.adhesives.atoms.is_empty() {
-        return false;
-    }
-    take_displacements(model, contact, state, s);
-    let moved = s.adhesives.place_all(&s.start, &mut s.moved) > SETTLED * contact.tolerance;
-    if moved {
-        put_back(model, contact, s, state);
-    }
-    moved
-}
-
-/// Displacements over the step as the atoms stand now; what is kept beside them stays.
-fn take_displacements(model: &Model, contact: &ContactModel, state: &State, s: &mut ContactScratch) {
-    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
-        let range = contact.atoms_of(number);
-        let (first, moved) = (range.start, &mut s.moved[range]);
-        for (atom, moved) in moved.iter_mut().enumerate() {
-            let way = vector(kind, &now.positions, atom / kind.atoms(), atom % kind.atoms()) - s.start[first + atom];
-            (moved[0], moved[1], moved[2]) = (way.x, way.y, way.z);
-        }
     }
 }
 
@@ -122,6 +93,7 @@ fn prepare(
             row.atoms.iter().zip(row.weights).map(|(atom, weight)| weight * weight * s.moved[*atom as usize][3]);
         row.give = gives.sum::<f64>() as f32;
         row.stiffness = 1.0 / row.give;
+        set_give(row, pull, s.in_account);
     }
     s.adhesives.begin();
 }
@@ -226,7 +198,7 @@ fn sweep(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &
         });
         s.sweeps = number;
         // A change that is not a number is no rest either.
-        if change.largest <= contact.tolerance || number == contact.most_sweeps {
+        if change.largest <= contact.tolerance * s.care || number == contact.most_sweeps {
             break;
         }
         share = s.momentum.share(change.work);

@@ -26,6 +26,10 @@ pub struct Row {
     pub give: f32,
     /// Force over displacement, pN/µm.
     pub stiffness: f32,
+    /// What it holds of a change of its force; the rest gives way.
+    pub kept: f32,
+    /// What went into its give and has not come back where the step began, pN·µm.
+    pub given: f32,
 }
 
 /// What a contact carries; forces on the first side, pN.
@@ -56,15 +60,16 @@ pub fn write_rows(
     let count = found.atoms.len() + found.edges.len() + found.planes.len();
     empty_for(rows, count);
     empty_for(pulls, count);
-    let mut add = |atoms, weights, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], force: [f32; 3]| {
-        let normal_and_gap = [normal.x as f32, normal.y as f32, normal.z as f32, gap as f32];
-        let row =
-            Row { atoms, weights, normal_and_gap, least: least as f32, shear: shear as f32, give: 0.0, stiffness: 0.0 };
-        let force = row.bound(Vec3::from(force.map(f64::from)));
-        let force = [force.x as f32, force.y as f32, force.z as f32, 0.0];
-        rows.push(row);
-        pulls.push(Pull { force, carried: force, ..Pull::default() });
-    };
+    let mut add =
+        |atoms, weights, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], (force, given): ([f32; 3], f32)| {
+            let normal_and_gap = [normal.x as f32, normal.y as f32, normal.z as f32, gap as f32];
+            let (least, shear) = (least as f32, shear as f32);
+            let row = Row { atoms, weights, normal_and_gap, least, shear, give: 0.0, stiffness: 0.0, kept: 1.0, given };
+            let force = row.bound(Vec3::from(force.map(f64::from)));
+            let force = [force.x as f32, force.y as f32, force.z as f32, 0.0];
+            rows.push(row);
+            pulls.push(Pull { force, carried: force, ..Pull::default() });
+        };
     let scene = &model.scene;
     let (mut body, mut first) = (0, 0);
     for contact in &found.atoms {
@@ -82,7 +87,7 @@ pub fn write_rows(
             found.atoms.get(near).is_none_or(|other| (other.atom, other.facet) != (contact.atom, facet))
         };
         let slid = || of_atom().find(|bond| bond.body == contact.body && is_free(bond.facet));
-        let force = same.or_else(slid).map_or([0.0; 3], |bond| bond.force);
+        let carried = same.or_else(slid).map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.given));
         let [i, j, k] = scene.facet_atoms(contact.body, contact.facet);
         let [u, v, w] = contact.weights();
         let own = contact.body as usize == body;
@@ -97,7 +102,7 @@ pub fn write_rows(
             &contact.normal,
             contact.gap,
             [-strength.tensile * area, strength.shear * area],
-            force,
+            carried,
         );
     }
     let mut first = 0;
@@ -114,7 +119,7 @@ pub fn write_rows(
             &contact.normal,
             contact.gap,
             [0.0, 0.0],
-            same.map_or([0.0; 3], |bond| bond.force),
+            (same.map_or([0.0; 3], |bond| bond.force), 0.0),
         );
     }
     let (mut body, mut first) = (0, 0);
@@ -137,7 +142,7 @@ pub fn write_rows(
             &scene.planes[contact.plane as usize].normal,
             contact.gap,
             [-strength.tensile * area, strength.shear * area],
-            same.map_or([0.0; 3], |bond| bond.force),
+            same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.given)),
         );
     }
 }

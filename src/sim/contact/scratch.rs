@@ -43,6 +43,11 @@ pub struct ContactScratch {
     /// Rows that are inside, and the pushes that mend them, pN.
     pub(super) deep: Vec<(u32, f64)>,
     pub(super) momentum: Momentum,
+    /// What sweeps may leave, over what they may in the first try of a step; depths are mended in the first try only, since to
+    /// push something out by place takes work.
+    pub care: f64,
+    /// Whether contacts return no more than they took.
+    pub in_account: bool,
     /// Sweeps of the last projection.
     pub sweeps: u32,
 }
@@ -65,6 +70,7 @@ impl ContactScratch {
         self.deep.clear();
         self.relief.fill(f64::NAN);
         self.momentum.poison();
+        self.care = f64::NAN;
         self.sweeps = u32::MAX;
     }
 }

@@ -15,6 +15,8 @@ pub struct AtomBond {
     pub facet: u32,
     /// Force on the atom, pN; the facet's atoms feel the opposite.
     pub force: [f32; 3],
+    /// What went into its give and has not come back, pN·µm, eq. (adhesion.5).
+    pub given: f32,
 }
 
 /// Two edges that touch; they do not stick.
@@ -39,6 +41,8 @@ pub struct PlaneBond {
     pub plane: u32,
     /// Force on the atom, pN.
     pub force: [f32; 3],
+    /// What went into its give and has not come back, pN·µm, eq. (adhesion.5).
+    pub given: f32,
 }
 
 /// All contacts that carry a force, in the order in which they are found, links and virtual adhesives.
@@ -56,4 +60,13 @@ pub struct ContactState {
     pub adhesives: Vec<AdhesiveAtom>,
     /// Atoms that adhesives released and that still touch, in their order.
     pub released: Vec<u32>,
+}
+
+impl ContactState {
+    /// What went into the give of contacts and has not come back, pN·µm, eq. (adhesion.5): a part of the energy of cells that
+    /// stick.
+    pub fn given(&self) -> f64 {
+        let of_atoms = self.atoms.iter().map(|bond| f64::from(bond.given));
+        of_atoms.chain(self.planes.iter().map(|bond| f64::from(bond.given))).sum()
+    }
 }

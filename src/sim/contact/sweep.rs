@@ -7,11 +7,6 @@ use pulp::{Arch, NullaryFnOnce};
 
 use super::rows::{Pull, Row};
 
-/// A contact that holds gives way by this share of what a free one would, for each change of its force in the step,
-/// eq. (adhesion.5). Where many contacts hold the same atoms their forces are not determined; this picks some, and at
-/// rest, when forces do not change, nothing gives way.
-const GIVE: f64 = 0.2;
-
 /// x, y, z and one number more.
 pub type V4 = [f64; 4];
 
@@ -84,10 +79,10 @@ fn push(row: &Row, change: &V4, moved: &mut [V4]) {
 /// as it can, where the gap would grow. `free` is where the gap would be if it carried nothing.
 #[inline(always)]
 fn normal_force(row: &Row, free: f64, carried: f64) -> f64 {
-    let (gap, stiffness) = (row.gap(), f64::from(row.stiffness));
+    let (gap, stiffness, kept) = (row.gap(), f64::from(row.stiffness), f64::from(row.kept));
     let (low, high) = (gap.min(0.0), gap.max(0.0));
     let pushed = (low - free) * stiffness;
-    let held = ((high - free) * stiffness + GIVE * carried.min(0.0)) * (1.0 / (1.0 + GIVE));
+    let held = (high - free) * stiffness * kept + carried.min(0.0) * (1.0 - kept);
     let pulled = held.min(0.0).max(f64::from(row.least));
     if free < low { pushed } else { pulled }
 }
@@ -105,15 +100,15 @@ fn turn(row: &Row, force: &V4, carried: &V4, moved: &[V4]) -> V4 {
     if row.shear == 0.0 {
         return map(|i| wanted * normal[i]);
     }
-    let stiffness = f64::from(row.stiffness);
+    let (stiffness, kept) = (f64::from(row.stiffness), f64::from(row.kept));
     let stuck = map(|i| {
         let (slid, across) = (apart[i] - opened * normal[i], force[i] - along * normal[i]);
         let carried = carried[i] - carried_along * normal[i];
-        ((across - stiffness * slid) + GIVE * carried) * (1.0 / (1.0 + GIVE))
+        (across - stiffness * slid) * kept + carried * (1.0 - kept)
     });
     let (squared, shear) = (dot(&stuck, &stuck), f64::from(row.shear));
-    let kept = if squared > shear * shear { shear / squared.sqrt() } else { 1.0 };
-    map(|i| wanted * normal[i] + kept * stuck[i])
+    let part = if squared > shear * shear { shear / squared.sqrt() } else { 1.0 };
+    map(|i| wanted * normal[i] + part * stuck[i])
 }
 
 /// One sweep over all contacts, each of which first goes on along its last direction by `share`, as the displacements did.

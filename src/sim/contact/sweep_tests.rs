@@ -43,6 +43,8 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
             shear: if count % 4 > 1 { 0.2 } else { 0.0 },
             give: give as f32,
             stiffness: 1.0 / give as f32,
+            kept: 1.0 / (1.0 + 0.05 * (count % 5) as f32),
+            given: 0.0,
         });
         let along = if sticks { number(&mut dice).max(-0.3) } else { number(&mut dice).abs() };
         let force = (along * normal).map(|part| part as f32);
@@ -54,7 +56,7 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
 
 /// Eqs. (adhesion.3) to (adhesion.5) for one contact: what it should carry.
 fn plain_turn(row: &Row, force: Vec3, carried: Vec3, moved: &[Vec3]) -> Vec3 {
-    let (n, gap, give, softness) = (row.normal(), row.gap(), f64::from(row.give), 0.2);
+    let (n, gap, give, softness) = (row.normal(), row.gap(), f64::from(row.give), 1.0 / f64::from(row.kept) - 1.0);
     let apart: Vec3 = row.atoms.iter().zip(row.weights).map(|(atom, weight)| weight * moved[*atom as usize]).sum();
     let free = gap + n.dot(&apart) - n.dot(&force) * give;
     let along = if free < gap.min(0.0) {

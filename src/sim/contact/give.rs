@@ -1,0 +1,103 @@
+//! How far contacts that hold give way while their forces change, and that they never return more than they took.
+
+use super::rows::{Pull, Row};
+use crate::Vec3;
+use crate::sim::workspace::Workspace;
+
+/// A contact that holds gives way by this share of what a free one would, at most, for each change of its force in the step,
+/// eq. (adhesion.5). Where many contacts hold the same atoms their forces are not determined; this picks some, and at
+/// rest, when forces do not change, nothing gives way.
+const GIVE: f64 = 0.2;
+
+/// The parts of a force that hold: the pull along the normal, pN, 0 where it pushes, and the shear, pN.
+fn holding(row: &Row, force: Vec3) -> (f64, Vec3) {
+    let (along, normal) = (force.dot(&row.normal()), row.normal());
+    (along.min(0.0), force - along * normal)
+}
+
+/// Sets how much of a contact's change is held where it carries this, eq. (adhesion.5). Of a spring that became softer since it
+/// was loaded, as a contact in longer steps is, more would come back than went in: not so `in_account`.
+pub fn set_give(row: &mut Row, pull: &Pull, in_account: bool) {
+    let (along, across) = holding(row, pull.carried());
+    let full = GIVE * f64::from(row.give) * (along * along + across.norm_squared());
+    let returned = 2.0 * f64::from(row.given);
+    let softness = if !in_account || full <= returned { GIVE } else { GIVE * returned / full };
+    row.kept = (1.0 / (1.0 + softness)) as f32;
+}
+
+/// The energy that has gone into what a contact gave way and can come back, after a step, pN·µm: that of a spring at most.
+pub fn given_after(row: &Row, pull: &Pull) -> f32 {
+    let ((along, across), (along_before, across_before)) = (holding(row, pull.force()), holding(row, pull.carried()));
+    let (give, softness) = (f64::from(row.give), 1.0 / f64::from(row.kept) - 1.0);
+    let work = along * (along - along_before) + across.dot(&(across - across_before));
+    let most = 0.5 * GIVE * give * (along * along + across.norm_squared());
+    (f64::from(row.given) + softness * give * work).clamp(0.0, most) as f32
+}
+
+/// The sum of [`given_after`] over all contacts, pN·µm.
+pub fn energy_of_give(ws: &Workspace) -> f64 {
+    ws.contact.rows.iter().zip(&ws.contact.pulls).map(|(row, pull)| f64::from(given_after(row, pull))).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Purpose, Stream};
+
+    /// A contact along z of this give, µm/pN, with what is in it, pN·µm.
+    fn row(give: f64, given: f32) -> Row {
+        let (atoms, weights) = ([0, 1, 2, 3], [1.0, -0.3, -0.3, -0.4]);
+        let normal_and_gap = [0.0, 0.0, 1.0, 0.05];
+        let (least, shear) = (-10.0, 10.0);
+        Row { atoms, weights, normal_and_gap, least, shear, give: give as f32, stiffness: 0.0, kept: 1.0, given }
+    }
+
+    fn pull(carried: Vec3, force: Vec3) -> Pull {
+        let four = |v: Vec3| [v.x as f32, v.y as f32, v.z as f32, 0.0];
+        Pull { force: four(force), carried: four(carried), ..Pull::default() }
+    }
+
+    #[test]
+    fn no_course_of_forces_and_steps_brings_back_more_than_went_in() {
+        for seed in 0..50 {
+            let mut dice = Stream::new(seed, Purpose::Placement, 0, 0);
+            let (mut force, mut given, mut taken) = (Vec3::zeros(), 0.0, 0.0);
+            for _ in 0..400 {
+                let [a, b] = dice.uniform_pair();
+                let [c, d] = dice.uniform_pair();
+                // Steps differ by a factor of a hundred, and with them how much a contact gives.
+                let mut row = row(0.001 * 100f64.powf(d), given);
+                let next = 0.9 * force + Vec3::new(a - 0.5, b - 0.5, c - 0.6);
+                let step = pull(force, next);
+                set_give(&mut row, &step, true);
+                let give = f64::from(row.give) * (1.0 / f64::from(row.kept) - 1.0);
+                let ((along, across), (along_before, across_before)) =
+                    (holding(&row, step.force()), holding(&row, step.carried()));
+                taken += give * (along * (along - along_before) + across.dot(&(across - across_before)));
+                given = given_after(&row, &step);
+                assert!(given >= 0.0 && f64::from(given) <= taken * (1.0 + 1e-5) + 1e-9, "{seed}: {given} of {taken}");
+                force = next;
+            }
+        }
+    }
+
+    #[test]
+    fn in_even_steps_a_contact_is_a_spring_and_a_push_gives_nothing() {
+        let (force, give) = (Vec3::new(0.6, 0.0, -0.8), 0.01);
+        let loaded = pull(Vec3::zeros(), force);
+        let mut first = row(give, 0.0);
+        set_give(&mut first, &loaded, true);
+        let given = given_after(&first, &loaded);
+        assert!((f64::from(given) - 0.5 * GIVE * give).abs() < 1e-9, "that of a spring: {given}");
+        let mut second = row(give, given);
+        set_give(&mut second, &pull(force, force), true);
+        assert!((second.kept - first.kept).abs() < 1e-7, "as soft as before");
+        // In longer steps a contact may give no more than it did in short ones, while it holds what it held.
+        let mut longer = row(16.0 * give, given);
+        set_give(&mut longer, &pull(force, force), true);
+        assert!((1.0 / longer.kept - 1.0 - GIVE as f32 / 16.0).abs() < 1e-6);
+        set_give(&mut longer, &pull(force, force), false);
+        assert_eq!(longer.kept, first.kept, "cells that are driven are not held to account");
+        assert_eq!(given_after(&first, &pull(Vec3::zeros(), Vec3::z())), 0.0);
+    }
+}

@@ -1,0 +1,38 @@
+//! The shapes of virtual adhesives after exact volumes have moved their atoms.
+
+use super::hold::put_back;
+use super::model::ContactModel;
+use super::scratch::ContactScratch;
+use crate::sim::model::Model;
+use crate::sim::state::{State, vector};
+use crate::sim::workspace::Workspace;
+
+/// What exact volumes may leave of a change in the shape of an adhesive, over what a sweep may still move.
+const SETTLED: f64 = 1e-3;
+
+/// Gives adhesives their shapes back that exact volumes have changed; says whether there was something to do, so that volumes must
+/// be made exact again.
+pub fn settle_adhesives(model: &Model, state: &mut State, ws: &mut Workspace) -> bool {
+    let (Some(contact), s) = (&model.contact, &mut ws.contact) else { return false };
+    if s.adhesives.atoms.is_empty() {
+        return false;
+    }
+    take_displacements(model, contact, state, s);
+    let moved = s.adhesives.place_all(&s.start, &mut s.moved) > SETTLED * contact.tolerance;
+    if moved {
+        put_back(model, contact, s, state);
+    }
+    moved
+}
+
+/// Displacements over the step as the atoms stand now; what is kept beside them stays.
+fn take_displacements(model: &Model, contact: &ContactModel, state: &State, s: &mut ContactScratch) {
+    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+        let range = contact.atoms_of(number);
+        let (first, moved) = (range.start, &mut s.moved[range]);
+        for (atom, moved) in moved.iter_mut().enumerate() {
+            let way = vector(kind, &now.positions, atom / kind.atoms(), atom % kind.atoms()) - s.start[first + atom];
+            (moved[0], moved[1], moved[2]) = (way.x, way.y, way.z);
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Cells on which nothing acts from outside do not gain energy, whatever contacts do.
+//!
+//! In a step that is long beside the relaxation of a cell contacts push what the elastic forces answer only in the next one.
+//! Where that would leave more energy than there was, the step is made again, shorter.
+
+use super::contact::{Law, energy_of_give};
+use super::forces::add_forces;
+use super::model::{Kind, Model, VolumeRule};
+use super::state::State;
+use super::workspace::Workspace;
+use crate::mechanics::integrator::{Method, StepSize};
+
+/// How often a step that gains energy is made again, in half the time from the second on.
+pub const AGAIN: u32 = 10;
+
+/// The shortest part of a fixed step that is made shorter still, over the whole.
+const SHORTEST: f64 = 0.01;
+
+/// What a step may gain by round-off, over the energy there is.
+const ROUND_OFF: f64 = 1e-9;
+
+/// What a step may gain by what its sweeps leave, over the energy of the stiffest cell deformed by that much.
+const LEFT: f64 = 1e-5;
+
+/// What a volume may be off its target without pressure doing work to put that right, over the target.
+const VOLUME_OFF: f64 = 1e-9;
+
+/// The energy where a step begins, pN·µm; none where something may do work on the cells: loads, gravity, motility, chemistry, the
+/// energy that contacts release, volumes that change, elastic forces without an energy.
+pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option<f64> {
+    ws.contact.in_account = is_left_alone(model);
+    ws.contact.in_account.then(|| {
+        add_forces(model, state.time, state, ws);
+        energy(model, ws) + state.contact.given()
+    })
+}
+
+/// Whether a step has left more energy than there was, beyond round-off and what sweeps leave, and may be made shorter.
+pub fn has_gained(model: &Model, before: Option<f64>, dt: f64, state: &State, ws: &mut Workspace) -> bool {
+    let (Some(before), Some(contact)) = (before, &model.contact) else { return false };
+    let is_short = matches!(model.integrator.size, StepSize::Fixed(whole) if dt < SHORTEST * whole);
+    if is_short || !had_their_volumes(model, ws) {
+        return false;
+    }
+    add_forces(model, state.time + dt, state, ws);
+    let stiffest = model.kinds.iter().map(|kind| kind.largest_stiffness).fold(0.0, f64::max);
+    let left = LEFT * stiffest * contact.tolerance * contact.tolerance;
+    energy(model, ws) + energy_of_give(ws) > before * (1.0 + ROUND_OFF) + left
+}
+
+fn is_left_alone(model: &Model) -> bool {
+    let sticks_only = |contact: &super::contact::ContactModel| {
+        let strengths = contact.between.iter().chain(&contact.on_planes);
+        contact.law == Law::default() && strengths.into_iter().all(|strength| strength.energy == 0.0)
+    };
+    let is_alone = |kind: &Kind| {
+        let steady = match &kind.volume {
+            VolumeRule::Free => true,
+            VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.kinks().next().is_none(),
+        };
+        let driven = kind.brownian.is_some() || kind.biased || kind.attraction.is_some() || !kind.loads.is_empty();
+        steady && !driven && kind.elasticity.is_conservative()
+    };
+    matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)
+        && model.contact.as_ref().is_some_and(sticks_only)
+        && model.chemistry.is_empty()
+        && model.gravity.norm_squared() == 0.0
+        && model.kinds.iter().all(is_alone)
+}
+
+/// Whether all exact volumes were where they are to be when the step began.
+fn had_their_volumes(model: &Model, ws: &Workspace) -> bool {
+    model.kinds.iter().zip(&ws.kinds).all(|(kind, w)| {
+        let is_there = |(volume, target): (&f64, &f64)| (volume - target).abs() <= VOLUME_OFF * target;
+        !matches!(kind.volume, VolumeRule::Exact(_)) || w.volume.iter().zip(&w.target).all(is_there)
+    })
+}
+
+/// The energy of all cells as the forces were added up last, pN·µm.
+fn energy(model: &Model, ws: &Workspace) -> f64 {
+    model.kinds.iter().zip(&ws.kinds).map(|(kind, w)| w.energy[..kind.cells].iter().sum::<f64>()).sum()
+}
