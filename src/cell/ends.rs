@@ -47,6 +47,8 @@ pub enum Setting {
     RestVolumeRatio,
     /// Factor of a load; 1 without a link.
     Load(String),
+    /// Activation of fibres, 0 to 1.
+    Fibre(String),
     /// A component of an atom's position, µm, imposed.
     Atom(usize, usize),
     /// Amount of a field's substance that the cell releases in a second; negative: takes up.
@@ -83,7 +85,7 @@ pub const READABLE: [&str; 14] = [
 ];
 
 /// What can be set, as messages list it.
-pub const SETTABLE: [&str; 9] = [
+pub const SETTABLE: [&str; 10] = [
     "motility.speed",
     "motility.bias.x",
     "stiffness",
@@ -91,6 +93,7 @@ pub const SETTABLE: [&str; 9] = [
     "rest_volume",
     "rest_volume_ratio",
     "load[NAME]",
+    "fibre[NAME]",
     "atom[0].x",
     "secretion[FIELD]",
 ];
@@ -122,6 +125,7 @@ pub fn setting(path: &[Step]) -> Option<Setting> {
         [("rest_volume", None)] => Setting::RestVolume,
         [("rest_volume_ratio", None)] => Setting::RestVolumeRatio,
         [("load", Some(Index::Name(name)))] => Setting::Load(name.clone()),
+        [("fibre", Some(Index::Name(name)))] => Setting::Fibre(name.clone()),
         [("atom", Some(Index::Number(atom))), (axis, None)] => Setting::Atom(*atom, component(axis)?),
         [("secretion", Some(Index::Name(name)))] => Setting::Secretion(name.clone()),
         _ => return None,

@@ -1,6 +1,6 @@
 //! Types of cells: how many, of which shape, where, and how they move about.
 
-use super::loads::{Fixed, Link, Load};
+use super::loads::{Fibre, Fixed, Link, Load};
 use super::mechanics::Mechanics;
 use super::values::{Colour, LengthUnit};
 use crate::units::{Angle, Length, LineStiffness, Speed, Time};
@@ -38,6 +38,9 @@ pub struct CellType {
     /// Internal springs between atoms of the same cell.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub links: Vec<Link>,
+    /// Contractile fibres between atoms of the same cell.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fibres: Vec<Fibre>,
     /// How the cells move by themselves.
     #[serde(default)]
     pub motility: Motility,
@@ -59,6 +62,7 @@ impl CellType {
             fixed: Vec::new(),
             loads: Vec::new(),
             links: Vec::new(),
+            fibres: Vec::new(),
             motility: Motility::default(),
             chemistry: Vec::new(),
         }

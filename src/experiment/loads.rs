@@ -118,6 +118,28 @@ pub struct Link {
     pub rest_ratio: Option<f64>,
 }
 
+/// Contractile fibres between atoms of the same cell: they draw their ends together, as far as they are active.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("unevaluatedProperties" = false))]
+pub struct Fibre {
+    /// The name by which chemistry sets the activation, `cell.fibre[NAME]`.
+    #[schemars(extend("x-text" = "name"))]
+    pub name: String,
+    /// Which atoms are at the ends.
+    #[serde(flatten)]
+    pub linked: Linked,
+    /// Stiffness of each fibre at full activation: it pulls with that times its length.
+    #[schemars(extend("x-minimum" = 0))]
+    pub stiffness: LineStiffness,
+    /// Activation from 0 to 1, constant or in the course of time; what chemistry sets takes its place.
+    #[serde(default = "relaxed")]
+    pub activation: Course<f64>,
+}
+
+fn relaxed() -> Course<f64> {
+    Course::Constant(0.0)
+}
+
 /// The length at rest of a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rest {

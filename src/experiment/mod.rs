@@ -52,7 +52,7 @@ pub use compile::{Compiled, PushedApart, Schedule, compile, settle_start};
 pub use contact::{ADHESIVE_SERIES, Between, CONTACT_SERIES, Contact, ContactModel, LINK_SERIES, Zones, pair_series};
 pub use document::Document;
 pub(crate) use document::near_file;
-pub use loads::{Cap, CapExtent, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
+pub use loads::{Cap, CapExtent, Fibre, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
 pub use measures::{
     ChemotacticIndex, Comparison, FieldValue, Fit, Measure, MeasureKind, Over, OverBoxes, Period, Reduction,
     Segregation, SegregationStatistic, SphereFit, Statistic, WaveSpeed, WaveStatistic, Wavelength,

@@ -38,6 +38,7 @@ pub(super) fn check(document: &Document) -> Vec<Fault> {
         check.places(&path, cell);
         check.volume(&path, cell);
         check.links(&path, cell);
+        check.fibres(&path, cell);
         check.remembering_atoms(&path, cell);
         check.loads(&path, cell);
         if let Some(turn) = &cell.orientation {

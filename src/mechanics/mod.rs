@@ -8,6 +8,7 @@ pub mod barrier;
 pub mod bending;
 pub mod course;
 pub mod elasticity;
+pub mod fibres;
 mod hinge;
 pub mod implicit;
 pub mod integrator;

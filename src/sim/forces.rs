@@ -31,6 +31,7 @@ pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
                 kind.elasticity.add_forces(lanes, x, f, energy);
                 scale_elasticity(kind, controls, block, f, energy);
                 add_loads(kind, controls, block, time, f);
+                add_fibres(kind, controls, block, time, x, f, energy);
                 add_gravity(model, kind, f);
                 add_attraction(kind, x, f, energy);
                 add_drive(kind, drive, block, f);
@@ -83,6 +84,18 @@ fn add_loads(kind: &Kind, controls: &Controls, block: usize, time: f64, f: &mut 
                 f[at..at + kind.lanes].iter_mut().zip(&forces).for_each(|(slot, force)| *slot += force * along);
             }
         }
+    }
+}
+
+/// Fibres pull with the activation that chemistry sets, or else with that of their course.
+fn add_fibres(kind: &Kind, controls: &Controls, block: usize, time: f64, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
+    for (number, fibres) in kind.fibres.iter().enumerate() {
+        let mut activation = [fibres.activation.at(time); LANES];
+        for (lane, activation) in activation.iter_mut().enumerate().take(kind.lanes) {
+            let set = kind.cell_at(block, lane).and_then(|cell| controls.activation_of(number, cell));
+            *activation = set.unwrap_or(*activation);
+        }
+        fibres.add_forces(kind.lanes, &activation, x, f, energy);
     }
 }
 

@@ -58,7 +58,11 @@ fn is_left_alone(model: &Model) -> bool {
             VolumeRule::Free => true,
             VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.kinks().next().is_none(),
         };
-        let driven = kind.brownian.is_some() || kind.biased || kind.attraction.is_some() || !kind.loads.is_empty();
+        let driven = !kind.fibres.is_empty()
+            || kind.brownian.is_some()
+            || kind.biased
+            || kind.attraction.is_some()
+            || !kind.loads.is_empty();
         steady && !driven && kind.elasticity.is_conservative()
     };
     matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)

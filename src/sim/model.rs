@@ -7,6 +7,7 @@ use crate::cell::motility::BrownianMotility;
 use crate::geometry::{self, Surface, Topology};
 use crate::mechanics::course::Course;
 use crate::mechanics::elasticity::Elasticity;
+use crate::mechanics::fibres::Fibres;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::integrator::Integrator;
 use crate::mechanics::lanes::LANES;
@@ -77,7 +78,9 @@ pub struct Kind {
     pub volume: VolumeRule,
     /// Loads.
     pub loads: Vec<Load>,
-    /// Pairs of atoms whose links are drawn.
+    /// Contractile fibres.
+    pub fibres: Vec<Fibres>,
+    /// Pairs of atoms whose links and fibres are drawn.
     pub drawn_links: Vec<[u32; 2]>,
     /// Brownian persistence.
     pub brownian: Option<BrownianMotility>,
@@ -150,6 +153,7 @@ impl Kind {
             held: Vec::new(),
             volume: if closed { VolumeRule::Exact(Course::constant(1.0)) } else { VolumeRule::Free },
             loads: Vec::new(),
+            fibres: Vec::new(),
             drawn_links: Vec::new(),
             brownian: None,
             biased: false,
@@ -168,12 +172,13 @@ impl Kind {
         self
     }
 
-    /// Largest eigenvalue of the true stiffness at rest, attraction included, pN/µm, by power iteration on differences
+    /// Largest eigenvalue of the true stiffness at rest, attraction and active fibres included, pN/µm, by power iteration on differences
     /// of the force; what explicit schemes need to know.
     pub fn measure_largest_stiffness(&self) -> f64 {
         // Power iteration approaches from below; two percent cover what is left after the last round.
         let largest = self.power_iteration(&self.rest.positions, |_| ());
-        1.02 * largest + self.attraction.map_or(0.0, |attraction| attraction.stiffness)
+        let of_fibres: f64 = self.fibres.iter().map(Fibres::largest_stiffness).sum();
+        1.02 * largest + of_fibres + self.attraction.map_or(0.0, |attraction| attraction.stiffness)
     }
 
     /// Sets the stiffness K of the implicit step to the one that fits the rest shape; see [`Kind::stiffness_at`].
@@ -194,6 +199,7 @@ impl Kind {
         if ratio > LARGEST_RATIO {
             stiffness.scale(ratio / LARGEST_RATIO);
         }
+        self.fibres.iter().for_each(|fibres| fibres.add_stiffness(&mut stiffness));
         if let Some(attraction) = self.attraction {
             (0..self.atoms()).for_each(|atom| stiffness.add(atom, atom, attraction.stiffness));
         }

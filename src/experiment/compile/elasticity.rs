@@ -151,22 +151,9 @@ fn add_links(
     faults: &mut Vec<Fault>,
 ) -> Vec<[u32; 2]> {
     let mut drawn = Vec::new();
-    let atoms = built.plain.positions.len();
     for (i, link) in cell.links.iter().enumerate() {
-        let pairs = match &link.linked {
-            Linked::Pairs(pairs) => pairs.clone(),
-            Linked::Pattern(LinkPattern::Horizontal) => mirrored(&built.plain, |p| Vec3::new(-p.x, -p.y, p.z)),
-            Linked::Pattern(LinkPattern::Diagonal) => mirrored(&built.plain, |p| -p),
-        };
         let mut springs = Vec::new();
-        for (j, &[from, to]) in pairs.iter().enumerate() {
-            if from as usize >= atoms || to as usize >= atoms || from == to {
-                let fault = Fault::new(format!("atoms {from} and {to} cannot be linked: the mesh has {atoms} atoms"))
-                    .help(format!("give two different atoms from 0 to {}", atoms - 1));
-                let place = document.place(&format!("{key}.links[{i}].pairs[{j}]"), "not two atoms of this mesh");
-                faults.push(place.into_iter().fold(fault, Fault::at));
-                continue;
-            }
+        for [from, to] in linked_pairs(document, &format!("{key}.links[{i}]"), &link.linked, built, faults) {
             let apart = (built.plain.positions[from as usize] - built.plain.positions[to as usize]).norm();
             let rest_length = match link.rest() {
                 Rest::Length(length) => length.value(),
@@ -178,6 +165,35 @@ fn add_links(
         elasticity.springs.push(Springs::between(springs));
     }
     drawn
+}
+
+/// The pairs of atoms that are linked; those that the mesh does not have are faults.
+pub(super) fn linked_pairs(
+    document: &Document,
+    key: &str,
+    linked: &Linked,
+    built: &Built,
+    faults: &mut Vec<Fault>,
+) -> Vec<[u32; 2]> {
+    let mut pairs = match linked {
+        Linked::Pairs(pairs) => pairs.clone(),
+        Linked::Pattern(LinkPattern::Horizontal) => mirrored(&built.plain, |p| Vec3::new(-p.x, -p.y, p.z)),
+        Linked::Pattern(LinkPattern::Diagonal) => mirrored(&built.plain, |p| -p),
+    };
+    let atoms = built.plain.positions.len();
+    let mut number = 0;
+    pairs.retain(|&[from, to]| {
+        let exists = (from as usize) < atoms && (to as usize) < atoms && from != to;
+        if !exists {
+            let fault = Fault::new(format!("atoms {from} and {to} cannot be linked: the mesh has {atoms} atoms"))
+                .help(format!("give two different atoms from 0 to {}", atoms - 1));
+            let place = document.place(&format!("{key}.pairs[{number}]"), "not two atoms of this mesh");
+            faults.push(place.into_iter().fold(fault, Fault::at));
+        }
+        number += 1;
+        exists
+    });
+    pairs
 }
 
 fn add_barrier(cell: &CellType, rest: &Surface, topology: &Topology, elasticity: &mut Elasticity) {

@@ -19,6 +19,7 @@ use crate::cell::motility::{BrownianMotility, Space as WalkSpace};
 use crate::error::{Error, Fault, Result};
 use crate::geometry::{self, Surface};
 use crate::mechanics::course::Course;
+use crate::mechanics::fibres::Fibres;
 use crate::sim::chemistry::ChemistryState;
 use crate::sim::{Attraction, Kind, Load, Model, Plane, State, VolumeRule};
 
@@ -115,9 +116,11 @@ fn compile_kind(
     let key = format!("cells.{name}");
     let mut drawn_links = Vec::new();
     let elasticity = elasticity::elasticity(document, &key, cell, &surface, &mut drawn_links, faults);
+    let fibres = fibres(document, &key, cell, &surface, faults);
+    drawn_links.extend(fibres.iter().flat_map(|fibres| &fibres.pairs));
     let atoms = surface.turned.positions.len() as f64;
     let mut kind = Kind::new(name, surface.turned, elasticity);
-    kind.drawn_links = drawn_links;
+    (kind.drawn_links, kind.fibres) = (drawn_links, fibres);
     kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
     kind.held = held(document, &key, cell, &kind.rest, faults);
@@ -175,6 +178,22 @@ fn loads(document: &Document, key: &str, cell: &CellType, rest: &Surface, faults
     loads
 }
 
+fn fibres(
+    document: &Document,
+    key: &str,
+    cell: &CellType,
+    surface: &mesh::Built,
+    faults: &mut Vec<Fault>,
+) -> Vec<Fibres> {
+    let compile = |(i, fibre): (usize, &super::Fibre)| Fibres {
+        name: fibre.name.clone(),
+        pairs: elasticity::linked_pairs(document, &format!("{key}.fibres[{i}]"), &fibre.linked, surface, faults),
+        stiffness: fibre.stiffness.value(),
+        activation: course(fibre.activation.points()),
+    };
+    cell.fibres.iter().enumerate().map(compile).collect()
+}
+
 /// The document's checks have made sure that times rise.
 fn course(points: Vec<(f64, f64)>) -> Course {
     Course::through(points).unwrap_or_else(|| Course::constant(0.0))
@@ -223,6 +242,7 @@ fn kinks(kinds: &[Kind]) -> Vec<f64> {
     let mut kinks: Vec<f64> = Vec::new();
     for kind in kinds {
         kind.loads.iter().for_each(|load| kinks.extend(load.force.kinks()));
+        kind.fibres.iter().for_each(|fibres| kinks.extend(fibres.activation.kinks()));
         if let VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } = &kind.volume {
             kinks.extend(course.kinks());
         }

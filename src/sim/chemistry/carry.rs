@@ -127,6 +127,7 @@ fn missed(target: Target, value: f64) -> Option<&'static str> {
         Target::Cell(_, Control::MotilitySpeed | Control::Stiffness | Control::Adhesion) if value < 0.0 => {
             Some("a number not below 0")
         }
+        Target::Cell(_, Control::Fibre(_)) if !(0.0..=1.0).contains(&value) => Some("a number from 0 to 1"),
         Target::Cell(_, Control::RestVolume | Control::RestVolumeRatio) if value <= 0.0 => Some("a number above 0"),
         _ => None,
     }
@@ -210,6 +211,7 @@ fn set(model: &Model, cell: usize, control: Control, value: f64, state: &mut Sta
         Control::Stiffness => controls.stiffness[cell] = value,
         Control::Adhesion => controls.adhesion[cell] = value,
         Control::Load(load) => controls.loads[load][cell] = value,
+        Control::Fibre(fibre) => controls.fibres[fibre][cell] = value,
         Control::Secretion(channel) => controls.secretion[channel][cell] = value,
         Control::RestVolume | Control::RestVolumeRatio => {
             let (kind, local) = model.kind_of(cell);

@@ -217,6 +217,8 @@ pub enum Control {
     RestVolumeRatio,
     /// Factor of the load with this number in the kind's list.
     Load(usize),
+    /// Activation of the fibres with this number in the kind's list.
+    Fibre(usize),
     /// A component of an atom's position, µm.
     Atom(usize, usize),
     /// Amount released per second into a channel of [`Chemistry::secreted`].

@@ -48,6 +48,8 @@ pub struct Controls {
     pub adhesion: Vec<f64>,
     /// Factors of loads, one list a load number.
     pub loads: Vec<Vec<f64>>,
+    /// Activation of fibres, one list a number of fibres; below 0 where their own course stands.
+    pub fibres: Vec<Vec<f64>>,
     /// Amount released per second, one list for each species secreted.
     pub secretion: Vec<Vec<f64>>,
 }
@@ -123,6 +125,10 @@ impl Controls {
                     let loads = controls.loads.len().max(load + 1);
                     controls.loads.resize(loads, vec![1.0; cells]);
                 }
+                Target::Cell(_, Control::Fibre(fibre)) => {
+                    let fibres = controls.fibres.len().max(fibre + 1);
+                    controls.fibres.resize(fibres, vec![-1.0; cells]);
+                }
                 _ => {}
             }
         }
@@ -135,6 +141,7 @@ impl Controls {
         self.stiffness.clone_from(&other.stiffness);
         self.adhesion.clone_from(&other.adhesion);
         self.loads.clone_from(&other.loads);
+        self.fibres.clone_from(&other.fibres);
         self.secretion.clone_from(&other.secretion);
     }
 
@@ -161,5 +168,10 @@ impl Controls {
     /// Factor of a load of a cell.
     pub fn load_of(&self, load: usize, cell: usize) -> f64 {
         self.loads.get(load).and_then(|cells| cells.get(cell)).copied().unwrap_or(1.0)
+    }
+
+    /// The activation that a link asks of fibres of a cell, 0 to 1.
+    pub fn activation_of(&self, fibre: usize, cell: usize) -> Option<f64> {
+        self.fibres.get(fibre).and_then(|cells| cells.get(cell)).copied().filter(|activation| *activation >= 0.0)
     }
 }

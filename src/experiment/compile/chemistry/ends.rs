@@ -135,7 +135,14 @@ impl Ends<'_, '_> {
             Setting::RestVolume => Control::RestVolume,
             Setting::RestVolumeRatio => Control::RestVolumeRatio,
             Setting::Atom(atom, axis) => Control::Atom(atom, axis),
-            Setting::Load(name) => Control::Load(self.load(end, whose, &name)?),
+            Setting::Load(name) => {
+                let loads = |kind: &Kind| kind.loads.iter().map(|load| load.name.clone()).collect();
+                Control::Load(self.named(end, whose, ["load", "loads"], &name, loads)?)
+            }
+            Setting::Fibre(name) => {
+                let fibres = |kind: &Kind| kind.fibres.iter().map(|fibres| fibres.name.clone()).collect();
+                Control::Fibre(self.named(end, whose, ["fibre", "fibres"], &name, fibres)?)
+            }
             Setting::Secretion(name) => {
                 let channel = self.species(end, &Index::Name(name))?;
                 let secreted = &mut self.chemistry.secreted;
@@ -178,23 +185,30 @@ impl Ends<'_, '_> {
         Ok(())
     }
 
-    /// The number of a load, the same in all kinds concerned.
-    fn load(&self, end: &Endpoint, whose: Whose, name: &str) -> Result<usize, Fault> {
+    /// The number of a load or of fibres by their name, the same in all kinds concerned; `words` are one and many of them.
+    fn named(
+        &self,
+        end: &Endpoint,
+        whose: Whose,
+        [one, many]: [&str; 2],
+        name: &str,
+        names: impl Fn(&Kind) -> Vec<String>,
+    ) -> Result<usize, Fault> {
         let mut found = None;
         for kind in self.kinds_of(whose) {
             let kind = &self.kinds[kind];
-            let Some(number) = kind.loads.iter().position(|load| load.name == name) else {
-                let message = format!("type `{}` has no load `{name}`", kind.name);
-                let known = kind.loads.iter().map(|load| load.name.as_str());
-                let help = match kind.loads.is_empty() {
-                    true => format!("add [[cells.{}.loads]] with that name to the experiment", kind.name),
-                    false => format!("its loads are {}", words::all_of(known)),
+            let known = names(kind);
+            let Some(number) = known.iter().position(|known| known == name) else {
+                let message = format!("type `{}` has no {one} `{name}`", kind.name);
+                let help = match known.is_empty() {
+                    true => format!("add [[cells.{}.{many}]] with that name to the experiment", kind.name),
+                    false => format!("its {many} are {}", words::all_of(known.iter().map(String::as_str))),
                 };
-                return Err(within(&end.place, "no such load", message, help));
+                return Err(within(&end.place, &format!("no such {one}"), message, help));
             };
             if found.is_some_and(|other| other != number) {
-                let message = format!("load `{name}` stands at another place in type `{}`", kind.name);
-                let help = "list the loads of the types that share the system in the same order";
+                let message = format!("{one} `{name}` stands at another place in type `{}`", kind.name);
+                let help = format!("list the {many} of the types that share the system in the same order");
                 return Err(within(&end.place, "not the same", message, help));
             }
             found = Some(number);
