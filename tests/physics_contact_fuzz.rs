@@ -426,7 +426,8 @@ fn thousands_of_scenes_break_open_promises_only() {
 
 #[test]
 fn random_scenes_hold_what_the_book_promises_but_for_the_known_ones() {
-    let played = play_all(0..60, 100, |seed, cause| KNOWN.contains(&(seed, cause)));
+    // The last two have fixed steps in which edges meet that no contact at the begin of the step tells of.
+    let played = play_all((0..60).chain([1422, 1437]), 100, |seed, cause| KNOWN.contains(&(seed, cause)));
     let mended: Vec<u64> =
         KNOWN.iter().map(|known| known.0).filter(|seed| played.iter().any(|(scene, _)| scene.seed == *seed)).collect();
     assert!(mended.is_empty(), "these hold now and are to be taken out of KNOWN: {mended:?}");

@@ -3,7 +3,7 @@
 //! In a step that is long beside the relaxation of a cell contacts push what the elastic forces answer only in the next one.
 //! Where that would leave more energy than there was, the step is made again, shorter.
 
-use super::contact::{Law, energy_of_give};
+use super::contact::{Law, SHORTEST, energy_of_give};
 use super::forces::add_forces;
 use super::model::{Kind, Model, VolumeRule};
 use super::state::State;
@@ -12,9 +12,6 @@ use crate::mechanics::integrator::{Method, StepSize};
 
 /// How often a step that gains energy is made again, in half the time from the second on.
 pub const AGAIN: u32 = 10;
-
-/// The shortest part of a fixed step that is made shorter still, over the whole.
-const SHORTEST: f64 = 0.01;
 
 /// What a step may gain by round-off, over the energy there is.
 const ROUND_OFF: f64 = 1e-9;

@@ -2,7 +2,7 @@
 
 use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::make_exact;
-use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, keep_contacts, travel};
+use super::contact::{carry_forces, check_depth, find_contacts, has_deepened, hold_contacts, keep_contacts, travel};
 use super::forces::add_forces;
 use super::gain::{AGAIN, energy_before, has_gained};
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
@@ -70,6 +70,10 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
             (accepted, next) = (false, if gains == 0 { dt_now } else { 0.5 * dt_now });
             limited |= gains > 0;
             ws.contact.care *= 0.1;
+            gains += 1;
+        }
+        if accepted && gains < AGAIN && has_deepened(model, dt_now, state, ws) {
+            (accepted, next, limited) = (false, 0.5 * dt_now, true);
             gains += 1;
         }
         if accepted {

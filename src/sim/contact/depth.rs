@@ -3,10 +3,11 @@
 use rayon::prelude::*;
 
 use super::gather::gather;
-use super::model::ContactModel;
+use super::model::{ContactModel, Law};
 use crate::Vec3;
 use crate::contact::{Sides, closest_on_facet, winding_number};
 use crate::geometry::bounding_box;
+use crate::mechanics::integrator::StepSize;
 use crate::sim::model::Model;
 use crate::sim::state::State;
 use crate::sim::trouble::Trouble;
@@ -37,6 +38,41 @@ pub fn check_depth(model: &Model, state: &State, ws: &Workspace) -> Result<(), T
     let cells = [contact.owner(atom), model.kind_of(body as usize)];
     let cells = cells.map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
     Err(Trouble::Pressed { cells, time: state.time, depth })
+}
+
+/// The depth from which on a fixed step is made shorter where it deepens, over the smallest mean edge: half of what is promised.
+const DEEP: f64 = 0.01;
+
+/// What a depth may grow by in such a step, over what it was.
+const GROWS: f64 = 1.1;
+
+/// The shortest part of a fixed step that is made shorter still, over the whole.
+pub const SHORTEST: f64 = 0.01;
+
+/// Whether cells are deep in each other after a fixed step, and deeper than before: something met within the step that no contact
+/// at its begin told of. An adaptive step is short where things move fast. What is found here is what the next step begins with.
+pub fn has_deepened(model: &Model, dt: f64, state: &State, ws: &mut Workspace) -> bool {
+    let (Some(contact), StepSize::Fixed(whole)) = (&model.contact, model.integrator.size) else { return false };
+    if contact.law != Law::Adhesives || dt < SHORTEST * whole {
+        return false;
+    }
+    let s = &mut ws.contact;
+    s.places.resize(contact.scene.atoms, Vec3::zeros());
+    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+        gather(kind, &now.positions, &mut s.places[contact.atoms_of(number)], |x| x);
+    }
+    s.detector.detect(&contact.scene, &s.places, &mut s.ahead);
+    s.ahead_of = Some(fingerprint(&s.places));
+    let edge = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
+    let [before, after] = [&s.found, &s.ahead].map(|found| (-found.smallest_gap()).max(0.0));
+    after > DEEP * edge && after > GROWS * before
+}
+
+/// A number that other positions have by a chance of 10⁻¹⁹ only.
+pub(super) fn fingerprint(places: &[Vec3]) -> u64 {
+    let bits = places.iter().flat_map(|place| [place.x, place.y, place.z]).map(f64::to_bits);
+    // The multiplier of Knuth's MMIX generator; a rotation mixes the high bits back in.
+    bits.fold(places.len() as u64, |mixed, bits| (mixed.rotate_left(23) ^ bits).wrapping_mul(6_364_136_223_846_793_005))
 }
 
 /// An atom that touched a body in the step before, and is now so deep in it that no contact is found, with the body.

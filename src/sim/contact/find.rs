@@ -1,5 +1,6 @@
 //! What touches where a step begins, and what it carried in the step before.
 
+use super::depth::fingerprint;
 use super::gather::gather;
 use super::give::given_after;
 use super::links::{links_at, pull_links};
@@ -24,7 +25,12 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
         gather(kind, &now.positions, &mut s.start[contact.atoms_of(number)], |x| x);
     }
-    s.detector.detect(&contact.scene, &s.start, &mut s.found);
+    match s.ahead_of.take() {
+        Some(known) if known == fingerprint(&s.start) => std::mem::swap(&mut s.found, &mut s.ahead),
+        _ => {
+            s.detector.detect(&contact.scene, &s.start, &mut s.found);
+        }
+    }
     keep_edges(contact, &state.contact, &s.start, &mut s.found);
     let ContactScratch { found, start, linked, links, adhesives, .. } = s;
     links_at(contact, &state.chemistry.controls, &state.contact.links, found, start, linked, links);

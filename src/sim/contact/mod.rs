@@ -28,7 +28,7 @@ mod sweep;
 mod sweep_tests;
 mod zones;
 
-pub use depth::{check_depth, check_passed};
+pub use depth::{SHORTEST, check_depth, check_passed, has_deepened};
 pub use find::{add_contact_forces, carry_forces, find_contacts, keep_contacts, pull_contacts};
 pub use give::energy_of_give;
 pub use hold::{hold_contacts, travel};

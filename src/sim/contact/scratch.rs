@@ -15,6 +15,10 @@ pub struct ContactScratch {
     pub detector: Detector,
     /// What touches where the step began.
     pub found: Contacts,
+    /// What touches where a fixed step ends.
+    pub(super) ahead: Contacts,
+    /// The fingerprint of the positions for which that was found.
+    pub(super) ahead_of: Option<u64>,
     /// Positions where the step began, µm.
     pub start: Vec<Vec3>,
     /// Links of the step.
@@ -57,6 +61,8 @@ impl ContactScratch {
     pub fn poison(&mut self) {
         self.detector.forget();
         self.found.clear();
+        self.ahead.clear();
+        self.ahead_of = None;
         self.rows.clear();
         self.pulls.clear();
         self.volumes.clear();
