@@ -56,6 +56,8 @@ impl<'a> Ridge<'a> {
 struct First<'a> {
     ridge: Ridge<'a>,
     flanks: [Vec3; 2],
+    /// Their squared lengths, µm².
+    squares: [f64; 2],
     is_one_sided: bool,
     is_convex: bool,
 }
@@ -63,8 +65,10 @@ struct First<'a> {
 impl<'a> First<'a> {
     fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
         let ridge = Ridge::of(shape, positions, edge);
+        let flanks = ridge.flanks();
         Self {
-            flanks: ridge.flanks(),
+            flanks,
+            squares: flanks.map(|flank| flank.norm_squared()),
             is_one_sided: shape.sides == Sides::Outer && !ridge.is_rim(),
             is_convex: ridge.is_convex(),
             ridge,
@@ -98,7 +102,7 @@ pub(super) fn find_edge_contacts(
         for candidate in candidates {
             let second = Ridge::of(there, places, candidate);
             let one_sided = surfaces_are_one_sided && !second.is_rim();
-            let crossing = cross(&first.ridge, &first.flanks, &second, one_sided, scene);
+            let crossing = cross(first, &second, one_sided, scene);
             let Some((along, gap, normal)) = crossing else { continue };
             let numbered = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
             push(
@@ -124,21 +128,24 @@ const PASSED: f64 = 0.01;
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
 #[inline]
 fn cross(
-    first: &Ridge,
-    flanks: &[Vec3; 2],
+    First { ridge: first, flanks, squares, .. }: &First,
     second: &Ridge,
     one_sided: bool,
     scene: &Scene,
 ) -> Option<([f64; 2], f64, Vec3)> {
     let normal = first.along.cross(&second.along);
     let squared = normal.norm_squared();
+    // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
+    // or its opposite must do for all four, or nearly so. Most pairs fail here, whatever their distance.
+    let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
+    let slight = RISE * RISE * squared;
+    if a * b < 0.0 && (!one_sided || (a * a > slight * squares[0] && b * b > slight * squares[1])) {
+        return None;
+    }
     let between = first.start - second.start;
     let height = normal.dot(&between);
     let is_within = |distance: f64| height * height <= distance * distance * squared;
     let may_rise = one_sided && is_within(scene.reach.proximity);
-    // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
-    // or its opposite must do for all four. Most pairs fail here, whatever their distance.
-    let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
     if (a * b < 0.0 && !may_rise) || !is_within(scene.reach.range()) {
         return None;
     }
