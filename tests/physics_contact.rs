@@ -253,6 +253,7 @@ fn a_fixed_step_in_which_a_pair_would_gain_energy_is_made_in_shorter_ones_that_e
     while state.time < 30.0 {
         let report = step(&model, &mut state, &mut ws).unwrap();
         let energy = measure_cells(&model, &state).iter().map(|cell| cell.energy).sum::<f64>() + state.contact.given();
+        // A step may gain 1e-9 of the energy by round-off, and what its sweeps leave.
         assert!(energy <= before * (1.0 + 1e-8), "{before} to {energy} at {} s", state.time);
         before = energy;
 

@@ -80,7 +80,7 @@ fn ends_come_together_as_drag_lets_them_with_second_order() {
     let errors: Vec<f64> = [0.1, 0.05, 0.025].map(|dt| drawn_together(1, StepSize::Fixed(dt)) - exact).into();
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
-        // An activation that is linear in time between its bends makes it nearly three.
+        // At least two; it was found to be nearly three here.
         assert!(order > 1.8, "{errors:?}: order {order}");
     }
 }

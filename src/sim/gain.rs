@@ -10,9 +10,6 @@ use super::state::State;
 use super::workspace::Workspace;
 use crate::mechanics::integrator::{Method, StepSize};
 
-/// How often a step that gains energy is made again, in half the time from the second on.
-pub const AGAIN: u32 = 10;
-
 /// What a step may gain by round-off, over the energy there is.
 const ROUND_OFF: f64 = 1e-9;
 

@@ -4,7 +4,7 @@ use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::make_exact;
 use super::contact::{carry_forces, check_depth, find_contacts, has_deepened, hold_contacts, keep_contacts, travel};
 use super::forces::add_forces;
-use super::gain::{AGAIN, energy_before, has_gained};
+use super::gain::{energy_before, has_gained};
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
 use super::model::Model;
@@ -27,6 +27,12 @@ pub struct StepReport {
     /// Whether contacts made this step or the one planned after it shorter than the error estimate would have.
     pub limited: bool,
 }
+
+/// How often an accepted step is made again.
+const AGAIN: u32 = 10;
+
+/// What sweeps may leave when a step is made again, over what they might before: forces that sweeps leave unfound do work.
+const MORE_CARE: f64 = 0.1;
 
 /// What a try says about its step.
 struct Estimate {
@@ -51,7 +57,7 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
     check_depth(model, state, ws)?;
     let energy = energy_before(model, state, ws);
     let planned = plan_step(model, state);
-    let (mut dt, mut limited, mut gains) = (planned, false, 0);
+    let (mut dt, mut limited, mut again) = (planned, false, 0);
     for refused in 0..TRIES {
         let dt_now = end_at_kinks(model, state.time, dt);
         let Estimate { error, with_contacts } = match try_step(model, dt_now, state, ws) {
@@ -65,16 +71,9 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
         };
         let (mut accepted, mut next) = judge(model, dt_now, with_contacts);
         limited |= next < judge(model, dt_now, error).1;
-        if accepted && gains < AGAIN && has_gained(model, energy, dt_now, state, ws) {
-            // Without mending depths at first, which takes work however short a step is.
-            (accepted, next) = (false, if gains == 0 { dt_now } else { 0.5 * dt_now });
-            limited |= gains > 0;
-            ws.contact.care *= 0.1;
-            gains += 1;
-        }
-        if accepted && gains < AGAIN && has_deepened(model, dt_now, state, ws) {
-            (accepted, next, limited) = (false, 0.5 * dt_now, true);
-            gains += 1;
+        let better = if accepted { look_again(model, energy, dt_now, again, state, ws) } else { None };
+        if let Some(shorter) = better {
+            (accepted, next, limited, again) = (false, shorter, limited || shorter < dt_now, again + 1);
         }
         if accepted {
             let next_step = plan_next(model, planned, dt, dt_now, next);
@@ -92,6 +91,27 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
         dt = next;
     }
     Err(Trouble::StepTooSmall { time: state.time, dt })
+}
+
+/// The time in which an accepted step is to be made again, with more care: where cells left alone would gain energy, or a fixed step
+/// would end with cells deep in each other.
+fn look_again(
+    model: &Model,
+    energy: Option<f64>,
+    dt: f64,
+    again: u32,
+    state: &State,
+    ws: &mut Workspace,
+) -> Option<f64> {
+    if again == AGAIN {
+        None
+    } else if has_gained(model, energy, dt, state, ws) {
+        ws.contact.care *= MORE_CARE;
+        // At first without mending depths, which takes work however short a step is.
+        Some(if again == 0 { dt } else { 0.5 * dt })
+    } else {
+        has_deepened(model, dt, state, ws).then_some(0.5 * dt)
+    }
 }
 
 /// The stages of a step.

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::gather::gather;
+use super::gather::gather_places;
 use super::model::{ContactModel, Law};
 use crate::Vec3;
 use crate::contact::{Sides, closest_on_facet, winding_number};
@@ -57,10 +57,7 @@ pub fn has_deepened(model: &Model, dt: f64, state: &State, ws: &mut Workspace) -
         return false;
     }
     let s = &mut ws.contact;
-    s.places.resize(contact.scene.atoms, Vec3::zeros());
-    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
-        gather(kind, &now.positions, &mut s.places[contact.atoms_of(number)], |x| x);
-    }
+    gather_places(model, contact, state, &mut s.places);
     s.detector.detect(&contact.scene, &s.places, &mut s.ahead);
     s.ahead_of = Some(fingerprint(&s.places));
     let edge = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
@@ -102,10 +99,8 @@ fn lost_inside(contact: &ContactModel, state: &State, ws: &Workspace) -> Option<
 pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
     let Some(contact) = &model.contact else { return Ok(()) };
     let scene = &contact.scene;
-    let mut places = vec![Vec3::zeros(); scene.atoms];
-    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
-        gather(kind, &now.positions, &mut places[contact.atoms_of(number)], |x| x);
-    }
+    let mut places = Vec::new();
+    gather_places(model, contact, state, &mut places);
     let atoms_of = |body: u32| {
         let first = scene.bodies[body as usize].first_atom as usize;
         first..first + scene.shape(body).atoms

@@ -1,7 +1,7 @@
 //! What touches where a step begins, and what it carried in the step before.
 
 use super::depth::fingerprint;
-use super::gather::gather;
+use super::gather::gather_places;
 use super::give::given_after;
 use super::links::{links_at, pull_links};
 use super::model::{ContactModel, Law};
@@ -21,10 +21,7 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     let Some(contact) = &model.contact else { return };
     let s = &mut ws.contact;
     s.care = 1.0;
-    s.start.resize(contact.scene.atoms, Vec3::zeros());
-    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
-        gather(kind, &now.positions, &mut s.start[contact.atoms_of(number)], |x| x);
-    }
+    gather_places(model, contact, state, &mut s.start);
     match s.ahead_of.take() {
         Some(known) if known == fingerprint(&s.start) => std::mem::swap(&mut s.found, &mut s.ahead),
         _ => {
@@ -78,10 +75,7 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
 pub fn pull_contacts(model: &Model, state: &State, s: &mut ContactScratch) {
     let is_live = |law: &Law| matches!(law, Law::Links(_) | Law::Penalty(_));
     let Some(contact) = model.contact.as_ref().filter(|contact| is_live(&contact.law)) else { return };
-    s.places.resize(contact.scene.atoms, Vec3::zeros());
-    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
-        gather(kind, &now.positions, &mut s.places[contact.atoms_of(number)], |x| x);
-    }
+    gather_places(model, contact, state, &mut s.places);
     s.live_force.clear();
     s.live_force.resize(contact.scene.atoms, Vec3::zeros());
     match &contact.law {

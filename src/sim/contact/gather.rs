@@ -1,8 +1,9 @@
 //! Between the blocks of lanes of the kinds and one list of all atoms.
 
+use super::model::ContactModel;
 use crate::Vec3;
-use crate::sim::model::Kind;
-use crate::sim::state::index;
+use crate::sim::model::{Kind, Model};
+use crate::sim::state::{State, index};
 
 /// Takes the vectors of a kind in the order of its cells, and what `make` makes of each.
 pub fn gather<T>(kind: &Kind, values: &[f64], to: &mut [T], make: impl Fn(Vec3) -> T) {
@@ -12,6 +13,14 @@ pub fn gather<T>(kind: &Kind, values: &[f64], to: &mut [T], make: impl Fn(Vec3) 
             let at = first + 3 * atom * kind.lanes;
             *to = make(Vec3::new(values[at], values[at + kind.lanes], values[at + 2 * kind.lanes]));
         }
+    }
+}
+
+/// Takes the positions of all atoms in the order of cells.
+pub fn gather_places(model: &Model, contact: &ContactModel, state: &State, places: &mut Vec<Vec3>) {
+    places.resize(contact.scene.atoms, Vec3::zeros());
+    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+        gather(kind, &now.positions, &mut places[contact.atoms_of(number)], |x| x);
     }
 }
 
