@@ -109,7 +109,11 @@ fn a_cell_is_the_same_to_the_last_bit_alone_or_in_a_crowd_on_any_threads() {
         let many = crowd(0..10_001, method, 2);
         assert!(many == crowd(0..10_001, method, 1), "{method:?}: one thread and two differ");
         for cell in [0, 15, 777, 10_000] {
-            assert_eq!(crowd(cell..cell + 1, method, 1), many[4 * cell..4 * cell + 4], "{method:?}, cell {cell}");
+            // One and two are advanced one by one, three side by side.
+            for count in (1..=3).filter(|count| cell + count <= 10_001) {
+                let few = crowd(cell..cell + count, method, 1);
+                assert_eq!(few, many[4 * cell..4 * (cell + count)], "{method:?}, {count} from cell {cell}");
+            }
         }
     }
 }
@@ -127,6 +131,11 @@ fn trouble_names_cell_time_and_variable_and_spares_the_neighbours() {
         assert!((trouble.time - 0.8).abs() < 1e-6, "{method:?}: {trouble}");
         assert!(population.state(20, 1).is_finite(), "the last good state is kept");
         assert!((population.state(21, 0) - (-1.0_f64).exp()).abs() < 1e-5, "the neighbour has arrived");
+        let mut pair = Population::new(&program, 2, method);
+        pair.set_state(0, 1, 2.0);
+        let trouble = pair.advance(&program, 0.0, 1.0, &Tolerances::default()).expect_err("it blows up");
+        assert_eq!((trouble.cell, trouble.variable.as_deref()), (Some(0), Some("growth")), "{method:?}: {trouble}");
+        assert!((pair.state(1, 0) - (-1.0_f64).exp()).abs() < 1e-5, "the other has arrived");
     }
     let options = SolveOptions::default();
     let trouble = solve(&system, 0.0, 100.0, &[], &options).expect_err("it blows up at 10");

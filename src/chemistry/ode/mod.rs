@@ -1,6 +1,7 @@
 //! Solving the equations, eq. (ode.1): for all cells of a population side by side, each cell with a step of its own, or for one
 //! system alone with events and values at any time.
 
+mod advance;
 pub(in crate::chemistry) mod block;
 pub(in crate::chemistry) mod cells;
 mod control;
@@ -11,6 +12,7 @@ mod explicit;
 mod lu;
 mod mask;
 mod multistep;
+mod narrow;
 mod population;
 mod rosenbrock;
 pub(in crate::chemistry) mod scratch;

@@ -1,16 +1,13 @@
 //! All cells that share a system of equations, advanced window by window.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
-use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::block::{self, CellTrouble};
-use super::cells::{Cells, Kept};
+use super::Method;
 use super::mask::Mask;
+use super::narrow::Narrow;
 use super::scratch::Scratch;
-use super::{Method, OdeTrouble, Tolerances, Work};
 use crate::chemistry::program::{Lanes, Program, run};
 use crate::chemistry::tree::QuantityId;
 
@@ -21,25 +18,28 @@ pub const LANES: usize = 16;
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Population {
     /// How the cells are advanced.
-    method: Method,
-    cells: usize,
-    variables: usize,
-    open: usize,
-    states: Vec<Lanes<LANES>>,
-    given: Vec<Lanes<LANES>>,
-    steps: Vec<Lanes<LANES>>,
-    errors: Vec<Lanes<LANES>>,
+    pub(super) method: Method,
+    pub(super) cells: usize,
+    pub(super) variables: usize,
+    pub(super) open: usize,
+    pub(super) states: Vec<Lanes<LANES>>,
+    pub(super) given: Vec<Lanes<LANES>>,
+    pub(super) steps: Vec<Lanes<LANES>>,
+    pub(super) errors: Vec<Lanes<LANES>>,
     /// Rates at the states for the explicit pair, where `known`: what comes out of them again, so that nothing depends on
     /// whether they are kept.
     #[serde(skip)]
-    rates: Vec<Lanes<LANES>>,
+    pub(super) rates: Vec<Lanes<LANES>>,
     #[serde(skip)]
-    known: Vec<Mask<LANES>>,
+    pub(super) known: Vec<Mask<LANES>>,
     /// The program that they and the scratch are of.
     #[serde(skip)]
     mark: u64,
     #[serde(skip)]
-    rooms: Vec<Mutex<Option<Box<Scratch<LANES>>>>>,
+    pub(super) rooms: Vec<Mutex<Option<Box<Scratch<LANES>>>>>,
+    /// Room for cells that are advanced one by one.
+    #[serde(skip)]
+    pub(super) narrow: Option<Box<Narrow>>,
 }
 
 impl Clone for Population {
@@ -58,6 +58,7 @@ impl Clone for Population {
             known: self.known.clone(),
             mark: self.mark,
             rooms: Vec::new(),
+            narrow: None,
         }
     }
 
@@ -110,6 +111,7 @@ impl Population {
             known: Vec::new(),
             mark: 0,
             rooms: Vec::new(),
+            narrow: None,
         }
     }
 
@@ -164,10 +166,11 @@ impl Population {
     }
 
     /// Makes sure that rates are kept where they can be, and that they and the scratch are the program's.
-    fn keep_rates(&mut self, program: &Program) {
+    pub(super) fn keep_rates(&mut self, program: &Program) {
         if self.mark != program.mark {
             self.mark = program.mark;
             self.rooms.clear();
+            self.narrow = None;
             self.known.clear();
         }
         if self.method != Method::Rk45 || !program.rates_stand_still {
@@ -219,116 +222,10 @@ impl Population {
         }
     }
 
-    /// Advances all cells through a window. Each cell has an error and a step of its own; its result does not depend on
-    /// how many cells there are nor on the number of threads. Open quantities stand still within the window. Nothing is
-    /// allocated after the first window.
-    ///
-    /// # Errors
-    /// The cell of the smallest number that could not be advanced. Cells in trouble keep their last good state; all
-    /// others have reached the end.
-    ///
-    /// # Panics
-    /// When the program is not that of the population in the number of variables and open quantities, or the window
-    /// is empty.
-    pub fn advance(
-        &mut self,
-        program: &Program,
-        from: f64,
-        until: f64,
-        tolerances: &Tolerances,
-    ) -> Result<Work, OdeTrouble> {
-        assert_eq!((self.variables, self.open), (program.size(), program.open.len()), "the population's own program");
-        assert!(until > from, "a window from {from} until {until}");
-        let n = self.variables;
-        if n == 0 || self.cells == 0 {
-            return Ok(Work::default());
-        }
-        self.keep_rates(program);
-        let threads = rayon::current_num_threads();
-        while self.rooms.len() < threads {
-            self.rooms.push(Mutex::new(None));
-        }
-        let Self { states, steps, errors, given, rates, known, rooms, .. } = self;
-        let (method, cells, open) = (self.method, self.cells, self.open);
-        let blocks = blocks_a_task(steps.len(), threads);
-        let one = |(task, (((states, steps), errors), kept)): (usize, Part)| {
-            let room = &rooms[rayon::current_thread_index().unwrap_or(0)];
-            let mut room = room.lock().unwrap_or_else(PoisonError::into_inner);
-            let scratch = room.get_or_insert_with(|| Box::new(Scratch::new(program, method == Method::Rosenbrock)));
-            program.set_constants(&mut scratch.file);
-            let first = task * blocks;
-            let given = &given[first * open..(first + steps.len()) * open];
-            let count = (cells - first * LANES).min(steps.len() * LANES);
-            let cells = Cells { count, states, given, steps, errors, kept };
-            let result =
-                Arch::new().dispatch(Task { program, method, scratch, cells, window: (from, until), tolerances });
-            result.map_err(|trouble| CellTrouble { cell: first * LANES + trouble.cell, ..trouble })
-        };
-        let tasks = states.par_chunks_mut(n * blocks).zip(steps.par_chunks_mut(blocks));
-        let kept = rates.par_chunks_mut(n * blocks).zip(known.par_chunks_mut(blocks));
-        let kept = kept.map(|(rates, known)| Some(Kept { rates, known }));
-        let unkept = if kept.len() > 0 { 0 } else { tasks.len() };
-        let kept = kept.chain((0..unkept).into_par_iter().map(|_| None));
-        let result = tasks.zip(errors.par_chunks_mut(blocks)).zip(kept).enumerate().map(one);
-        result.reduce(|| Ok(Work::default()), first_trouble).map_err(|trouble| OdeTrouble {
-            system: program.name.clone(),
-            cell: Some(trouble.cell),
-            time: trouble.time,
-            variable: trouble.variable.map(|v| program.names[program.variables[v] as usize].clone()),
-            reason: trouble.reason,
-            detail: String::new(),
-        })
-    }
-
     fn load(&self, block: usize, time: f64, file: &mut [Lanes<LANES>]) {
         let (n, m) = (self.variables, self.open);
         file[0] = [time; LANES];
         file[1..=n].copy_from_slice(&self.states[block * n..(block + 1) * n]);
         file[1 + n..1 + n + m].copy_from_slice(&self.given[block * m..(block + 1) * m]);
-    }
-}
-
-/// What a task changes: states, steps, errors and kept rates.
-type Part<'a> = (((&'a mut [Lanes<LANES>], &'a mut [Lanes<LANES>]), &'a mut [Lanes<LANES>]), Option<Kept<'a, LANES>>);
-
-/// Tasks of so many blocks have enough cells to fill lanes that are done early.
-const MOST_BLOCKS: usize = 256;
-
-/// How many blocks a task takes: several tasks a thread, so that the threads end together.
-fn blocks_a_task(blocks: usize, threads: usize) -> usize {
-    let tasks = if threads == 1 { 1 } else { 4 * threads };
-    blocks.div_ceil(tasks).clamp(1, MOST_BLOCKS)
-}
-
-/// What one task needs, as an object with a method of its own: only so is all of it compiled for the wide registers.
-struct Task<'a> {
-    program: &'a Program,
-    method: Method,
-    scratch: &'a mut Scratch<LANES>,
-    cells: Cells<'a, LANES>,
-    window: (f64, f64),
-    tolerances: &'a Tolerances,
-}
-
-impl WithSimd for Task<'_> {
-    type Output = TaskResult;
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> TaskResult {
-        let Self { program, method, scratch, mut cells, window, tolerances } = self;
-        block::advance(simd, program, method, scratch, &mut cells, window, tolerances)
-    }
-}
-
-type TaskResult = Result<Work, CellTrouble>;
-
-/// The sum of the work, or the trouble of the smaller cell.
-fn first_trouble(a: TaskResult, b: TaskResult) -> TaskResult {
-    match (a, b) {
-        (Ok(mut a), Ok(b)) => {
-            a.add(b);
-            Ok(a)
-        }
-        (Err(a), Err(b)) => Err(if b.cell < a.cell { b } else { a }),
-        (Err(trouble), Ok(_)) | (Ok(_), Err(trouble)) => Err(trouble),
     }
 }
