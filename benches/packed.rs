@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use pseudopod::Vec3;
-use pseudopod::contact::Reach;
+use pseudopod::contact::{Contacts, Detector, Reach};
 use pseudopod::geometry::{Topology, icosphere, mean_edge_length};
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
 use pseudopod::mechanics::elasticity::Elasticity;
@@ -85,6 +85,12 @@ fn seconds(since: &Instant, threads: usize) -> f64 {
     nanoseconds.map_or_else(|| since.elapsed().as_secs_f64(), |n| 1e-9 * n)
 }
 
+/// The positions of all atoms, in the order of cells.
+fn positions(model: &Model, state: &State) -> Vec<Vec3> {
+    let kind = &model.kinds[0];
+    (0..kind.cells).flat_map(|cell| state.kinds[0].cell(kind, cell)).collect()
+}
+
 /// Packs a population and prints what its steps cost.
 fn measure(cells: usize, threads: usize, pack: f64) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
@@ -115,24 +121,35 @@ fn measure(cells: usize, threads: usize, pack: f64) {
             others += 1 + step(&alone, &mut trial, &mut spare).expect("a step").refused;
         }
         let without = now() - began;
-        let mut finding = 0.0;
-        for _ in 0..STEPS / 4 {
+        let (mut finding, mut detecting) = (0.0, 0.0);
+        let (mut detector, mut found) = (Detector::default(), Contacts::default());
+        let scene = &model.contact.as_ref().expect("contacts").scene;
+        detector.detect(scene, &positions(&model, &state), &mut found);
+        for _ in 0..STEPS {
             step(&model, &mut state, &mut ws).expect("a step");
+            // The first takes what the step found at its end.
+            find_contacts(&model, &state, &mut ws);
             // Shorter than the parts in which the system counts processor time.
             let began = Instant::now();
             find_contacts(&model, &state, &mut ws);
             finding += began.elapsed().as_secs_f64();
+            // Pairs are collected anew as often as in the step.
+            let positions = positions(&model, &state);
+            let began = Instant::now();
+            detector.detect(scene, &positions, &mut found);
+            detecting += began.elapsed().as_secs_f64();
         }
         let each = |seconds: f64, count: u32| 1e3 * seconds / f64::from(count);
         println!(
-            "{cells:6} {threads:8} {:10.2} {:10.2} {:10.3} {:8.1} {:12.1} {:10.2} {:10.2} {:10.0}",
+            "{cells:6} {threads:8} {:10.2} {:10.2} {:10.3} {:8.1} {:12.1} {:10.2} {:10.2} {:10.3} {:10.0}",
             each(seconds, STEPS),
             each(seconds, tries),
             1e-6 * model.atoms() as f64 * f64::from(tries) / seconds,
             f64::from(sweeps) / f64::from(STEPS),
             contacts as f64 / f64::from(STEPS) / cells as f64,
             each(seconds, tries) - each(without, others),
-            each(finding, STEPS / 4),
+            each(finding, STEPS),
+            each(detecting, STEPS),
             bytes,
         );
     });
@@ -140,7 +157,7 @@ fn measure(cells: usize, threads: usize, pack: f64) {
 
 fn main() {
     println!(
-        "{:>6} {:>8} {:>10} {:>10} {:>10} {:>8} {:>12} {:>10} {:>10} {:>10}",
+        "{:>6} {:>8} {:>10} {:>10} {:>10} {:>8} {:>12} {:>10} {:>10} {:>10} {:>10}",
         "cells",
         "threads",
         "ms a step",
@@ -150,6 +167,7 @@ fn main() {
         "rows a cell",
         "contact ms",
         "find ms",
+        "detect ms",
         "B an atom"
     );
     // `--large` adds 10 000 cells; numbers of cells measure these alone, and `--single` on one thread only.

@@ -115,8 +115,8 @@ fn a_cell_that_hangs_on_a_rigid_one_is_held_with_its_load_whatever_the_step() {
 }
 
 /// A square sheet of 6 µm, its sides in so many parts, and its area an atom.
-fn sheet(name: &str, parts: u32) -> (Kind, Vec<f64>) {
-    let rest = pseudopod::geometry::sheet(6.0, 6.0, parts, parts);
+fn sheet(name: &str, side: f64, parts: u32) -> (Kind, Vec<f64>) {
+    let rest = pseudopod::geometry::sheet(side, side, parts, parts);
     let areas = pseudopod::geometry::atom_areas(&rest);
     let topology = Topology::of(&rest);
     let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
@@ -129,7 +129,7 @@ fn sheet(name: &str, parts: u32) -> (Kind, Vec<f64>) {
 
 /// The largest pull between two flat sheets that are drawn apart, pN; the sides of the rigid one have so many parts.
 fn sheets_part_at(tensile: f64, largest: f64, parts: u32) -> f64 {
-    let ((mut rigid, own), (mut soft, areas)) = (sheet("rigid", parts), sheet("soft", 6));
+    let ((mut rigid, own), (mut soft, areas)) = (sheet("rigid", 6.0, parts), sheet("soft", 6.0, 6));
     rigid.held = vec![0.0; 3 * own.len()];
     let atoms = areas.iter().zip(0..).map(|(area, atom)| (atom, area / 36.0)).collect();
     let force = Course::through(vec![(0.0, 0.0), (100.0, 60.0)]).unwrap();
@@ -153,6 +153,34 @@ fn flat_sheets_part_at_strength_times_area_whatever_the_step() {
         // With another mesh the pull on the rigid sheet's atoms does not spread as the load does: the rim parts first.
         let share = if parts == 6 { 0.01 } else { 0.05 };
         assert!((pull - 36.0 * tensile).abs() < share * 36.0 * tensile, "{tensile}, {largest}, {parts}: {pull} pN");
+    }
+}
+
+/// What sweeps leave puts atoms on the other side of a surface that has two, by next to nothing; they must not go on there.
+#[test]
+fn a_sheet_pressed_onto_another_stays_on_its_side() {
+    for (is_first, parts) in [(false, 5), (true, 5), (false, 8), (false, 11)] {
+        let ((mut rigid, own), (mut soft, areas)) = (sheet("rigid", 8.0, parts), sheet("soft", 6.0, 6));
+        rigid.held = vec![0.0; 3 * own.len()];
+        let atoms = areas.iter().zip(0..).map(|(area, atom)| (atom, area / 36.0)).collect();
+        let force = Course::through(vec![(0.0, 0.0), (50.0, 60.0)]).unwrap();
+        soft.loads = vec![Load { name: "press".into(), atoms, direction: -Vec3::z(), force }];
+        let above: Vec<Vec3> = soft.rest.positions.iter().map(|x| x + Vec3::new(0.013, 0.007, 0.02)).collect();
+        let (mut kinds, mut places) = (vec![rigid.clone(), soft], vec![vec![rigid.rest.positions], vec![above]]);
+        if is_first {
+            kinds.reverse();
+            places.reverse();
+        }
+        let (model, number) = (model(kinds, adaptive(0.5), 50.0, Strength::default()), usize::from(!is_first));
+        let mut state = State::new(&model, &places);
+        let lowest = |state: &State| {
+            let atoms = state.kinds[number].cell(&model.kinds[number], 0);
+            atoms.iter().map(|x| x.z).fold(f64::INFINITY, f64::min)
+        };
+        let rows = run(&model, &mut state, |state, _| lowest(state));
+        let worst = rows.iter().map(|(_, lowest)| *lowest).fold(f64::INFINITY, f64::min);
+        println!("{parts} parts: {} steps, lowest {worst:.2e} um", rows.len());
+        assert!(worst > -1e-3, "{parts} parts: {worst} um below");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Random scenes of contacts hold what the book promises: volumes, depths, strengths, energy, momentum, the same bits.
 //!
-//! Two promises are open: see [`Open`]. Scenes may break only those, and of the scenes of the short test only the ones that
-//! [`KNOWN`] names. Everything else holds in every scene.
+//! All that is promised of states holds in every scene. A few in a thousand are refused: they end with the message that two cells are
+//! too deep in each other though they have room.
 //!
 //! One number makes a scene. A failure names it, and
 //! `CONTACT_SEED=17 cargo test --release --test physics_contact_fuzz one_scene -- --ignored --nocapture` makes it again. The long
@@ -14,36 +14,26 @@ use pseudopod::Vec3;
 use pseudopod::contact::{Sides, closest_on_facet, winding_number};
 use pseudopod::geometry::{atom_areas, bounding_box};
 use pseudopod::mechanics::integrator::StepSize;
-use pseudopod::sim::contact::find_contacts;
+use pseudopod::sim::contact::{check_passed, find_contacts};
 use pseudopod::sim::observe::{CellMeasure, measure_cells};
 use pseudopod::sim::{Attraction, Model, State, Trouble, VolumeRule, Workspace, step};
 
 /// The deepest that one cell may be in another, over the mean edge.
 const DEEPEST: f64 = 0.02;
 
-/// A promise that some scenes break, and why.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Open {
-    /// As read from a few traced scenes: an edge that crosses another slides off its end while the atom there is beside the
-    /// facets, or facets turn by more than detection allows for. No contact sees the crossing any more, it deepens, and is found again some steps later at 2 to
-    /// 5 % of an edge, or more where cells are crushed.
-    Depth,
-    /// Two contacts are almost the same, and the sweeps are not done when one has handed its load to the other.
-    Rest,
-}
-
-/// Scenes of the short test that break an open promise.
-const KNOWN: &[(u64, Open)] = &[(23, Open::Depth)];
+/// Steps from one state that is recorded to the next.
+const RECORDED: u64 = 20;
 
 /// What is wrong with a scene.
 struct Wrong {
     words: String,
-    open: Option<Open>,
+    /// Whether the run was refused, and no state was wrong.
+    refused: bool,
 }
 
 impl From<String> for Wrong {
     fn from(words: String) -> Self {
-        Self { words, open: None }
+        Self { words, refused: false }
     }
 }
 
@@ -62,7 +52,7 @@ struct Seen {
     rise: f64,
     /// Largest distance of the centre of drag from where it was, µm.
     drift: f64,
-    /// Largest pull of an atom on one cell over what one contact may bear.
+    /// Largest pull of an atom on one cell over what it may bear.
     pull: f64,
     sweeps: u32,
     all_sweeps: u64,
@@ -84,15 +74,8 @@ fn play(scene: &Scene) -> Result<Seen, Wrong> {
                 *step *= 0.5;
             }
             (Err((words, trouble)), _) => {
-                let open = match trouble.as_deref() {
-                    Some(Trouble::Pressed { .. }) => Some(Open::Depth),
-                    Some(Trouble::Contact { .. }) => Some(Open::Rest),
-                    Some(_) => None,
-                    None if words.contains("deep in each other") => Some(Open::Depth),
-                    None if words.contains("edges inside cell") => Some(Open::Depth),
-                    None => None,
-                };
-                return Err(Wrong { words, open });
+                let refused = matches!(trouble.as_deref(), Some(Trouble::Pressed { .. } | Trouble::Contact { .. }));
+                return Err(Wrong { words, refused });
             }
             (Ok((end, seen)), _) => {
                 check_bits(scene, &model, &start, &end)?;
@@ -116,8 +99,12 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
     // A box takes longer to fill.
     let most = if scene.purpose == Purposed::Overfull { 8 * scene.steps } else { scene.steps };
     while state.time < model.until && state.step < start.step + most {
-        match step(model, &mut state, &mut ws) {
-            Ok(_) => {}
+        let done = step(model, &mut state, &mut ws);
+        // As a run looks before it records.
+        let is_last = state.time >= model.until || state.step == start.step + most;
+        let is_recorded = is_last || state.step.is_multiple_of(RECORDED);
+        match done.and_then(|_| if is_recorded { check_passed(model, &state) } else { Ok(()) }) {
+            Ok(()) => {}
             Err(trouble @ Trouble::TooFast { .. }) => return Err((format!("{trouble}"), Some(Box::new(trouble)))),
             Err(trouble @ (Trouble::Pressed { .. } | Trouble::Contact { .. } | Trouble::Volume { .. }))
                 if scene.purpose == Purposed::Overfull =>
@@ -136,7 +123,7 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
         check_cells(model, &cells, &mut seen).map_err(at)?;
         seen.fill = fill(scene, model, &cells);
         check_depth(model, &ws, &mut seen).map_err(at)?;
-        check_strength(scene, model, &ws, &mut seen).map_err(at)?;
+        check_strength(scene, model, &state, &ws, &mut seen).map_err(at)?;
         if scene.purpose == Purposed::Alone {
             let energy = cells.iter().map(|cell| cell.energy).sum::<f64>()
                 + pressed_energy(model, &state, &cells)
@@ -219,7 +206,7 @@ fn fill(scene: &Scene, model: &Model, cells: &[CellMeasure]) -> f64 {
     cells.iter().map(|cell| cell.volume).sum::<f64>() / widths.product::<f64>()
 }
 
-/// Gaps where the step began.
+/// Gaps where the step ended.
 fn check_depth(model: &Model, ws: &Workspace, seen: &mut Seen) -> Result<(), String> {
     let (found, scene) = (&ws.contact.found, &model.contact.as_ref().unwrap().scene);
     let body_of = |atom: u32| scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1;
@@ -240,27 +227,29 @@ fn check_depth(model: &Model, ws: &Workspace, seen: &mut Seen) -> Result<(), Str
     Ok(())
 }
 
-/// No contact pulls or shears more than its strength times its area.
-fn check_strength(scene: &Scene, model: &Model, ws: &Workspace, seen: &mut Seen) -> Result<(), String> {
+/// No contact pulls or shears more than its strength times its area, which the places share where an atom touches a cell.
+fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, seen: &mut Seen) -> Result<(), String> {
     let (s, bodies) = (&ws.contact, &model.contact.as_ref().unwrap().scene.bodies);
+    // In the order of the rows.
+    let bonds = &state.contact;
     let body_of = |atom: u32| bodies.partition_point(|body| body.first_atom <= atom) - 1;
     let kind_of = |body: usize| bodies[body].shape as usize;
     let areas: Vec<Vec<f64>> = model.kinds.iter().map(|kind| atom_areas(&kind.rest)).collect();
-    let area = |atom: u32| {
+    let area_of = |atom: u32| {
         let body = body_of(atom);
         areas[kind_of(body)][(atom - bodies[body].first_atom) as usize]
     };
-    let of_atoms = s.found.atoms.iter().map(|near| {
-        let (own, other) = (body_of(near.atom), near.body as usize);
+    let of_atoms = bonds.atoms.iter().map(|bond| {
+        let (own, other) = (body_of(bond.atom), bond.body as usize);
         let strength = if own == other { [0.0; 2] } else { scene.between[kind_of(own)][kind_of(other)] };
-        (strength, 0.5 * area(near.atom))
+        let places = bonds.atoms.iter().filter(|other| (other.atom, other.body) == (bond.atom, bond.body)).count();
+        (strength, 0.5 * area_of(bond.atom) / places as f64)
     });
-    let of_edges = s.found.edges.iter().map(|_| ([0.0; 2], 0.0));
-    let of_planes = s
-        .found
-        .planes
-        .iter()
-        .map(|near| (scene.on_planes[kind_of(body_of(near.atom))][near.plane as usize], area(near.atom)));
+    let of_edges = bonds.edges.iter().map(|_| ([0.0; 2], 0.0));
+    let of_planes = bonds.planes.iter().map(|bond| {
+        let kind = kind_of(body_of(bond.atom));
+        (scene.on_planes[kind][bond.plane as usize], area_of(bond.atom))
+    });
     let largest = s.pulls.iter().map(|pull| pull.force().norm()).fold(0.0, f64::max);
     let mut sum = ((0, 0), 0.0);
     for (number, (([tensile, shear], area), pull)) in
@@ -276,12 +265,12 @@ fn check_strength(scene: &Scene, model: &Model, ws: &Workspace, seen: &mut Seen)
         if across > shear * area + slack {
             return Err(format!("contact {number} shears {across} pN of {} pN", shear * area));
         }
-        if let Some(near) = s.found.atoms.get(number).filter(|_| tensile > 0.0) {
-            if sum.0 != (near.atom, near.body) {
-                sum = ((near.atom, near.body), 0.0);
+        if let Some(bond) = bonds.atoms.get(number).filter(|_| tensile > 0.0) {
+            if sum.0 != (bond.atom, bond.body) {
+                sum = ((bond.atom, bond.body), 0.0);
             }
-            sum.1 -= along.min(0.0) / (tensile * area);
-            seen.pull = seen.pull.max(sum.1);
+            sum.1 -= along.min(0.0);
+            seen.pull = seen.pull.max(sum.1 / (0.5 * tensile * area_of(bond.atom)));
         }
     }
     Ok(())
@@ -371,10 +360,10 @@ fn check_bits(scene: &Scene, model: &Model, start: &State, end: &State) -> Resul
     }
 }
 
-/// Plays scenes with one thread each; tells of all that are wrong and gives the others back.
-fn play_all(seeds: impl Iterator<Item = u64>, steps: u64, known: impl Fn(u64, Open) -> bool) -> Vec<(Scene, Seen)> {
+/// Plays scenes with one thread each; tells of all that are wrong and gives the others back. So many may be refused.
+fn play_all(seeds: impl Iterator<Item = u64>, steps: u64, may_be_refused: usize) -> Vec<(Scene, Seen)> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let (mut played, mut open, mut failed) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut played, mut refusals, mut failed) = (Vec::new(), Vec::new(), Vec::new());
     for seed in seeds {
         let scene = Scene { steps, ..Scene::draw(seed) };
         let result = pool.install(|| std::panic::catch_unwind(|| play(&scene)));
@@ -383,25 +372,22 @@ fn play_all(seeds: impl Iterator<Item = u64>, steps: u64, known: impl Fn(u64, Op
                 println!("{seed} {:?}: {seen:?}", scene.purpose);
                 played.push((scene, seen));
             }
-            Err(Wrong { words, open: cause }) => {
-                println!("{seed} FAILED {cause:?}: {words} ({})", scene.summary());
-                match cause {
-                    Some(cause) if known(seed, cause) => open.push(cause),
-                    _ => failed.push(format!("CONTACT_SEED={seed}: {words}")),
-                }
+            Err(Wrong { words, refused }) => {
+                println!("{seed} {}: {words} ({})", if refused { "REFUSED" } else { "FAILED" }, scene.summary());
+                let list = if refused { &mut refusals } else { &mut failed };
+                list.push(format!("CONTACT_SEED={seed}: {words}"));
             }
         }
     }
-    let count = |cause: Open| open.iter().filter(|other| **other == cause).count();
     let shortened = played.iter().filter(|(_, seen)| seen.halved > 0).count();
     let full = played.iter().filter(|(_, seen)| seen.trouble.is_some()).count();
     println!(
-        "{} scenes hold everything, {shortened} with a fixed step made shorter, {full} until they were full; open: depth {}, rest {}",
+        "{} scenes hold everything, {shortened} with a fixed step made shorter, {full} until they were full; {} are refused",
         played.len(),
-        count(Open::Depth),
-        count(Open::Rest)
+        refusals.len()
     );
     assert!(failed.is_empty(), "{} scenes fail:\n{}", failed.len(), failed.join("\n"));
+    assert!(refusals.len() <= may_be_refused, "{} scenes are refused:\n{}", refusals.len(), refusals.join("\n"));
     played
 }
 
@@ -414,23 +400,22 @@ fn number(name: &str, default: u64) -> u64 {
 fn one_scene() {
     let seed = number("CONTACT_SEED", 0);
     println!("{:#?}", Scene::draw(seed));
-    play_all(seed..=seed, number("CONTACT_STEPS", 100), |_, _| false);
+    play_all(seed..=seed, number("CONTACT_STEPS", 100), 0);
 }
 
 #[test]
-#[ignore = "slow: CONTACT_SCENES scenes from CONTACT_SEED on (0.2 s each), in which only open promises may break"]
-fn thousands_of_scenes_break_open_promises_only() {
-    let first = number("CONTACT_SEED", 1000);
-    play_all(first..first + number("CONTACT_SCENES", 2000), number("CONTACT_STEPS", 100), |_, _| true);
+#[ignore = "slow: CONTACT_SCENES scenes from CONTACT_SEED on (0.2 s each), of which one in a hundred may be refused"]
+fn thousands_of_scenes_hold_what_the_book_promises() {
+    let (first, count) = (number("CONTACT_SEED", 1000), number("CONTACT_SCENES", 2000));
+    play_all(first..first + count, number("CONTACT_STEPS", 100), count as usize / 100);
 }
 
 #[test]
-fn random_scenes_hold_what_the_book_promises_but_for_the_known_ones() {
-    // The last two have fixed steps in which edges meet that no contact at the begin of the step tells of.
-    let played = play_all((0..60).chain([1422, 1437]), 100, |seed, cause| KNOWN.contains(&(seed, cause)));
-    let mended: Vec<u64> =
-        KNOWN.iter().map(|known| known.0).filter(|seed| played.iter().any(|(scene, _)| scene.seed == *seed)).collect();
-    assert!(mended.is_empty(), "these hold now and are to be taken out of KNOWN: {mended:?}");
+fn random_scenes_hold_what_the_book_promises() {
+    // In the last ones edges slide in over the end of others (1422, 1437, 1474), sweeps leave an atom on the wrong side of a sheet
+    // (1439) or of its own cell (30094), fixed steps do not come to rest (1132, 1455), and crushed cells cross (1053).
+    let hard = [1053, 1132, 1422, 1437, 1439, 1455, 1474, 30094];
+    let played = play_all((0..60).chain(hard), 100, 0);
     let contacts = played.iter().map(|(_, seen)| seen.contacts).sum::<usize>();
     assert!(contacts > 1000, "a fuzz of nothing: {contacts} contacts");
 }

@@ -2,7 +2,8 @@
 
 use super::test_scenes::{Stage, stage};
 use super::{
-    Contacts, Detector, Feature, Plane, Reach, Scene, Shape, Sides, detect_all_pairs, find_overlaps, winding_number,
+    Contacts, Detector, EdgeContact, Feature, Plane, Reach, Scene, Shape, Sides, add_walls_of_grooves,
+    detect_all_pairs, find_overlaps, winding_number,
 };
 use crate::Vec3;
 use crate::geometry::{Surface, icosphere, sheet, translate};
@@ -107,6 +108,66 @@ fn tent(direction: Vec3, top: f64, up: f64) -> Surface {
         surface.facets.iter_mut().for_each(|facet| facet.swap(1, 2));
     }
     surface
+}
+
+#[test]
+fn an_atom_that_slides_into_a_groove_has_its_other_wall_before_it_is_there() {
+    // Two squares that rise from the y axis, one by 0.1 and one by 0.2 to each side.
+    let at = |x: f64, y: f64, z: f64| Vec3::new(x, y, z);
+    let positions =
+        vec![at(0.0, -1.0, 0.0), at(0.0, 1.0, 0.0), at(1.0, 0.0, 0.1), at(-1.0, 0.0, 0.2), at(2.0, 1.0, 0.2)];
+    let trough = Surface { positions, facets: vec![[0, 2, 1], [0, 1, 3], [1, 2, 4]] };
+    let (thin, within) = (Sides::Both, 0.05);
+    for (x, height, walls) in [(0.02, 0.01, 2), (-0.02, 0.01, 2), (0.2, 0.03, 1), (0.02, -0.03, 1)] {
+        let slope = if x > 0.0 { 0.1 } else { -0.2 };
+        let needle = needle(at(x, 0.0, slope * x + height));
+        let bodies = [(&trough, thin, trough.positions.clone()), (&needle, Sides::Outer, needle.positions.clone())];
+        let stage = stage(&bodies, Vec::new(), REACH);
+        let mut contacts = detect(&stage);
+        add_walls_of_grooves(&stage.scene, &stage.positions, within, &mut contacts);
+        let of_tip: Vec<_> = contacts.atoms.iter().filter(|contact| contact.atom == 5 && contact.body == 0).collect();
+        assert_eq!(of_tip.len(), walls, "{x}, {height}: {of_tip:?}");
+        for contact in of_tip {
+            let [a, b, c] = [0, 1, 2].map(|k| trough.positions[trough.facets[contact.facet as usize][k] as usize]);
+            let front = (b - a).cross(&(c - a)).normalize() * height.signum();
+            let distance = front.dot(&(needle.positions[0] - a));
+            assert!((contact.gap - distance).abs() < 1e-12 && (contact.normal - front).norm() < 1e-12, "{contact:?}");
+        }
+    }
+}
+
+/// A tent that hangs from its lowest edge, between two places.
+fn keel(from: Vec3, to: Vec3) -> Surface {
+    let (middle, across) = (0.5 * (from + to) + Vec3::z(), Vec3::z().cross(&(to - from)).normalize());
+    let positions = vec![from, to, middle + across, middle - across];
+    let mut surface = Surface { positions, facets: vec![[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]] };
+    if crate::geometry::volume(&surface) < 0.0 {
+        surface.facets.iter_mut().for_each(|facet| facet.swap(1, 2));
+    }
+    surface
+}
+
+#[test]
+fn an_edge_that_has_slid_in_over_its_end_touches_the_crest_that_it_passes_below() {
+    // The wall of this block at x = 1 leans in below its crest: what passes 0.01 below the crest is beside the wall there.
+    let mut block = block();
+    block.positions.iter_mut().filter(|place| place.x == 1.0).for_each(|place| place.x += 0.05 * place.z);
+    for (end, touches) in [(1.1, true), (1.0002, true), (0.9998, true), (0.99, false)] {
+        let keel = keel(Vec3::new(end, 0.3, -0.01), Vec3::new(-1.2, 0.3, -0.01));
+        for (own, stage) in [(1, pair(&block, &keel, REACH)), (0, pair(&keel, &block, REACH))] {
+            let contacts = detect(&stage);
+            let keels_share = |contact: &EdgeContact| contact.along[usize::from(contact.bodies[1] == own)];
+            let at_crest = contacts.edges.iter().find(|contact| keels_share(contact) < 0.05);
+            assert_eq!(at_crest.is_some(), touches, "end at {end}: {:?}", contacts.edges);
+            if let Some(contact) = at_crest {
+                assert!((contact.gap + 0.01).abs() < 1e-12 && contact.normal.z.abs() > 0.999_999, "{contact:?}");
+                assert!(contact.along.iter().all(|share| (0.0..=1.0).contains(share)), "{contact:?}");
+            } else {
+                // Its end is inside, and the atom there has a contact for that.
+                assert!(contacts.atoms.iter().any(|contact| contact.gap < -0.009), "{:?}", contacts.atoms);
+            }
+        }
+    }
 }
 
 #[test]

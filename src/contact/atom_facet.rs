@@ -2,7 +2,7 @@
 //! edges and corners.
 
 use super::closest::{FacetPoint, Feature, closest_on_facet};
-use super::found::{AtomContact, push};
+use super::found::{AtomContact, Facing, push};
 use super::lists::{Moved, by_body, level, number};
 use super::scene::Scene;
 use super::shape::{NONE, Shape, Sides};
@@ -62,6 +62,7 @@ pub(super) fn find_atom_contacts(
         let first_facet = scene.bodies[other as usize].first_facet;
         let mut add = |low: &Low, side: Side| {
             let (gap, normal) = surface.gap(low, side);
+            let facing = surface.facing(low, &normal);
             push(
                 contacts,
                 AtomContact {
@@ -72,6 +73,7 @@ pub(super) fn find_atom_contacts(
                     second_weights: low.point.weights,
                     gap,
                     normal,
+                    facing,
                 },
             );
         };
@@ -177,10 +179,26 @@ impl Other<'_> {
         }
     }
 
+    fn has_two_outsides(&self) -> bool {
+        self.own.is_some() || self.shape.sides == Sides::Both
+    }
+
+    /// To which side of the surface a normal points.
+    fn facing(&self, low: &Low, normal: &Vec3) -> Facing {
+        if !self.has_two_outsides() {
+            return Facing::Any;
+        }
+        match self.pseudonormal(low) {
+            Some(front) if front.dot(normal) >= 0.0 => Facing::Front,
+            Some(_) => Facing::Back,
+            None => Facing::Any,
+        }
+    }
+
     /// Whether the atom is behind the surface there. Never on its own surface, where both sides have two outsides, nor
     /// beyond the rim of an open one.
     fn side(&self, low: &Low) -> Side {
-        if self.own.is_some() || self.shape.sides == Sides::Both {
+        if self.has_two_outsides() {
             return Side { inside: false, normal: None };
         }
         let normal = self.pseudonormal(low);

@@ -1,80 +1,12 @@
 //! Edges on edges: two ridges that cross, each with its facets falling away from the other.
 
-use super::closest::LEAST_SINE_SQUARED;
+use super::closest::{LEAST_SINE_SQUARED, closest_on_segments};
 use super::found::{EdgeContact, push};
 use super::lists::{Moved, by_body, level, number};
+use super::ridge::{First, Ridge};
 use super::scene::Scene;
-use super::shape::{NONE, Shape, Sides};
+use super::shape::Sides;
 use crate::Vec3;
-
-/// An edge with its two facets.
-struct Ridge<'a> {
-    positions: &'a [Vec3],
-    start: Vec3,
-    along: Vec3,
-    /// The atoms across, in the facet that runs along the edge and in the one that runs against it, or `NONE`.
-    across: [u32; 2],
-}
-
-impl<'a> Ridge<'a> {
-    #[inline]
-    fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
-        let [start, end] = shape.ends(edge, positions);
-        Self { positions, start, along: end - start, across: shape.across[edge as usize] }
-    }
-
-    /// From the start to the atoms across; zero where there is none.
-    #[inline]
-    fn flanks(&self) -> [Vec3; 2] {
-        let flank = |atom: u32| if atom == NONE { Vec3::zeros() } else { self.positions[atom as usize] - self.start };
-        [flank(self.across[0]), flank(self.across[1])]
-    }
-
-    /// Whether one of the facets is missing.
-    fn is_rim(&self) -> bool {
-        self.across.contains(&NONE)
-    }
-
-    /// The normals of the two facets, µm², not scaled.
-    fn normals(&self) -> [Vec3; 2] {
-        let [left, right] = self.flanks();
-        [self.along.cross(&left), right.cross(&self.along)]
-    }
-
-    /// Between the unit normals of the two facets, not scaled.
-    fn outward(&self) -> Vec3 {
-        self.normals().iter().map(|normal| normal.normalize()).sum()
-    }
-
-    /// Whether the surface bends away from its outside here.
-    fn is_convex(&self) -> bool {
-        self.normals()[0].dot(&self.flanks()[1]) < 0.0
-    }
-}
-
-/// The first edge of pairs, with what all of them need of it.
-struct First<'a> {
-    ridge: Ridge<'a>,
-    flanks: [Vec3; 2],
-    /// Their squared lengths, µm².
-    squares: [f64; 2],
-    is_one_sided: bool,
-    is_convex: bool,
-}
-
-impl<'a> First<'a> {
-    fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
-        let ridge = Ridge::of(shape, positions, edge);
-        let flanks = ridge.flanks();
-        Self {
-            flanks,
-            squares: flanks.map(|flank| flank.norm_squared()),
-            is_one_sided: shape.sides == Sides::Outer && !ridge.is_rim(),
-            is_convex: ridge.is_convex(),
-            ridge,
-        }
-    }
-}
 
 /// Adds the contacts of an edge (numbered in its body) with the edges of a list, eq. (contacts.4).
 pub(super) fn find_edge_contacts(
@@ -95,14 +27,14 @@ pub(super) fn find_edge_contacts(
         }
         let first = first.get_or_insert_with(|| First::of(scene.shape(body), scene.of_body(body, positions), edge));
         let (there, places) = (scene.shape(other), scene.of_body(other, positions));
-        let surfaces_are_one_sided = first.is_one_sided && there.sides == Sides::Outer && other != body;
-        if surfaces_are_one_sided && !first.is_convex && there.closed {
+        let is_outer = [first.is_one_sided && other != body, there.sides == Sides::Outer && other != body];
+        if is_outer == [true; 2] && !first.is_convex && there.closed {
             continue;
         }
         for candidate in candidates {
             let second = Ridge::of(there, places, candidate);
-            let one_sided = surfaces_are_one_sided && !second.is_rim();
-            let crossing = cross(first, &second, one_sided, scene);
+            let outer = Outer([is_outer[0], is_outer[1] && !second.is_rim()]);
+            let crossing = cross(first, &second, outer, scene);
             let Some((along, gap, normal)) = crossing else { continue };
             let numbered = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
             push(
@@ -119,43 +51,61 @@ pub(super) fn find_edge_contacts(
     }
 }
 
+/// Which of two edges are of surfaces with one outside. The side of those with two is told by the other, if that has one.
+#[derive(Clone, Copy)]
+struct Outer([bool; 2]);
+
+impl Outer {
+    fn any(self) -> bool {
+        self.0[0] || self.0[1]
+    }
+
+    fn both(self) -> bool {
+        self.0[0] && self.0[1]
+    }
+}
+
 /// How far facets may rise towards the other edge, as a sine, where the edges have not passed each other.
 const RISE: f64 = 0.1;
 
 /// How far edges with such facets may have passed each other, over the proximity: what sweeps leave.
 const PASSED: f64 = 0.01;
 
+/// How far from where an edge crosses the crest of another, over its length, it may enter it, and how far beyond its end it may cross
+/// it then.
+const BEYOND: f64 = 0.1;
+
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
 #[inline]
 fn cross(
     First { ridge: first, flanks, squares, .. }: &First,
     second: &Ridge,
-    one_sided: bool,
+    outer: Outer,
     scene: &Scene,
 ) -> Option<([f64; 2], f64, Vec3)> {
     let normal = first.along.cross(&second.along);
     let squared = normal.norm_squared();
     // The facets of the first edge lie beyond it as seen from the second, those of the second beyond that: the normal
     // or its opposite must do for all four, or nearly so. Most pairs fail here, whatever their distance.
-    let (a, b) = (normal.dot(&flanks[0]), normal.dot(&flanks[1]));
+    let [a, b] = flanks.map(|flank| normal.dot(&flank));
     let slight = RISE * RISE * squared;
-    if a * b < 0.0 && (!one_sided || (a * a > slight * squares[0] && b * b > slight * squares[1])) {
+    if a * b < 0.0 && (!outer.any() || (a * a > slight * squares[0] && b * b > slight * squares[1])) {
         return None;
     }
     let between = first.start - second.start;
     let height = normal.dot(&between);
     let is_within = |distance: f64| height * height <= distance * distance * squared;
-    let may_rise = one_sided && is_within(scene.reach.proximity);
+    let may_rise = outer.any() && is_within(scene.reach.proximity);
     if (a * b < 0.0 && !may_rise) || !is_within(scene.reach.range()) {
         return None;
     }
     let on_first = -between.cross(&second.along).dot(&normal);
     let on_second = -between.cross(&first.along).dot(&normal);
-    if on_first < 0.0 || on_first > squared || on_second < 0.0 || on_second > squared {
+    let least = -BEYOND * squared;
+    if on_first < least || on_first > squared - least || on_second < least || on_second > squared - least {
         return None;
     }
-    let [left, right] = second.flanks();
-    let (c, d) = (-normal.dot(&left), -normal.dot(&right));
+    let [c, d] = second.flanks().map(|flank| -normal.dot(&flank));
     let (lowest, highest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
     let rises = lowest < 0.0 && highest > 0.0;
     if rises && !may_rise {
@@ -165,7 +115,7 @@ fn cross(
         return None;
     }
     let facing = if rises {
-        1f64.copysign(normal.dot(&(second.outward() - first.outward())))
+        1f64.copysign(normal.dot(&outward(first, second, outer)))
     } else if highest > 0.0 {
         1.0
     } else if lowest < 0.0 {
@@ -178,16 +128,30 @@ fn cross(
     if gap >= scene.reach.proximity || gap < -scene.reach.depth {
         return None;
     }
-    let fits = if !one_sided {
-        gap >= 0.0
-    } else if !first.is_convex() || !second.is_convex() {
+    let along = [on_first / squared, on_second / squared];
+    let within = along.iter().all(|share| (0.0..=1.0).contains(share));
+    let is_convex = |side: usize| !outer.0[side] || if side == 0 { first.is_convex() } else { second.is_convex() };
+    let fits = if !outer.any() {
+        gap >= 0.0 && within
+    } else if !is_convex(0) || !is_convex(1) {
         false
     } else if rises {
-        gap >= -PASSED * scene.reach.proximity && !have_turned(first, second, &normal, RISE)
+        within && gap >= -PASSED * scene.reach.proximity && !have_turned(first, second, &normal, RISE)
+    } else if gap >= 0.0 {
+        within
     } else {
-        gap >= 0.0 || is_really_inside(first, second, normal)
+        // Beyond their ends only pairs that are kept: those that are so near.
+        (within || (outer.both() && are_within(first, second, scene.reach.range())))
+            && (!outer.0[1] || dips_into(first, along[0], second, gap, &-normal))
+            && (!outer.0[0] || dips_into(second, along[1], first, gap, &normal))
     };
-    fits.then(|| ([on_first / squared, on_second / squared], gap, normal))
+    fits.then(|| (along.map(|share| share.clamp(0.0, 1.0)), gap, normal))
+}
+
+/// From the second edge to the first, where the outsides of their surfaces are; not scaled.
+fn outward(first: &Ridge, second: &Ridge, outer: Outer) -> Vec3 {
+    let of = |ridge: &Ridge, side: usize| if outer.0[side] { ridge.outward() } else { Vec3::zeros() };
+    of(second, 1) - of(first, 0)
 }
 
 /// Whether a facet of one edge rises towards the other edge, along the normal from the second to the first, by more than
@@ -198,11 +162,30 @@ fn have_turned(first: &Ridge, second: &Ridge, normal: &Vec3, slack: f64) -> bool
         || second.flanks().iter().any(|flank| rises(flank, -normal.dot(flank)))
 }
 
-/// Whether each edge is behind both facets of the other: on ridges sharper than a right angle an edge may be below the
-/// other's crest and yet beside it.
-fn is_really_inside(first: &Ridge, second: &Ridge, normal: Vec3) -> bool {
-    first.normals().iter().all(|facet| facet.dot(&normal) < 0.0)
-        && second.normals().iter().all(|facet| facet.dot(&normal) > 0.0)
+/// Whether two edges are nearer than a distance, µm.
+fn are_within(first: &Ridge, second: &Ridge, distance: f64) -> bool {
+    let ends = |ridge: &Ridge| [ridge.start, ridge.start + ridge.along];
+    closest_on_segments(ends(first), ends(second)).0 <= distance * distance
+}
+
+/// Whether an edge that passes below the crest of a ridge is behind both its facets there, or comes to be so close by and is nearer
+/// to the facet that faces it than to the other. On ridges sharper than a right angle an edge may be below the other's
+/// crest and yet beside it; on one as sharp as that an edge that slides in over its end is still beside one facet where it
+/// crosses the crest, or crosses it just beyond its end, and inside next to that. `facing` is the way into the ridge.
+fn dips_into(edge: &Ridge, at: f64, ridge: &Ridge, gap: f64, facing: &Vec3) -> bool {
+    let facets = ridge.normals().map(|normal| normal.normalize());
+    let slopes = facets.map(|facet| edge.along.dot(&facet));
+    let start = at.clamp(0.0, 1.0);
+    // Behind a facet is negative.
+    let heights = [0, 1].map(|facet| -gap * facing.dot(&facets[facet]) + (start - at) * slopes[facet]);
+    let beside = usize::from(heights[1] > heights[0]);
+    if heights[beside] < 0.0 {
+        // An end that is inside is for the atom there.
+        return start == at;
+    }
+    let end = if slopes[beside] > 0.0 { (start - BEYOND).max(0.0) } else { (start + BEYOND).min(1.0) };
+    let [behind, behind_facing] = [beside, 1 - beside].map(|facet| -heights[facet] - (end - start) * slopes[facet]);
+    behind_facing > 0.0 && behind >= behind_facing
 }
 
 /// How far facets may rise towards the other edge, as a sine, before a contact that was there is let go.

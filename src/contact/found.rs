@@ -2,6 +2,26 @@
 
 use super::closest::Feature;
 use crate::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Which side of a surface with two outsides an atom faces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Facing {
+    /// That to which the normals of the facets point.
+    Front,
+    /// The other.
+    Back,
+    /// Not told: the surface has one outside only, or the atom is beyond its rim.
+    #[default]
+    Any,
+}
+
+impl Facing {
+    /// Whether this is the other side for sure.
+    pub fn is_opposite(self, other: Self) -> bool {
+        matches!((self, other), (Self::Front, Self::Back) | (Self::Back, Self::Front))
+    }
+}
 
 /// An atom that touches a facet, or is inside the facet's surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +40,8 @@ pub struct AtomContact {
     pub gap: f64,
     /// Unit normal from the facet to the outside: atom = closest point + gap × normal.
     pub normal: Vec3,
+    /// The side to which the normal points, where both are outside.
+    pub facing: Facing,
 }
 
 impl AtomContact {

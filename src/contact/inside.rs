@@ -53,12 +53,7 @@ impl Overlap {
 /// When there are not as many positions as atoms.
 pub fn find_overlaps(scene: &Scene, positions: &[Vec3]) -> Vec<Overlap> {
     assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
-    let bounds: Vec<Bounds> = (0..scene.bodies.len() as u32)
-        .map(|body| match scene.of_body(body, positions) {
-            [] => Bounds::EMPTY,
-            atoms => Bounds::around(atoms, 0.0),
-        })
-        .collect();
+    let bounds = bounds_of_bodies(scene, positions);
     let mut neighbours = Neighbours::default();
     neighbours.find(&bounds);
     let with_later = |first: u32| {
@@ -67,6 +62,15 @@ pub fn find_overlaps(scene: &Scene, positions: &[Vec3]) -> Vec<Overlap> {
     };
     let of_bodies: Vec<Vec<Overlap>> = (0..scene.bodies.len() as u32).into_par_iter().map(with_later).collect();
     of_bodies.concat()
+}
+
+/// The boxes of all bodies.
+pub(super) fn bounds_of_bodies(scene: &Scene, positions: &[Vec3]) -> Vec<Bounds> {
+    let around = |body: u32| match scene.of_body(body, positions) {
+        [] => Bounds::EMPTY,
+        atoms => Bounds::around(atoms, 0.0),
+    };
+    (0..scene.bodies.len() as u32).map(around).collect()
 }
 
 /// How two bodies overlap, if they do.
@@ -111,15 +115,22 @@ fn crossings(scene: &Scene, positions: &[Vec3], with_edges: u32, with_facets: u3
     count
 }
 
-/// Whether a segment passes through a facet: its ends on different sides of the plane, and the line on the same side of
-/// all three sides of the facet.
-pub(super) fn passes_through(from: Vec3, to: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
-    let height = |point: Vec3| (b - a).cross(&(c - a)).dot(&(point - a));
-    if height(from) * height(to) >= 0.0 {
-        return false;
+/// Whether a segment passes through a facet.
+pub(super) fn passes_through(from: Vec3, to: Vec3, corners: [Vec3; 3]) -> bool {
+    crossing(from, to, corners).is_some()
+}
+
+/// Where a segment passes through a facet, from 0 at its begin to 1: its ends are on different sides of the plane, and the line on
+/// the same side of all three sides of the facet.
+pub(super) fn crossing(from: Vec3, to: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f64> {
+    let normal = (b - a).cross(&(c - a));
+    let [before, after] = [from, to].map(|point| normal.dot(&(point - a)));
+    if before * after >= 0.0 {
+        return None;
     }
     let way = to - from;
     let turn = |one: Vec3, other: Vec3| way.dot(&(one - from).cross(&(other - from)));
     let turns = [turn(a, b), turn(b, c), turn(c, a)];
-    turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0)
+    let through = turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0);
+    through.then(|| before / (before - after))
 }

@@ -3,12 +3,12 @@
 //! In a step that is long beside the relaxation of a cell contacts push what the elastic forces answer only in the next one.
 //! Where that would leave more energy than there was, the step is made again, shorter.
 
-use super::contact::{Law, SHORTEST, energy_of_give};
+use super::contact::{Law, energy_of_give};
 use super::forces::add_forces;
 use super::model::{Kind, Model, VolumeRule};
 use super::state::State;
 use super::workspace::Workspace;
-use crate::mechanics::integrator::{Method, StepSize};
+use crate::mechanics::integrator::Method;
 
 /// What a step may gain by round-off, over the energy there is.
 const ROUND_OFF: f64 = 1e-9;
@@ -29,11 +29,10 @@ pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option
     })
 }
 
-/// Whether a step has left more energy than there was, beyond round-off and what sweeps leave, and may be made shorter.
+/// Whether a step has left more energy than there was, beyond round-off and what sweeps leave.
 pub fn has_gained(model: &Model, before: Option<f64>, dt: f64, state: &State, ws: &mut Workspace) -> bool {
     let (Some(before), Some(contact)) = (before, &model.contact) else { return false };
-    let is_short = matches!(model.integrator.size, StepSize::Fixed(whole) if dt < SHORTEST * whole);
-    if is_short || !had_their_volumes(model, ws) {
+    if !had_their_volumes(model, ws) {
         return false;
     }
     add_forces(model, state.time + dt, state, ws);

@@ -10,6 +10,7 @@ pub mod inertial;
 pub mod model;
 mod motility;
 pub mod observe;
+mod pace;
 pub mod planes;
 pub mod projection;
 mod refresh;

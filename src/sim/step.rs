@@ -2,13 +2,15 @@
 
 use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::make_exact;
-use super::contact::{carry_forces, check_depth, find_contacts, has_deepened, hold_contacts, keep_contacts, travel};
+use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, is_shortest};
+use super::contact::{keep_contacts, look_for_depth, travel};
 use super::forces::add_forces;
 use super::gain::{energy_before, has_gained};
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
 use super::model::Model;
 use super::motility::advance_motility;
+use super::pace::{end_at_kinks, judge, plan_next, plan_step};
 use super::refresh::{cover_stiffening, refresh_stiffness};
 use super::state::State;
 use super::trouble::{Trouble, check_finite};
@@ -62,7 +64,7 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
         let dt_now = end_at_kinks(model, state.time, dt);
         let Estimate { error, with_contacts } = match try_step(model, dt_now, state, ws) {
             Ok(estimate) => estimate,
-            Err(trouble) if matches!(model.integrator.size, StepSize::Fixed(_)) || refused + 1 == TRIES => {
+            Err(trouble) if refused + 1 == TRIES || !may_be_mended(model, dt_now, &trouble) => {
                 restore(state, ws);
                 return Err(trouble);
             }
@@ -71,7 +73,8 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
         };
         let (mut accepted, mut next) = judge(model, dt_now, with_contacts);
         limited |= next < judge(model, dt_now, error).1;
-        let better = if accepted { look_again(model, energy, dt_now, again, state, ws) } else { None };
+        let better = if accepted { look_again(model, energy, dt_now, again, state, ws) } else { Ok(None) };
+        let better = better.inspect_err(|_| restore(state, ws))?;
         if let Some(shorter) = better {
             (accepted, next, limited, again) = (false, shorter, limited || shorter < dt_now, again + 1);
         }
@@ -93,8 +96,19 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
     Err(Trouble::StepTooSmall { time: state.time, dt })
 }
 
-/// The time in which an accepted step is to be made again, with more care: where cells left alone would gain energy, or a fixed step
-/// would end with cells deep in each other.
+/// Whether a shorter step may do where this one failed: an adaptive one always, a fixed one where contacts did not come to rest.
+fn may_be_mended(model: &Model, dt: f64, trouble: &Trouble) -> bool {
+    match model.integrator.size {
+        StepSize::Adaptive { .. } => true,
+        StepSize::Fixed(_) => matches!(trouble, Trouble::Contact { .. }) && !is_shortest(model, dt),
+    }
+}
+
+/// The time in which an accepted step is to be made again, with more care: where cells left alone would gain energy, or the step would
+/// end with cells deep in each other.
+///
+/// # Errors
+/// The cells that are deeper in each other than is promised, however short the step.
 fn look_again(
     model: &Model,
     energy: Option<f64>,
@@ -102,15 +116,17 @@ fn look_again(
     again: u32,
     state: &State,
     ws: &mut Workspace,
-) -> Option<f64> {
-    if again == AGAIN {
-        None
-    } else if has_gained(model, energy, dt, state, ws) {
+) -> Result<Option<f64>, Trouble> {
+    let may_be_shorter = again < AGAIN && !is_shortest(model, dt);
+    if may_be_shorter && has_gained(model, energy, dt, state, ws) {
         ws.contact.care *= MORE_CARE;
         // At first without mending depths, which takes work however short a step is.
-        Some(if again == 0 { dt } else { 0.5 * dt })
-    } else {
-        has_deepened(model, dt, state, ws).then_some(0.5 * dt)
+        return Ok(Some(if again == 0 { dt } else { 0.5 * dt }));
+    }
+    match look_for_depth(model, state, ws) {
+        Some(_) if may_be_shorter => Ok(Some(0.5 * dt)),
+        Some(deepened) if deepened.breaks_promise() => Err(deepened.trouble(model, state.time)),
+        _ => Ok(None),
     }
 }
 
@@ -184,57 +200,6 @@ fn keep_free_positions(state: &State, ws: &mut Workspace) {
             w.force.copy_from_slice(&now.positions);
         }
     }
-}
-
-/// The step to try first.
-fn plan_step(model: &Model, state: &State) -> f64 {
-    match model.integrator.size {
-        // What is left of a fixed step that was made shorter.
-        StepSize::Fixed(dt) if state.next_step > 0.0 => state.next_step.min(dt),
-        StepSize::Fixed(dt) => dt,
-        StepSize::Adaptive { largest, .. } if state.next_step > 0.0 => state.next_step.min(largest),
-        StepSize::Adaptive { largest, .. } => {
-            let relax = |kind: &super::model::Kind| kind.drag / kind.largest_stiffness.max(f64::MIN_POSITIVE);
-            on_ladder(model.kinds.iter().map(relax).fold(largest, f64::min)).min(largest)
-        }
-    }
-}
-
-/// The step to plan after one of `dt_now` that was planned as `planned` first and as `dt` last. A step cut short by a kink says
-/// nothing against the step planned before it; one of a fixed size that was made shorter is made up for.
-fn plan_next(model: &Model, planned: f64, dt: f64, dt_now: f64, next: f64) -> f64 {
-    match model.integrator.size {
-        StepSize::Fixed(_) if dt < planned => planned - dt_now,
-        StepSize::Fixed(whole) => whole,
-        StepSize::Adaptive { .. } if dt_now < dt => dt.max(next),
-        StepSize::Adaptive { .. } => next,
-    }
-}
-
-/// A step never runs over a bend of a course, an exchange with chemistry or the end of the run.
-fn end_at_kinks(model: &Model, time: f64, dt: f64) -> f64 {
-    // Room for the round-off of a clock that adds many steps.
-    let slack = 1e-12 * model.until;
-    let kinks = model.kinks.iter().copied().chain([model.until, next_exchange(model, time)]);
-    let ahead = kinks.filter(|&kink| kink > time + slack);
-    let left = ahead.fold(f64::INFINITY, f64::min) - time;
-    if dt >= left - slack { left } else { dt }
-}
-
-/// Whether the error allows the step, and the step to try next.
-fn judge(model: &Model, dt: f64, error: f64) -> (bool, f64) {
-    let StepSize::Adaptive { tolerance, largest } = model.integrator.size else { return (true, dt) };
-    if error.is_nan() || error.is_infinite() {
-        return (false, on_ladder(0.3 * dt));
-    }
-    // The estimate is of first order, so that the error grows with the square of the step.
-    let ideal = dt * (0.9 * (tolerance / error.max(1e-300)).sqrt()).clamp(0.3, 4.0);
-    (error <= tolerance, on_ladder(ideal).min(largest))
-}
-
-/// The largest power of √2 seconds not above a step: few different steps mean few factorisations.
-fn on_ladder(dt: f64) -> f64 {
-    (0.5 * (2.0 * dt.log2() + 1e-9).floor()).exp2()
 }
 
 fn advance_clock(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {

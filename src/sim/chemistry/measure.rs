@@ -55,8 +55,8 @@ impl CellNumbers {
     }
 }
 
-/// Measures all cells; `dt` is the step just made, s, 0 before the first. What touches is what was found where the step
-/// began.
+/// Measures all cells; `dt` is the step just made, s, 0 before the first. What touches is what was found last: under
+/// adhesives where the step ended, and else where it began.
 pub(super) fn measure_cells(model: &Model, state: &State, ws: &mut Workspace, dt: f64) {
     let (rest, found) = (&model.chemistry.rest, &ws.contact.found.atoms);
     for (((kind, now), w), rest) in model.kinds.iter().zip(&state.kinds).zip(&ws.kinds).zip(rest) {

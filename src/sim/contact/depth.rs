@@ -1,12 +1,10 @@
 //! Whether contacts can be mended where a step begins, and whether cells have passed each other unnoticed.
 
-use rayon::prelude::*;
-
+use super::find::write_bonds;
 use super::gather::gather_places;
 use super::model::{ContactModel, Law};
-use crate::Vec3;
-use crate::contact::{Sides, closest_on_facet, winding_number};
-use crate::geometry::bounding_box;
+use super::remember::find_at;
+use crate::contact::{Contacts, Sides, find_deeper, winding_number};
 use crate::mechanics::integrator::StepSize;
 use crate::sim::model::Model;
 use crate::sim::state::State;
@@ -40,36 +38,87 @@ pub fn check_depth(model: &Model, state: &State, ws: &Workspace) -> Result<(), T
     Err(Trouble::Pressed { cells, time: state.time, depth })
 }
 
-/// The depth from which on a fixed step is made shorter where it deepens, over the smallest mean edge: half of what is promised.
+/// The depth from which on a step is made shorter where it deepens, over the shorter mean edge of the two cells: half of what is
+/// promised.
 const DEEP: f64 = 0.01;
+
+/// The depth that is promised, over the same edge.
+const PROMISED: f64 = 0.02;
 
 /// What a depth may grow by in such a step, over what it was.
 const GROWS: f64 = 1.1;
 
 /// The shortest part of a fixed step that is made shorter still, over the whole.
-pub const SHORTEST: f64 = 0.01;
+const SHORTEST: f64 = 0.01;
 
-/// Whether cells are deep in each other after a fixed step, and deeper than before: something met within the step that no contact
-/// at its begin told of. An adaptive step is short where things move fast. What is found here is what the next step begins with.
-pub fn has_deepened(model: &Model, dt: f64, state: &State, ws: &mut Workspace) -> bool {
-    let (Some(contact), StepSize::Fixed(whole)) = (&model.contact, model.integrator.size) else { return false };
-    if contact.law != Law::Adhesives || dt < SHORTEST * whole {
-        return false;
-    }
-    let s = &mut ws.contact;
-    gather_places(model, contact, state, &mut s.places);
-    s.detector.detect(&contact.scene, &s.places, &mut s.ahead);
-    s.ahead_of = Some(fingerprint(&s.places));
-    let edge = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
-    let [before, after] = [&s.found, &s.ahead].map(|found| (-found.smallest_gap()).max(0.0));
-    after > DEEP * edge && after > GROWS * before
+/// Whether what is left of a step is too short to be made shorter still.
+pub fn is_shortest(model: &Model, dt: f64) -> bool {
+    matches!(model.integrator.size, StepSize::Fixed(whole) if dt < SHORTEST * whole)
 }
 
-/// A number that other positions have by a chance of 10⁻¹⁹ only.
-pub(super) fn fingerprint(places: &[Vec3]) -> u64 {
-    let bits = places.iter().flat_map(|place| [place.x, place.y, place.z]).map(f64::to_bits);
-    // The multiplier of Knuth's MMIX generator; a rotation mixes the high bits back in.
-    bits.fold(places.len() as u64, |mixed, bits| (mixed.rotate_left(23) ^ bits).wrapping_mul(6_364_136_223_846_793_005))
+/// Two cells that are deep in each other after a step, and deeper than any were before it: something met within the step that no
+/// contact at its begin told of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deepened {
+    deepest: Deepest,
+}
+
+impl Deepened {
+    /// Whether they are deeper in each other than is promised.
+    pub fn breaks_promise(&self) -> bool {
+        self.deepest.share > PROMISED
+    }
+
+    /// The trouble that this is where no step is short enough.
+    pub fn trouble(&self, model: &Model, time: f64) -> Trouble {
+        let cells = self.deepest.bodies.map(|body| model.kind_of(body as usize));
+        let cells = cells.map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
+        Trouble::Pressed { cells, time, depth: self.deepest.depth }
+    }
+}
+
+/// Finds what touches where a step ends, and says whether cells are deep in each other there. The next step begins with what is
+/// found, and with what contacts carry now, which is written down before.
+pub fn look_for_depth(model: &Model, state: &State, ws: &mut Workspace) -> Option<Deepened> {
+    let contact = model.contact.as_ref().filter(|contact| contact.law == Law::Adhesives)?;
+    let s = &mut ws.contact;
+    let before = Deepest::of(model, contact, &s.found);
+    write_bonds(&s.found, &s.rows, &s.pulls, &mut s.bonds);
+    gather_places(model, contact, state, &mut s.start);
+    find_at(contact, &s.bonds, &s.start, &mut s.detector, &mut s.found);
+    s.has_looked = true;
+    let deepest = Deepest::of(model, contact, &s.found)?;
+    let grows = before.is_none_or(|before| deepest.share > GROWS * before.share);
+    (deepest.share > DEEP && grows).then_some(Deepened { deepest })
+}
+
+/// The deepest contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Deepest {
+    /// Depth over the shorter mean edge of the two cells.
+    share: f64,
+    /// Depth, µm.
+    depth: f64,
+    /// The two cells; twice the same on a plane.
+    bodies: [u32; 2],
+}
+
+impl Deepest {
+    /// That of all contacts; none where nothing is inside.
+    fn of(model: &Model, contact: &ContactModel, found: &Contacts) -> Option<Self> {
+        let owner = |atom: u32| contact.scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1;
+        let edge = |body: u32| model.kinds[contact.kind_of(body)].edge;
+        let of_atoms = found.atoms.iter().filter(|near| near.gap < 0.0);
+        let of_atoms = of_atoms.map(|near| (near.gap, [owner(near.atom), near.body]));
+        let of_edges = found.edges.iter().filter(|near| near.gap < 0.0).map(|near| (near.gap, near.bodies));
+        let of_planes = found.planes.iter().filter(|near| near.gap < 0.0);
+        let of_planes = of_planes.map(|near| (near.gap, [owner(near.atom); 2]));
+        let all = of_atoms.chain(of_edges).chain(of_planes).map(|(gap, bodies)| {
+            let [one, other] = bodies.map(edge);
+            Self { share: -gap / one.min(other), depth: -gap, bodies }
+        });
+        all.max_by(|one, other| one.share.total_cmp(&other.share))
+    }
 }
 
 /// An atom that touched a body in the step before, and is now so deep in it that no contact is found, with the body.
@@ -90,9 +139,10 @@ fn lost_inside(contact: &ContactModel, state: &State, ws: &Workspace) -> Option<
     touched.find(|&(atom, body)| !is_found(atom, body) && is_inside(atom, body))
 }
 
-/// Refuses a state in which an atom is farther inside another cell than contacts are found. Contacts look at what is near; where
-/// cells are crushed beyond what they can resolve, as in a box that is too small, surfaces may slip through each other
-/// by ways that no contact sees. This looks at all atoms, slowly: for the instants that are recorded.
+/// Refuses a state in which cells are deeper in each other than is promised. Contacts look at what is near; where cells are crushed
+/// beyond what they can resolve, as in a box that is too small, surfaces may slip through each other by ways that no
+/// contact sees. This looks at all atoms and edges, slowly: for the instants that are recorded. Where depths are not promised, as
+/// under penalties, they may be as deep as contacts are found.
 ///
 /// # Errors
 /// The first two cells that are inside each other.
@@ -101,36 +151,12 @@ pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
     let scene = &contact.scene;
     let mut places = Vec::new();
     gather_places(model, contact, state, &mut places);
-    let atoms_of = |body: u32| {
-        let first = scene.bodies[body as usize].first_atom as usize;
-        first..first + scene.shape(body).atoms
+    let edge = |body: u32| model.kinds[contact.kind_of(body)].edge;
+    let most = |one: u32, other: u32| match contact.law {
+        Law::Adhesives => PROMISED * edge(one).min(edge(other)),
+        _ => scene.reach.depth,
     };
-    let bodies = 0..scene.bodies.len() as u32;
-    let boxes: Vec<(Vec3, Vec3)> =
-        bodies.clone().map(|body| bounding_box(&places[atoms_of(body)]).unwrap_or_default()).collect();
-    let depth_in = |atom: usize, other: u32| {
-        let (shape, there) = (scene.shape(other), &places[atoms_of(other)]);
-        let (low, high) = &boxes[other as usize];
-        let outside = (0..3).any(|axis| places[atom][axis] < low[axis] || places[atom][axis] > high[axis]);
-        if outside || winding_number(places[atom], there, &shape.facets) < 0.5 {
-            return 0.0;
-        }
-        let corners = shape.facets.iter().map(|facet| facet.map(|corner| there[corner as usize]));
-        let distances = corners.map(|corners| closest_on_facet(places[atom], corners).offset.norm());
-        distances.fold(f64::INFINITY, f64::min)
-    };
-    let passed = bodies.clone().into_par_iter().find_map_first(|body| {
-        let meets = |other: &u32| {
-            let ((low, high), (from, to)) = (&boxes[body as usize], &boxes[*other as usize]);
-            let shape = scene.shape(*other);
-            let solid = shape.closed && shape.sides == Sides::Outer;
-            *other != body && solid && (0..3).all(|axis| low[axis] <= to[axis] && from[axis] <= high[axis])
-        };
-        bodies.clone().filter(meets).find_map(|other| {
-            let deep = atoms_of(body).map(|atom| depth_in(atom, other)).find(|depth| *depth > scene.reach.depth);
-            deep.map(|depth| (body, other, depth))
-        })
-    });
+    let passed = find_deeper(scene, &places, most);
     let Some((body, other, depth)) = passed else { return Ok(()) };
     let cells = [body, other].map(|body| model.kind_of(body as usize));
     let cells = cells.map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));

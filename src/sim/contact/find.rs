@@ -1,17 +1,17 @@
 //! What touches where a step begins, and what it carried in the step before.
 
-use super::depth::fingerprint;
 use super::gather::gather_places;
 use super::give::given_after;
 use super::links::{links_at, pull_links};
-use super::model::{ContactModel, Law};
+use super::model::Law;
 use super::penalty::press;
-use super::rows::{Pull, write_rows};
+use super::remember::find_at;
+use super::rows::{Pull, Row, write_rows};
 use super::scratch::{ContactScratch, empty_for};
 use super::spread::{add, add_spreading};
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
-use crate::contact::{AtomContact, Contacts, PlaneContact, edges_still_touch};
+use crate::contact::{AtomContact, Contacts, PlaneContact};
 use crate::sim::model::Model;
 use crate::sim::state::State;
 use crate::sim::workspace::Workspace;
@@ -21,14 +21,10 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     let Some(contact) = &model.contact else { return };
     let s = &mut ws.contact;
     s.care = 1.0;
-    gather_places(model, contact, state, &mut s.start);
-    match s.ahead_of.take() {
-        Some(known) if known == fingerprint(&s.start) => std::mem::swap(&mut s.found, &mut s.ahead),
-        _ => {
-            s.detector.detect(&contact.scene, &s.start, &mut s.found);
-        }
+    let is_where_it_ended = gather_places(model, contact, state, &mut s.start);
+    if !(std::mem::take(&mut s.has_looked) && is_where_it_ended) {
+        find_at(contact, &state.contact, &s.start, &mut s.detector, &mut s.found);
     }
-    keep_edges(contact, &state.contact, &s.start, &mut s.found);
     let ContactScratch { found, start, linked, links, adhesives, .. } = s;
     links_at(contact, &state.chemistry.controls, &state.contact.links, found, start, linked, links);
     adhesives.find(contact, &model.kinds, &state.chemistry.controls, &state.contact, found, start, state.time);
@@ -44,6 +40,11 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
 pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
     let Some(contact) = &model.contact else { return };
     let s = &mut ws.contact;
+    if std::mem::take(&mut s.has_looked) {
+        // The try was looked at to its end.
+        gather_places(model, contact, state, &mut s.start);
+        find_at(contact, &state.contact, &s.start, &mut s.detector, &mut s.found);
+    }
     s.moved.clear();
     s.moved.resize(contact.scene.atoms, [0.0; 4]);
     add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.moved);
@@ -55,19 +56,6 @@ pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
     for one in &s.adhesives.atoms {
         add(&mut s.moved[one.atom as usize], &Vec3::from(one.force));
     }
-}
-
-/// Adds edges that carried a force and still touch to those found: between surfaces that are nearly flat they come and
-/// go with every tremor.
-fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3], found: &mut Contacts) {
-    let count = found.edges.len();
-    for bond in before.edges.iter().filter(|bond| bond.force != [0.0; 3]) {
-        if found.edges[..count].binary_search_by(|edge| edge.edges.cmp(&bond.edges)).is_err() {
-            let normal = Vec3::from(bond.normal);
-            found.edges.extend(edges_still_touch(&contact.scene, positions, bond.edges, bond.bodies, &normal));
-        }
-    }
-    found.edges.sort_unstable_by_key(|edge| edge.edges);
 }
 
 /// Sets the forces of links and penalties where the atoms are now: they change while a step is made, and its error estimate
@@ -106,25 +94,34 @@ pub fn add_contact_forces(model: &Model, number: usize, block: usize, scratch: &
 pub fn keep_contacts(model: &Model, state: &mut State, ws: &mut Workspace) {
     let Some(contact) = &model.contact else { return };
     let s = &mut ws.contact;
-    s.adhesives.keep(contact, &state.chemistry.controls, &s.found, &s.moved, &mut state.contact);
-    let ContactState { atoms, edges, planes, links, .. } = &mut state.contact;
-    links.clone_from(&s.links);
-    let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
-    let (of_atoms, others) = s.pulls.split_at(s.found.atoms.len());
-    let (of_edges, of_planes) = others.split_at(s.found.edges.len());
-    empty_for(atoms, s.found.atoms.len());
-    for ((pull, row), contact) in of_atoms.iter().zip(&s.rows).zip(&s.found.atoms) {
-        let &AtomContact { atom, body, facet, .. } = contact;
-        atoms.push(AtomBond { atom, body, facet, force: xyz(pull), given: given_after(row, pull) });
+    if s.has_looked {
+        std::mem::swap(&mut state.contact, &mut s.bonds);
+        return;
     }
-    empty_for(edges, s.found.edges.len());
-    for (pull, contact) in of_edges.iter().zip(&s.found.edges) {
+    s.adhesives.keep(contact, &state.chemistry.controls, &s.found, &s.moved, &mut state.contact);
+    state.contact.links.clone_from(&s.links);
+    write_bonds(&s.found, &s.rows, &s.pulls, &mut state.contact);
+}
+
+/// Writes what contacts carry. The contacts must be those of the rows.
+pub(super) fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds: &mut ContactState) {
+    let ContactState { atoms, edges, planes, .. } = bonds;
+    let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
+    let (of_atoms, others) = pulls.split_at(found.atoms.len());
+    let (of_edges, of_planes) = others.split_at(found.edges.len());
+    empty_for(atoms, found.atoms.len());
+    for ((pull, row), contact) in of_atoms.iter().zip(rows).zip(&found.atoms) {
+        let &AtomContact { atom, body, facet, facing, .. } = contact;
+        atoms.push(AtomBond { atom, body, facet, facing, force: xyz(pull), given: given_after(row, pull) });
+    }
+    empty_for(edges, found.edges.len());
+    for (pull, contact) in of_edges.iter().zip(&found.edges) {
         let normal = contact.normal.into();
         edges.push(EdgeBond { edges: contact.edges, bodies: contact.bodies, normal, force: xyz(pull) });
     }
-    empty_for(planes, s.found.planes.len());
-    let rows = &s.rows[s.rows.len() - of_planes.len()..];
-    for ((pull, row), contact) in of_planes.iter().zip(rows).zip(&s.found.planes) {
+    empty_for(planes, found.planes.len());
+    let rows = &rows[rows.len() - of_planes.len()..];
+    for ((pull, row), contact) in of_planes.iter().zip(rows).zip(&found.planes) {
         let &PlaneContact { atom, plane, .. } = contact;
         planes.push(PlaneBond { atom, plane, force: xyz(pull), given: given_after(row, pull) });
     }

@@ -4,7 +4,7 @@ use super::model::{ContactModel, Strength};
 use super::scratch::empty_for;
 use super::state::ContactState;
 use crate::Vec3;
-use crate::contact::Contacts;
+use crate::contact::{AtomContact, Contacts};
 use crate::sim::chemistry::Controls;
 
 /// One contact as it stands in a step, eq. (adhesion.1). The gap changes by `normal · Σ weights[i] D[atoms[i]]` when atoms are displaced by
@@ -72,7 +72,7 @@ pub fn write_rows(
         };
     let scene = &model.scene;
     let (mut body, mut first) = (0, 0);
-    for contact in &found.atoms {
+    for (number, contact) in found.atoms.iter().enumerate() {
         while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= contact.atom) {
             body += 1;
         }
@@ -95,6 +95,7 @@ pub fn write_rows(
         let strength = if own { Strength::default() } else { model.strength_between(body, other) };
         let kind = model.kind_of(body as u32);
         let area = SHARE * model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
+        let area = area / places_on_body(found, number) as f64;
         let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
         add(
             [contact.atom, i, j, k],
@@ -145,6 +146,13 @@ pub fn write_rows(
             same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.given)),
         );
     }
+}
+
+/// In how many places the atom of a contact touches the body of it: in a groove in two or more, which share what it bears.
+pub fn places_on_body(found: &Contacts, number: usize) -> usize {
+    let same = |other: &&AtomContact| (other.atom, other.body) == (found.atoms[number].atom, found.atoms[number].body);
+    let before = found.atoms[..number].iter().rev().take_while(same).count();
+    before + found.atoms[number..].iter().take_while(same).count()
 }
 
 impl Row {

@@ -3,6 +3,7 @@
 use super::links::Link;
 use super::momentum::Momentum;
 use super::rows::{Pull, Row};
+use super::state::ContactState;
 use super::sweep::{V4, VolumeRow};
 use super::zones::AdhesiveScratch;
 use crate::Vec3;
@@ -13,13 +14,13 @@ use crate::contact::{Contacts, Detector};
 pub struct ContactScratch {
     /// Pairs that are near.
     pub detector: Detector,
-    /// What touches where the step began.
+    /// What touches: under adhesives where the step ended, once it has, and else where it began.
     pub found: Contacts,
-    /// What touches where a fixed step ends.
-    pub(super) ahead: Contacts,
-    /// The fingerprint of the positions for which that was found.
-    pub(super) ahead_of: Option<u64>,
-    /// Positions where the step began, µm.
+    /// Whether this was found where the step ended.
+    pub(super) has_looked: bool,
+    /// What contacts carry to the next step, once that is so.
+    pub(super) bonds: ContactState,
+    /// Positions where that is, µm.
     pub start: Vec<Vec3>,
     /// Links of the step.
     pub links: Vec<Link>,
@@ -27,7 +28,7 @@ pub struct ContactScratch {
     pub adhesives: AdhesiveScratch,
     /// Facets that have a link.
     pub(super) linked: Vec<bool>,
-    /// Positions in the stage that is being made, µm.
+    /// Positions in the stage that is being made, µm; under links and penalties only.
     pub(super) places: Vec<Vec3>,
     /// Force of links or penalties on the atoms in that stage, pN; empty where there are none.
     pub(super) live_force: Vec<Vec3>,
@@ -61,8 +62,8 @@ impl ContactScratch {
     pub fn poison(&mut self) {
         self.detector.forget();
         self.found.clear();
-        self.ahead.clear();
-        self.ahead_of = None;
+        self.has_looked = false;
+        self.bonds = ContactState::default();
         self.rows.clear();
         self.pulls.clear();
         self.volumes.clear();

@@ -2,6 +2,7 @@
 
 use super::links::Link;
 use super::zones::AdhesiveAtom;
+use crate::contact::Facing;
 use serde::{Deserialize, Serialize};
 
 /// An atom that touches a facet of a body.
@@ -13,6 +14,8 @@ pub struct AtomBond {
     pub body: u32,
     /// The facet, numbered through all cells.
     pub facet: u32,
+    /// The side of it that the atom is on, where both are outside: it stays there.
+    pub facing: Facing,
     /// Force on the atom, pN; the facet's atoms feel the opposite.
     pub force: [f32; 3],
     /// What went into its give and has not come back, pN·µm, eq. (adhesion.5).

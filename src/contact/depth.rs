@@ -1,0 +1,132 @@
+//! How deep one surface is inside another, whatever contacts were found: exact and slow, for the instants that are recorded.
+
+use rayon::prelude::*;
+
+use super::boxes::Bounds;
+use super::closest::closest_on_facet;
+use super::inside::{bounds_of_bodies, crossing, is_inside, winding_number};
+use super::neighbours::Neighbours;
+use super::scene::Scene;
+use super::shape::Sides;
+use crate::Vec3;
+
+/// Places at which each part of an edge between two crossings is looked at.
+const PLACES: usize = 5;
+
+/// The first body, with another, that is deeper inside that than `most` of the two (µm), and the depth. The same whatever the threads.
+///
+/// # Panics
+/// When there are not as many positions as atoms.
+pub fn find_deeper(
+    scene: &Scene,
+    positions: &[Vec3],
+    most: impl Fn(u32, u32) -> f64 + Sync,
+) -> Option<(u32, u32, f64)> {
+    assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
+    let bounds = bounds_of_bodies(scene, positions);
+    let mut neighbours = Neighbours::default();
+    neighbours.find(&bounds);
+    let first = |inner: u32| {
+        neighbours.of(inner).iter().find_map(|&outer| {
+            let depth = depth_inside(scene, positions, [inner, outer], &bounds);
+            (depth > most(inner, outer)).then_some((inner, outer, depth))
+        })
+    };
+    (0..scene.bodies.len() as u32).into_par_iter().find_map_first(first)
+}
+
+/// The deepest that an atom or an edge of one body is inside another, µm: the distance to the surface of the other. 0 where nothing
+/// is inside, and for bodies that have no inside.
+fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bounds: &[Bounds]) -> f64 {
+    let (shape, other) = (scene.shape(inner), scene.shape(outer));
+    let (here, there) = (scene.of_body(inner, positions), scene.of_body(outer, positions));
+    if !other.closed || other.sides != Sides::Outer {
+        return 0.0;
+    }
+    let [around_inner, around_outer] = [inner, outer].map(|body| bounds[body as usize]);
+    let corners = |facet: &[u32; 3]| facet.map(|atom| there[atom as usize]);
+    let distance = |place: Vec3| {
+        let offsets = other.facets.iter().map(|facet| closest_on_facet(place, corners(facet)).offset.norm());
+        offsets.fold(f64::INFINITY, f64::min)
+    };
+    let mut deepest: f64 = 0.0;
+    for &place in here.iter().filter(|place| is_inside(scene, positions, **place, outer, &around_outer)) {
+        deepest = deepest.max(distance(place));
+    }
+    let near: Vec<[Vec3; 3]> =
+        other.facets.iter().map(corners).filter(|facet| Bounds::around(facet, 0.0).meets(&around_inner)).collect();
+    let mut crossings = Vec::new();
+    for &[a, b] in &shape.edges {
+        let [from, to] = [here[a as usize], here[b as usize]];
+        if !Bounds::around(&[from, to], 0.0).meets(&around_outer) {
+            continue;
+        }
+        crossings.clear();
+        crossings.extend(near.iter().filter_map(|facet| crossing(from, to, *facet)));
+        if crossings.is_empty() {
+            continue;
+        }
+        crossings.extend([0.0, 1.0]);
+        crossings.sort_unstable_by(f64::total_cmp);
+        for part in crossings.windows(2) {
+            let places = (1..=PLACES).map(|place| place as f64 / (PLACES + 1) as f64);
+            let mut places = places.map(|share| from.lerp(&to, part[0] + share * (part[1] - part[0])));
+            let middle = from.lerp(&to, 0.5 * (part[0] + part[1]));
+            if winding_number(middle, there, &other.facets) > 0.5 {
+                deepest = places.by_ref().map(distance).fold(deepest, f64::max);
+            }
+        }
+    }
+    deepest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Reach;
+    use super::super::test_scenes::{Stage, stage};
+    use super::*;
+    use crate::geometry::{icosphere, sheet};
+
+    const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+
+    /// Depth of the second body in the first.
+    fn depth(stage: &Stage) -> f64 {
+        let most = |inner: u32, _: u32| if inner == 1 { -1.0 } else { f64::INFINITY };
+        find_deeper(&stage.scene, &stage.positions, most).map_or(0.0, |(.., depth)| depth)
+    }
+
+    #[test]
+    fn a_ball_in_a_ball_is_as_deep_as_its_farthest_place() {
+        let ball = icosphere(1.0, 3);
+        let at = |x: f64| ball.positions.iter().map(|place| place + Vec3::new(x, 0.0, 0.0)).collect::<Vec<_>>();
+        for shift in [1.2, 1.7, 1.95] {
+            let bodies = [(&ball, Sides::Outer, at(0.0)), (&ball, Sides::Outer, at(shift))];
+            let stage = stage(&bodies, Vec::new(), REACH);
+            let depth = depth(&stage);
+            // The atom towards the centre of the other is at 2 - shift; facets cut a little off the other ball.
+            assert!((depth - (2.0 - shift)).abs() < 0.01, "{shift}: {depth}");
+        }
+        let bodies = [(&ball, Sides::Outer, at(0.0)), (&ball, Sides::Outer, at(2.1))];
+        let stage = stage(&bodies, Vec::new(), REACH);
+        assert_eq!(depth(&stage), 0.0);
+    }
+
+    #[test]
+    fn an_edge_through_a_ball_is_seen_though_its_ends_are_outside() {
+        let (ball, flat) = (icosphere(1.0, 3), sheet(8.0, 8.0, 1, 1));
+        for height in [0.5, 0.9, 0.97] {
+            let bodies = [
+                (&ball, Sides::Outer, ball.positions.clone()),
+                (&flat, Sides::Both, flat.positions.iter().map(|place| place + Vec3::new(0.0, 0.0, height)).collect()),
+            ];
+            let stage = stage(&bodies, Vec::new(), REACH);
+            // A sheet has no inside; its diagonal passes over the middle of the ball.
+            assert_eq!(
+                find_deeper(&stage.scene, &stage.positions, |inner, _| f64::from(inner)).map(|found| found.0),
+                None
+            );
+            let depth = depth(&stage);
+            assert!((depth - (1.0 - height)).abs() < 0.02, "{height}: {depth}");
+        }
+    }
+}
