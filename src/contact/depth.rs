@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::boxes::Bounds;
 use super::closest::closest_on_facet;
-use super::inside::{bounds_of_bodies, crossing, is_inside, winding_number};
+use super::inside::{bounds_of_bodies, crossing, is_inside};
 use super::neighbours::Neighbours;
 use super::scene::Scene;
 use super::shape::Sides;
@@ -28,56 +28,92 @@ pub fn find_deeper(
     neighbours.find(&bounds);
     let first = |inner: u32| {
         neighbours.of(inner).iter().find_map(|&outer| {
-            let depth = depth_inside(scene, positions, [inner, outer], &bounds);
-            (depth > most(inner, outer)).then_some((inner, outer, depth))
+            let most = most(inner, outer);
+            let depth = depth_inside(scene, positions, [inner, outer], &bounds, most);
+            (depth > most).then_some((inner, outer, depth))
         })
     };
     (0..scene.bodies.len() as u32).into_par_iter().find_map_first(first)
 }
 
-/// The deepest that an atom or an edge of one body is inside another, µm: the distance to the surface of the other. 0 where nothing
-/// is inside, and for bodies that have no inside.
-fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bounds: &[Bounds]) -> f64 {
+/// The deepest that an atom or an edge of one body is inside another, µm: the distance to the surface of the other. No more than
+/// `most` where nothing is deeper, and for bodies that have no inside.
+fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bounds: &[Bounds], most: f64) -> f64 {
     let (shape, other) = (scene.shape(inner), scene.shape(outer));
     let (here, there) = (scene.of_body(inner, positions), scene.of_body(outer, positions));
     if !other.closed || other.sides != Sides::Outer {
-        return 0.0;
+        return most;
     }
     let [around_inner, around_outer] = [inner, outer].map(|body| bounds[body as usize]);
     let corners = |facet: &[u32; 3]| facet.map(|atom| there[atom as usize]);
-    let distance = |place: Vec3| {
-        let offsets = other.facets.iter().map(|facet| closest_on_facet(place, corners(facet)).offset.norm());
-        offsets.fold(f64::INFINITY, f64::min)
-    };
-    let mut deepest: f64 = 0.0;
-    for &place in here.iter().filter(|place| is_inside(scene, positions, **place, outer, &around_outer)) {
-        deepest = deepest.max(distance(place));
-    }
     let near: Vec<[Vec3; 3]> =
         other.facets.iter().map(corners).filter(|facet| Bounds::around(facet, 0.0).meets(&around_inner)).collect();
-    let mut crossings = Vec::new();
+    let distance = |place: Vec3, facets: &mut dyn Iterator<Item = [Vec3; 3]>| {
+        facets.map(|facet| closest_on_facet(place, facet).offset.norm()).fold(f64::INFINITY, f64::min)
+    };
+    // The facets that are near tell at once that most places are not deeper.
+    let deeper = |deepest: f64, place: Vec3| match distance(place, &mut near.iter().copied()) {
+        above if above <= deepest => deepest,
+        _ => deepest.max(distance(place, &mut other.facets.iter().map(corners))),
+    };
+    let is_inside = |place: Vec3| is_inside(scene, positions, place, outer, &around_outer);
+    let (mut deepest, mut crossings) = (most, Vec::new());
+    // Atoms that edges join without a crossing are on one side.
+    let mut parts = Parts::new(here.len());
     for &[a, b] in &shape.edges {
         let [from, to] = [here[a as usize], here[b as usize]];
-        if !Bounds::around(&[from, to], 0.0).meets(&around_outer) {
-            continue;
-        }
         crossings.clear();
-        crossings.extend(near.iter().filter_map(|facet| crossing(from, to, *facet)));
+        if Bounds::around(&[from, to], 0.0).meets(&around_outer) {
+            crossings.extend(near.iter().filter_map(|facet| crossing(from, to, *facet)));
+        }
         if crossings.is_empty() {
+            parts.join(a, b);
             continue;
         }
         crossings.extend([0.0, 1.0]);
         crossings.sort_unstable_by(f64::total_cmp);
         for part in crossings.windows(2) {
-            let places = (1..=PLACES).map(|place| place as f64 / (PLACES + 1) as f64);
-            let mut places = places.map(|share| from.lerp(&to, part[0] + share * (part[1] - part[0])));
-            let middle = from.lerp(&to, 0.5 * (part[0] + part[1]));
-            if winding_number(middle, there, &other.facets) > 0.5 {
-                deepest = places.by_ref().map(distance).fold(deepest, f64::max);
+            let at = |share: f64| from.lerp(&to, part[0] + share * (part[1] - part[0]));
+            if is_inside(at(0.5)) {
+                let places = (1..=PLACES).map(|place| at(place as f64 / (PLACES + 1) as f64));
+                deepest = places.fold(deepest, deeper);
             }
         }
     }
-    deepest
+    let mut may_be_inside = vec![true; here.len()];
+    for (place, atom) in here.iter().zip(0..) {
+        if !Bounds::around(&[*place], 0.0).meets(&around_outer) {
+            may_be_inside[parts.root(atom) as usize] = false;
+        }
+    }
+    let is_root_inside: Vec<bool> = (0..here.len())
+        .map(|atom| may_be_inside[atom] && parts.root(atom as u32) as usize == atom && is_inside(here[atom]))
+        .collect();
+    let inside = (0..here.len() as u32).filter(|&atom| is_root_inside[parts.root(atom) as usize]);
+    inside.map(|atom| here[atom as usize]).fold(deepest, deeper)
+}
+
+/// Atoms joined to parts; each part is known by one of its atoms.
+struct Parts(Vec<u32>);
+
+impl Parts {
+    fn new(atoms: usize) -> Self {
+        Self((0..atoms as u32).collect())
+    }
+
+    fn root(&self, mut atom: u32) -> u32 {
+        while self.0[atom as usize] != atom {
+            atom = self.0[atom as usize];
+        }
+        atom
+    }
+
+    /// Joins the parts of two atoms.
+    fn join(&mut self, one: u32, other: u32) {
+        let [one, other] = [one, other].map(|atom| self.root(atom));
+        let (root, below) = (one.min(other), one.max(other));
+        self.0[below as usize] = root;
+    }
 }
 
 #[cfg(test)]
