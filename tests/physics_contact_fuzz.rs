@@ -21,6 +21,9 @@ use pseudopod::sim::{Attraction, Model, State, Trouble, VolumeRule, Workspace, s
 /// The deepest that one cell may be in another, over the mean edge.
 const DEEPEST: f64 = 0.02;
 
+/// The part of space that balls fill in a random close packing.
+const RANDOM_PACKING: f64 = 0.64;
+
 /// Steps from one state that is recorded to the next.
 const RECORDED: u64 = 20;
 
@@ -138,7 +141,10 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
         }
     }
     if seen.trouble.is_some() {
-        // The trouble is that they are inside each other.
+        // Balls fill as much without being deformed: below, cells have room.
+        if seen.fill < RANDOM_PACKING {
+            return Err((format!("a box is too full at {:.3}", seen.fill), None));
+        }
         return Ok((state, seen));
     }
     find_contacts(model, &state, &mut ws);

@@ -102,8 +102,12 @@ fn tent(direction: Vec3, top: f64, up: f64) -> Surface {
     let side = Vec3::z().cross(&direction);
     let (near, far) = (direction * -1.0 + Vec3::z() * top, direction + Vec3::z() * top);
     let low = Vec3::z() * (-up);
-    let positions = vec![near, far, Vec3::z() * top + low + side, Vec3::z() * top + low - side];
-    let mut surface = Surface { positions, facets: vec![[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]] };
+    tetrahedron([near, far, Vec3::z() * top + low + side, Vec3::z() * top + low - side])
+}
+
+/// A tetrahedron that faces outwards.
+fn tetrahedron(corners: [Vec3; 4]) -> Surface {
+    let mut surface = Surface { positions: corners.into(), facets: vec![[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]] };
     if crate::geometry::volume(&surface) < 0.0 {
         surface.facets.iter_mut().for_each(|facet| facet.swap(1, 2));
     }
@@ -139,12 +143,7 @@ fn an_atom_that_slides_into_a_groove_has_its_other_wall_before_it_is_there() {
 /// A tent that hangs from its lowest edge, between two places.
 fn keel(from: Vec3, to: Vec3) -> Surface {
     let (middle, across) = (0.5 * (from + to) + Vec3::z(), Vec3::z().cross(&(to - from)).normalize());
-    let positions = vec![from, to, middle + across, middle - across];
-    let mut surface = Surface { positions, facets: vec![[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]] };
-    if crate::geometry::volume(&surface) < 0.0 {
-        surface.facets.iter_mut().for_each(|facet| facet.swap(1, 2));
-    }
-    surface
+    tetrahedron([from, to, middle + across, middle - across])
 }
 
 #[test]

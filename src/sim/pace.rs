@@ -30,6 +30,14 @@ pub fn plan_next(model: &Model, planned: f64, dt: f64, dt_now: f64, next: f64) -
     }
 }
 
+/// The shortest part of a fixed step that is made shorter still, over the whole: where that does not do, it was chosen badly.
+const SHORTEST: f64 = 0.01;
+
+/// Whether what is left of a step is too short to be made shorter still.
+pub fn is_shortest(model: &Model, dt: f64) -> bool {
+    matches!(model.integrator.size, StepSize::Fixed(whole) if dt < SHORTEST * whole)
+}
+
 /// A step never runs over a bend of a course, an exchange with chemistry or the end of the run.
 pub fn end_at_kinks(model: &Model, time: f64, dt: f64) -> f64 {
     // Room for the round-off of a clock that adds many steps.

@@ -2,15 +2,14 @@
 
 use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::make_exact;
-use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, is_shortest};
-use super::contact::{keep_contacts, look_for_depth, travel};
+use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, keep_contacts, look_for_depth, travel};
 use super::forces::add_forces;
 use super::gain::{energy_before, has_gained};
 use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
 use super::model::Model;
 use super::motility::advance_motility;
-use super::pace::{end_at_kinks, judge, plan_next, plan_step};
+use super::pace::{end_at_kinks, is_shortest, judge, plan_next, plan_step};
 use super::refresh::{cover_stiffening, refresh_stiffness};
 use super::state::State;
 use super::trouble::{Trouble, check_finite};
@@ -73,10 +72,10 @@ pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<Step
         };
         let (mut accepted, mut next) = judge(model, dt_now, with_contacts);
         limited |= next < judge(model, dt_now, error).1;
-        let better = if accepted { look_again(model, energy, dt_now, again, state, ws) } else { Ok(None) };
-        let better = better.inspect_err(|_| restore(state, ws))?;
-        if let Some(shorter) = better {
-            (accepted, next, limited, again) = (false, shorter, limited || shorter < dt_now, again + 1);
+        if accepted {
+            let better = look_again(model, energy, dt_now, again, state, ws).inspect_err(|_| restore(state, ws))?;
+            (accepted, next) = (better.is_none(), better.unwrap_or(next));
+            (limited, again) = (limited || better.is_some_and(|better| better < dt_now), again + 1);
         }
         if accepted {
             let next_step = plan_next(model, planned, dt, dt_now, next);

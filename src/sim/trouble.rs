@@ -131,7 +131,7 @@ impl Trouble {
             }
             Self::Contact { .. } | Self::Pressed { .. } => {
                 "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
-                 shorten run.integrator.step if you set one"
+                 let run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
             }
             Self::TooFast { .. } => "shorten run.integrator.step, or leave it out so that steps limit themselves",
             Self::StepTooSmall { .. } => {
@@ -179,6 +179,10 @@ impl std::fmt::Display for Trouble {
                     write!(f, " and of cell {} of type `{}`, which touch,", other.1, other.0)?;
                 }
                 write!(f, " still move by {left:.1e} um")
+            }
+            Self::Pressed { cells: [one, other], time, depth } if one == other => {
+                write!(f, "cell {} of type `{}` is at least {depth:.1e} um deep in itself ", one.1, one.0)?;
+                write!(f, "or behind a plane at t = {time:.6} s, more than contacts can mend")
             }
             Self::Pressed { cells: [(kind, cell), other], time, depth } => {
                 write!(f, "cell {cell} of type `{kind}` and cell {} of type `{}` are ", other.1, other.0)?;

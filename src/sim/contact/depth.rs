@@ -5,7 +5,6 @@ use super::gather::gather_places;
 use super::model::{ContactModel, Law};
 use super::remember::find_at;
 use crate::contact::{Contacts, Sides, find_deeper, winding_number};
-use crate::mechanics::integrator::StepSize;
 use crate::sim::model::Model;
 use crate::sim::state::State;
 use crate::sim::trouble::Trouble;
@@ -33,9 +32,14 @@ pub fn check_depth(model: &Model, state: &State, ws: &Workspace) -> Result<(), T
     let too_deep = deepest.filter(|(gap, ..)| -gap > DEEPEST * most).map(|(gap, atom, body)| (-gap, atom, body));
     let lost = || lost_inside(contact, state, ws).map(|(atom, body)| (most, atom, body));
     let Some((depth, atom, body)) = too_deep.or_else(lost) else { return Ok(()) };
-    let cells = [contact.owner(atom), model.kind_of(body as usize)];
+    Err(pressed(model, [contact.body_of(atom), body], state.time, depth))
+}
+
+/// The trouble of two bodies that are so deep in each other, µm.
+fn pressed(model: &Model, bodies: [u32; 2], time: f64, depth: f64) -> Trouble {
+    let cells = bodies.map(|body| model.kind_of(body as usize));
     let cells = cells.map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
-    Err(Trouble::Pressed { cells, time: state.time, depth })
+    Trouble::Pressed { cells, time, depth }
 }
 
 /// The depth from which on a step is made shorter where it deepens, over the shorter mean edge of the two cells: half of what is
@@ -45,16 +49,8 @@ const DEEP: f64 = 0.01;
 /// The depth that is promised, over the same edge.
 const PROMISED: f64 = 0.02;
 
-/// What a depth may grow by in such a step, over what it was.
+/// What a depth may grow by in such a step, over what it was: a tenth, so that steps are not halved for what the next one mends.
 const GROWS: f64 = 1.1;
-
-/// The shortest part of a fixed step that is made shorter still, over the whole.
-const SHORTEST: f64 = 0.01;
-
-/// Whether what is left of a step is too short to be made shorter still.
-pub fn is_shortest(model: &Model, dt: f64) -> bool {
-    matches!(model.integrator.size, StepSize::Fixed(whole) if dt < SHORTEST * whole)
-}
 
 /// Two cells that are deep in each other after a step, and deeper than any were before it: something met within the step that no
 /// contact at its begin told of.
@@ -71,9 +67,7 @@ impl Deepened {
 
     /// The trouble that this is where no step is short enough.
     pub fn trouble(&self, model: &Model, time: f64) -> Trouble {
-        let cells = self.deepest.bodies.map(|body| model.kind_of(body as usize));
-        let cells = cells.map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
-        Trouble::Pressed { cells, time, depth: self.deepest.depth }
+        pressed(model, self.deepest.bodies, time, self.deepest.depth)
     }
 }
 
@@ -88,7 +82,9 @@ pub fn look_for_depth(model: &Model, state: &State, ws: &mut Workspace) -> Optio
     find_at(contact, &s.bonds, &s.start, &mut s.detector, &mut s.found);
     s.has_looked = true;
     let deepest = Deepest::of(model, contact, &s.found)?;
-    let grows = before.is_none_or(|before| deepest.share > GROWS * before.share);
+    let before = before.map_or(0.0, |before| before.share);
+    // Below what is promised a depth may creep on; beyond it, it may not.
+    let grows = deepest.share > if deepest.share > PROMISED { before } else { GROWS * before };
     (deepest.share > DEEP && grows).then_some(Deepened { deepest })
 }
 
@@ -106,13 +102,12 @@ struct Deepest {
 impl Deepest {
     /// That of all contacts; none where nothing is inside.
     fn of(model: &Model, contact: &ContactModel, found: &Contacts) -> Option<Self> {
-        let owner = |atom: u32| contact.scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1;
         let edge = |body: u32| model.kinds[contact.kind_of(body)].edge;
         let of_atoms = found.atoms.iter().filter(|near| near.gap < 0.0);
-        let of_atoms = of_atoms.map(|near| (near.gap, [owner(near.atom), near.body]));
+        let of_atoms = of_atoms.map(|near| (near.gap, [contact.body_of(near.atom), near.body]));
         let of_edges = found.edges.iter().filter(|near| near.gap < 0.0).map(|near| (near.gap, near.bodies));
         let of_planes = found.planes.iter().filter(|near| near.gap < 0.0);
-        let of_planes = of_planes.map(|near| (near.gap, [owner(near.atom); 2]));
+        let of_planes = of_planes.map(|near| (near.gap, [contact.body_of(near.atom); 2]));
         let all = of_atoms.chain(of_edges).chain(of_planes).map(|(gap, bodies)| {
             let [one, other] = bodies.map(edge);
             Self { share: -gap / one.min(other), depth: -gap, bodies }
@@ -157,8 +152,5 @@ pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
         _ => scene.reach.depth,
     };
     let passed = find_deeper(scene, &places, most);
-    let Some((body, other, depth)) = passed else { return Ok(()) };
-    let cells = [body, other].map(|body| model.kind_of(body as usize));
-    let cells = cells.map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
-    Err(Trouble::Pressed { cells, time: state.time, depth })
+    passed.map_or(Ok(()), |(body, other, depth)| Err(pressed(model, [body, other], state.time, depth)))
 }

@@ -29,7 +29,7 @@ mod sweep;
 mod sweep_tests;
 mod zones;
 
-pub use depth::{Deepened, check_depth, check_passed, is_shortest, look_for_depth};
+pub use depth::{Deepened, check_depth, check_passed, look_for_depth};
 pub use find::{add_contact_forces, carry_forces, find_contacts, keep_contacts, pull_contacts};
 pub use give::energy_of_give;
 pub use hold::{hold_contacts, travel};

@@ -155,6 +155,11 @@ impl ContactModel {
         self.scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1
     }
 
+    /// Whether both sides of a body are outside.
+    pub(super) fn is_thin(&self, body: u32) -> bool {
+        self.scene.shape(body).sides == Sides::Both
+    }
+
     /// The kind of a body.
     pub(super) fn kind_of(&self, body: u32) -> usize {
         self.scene.bodies[body as usize].shape as usize

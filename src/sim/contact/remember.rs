@@ -4,7 +4,7 @@
 use super::model::ContactModel;
 use super::state::{AtomBond, ContactState};
 use crate::Vec3;
-use crate::contact::{Contacts, Detector, Facing, Feature, Sides, add_walls_of_grooves, edges_still_touch};
+use crate::contact::{Contacts, Detector, Facing, Feature, add_walls_of_grooves, edges_still_touch};
 
 /// Finds what touches at these positions, with what is remembered of contacts that were there before.
 pub fn find_at(
@@ -18,7 +18,6 @@ pub fn find_at(
     keep_edges(contact, before, positions, found);
     keep_sides(contact, before, found);
     add_walls_of_grooves(&contact.scene, positions, contact.scene.safe_travel(), found);
-    add_skin(contact, found);
 }
 
 /// How far behind a ridge or a corner of a surface an atom counts as having come through it and not around it, over the proximity.
@@ -43,32 +42,6 @@ fn keep_sides(contact: &ContactModel, before: &ContactState, found: &mut Contact
         };
         if let Some(bond) = was.copied().filter(passed) {
             (near.gap, near.normal, near.facing) = (-near.gap, -near.normal, bond.facing);
-        }
-    }
-}
-
-/// How thick a surface with two outsides is on each side, over the proximity.
-const SKIN: f64 = 0.05;
-
-/// Counts gaps to surfaces with two outsides from their skin on: what rests on them stays farther off than sweeps leave unresolved, so
-/// that its side and, over ridges and in grooves, its normals are told by more than noise.
-fn add_skin(contact: &ContactModel, found: &mut Contacts) {
-    let scene = &contact.scene;
-    let skin = SKIN * scene.reach.proximity;
-    let is_thin = |body: u32| scene.shape(body).sides == Sides::Both;
-    let mut own = 0;
-    for near in &mut found.atoms {
-        while scene.bodies.get(own as usize + 1).is_some_and(|next| next.first_atom <= near.atom) {
-            own += 1;
-        }
-        if near.body == own || is_thin(near.body) {
-            near.gap -= skin;
-        }
-    }
-    for near in &mut found.edges {
-        let [one, other] = near.bodies;
-        if one == other || is_thin(one) || is_thin(other) {
-            near.gap -= skin;
         }
     }
 }
