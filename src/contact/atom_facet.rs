@@ -3,9 +3,9 @@
 
 use super::closest::{FacetPoint, Feature, closest_on_facet};
 use super::found::{AtomContact, Facing, push};
-use super::lists::{Moved, by_body, level, number};
 use super::scene::Scene;
 use super::shape::{NONE, Shape, Sides};
+use super::words::Part;
 use crate::Vec3;
 
 /// Cosine by which a closest point on an edge or a corner may miss being the lowest around: round-off, so that a point
@@ -37,59 +37,55 @@ struct Other<'a> {
 }
 
 /// Adds the contacts of an atom (numbered in its body) with the facets of a list, eq. (contacts.1) to (contacts.3).
+/// Those of a level above the limit are passed over.
 pub(super) fn find_atom_contacts(
     scene: &Scene,
     positions: &[Vec3],
-    body: u32,
+    [body, other]: [u32; 2],
     atom: u32,
-    list: &[u32],
-    moved: &Moved,
+    (facets, limit): (Part, u32),
     lows: &mut Vec<Low>,
     contacts: &mut Vec<AtomContact>,
 ) {
     let numbered = scene.bodies[body as usize].first_atom + atom;
     let place = positions[numbered as usize];
-    for (other, facets) in by_body(list) {
-        let limit = moved.limit(body, other);
-        let facets = facets.iter().filter(|facet| level(**facet) <= limit).map(|facet| number(*facet));
-        let surface = Other {
-            shape: scene.shape(other),
-            positions: scene.of_body(other, positions),
-            own: (other == body).then_some(atom),
-        };
-        lows.clear();
-        let Some(nearest) = surface.find_lows(place, facets, scene.reach.range(), lows) else { continue };
-        let first_facet = scene.bodies[other as usize].first_facet;
-        let mut add = |low: &Low, side: Side| {
-            let (gap, normal) = surface.gap(low, side);
-            let facing = surface.facing(low, &normal);
-            push(
-                contacts,
-                AtomContact {
-                    atom: numbered,
-                    facet: first_facet + low.facet,
-                    body: other,
-                    feature: low.point.feature,
-                    second_weights: low.point.weights,
-                    gap,
-                    normal,
-                    facing,
-                },
-            );
-        };
-        let side = surface.side(&nearest);
-        if side.inside {
-            if nearest.squared <= scene.reach.depth.powi(2) {
-                add(&nearest, side);
-            }
-            continue;
+    let surface = Other {
+        shape: scene.shape(other),
+        positions: scene.of_body(other, positions),
+        own: (other == body).then_some(atom),
+    };
+    lows.clear();
+    let Some(nearest) = surface.find_lows(place, facets.up_to(limit), scene.reach.range(), lows) else { return };
+    let first_facet = scene.bodies[other as usize].first_facet;
+    let mut add = |low: &Low, side: Side| {
+        let (gap, normal) = surface.gap(low, side);
+        let facing = surface.facing(low, &normal);
+        push(
+            contacts,
+            AtomContact {
+                atom: numbered,
+                facet: first_facet + low.facet,
+                body: other,
+                feature: low.point.feature,
+                second_weights: low.point.weights,
+                gap,
+                normal,
+                facing,
+            },
+        );
+    };
+    let side = surface.side(&nearest);
+    if side.inside {
+        if nearest.squared <= scene.reach.depth.powi(2) {
+            add(&nearest, side);
         }
-        let proximity = scene.reach.proximity.powi(2);
-        for low in lows.iter().filter(|low| low.squared < proximity) {
-            let side = if low.facet == nearest.facet { side } else { surface.side(low) };
-            if !side.inside {
-                add(low, side);
-            }
+        return;
+    }
+    let proximity = scene.reach.proximity.powi(2);
+    for low in lows.iter().filter(|low| low.squared < proximity) {
+        let side = if low.facet == nearest.facet { side } else { surface.side(low) };
+        if !side.inside {
+            add(low, side);
         }
     }
 }

@@ -27,7 +27,7 @@ pub fn find_deeper(
     let mut neighbours = Neighbours::default();
     neighbours.find(&bounds);
     let first = |inner: u32| {
-        neighbours.of(inner).iter().find_map(|&outer| {
+        neighbours.of(inner).iter().filter(|outer| **outer != inner).find_map(|&outer| {
             let most = most(inner, outer);
             let depth = depth_inside(scene, positions, [inner, outer], &bounds, most);
             (depth > most).then_some((inner, outer, depth))

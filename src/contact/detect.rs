@@ -7,6 +7,7 @@ use super::boxes::{Bounds, Pack, Steps};
 use super::edge_edge::find_edge_contacts;
 use super::found::{Contacts, PlaneContact, push};
 use super::lists::{Boxes, Lists, Moved, levels_over};
+use super::neighbours::Neighbours;
 use super::scene::Scene;
 use crate::Vec3;
 
@@ -92,14 +93,15 @@ impl Detector {
         self.looks += 1;
         contacts.clear();
         let since = Moved { of_bodies: &moved_of, scale: levels_over(self.margin, scene.reach.range()) };
+        let neighbours = &self.boxes.neighbours;
         if rayon::current_num_threads() == 1 {
             for (batch, lists) in self.lists.iter().enumerate() {
-                look(scene, positions, batch, lists, &since, &mut self.lows, contacts);
+                look(scene, positions, batch, lists, neighbours, &since, &mut self.lows, contacts);
             }
         } else {
             self.found.par_iter_mut().zip(&self.lists).enumerate().for_each(|(batch, (found, lists))| {
                 found.contacts.clear();
-                look(scene, positions, batch, lists, &since, &mut found.lows, &mut found.contacts);
+                look(scene, positions, batch, lists, neighbours, &since, &mut found.lows, &mut found.contacts);
             });
             for Found { contacts: found, .. } in &self.found {
                 contacts.atoms.extend_from_slice(&found.atoms);
@@ -135,9 +137,9 @@ impl Detector {
         self.margin
     }
 
-    /// The lists of pairs, one per batch.
-    pub(super) fn lists(&self) -> &[Lists] {
-        &self.lists
+    /// The lists of pairs, one per batch, and the bodies that they name.
+    pub(super) fn lists(&self) -> (&[Lists], &Neighbours) {
+        (&self.lists, &self.boxes.neighbours)
     }
 
     /// The largest displacement since the pairs were collected, rounding included, µm; infinite when there are none
@@ -229,6 +231,7 @@ fn look(
     positions: &[Vec3],
     batch: usize,
     lists: &Lists,
+    neighbours: &Neighbours,
     moved: &Moved,
     lows: &mut Vec<Low>,
     contacts: &mut Contacts,
@@ -236,22 +239,34 @@ fn look(
     let bodies = scene.bodies_of(batch);
     let Some(first) = scene.bodies.get(bodies.start as usize).filter(|_| !bodies.is_empty()) else { return };
     let mut body = bodies.start;
-    for (atom, list) in lists.facets() {
+    for (atom, place, part) in lists.facets.parts() {
         let mut atom = first.first_atom + atom - scene.bodies[body as usize].first_atom;
         while atom as usize >= scene.shape(body).atoms {
             atom -= scene.shape(body).atoms as u32;
             body += 1;
         }
-        find_atom_contacts(scene, positions, body, atom, list, moved, lows, &mut contacts.atoms);
+        let pair = [body, neighbours.of(body)[place]];
+        let limit = moved.limit(pair);
+        if part.has(limit) {
+            find_atom_contacts(scene, positions, pair, atom, (part, limit), lows, &mut contacts.atoms);
+        }
     }
     let mut body = bodies.start;
-    for (edge, list) in lists.edges() {
+    let (mut ridge, mut last) = (None, None);
+    for (edge, place, part) in lists.edges.parts() {
+        if last.replace(edge) != Some(edge) {
+            ridge = None;
+        }
         let mut edge = first.first_edge + edge - scene.bodies[body as usize].first_edge;
         while edge as usize >= scene.shape(body).edges.len() {
             edge -= scene.shape(body).edges.len() as u32;
             body += 1;
         }
-        find_edge_contacts(scene, positions, body, edge, list, moved, &mut contacts.edges);
+        let pair = [body, neighbours.of(body)[place]];
+        let limit = moved.limit(pair);
+        if part.has(limit) {
+            find_edge_contacts(scene, positions, pair, edge, (part, limit), &mut ridge, &mut contacts.edges);
+        }
     }
     for body in bodies {
         find_plane_contacts(scene, positions, body, &mut contacts.planes);

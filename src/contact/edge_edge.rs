@@ -2,52 +2,45 @@
 
 use super::closest::{LEAST_SINE_SQUARED, closest_on_segments};
 use super::found::{EdgeContact, push};
-use super::lists::{Moved, by_body, level, number};
 use super::ridge::{First, Ridge};
 use super::scene::Scene;
 use super::shape::Sides;
+use super::words::Part;
 use crate::Vec3;
 
-/// Adds the contacts of an edge (numbered in its body) with the edges of a list, eq. (contacts.4).
-pub(super) fn find_edge_contacts(
-    scene: &Scene,
-    positions: &[Vec3],
-    body: u32,
+/// Adds the contacts of an edge (numbered in its body) with the edges of a list, eq. (contacts.4). Those of a level above
+/// the limit are passed over. `first` is worked out where it is none, for the next bodies.
+pub(super) fn find_edge_contacts<'a>(
+    scene: &'a Scene,
+    positions: &'a [Vec3],
+    [body, other]: [u32; 2],
     edge: u32,
-    list: &[u32],
-    moved: &Moved,
+    (candidates, limit): (Part, u32),
+    first: &mut Option<First<'a>>,
     contacts: &mut Vec<EdgeContact>,
 ) {
-    let mut first = None;
-    for (other, edges) in by_body(list) {
-        let limit = moved.limit(body, other);
-        let mut candidates = edges.iter().filter(|edge| level(**edge) <= limit).map(|edge| number(*edge)).peekable();
-        if candidates.peek().is_none() {
-            continue;
-        }
-        let first = first.get_or_insert_with(|| First::of(scene.shape(body), scene.of_body(body, positions), edge));
-        let (there, places) = (scene.shape(other), scene.of_body(other, positions));
-        let is_outer = [first.is_one_sided && other != body, there.sides == Sides::Outer && other != body];
-        if is_outer == [true; 2] && !first.is_convex && there.closed {
-            continue;
-        }
-        for candidate in candidates {
-            let second = Ridge::of(there, places, candidate);
-            let outer = Outer([is_outer[0], is_outer[1] && !second.is_rim()]);
-            let crossing = cross(first, &second, outer, scene);
-            let Some((along, gap, normal)) = crossing else { continue };
-            let numbered = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
-            push(
-                contacts,
-                EdgeContact {
-                    edges: [numbered(body, edge), numbered(other, candidate)],
-                    bodies: [body, other],
-                    along,
-                    gap,
-                    normal,
-                },
-            );
-        }
+    let first = first.get_or_insert_with(|| First::of(scene.shape(body), scene.of_body(body, positions), edge));
+    let (there, places) = (scene.shape(other), scene.of_body(other, positions));
+    let is_outer = [first.is_one_sided && other != body, there.sides == Sides::Outer && other != body];
+    if is_outer == [true; 2] && !first.is_convex && there.closed {
+        return;
+    }
+    for candidate in candidates.up_to(limit) {
+        let second = Ridge::of(there, places, candidate);
+        let outer = Outer([is_outer[0], is_outer[1] && !second.is_rim()]);
+        let crossing = cross(first, &second, outer, scene);
+        let Some((along, gap, normal)) = crossing else { continue };
+        let numbered = |body: u32, edge: u32| scene.bodies[body as usize].first_edge + edge;
+        push(
+            contacts,
+            EdgeContact {
+                edges: [numbered(body, edge), numbered(other, candidate)],
+                bodies: [body, other],
+                along,
+                gap,
+                normal,
+            },
+        );
     }
 }
 

@@ -23,6 +23,7 @@ mod scene;
 mod shape;
 mod swept;
 mod way;
+mod words;
 
 pub use apart::{Yielding, push_apart};
 pub use closest::{FacetPoint, Feature, closest_on_facet, closest_on_segments};

@@ -5,7 +5,7 @@ use super::boxes::Bounds;
 /// A body takes no more places in the grid than this on average; a wider grid is taken where large bodies would.
 const PLACES_PER_BODY: usize = 32;
 
-/// For every body the bodies whose boxes meet its own, in ascending order, and the scratch to find them. What is large
+/// For every body the bodies whose boxes meet its own, in ascending order and itself among them, and the scratch to find them. What is large
 /// (a sheet) takes many places of the grid, what is small takes one to eight, so the cost is linear in the bodies.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Neighbours {
@@ -31,7 +31,7 @@ fn places_of(bounds: &Bounds, width: f32) -> [std::ops::RangeInclusive<i64>; 3] 
 }
 
 impl Neighbours {
-    /// The bodies whose boxes meet that of a body, ascending, itself not among them.
+    /// The bodies whose boxes meet that of a body, ascending, itself among them.
     pub fn of(&self, body: u32) -> &[u32] {
         &self.bodies[self.first[body as usize] as usize..self.first[body as usize + 1] as usize]
     }
@@ -50,6 +50,7 @@ impl Neighbours {
         }
         self.places.sort_unstable();
         self.pairs.clear();
+        self.pairs.extend((0..bounds.len() as u32).map(|body| (body, body)));
         for together in self.places.chunk_by(|left, right| left.0 == right.0) {
             for (index, &(here, first)) in together.iter().enumerate() {
                 for &(_, second) in &together[index + 1..] {

@@ -1,9 +1,9 @@
 //! A check after a step: what passed through what, among the pairs kept.
 
 use super::detect::Detector;
-use super::lists::{by_body, number};
 use super::scene::Scene;
 use super::swept::{atom_meets_facet, edges_meet};
+use super::words::HIGHEST;
 use crate::Vec3;
 
 /// Two things that met on the way.
@@ -62,38 +62,34 @@ impl Detector {
         if self.moved(scene, before, &mut moved_of).is_infinite() {
             return Coverage::Partial;
         }
-        for (batch, lists) in self.lists().iter().enumerate() {
+        let (lists, neighbours) = self.lists();
+        for (batch, lists) in lists.iter().enumerate() {
             let Some(first) = scene.bodies.get(scene.bodies_of(batch).start as usize) else { continue };
-            for (atom, list) in lists.facets() {
+            for (atom, place, facets) in lists.facets.parts() {
                 let atom = first.first_atom + atom;
                 let body = scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1;
-                for (other, facets) in by_body(list) {
-                    for facet in facets.iter().map(|word| number(*word) + scene.bodies[other as usize].first_facet) {
-                        let corners = scene.facet_atoms(other, facet);
-                        let facet_at = [before, after].map(|at| corners.map(|corner| at[corner as usize]));
-                        let atom_at = [before, after].map(|at| at[atom as usize]);
-                        if let Some(share) = atom_meets_facet(atom_at, facet_at, thickness) {
-                            passages.push(Passage {
-                                pair: Pair::AtomFacet { atom, facet },
-                                bodies: [body, other],
-                                share,
-                            });
-                        }
+                let other = neighbours.of(body)[place];
+                for facet in facets.up_to(HIGHEST).map(|facet| facet + scene.bodies[other as usize].first_facet) {
+                    let corners = scene.facet_atoms(other, facet);
+                    let facet_at = [before, after].map(|at| corners.map(|corner| at[corner as usize]));
+                    let atom_at = [before, after].map(|at| at[atom as usize]);
+                    if let Some(share) = atom_meets_facet(atom_at, facet_at, thickness) {
+                        let pair = Pair::AtomFacet { atom, facet };
+                        passages.push(Passage { pair, bodies: [body, other], share });
                     }
                 }
             }
-            for (edge, list) in lists.edges() {
+            for (edge, place, edges) in lists.edges.parts() {
                 let edge = first.first_edge + edge;
                 let body = scene.bodies.partition_point(|body| body.first_edge <= edge) as u32 - 1;
+                let other = neighbours.of(body)[place];
                 let ends = |body: u32, edge: u32| {
                     let atoms = scene.edge_atoms(body, edge);
                     [before, after].map(|at| atoms.map(|atom| at[atom as usize]))
                 };
-                for (other, edges) in by_body(list) {
-                    for second in edges.iter().map(|word| number(*word) + scene.bodies[other as usize].first_edge) {
-                        if let Some(share) = edges_meet(ends(body, edge), ends(other, second), thickness) {
-                            passages.push(Passage { pair: Pair::Edges([edge, second]), bodies: [body, other], share });
-                        }
+                for second in edges.up_to(HIGHEST).map(|edge| edge + scene.bodies[other as usize].first_edge) {
+                    if let Some(share) = edges_meet(ends(body, edge), ends(other, second), thickness) {
+                        passages.push(Passage { pair: Pair::Edges([edge, second]), bodies: [body, other], share });
                     }
                 }
             }

@@ -4,8 +4,8 @@ use super::atom_facet::find_atom_contacts;
 use super::detect::find_plane_contacts;
 use super::edge_edge::find_edge_contacts;
 use super::found::Contacts;
-use super::lists::{BODY, Moved};
 use super::scene::Scene;
+use super::words::{HIGHEST, Part, Words};
 use crate::Vec3;
 
 /// Finds all contacts by looking at every pair of an atom and a facet and every pair of edges. The same contacts in
@@ -13,41 +13,35 @@ use crate::Vec3;
 pub fn detect_all_pairs(scene: &Scene, positions: &[Vec3], contacts: &mut Contacts) {
     contacts.clear();
     let bodies = scene.bodies.len() as u32;
-    let facets_of = |body: u32| 0..scene.shape(body).facets.len() as u32;
-    let all_facets: Vec<Vec<u32>> =
-        (0..bodies).map(|body| std::iter::once(body | BODY).chain(facets_of(body)).collect()).collect();
-    let (mut list, mut lows) = (Vec::new(), Vec::new());
+    let (mut lows, mut words, mut pairs) = (Vec::new(), Words::default(), Vec::new());
     for body in 0..bodies {
         let shape = scene.shape(body);
         for atom in 0..shape.atoms as u32 {
             for other in 0..bodies {
-                let mut facets = &all_facets[other as usize];
-                if other == body {
-                    list.clear();
-                    list.extend(facets.iter().filter(|&&facet| facet & BODY != 0 || !shape.is_near(atom, facet)));
-                    facets = &list;
-                }
-                find_atom_contacts(
-                    scene,
-                    positions,
-                    body,
-                    atom,
-                    facets,
-                    &Moved::UNKNOWN,
-                    &mut lows,
-                    &mut contacts.atoms,
-                );
+                let facets = 0..scene.shape(other).facets.len() as u32;
+                let facets = facets.filter(|&facet| other != body || !shape.is_near(atom, facet));
+                let part = list(&mut words, &mut pairs, facets);
+                find_atom_contacts(scene, positions, [body, other], atom, part, &mut lows, &mut contacts.atoms);
             }
         }
         for edge in 0..shape.edges.len() as u32 {
+            let mut first = None;
             for other in body..bodies {
-                list.clear();
-                list.push(other | BODY);
                 let edges = 0..scene.shape(other).edges.len() as u32;
-                list.extend(edges.filter(|&e| other != body || (e > edge && !shape.are_edges_near(edge, e))));
-                find_edge_contacts(scene, positions, body, edge, &list, &Moved::UNKNOWN, &mut contacts.edges);
+                let edges = edges.filter(|&e| other != body || (e > edge && !shape.are_edges_near(edge, e)));
+                let part = list(&mut words, &mut pairs, edges);
+                find_edge_contacts(scene, positions, [body, other], edge, part, &mut first, &mut contacts.edges);
             }
         }
         find_plane_contacts(scene, positions, body, &mut contacts.planes);
     }
+}
+
+/// Writes a list with one part and takes all of it.
+fn list<'a>(words: &'a mut Words, pairs: &mut Vec<(u32, u32)>, numbers: impl Iterator<Item = u32>) -> (Part<'a>, u32) {
+    pairs.clear();
+    pairs.extend(numbers.map(|number| (number, 0)));
+    words.clear();
+    words.add(0, 0, pairs);
+    (words.parts().next().map_or(Part::EMPTY, |(.., part)| part), HIGHEST)
 }

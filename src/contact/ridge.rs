@@ -13,40 +13,40 @@ pub(super) struct Ridge<'a> {
 }
 
 impl<'a> Ridge<'a> {
-    #[inline]
+    #[inline(always)]
     pub fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
         let [start, end] = shape.ends(edge, positions);
         Self { positions, start, along: end - start, across: shape.across[edge as usize] }
     }
 
     /// From the start to the atoms across; zero where there is none.
-    #[inline]
+    #[inline(always)]
     pub fn flanks(&self) -> [Vec3; 2] {
         let flank = |atom: u32| if atom == NONE { Vec3::zeros() } else { self.positions[atom as usize] - self.start };
         [flank(self.across[0]), flank(self.across[1])]
     }
 
     /// Whether one of the facets is missing.
-    #[inline]
+    #[inline(always)]
     pub fn is_rim(&self) -> bool {
         self.across.contains(&NONE)
     }
 
     /// The normals of the two facets, µm², not scaled.
-    #[inline]
+    #[inline(always)]
     pub fn normals(&self) -> [Vec3; 2] {
         let [left, right] = self.flanks();
         [self.along.cross(&left), right.cross(&self.along)]
     }
 
     /// Between the unit normals of the two facets, not scaled.
-    #[inline]
+    #[inline(always)]
     pub fn outward(&self) -> Vec3 {
         self.normals().iter().map(|normal| normal.normalize()).sum()
     }
 
     /// Whether the surface bends away from its outside here.
-    #[inline]
+    #[inline(always)]
     pub fn is_convex(&self) -> bool {
         self.normals()[0].dot(&self.flanks()[1]) < 0.0
     }
@@ -63,7 +63,7 @@ pub(super) struct First<'a> {
 }
 
 impl<'a> First<'a> {
-    #[inline]
+    #[inline(always)]
     pub fn of(shape: &Shape, positions: &'a [Vec3], edge: u32) -> Self {
         let ridge = Ridge::of(shape, positions, edge);
         let flanks = ridge.flanks();

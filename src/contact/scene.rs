@@ -1,7 +1,6 @@
 //! Everything that can touch: the surfaces of cells, sheets and rigid bodies, one after the other, and rigid planes.
 
 use super::boxes::Levels;
-use super::lists::NUMBER_BITS;
 use super::shape::Shape;
 use crate::Vec3;
 
@@ -80,12 +79,10 @@ impl Scene {
     ///
     /// # Panics
     /// When a body names a shape that is not there, when a length of `reach` is negative or not finite, or when there
-    /// are 2³¹ facets or edges or more, or 2²⁴ of one shape.
+    /// are 2³¹ facets or edges or more.
     pub fn new(shapes: Vec<Shape>, shape_of_body: &[usize], planes: Vec<Plane>, reach: Reach) -> Self {
         let lengths = [reach.proximity, reach.depth, reach.margin];
         assert!(lengths.iter().all(|length| length.is_finite() && *length >= 0.0), "a reach below zero: {reach:?}");
-        let fits = |shape: &Shape| shape.facets.len().max(shape.edges.len()) >> NUMBER_BITS == 0;
-        assert!(shapes.iter().all(fits), "fewer than 2^24 edges of one shape");
         let levels: Vec<Levels> = shapes.iter().map(|shape| Levels::of(shape.facets.len())).collect();
         let mut bodies = Vec::with_capacity(shape_of_body.len());
         let mut batches = vec![0];
