@@ -40,21 +40,24 @@ pub fn make_exact(model: &Model, state: &mut State, ws: &mut Workspace) -> Resul
 
 /// Puts atoms back outside the planes and every exact volume back on its target.
 pub fn enforce_constraints(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), VolumeFailure> {
-    for (number, ((kind, now), w)) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds).enumerate() {
+    ws.rooms.suit(model);
+    let Workspace { kinds, rooms, .. } = ws;
+    for (number, ((kind, now), w)) in model.kinds.iter().zip(&mut state.kinds).zip(kinds).enumerate() {
         let exact = matches!(kind.volume, VolumeRule::Exact(_));
         if !exact && model.planes.is_empty() {
             continue;
         }
         let (length, lanes) = (kind.block_len(), kind.lanes);
-        let KindScratch { spare, spare2, target, left, project, .. } = w;
+        let KindScratch { target, left, project, .. } = w;
         (now.positions.par_chunks_exact_mut(length))
-            .zip(spare.par_chunks_exact_mut(length).zip(spare2.par_chunks_exact_mut(length)))
             .zip(target.par_chunks_exact(lanes).zip(left.par_chunks_exact_mut(lanes)).zip(project))
-            .for_each(|((x, (spare, spare2)), ((target, left), scratch))| {
+            .for_each(|(x, ((target, left), scratch))| {
                 if !model.planes.is_empty() {
                     project_block(model, kind, exact, x, target, left, scratch);
                 } else {
-                    volume::enforce_block(&kind.rest.facets, x, &kind.held, target, spare, spare2, left);
+                    rooms.enter(length, |[_, spare, spare2]| {
+                        volume::enforce_block(&kind.rest.facets, x, &kind.held, target, spare, spare2, left);
+                    });
                     left.iter_mut().zip(target).for_each(|(left, target)| *left /= target);
                     if left.iter().any(|error| error.is_nan() || *error > VOLUME_TOLERANCE) {
                         project_block(model, kind, exact, x, target, left, scratch);

@@ -3,40 +3,91 @@
 use rayon::prelude::*;
 
 use super::chemistry::Controls;
-use super::contact::{add_contact_forces, pull_contacts};
+use super::contact::{ContactScratch, add_contact_forces, pull_contacts};
 use super::model::{Kind, Model, VolumeRule};
 use super::state::State;
 use super::workspace::Workspace;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::volume;
 
-/// Sets `force` of every kind to the sum of all forces at time `time` (pN), drag not included, and `energy` to the
-/// elastic energy of every cell. Motility enters as the drag that its velocity overcomes.
+/// All forces on the cells of a kind at one instant, drag not included. Motility enters as the drag that its velocity
+/// overcomes.
+#[derive(Clone, Copy)]
+pub struct Forces<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// The number of the kind.
+    pub number: usize,
+    /// The instant, s.
+    pub time: f64,
+    /// What chemistry sets.
+    pub controls: &'a Controls,
+    /// Mean velocity that motility asks of every cell of the model, µm/s.
+    pub drive: &'a [[f64; 3]],
+    /// What contacts carry.
+    pub contact: &'a ContactScratch,
+}
+
+impl Forces<'_> {
+    /// Writes the sum of all forces on the atoms of a block at `x` (pN) over `f`, and the energy of its cells (pN·µm) over
+    /// `energy`. `rest` are the rest volumes of the cells; `spare` is scratch of the size of `x`.
+    pub fn on_block(
+        &self,
+        block: usize,
+        (x, rest): (&[f64], &[f64]),
+        (f, energy): (&mut [f64], &mut [f64]),
+        spare: &mut [f64],
+    ) {
+        let &Self { model, number, time, controls, drive, contact } = self;
+        let kind = &model.kinds[number];
+        f.fill(0.0);
+        energy.fill(0.0);
+        kind.elasticity.add_forces(kind.lanes, x, f, energy);
+        scale_elasticity(kind, controls, block, f, energy);
+        add_loads(kind, controls, block, time, f);
+        add_fibres(kind, controls, block, time, x, f, energy);
+        add_gravity(model, kind, f);
+        add_attraction(kind, x, f, energy);
+        add_drive(kind, &drive[kind.first_cell..kind.first_cell + kind.cells], block, f);
+        add_pressure(kind, time, x, rest, spare, f, energy);
+        add_contact_forces(model, number, block, contact, f);
+    }
+}
+
+/// Sets `force` of every kind to the sum of all forces at time `time` (pN), and `energy` to the energy of every cell.
 pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
+    ws.rooms.suit(model);
     pull_contacts(model, state, &mut ws.contact);
-    for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(&mut ws.kinds).enumerate() {
-        let cells = kind.first_cell..kind.first_cell + kind.cells;
-        let drive = &ws.drive[cells];
-        let controls = &state.chemistry.controls;
+    for (w, now) in ws.kinds.iter_mut().zip(&state.kinds) {
+        w.force.resize(now.positions.len(), 0.0);
+    }
+    let Workspace { kinds, rooms, drive, contact, .. } = ws;
+    for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
+        let forces = Forces { model, number, time, controls: &state.chemistry.controls, drive, contact };
         let (length, lanes) = (kind.block_len(), kind.lanes);
         (w.force.par_chunks_exact_mut(length))
-            .zip(now.positions.par_chunks_exact(length))
+            .zip(now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
             .zip(w.energy.par_chunks_exact_mut(lanes))
-            .zip(w.spare.par_chunks_exact_mut(length))
-            .zip(now.rest_volumes.par_chunks_exact(lanes))
             .enumerate()
-            .for_each(|(block, ((((f, x), energy), spare), rest))| {
-                f.fill(0.0);
-                energy.fill(0.0);
-                kind.elasticity.add_forces(lanes, x, f, energy);
-                scale_elasticity(kind, controls, block, f, energy);
-                add_loads(kind, controls, block, time, f);
-                add_fibres(kind, controls, block, time, x, f, energy);
-                add_gravity(model, kind, f);
-                add_attraction(kind, x, f, energy);
-                add_drive(kind, drive, block, f);
-                add_pressure(kind, time, x, rest, spare, f, energy);
-                add_contact_forces(model, number, block, &ws.contact, f);
+            .for_each(|(block, ((f, cells), energy))| {
+                rooms.enter(length, |[_, spare, _]| forces.on_block(block, cells, (f, energy), spare));
+            });
+    }
+}
+
+/// Sets `energy` of every kind to the energy of every cell, pN·µm.
+pub fn measure_energy(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
+    ws.rooms.suit(model);
+    pull_contacts(model, state, &mut ws.contact);
+    let Workspace { kinds, rooms, drive, contact, .. } = ws;
+    for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
+        let forces = Forces { model, number, time, controls: &state.chemistry.controls, drive, contact };
+        let (length, lanes) = (kind.block_len(), kind.lanes);
+        (now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
+            .zip(w.energy.par_chunks_exact_mut(lanes))
+            .enumerate()
+            .for_each(|(block, (cells, energy))| {
+                rooms.enter(length, |[f, spare, _]| forces.on_block(block, cells, (f, energy), spare));
             });
     }
 }

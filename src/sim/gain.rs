@@ -4,7 +4,7 @@
 //! Where that would leave more energy than there was, the step is made again, shorter.
 
 use super::contact::{Law, energy_of_give};
-use super::forces::add_forces;
+use super::forces::measure_energy;
 use super::model::{Kind, Model, VolumeRule};
 use super::state::State;
 use super::workspace::Workspace;
@@ -24,7 +24,7 @@ const VOLUME_OFF: f64 = 1e-9;
 pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option<f64> {
     ws.contact.in_account = is_left_alone(model);
     ws.contact.in_account.then(|| {
-        add_forces(model, state.time, state, ws);
+        measure_energy(model, state.time, state, ws);
         energy(model, ws) + state.contact.given()
     })
 }
@@ -35,7 +35,7 @@ pub fn has_gained(model: &Model, before: Option<f64>, dt: f64, state: &State, ws
     if !had_their_volumes(model, ws) {
         return false;
     }
-    add_forces(model, state.time + dt, state, ws);
+    measure_energy(model, state.time + dt, state, ws);
     let stiffest = model.kinds.iter().map(|kind| kind.largest_stiffness).fold(0.0, f64::max);
     let left = LEFT * stiffest * contact.tolerance * contact.tolerance;
     energy(model, ws) + energy_of_give(ws) > before * (1.0 + ROUND_OFF) + left
@@ -73,7 +73,7 @@ fn had_their_volumes(model: &Model, ws: &Workspace) -> bool {
     })
 }
 
-/// The energy of all cells as the forces were added up last, pN·µm.
+/// The energy of all cells as it was measured last, pN·µm.
 fn energy(model: &Model, ws: &Workspace) -> f64 {
     model.kinds.iter().zip(&ws.kinds).map(|(kind, w)| w.energy[..kind.cells].iter().sum::<f64>()).sum()
 }

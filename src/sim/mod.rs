@@ -14,8 +14,10 @@ mod pace;
 pub mod planes;
 pub mod projection;
 mod refresh;
+mod rooms;
 pub mod state;
 mod step;
+mod targets;
 pub mod trouble;
 pub mod workspace;
 

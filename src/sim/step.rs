@@ -3,15 +3,15 @@
 use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::make_exact;
 use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, keep_contacts, look_for_depth, travel};
-use super::forces::add_forces;
 use super::gain::{energy_before, has_gained};
-use super::implicit::{Stage, measure_volumes, move_first, move_second, solve_increments, solve_swell};
+use super::implicit::{Stage, advance_stage, solve_swell};
 use super::inertial::{advance_freely, correct_velocities};
 use super::model::Model;
 use super::motility::advance_motility;
 use super::pace::{end_at_kinks, is_shortest, judge, plan_next, plan_step};
 use super::refresh::{cover_stiffening, refresh_stiffness};
 use super::state::State;
+use super::targets::measure_volumes;
 use super::trouble::{Trouble, check_finite};
 use super::workspace::Workspace;
 use crate::mechanics::integrator::{Method, Order, StepSize};
@@ -48,6 +48,7 @@ const TRIES: u32 = 60;
 
 /// Moves the state by one step. After an error the state is the one before the step.
 pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<StepReport, Trouble> {
+    ws.rooms.suit(model);
     begin_chemistry(model, state, ws)?;
     if let Method::Implicit { .. } = model.integrator.method {
         refresh_stiffness(model, state, ws);
@@ -167,15 +168,11 @@ fn limit_travel(model: &Model, dt: f64, error: f64, state: &State, ws: &Workspac
 /// Stages of the linearly implicit schemes.
 fn advance_implicitly(model: &Model, dt: f64, order: Order, state: &mut State, ws: &mut Workspace) -> f64 {
     solve_swell(model, dt, order, ws);
-    add_forces(model, state.time, state, ws);
-    solve_increments(model, dt, order, Stage::First, state, ws);
-    move_first(model, state, ws);
+    advance_stage(model, dt, order, Stage::First, state, ws);
     if order == Order::First {
         return 0.0;
     }
-    add_forces(model, state.time + dt, state, ws);
-    solve_increments(model, dt, order, Stage::Second, state, ws);
-    move_second(model, state, ws)
+    advance_stage(model, dt, order, Stage::Second, state, ws)
 }
 
 fn remember(state: &State, ws: &mut Workspace) {

@@ -7,6 +7,7 @@ use super::contact::ContactScratch;
 use super::model::{Kind, Model};
 use super::planes::TouchScratch;
 use super::projection::ProjectScratch;
+use super::rooms::Rooms;
 use crate::cell::motility::Walk;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::stiffness::StiffnessMatrix;
@@ -26,6 +27,8 @@ pub struct Workspace {
     pub chemistry: ChemistryScratch,
     /// Scratch of contacts.
     pub contact: ContactScratch,
+    /// Scratch of blocks.
+    pub rooms: Rooms,
 }
 
 /// Scratch of a kind; arrays have the shape of the positions unless said otherwise.
@@ -35,7 +38,7 @@ pub struct KindScratch {
     pub start: Vec<f64>,
     /// Velocities at the start of the step (inertial schemes).
     pub start_velocity: Vec<f64>,
-    /// Forces, pN; then the increments that they cause, µm.
+    /// Forces, pN, where they are asked for; the stages of the implicit step hold no more than those of a block.
     pub force: Vec<f64>,
     /// First stage.
     pub first: Vec<f64>,
@@ -43,10 +46,6 @@ pub struct KindScratch {
     pub gradient: Vec<f64>,
     /// Displacement that a unit of pressure causes.
     pub swell: Vec<f64>,
-    /// Spare array.
-    pub spare: Vec<f64>,
-    /// Spare array.
-    pub spare2: Vec<f64>,
     /// Energy of each cell, padded, pN·µm.
     pub energy: Vec<f64>,
     /// Volume of each cell, padded, µm³.
@@ -122,12 +121,10 @@ impl KindScratch {
         Self {
             start: vec![0.0; size],
             start_velocity: vec![0.0; if inertial { size } else { 0 }],
-            force: vec![0.0; size],
+            force: Vec::new(),
             first: vec![0.0; size],
             gradient: vec![0.0; size],
             swell: vec![0.0; size],
-            spare: vec![0.0; size],
-            spare2: vec![0.0; size],
             energy: vec![0.0; padded],
             volume: vec![0.0; padded],
             left: vec![0.0; padded],
@@ -175,8 +172,6 @@ impl KindScratch {
             &mut self.first,
             &mut self.gradient,
             &mut self.swell,
-            &mut self.spare,
-            &mut self.spare2,
             &mut self.energy,
             &mut self.volume,
             &mut self.left,
@@ -201,6 +196,7 @@ impl Workspace {
             drive: vec![[0.0; 3]; model.cells()],
             chemistry: ChemistryScratch::new(model),
             contact: ContactScratch::default(),
+            rooms: Rooms::default(),
         }
     }
 
@@ -208,6 +204,7 @@ impl Workspace {
     pub fn poison(&mut self, model: &Model) {
         self.chemistry.poison(model);
         self.contact.poison();
+        self.rooms.poison();
         self.kinds.iter_mut().for_each(KindScratch::poison);
         self.drive.fill([f64::NAN; 3]);
         self.walks.clear();

@@ -4,6 +4,7 @@ use super::super::constraints::enforce_constraints;
 use super::super::contact::find_contacts;
 use super::super::model::Model;
 use super::super::state::{State, vector};
+use super::super::targets::measure_volumes;
 use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
 use super::carry::carry_links;
@@ -170,6 +171,6 @@ fn impose(model: &Model, time: f64, state: &mut State, ws: &mut Workspace) -> Re
     if !model.chemistry.imposes_atoms {
         return Ok(());
     }
-    super::super::implicit::measure_volumes(model, time, state, ws);
+    measure_volumes(model, time, state, ws);
     enforce_constraints(model, state, ws).map_err(|failure| Trouble::of_volume(model, time, failure))
 }

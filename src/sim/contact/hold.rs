@@ -11,6 +11,7 @@ use crate::Vec3;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
 use crate::sim::model::{Kind, Model, VolumeRule};
+use crate::sim::rooms::Rooms;
 use crate::sim::state::{State, index};
 use crate::sim::trouble::Trouble;
 use crate::sim::workspace::{KindScratch, Workspace};
@@ -28,12 +29,12 @@ const MENDED: f64 = 0.25;
 /// When the sweeps do not come to rest.
 pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
     let Some(contact) = &model.contact else { return Ok(()) };
-    let Workspace { contact: s, kinds, .. } = ws;
+    let Workspace { contact: s, kinds, rooms, .. } = ws;
     s.sweeps = 0;
     if s.rows.is_empty() || matches!(contact.law, Law::Penalty(_)) {
         return Ok(());
     }
-    prepare(model, contact, dt, state, s, kinds);
+    prepare(model, contact, dt, state, s, kinds, rooms);
     let left = sweep(model, contact, s, kinds);
     if s.care == 1.0 && s.rows.iter().any(|row| row.gap() < 0.0) {
         mend(model, contact, s, kinds);
@@ -68,6 +69,7 @@ fn prepare(
     state: &State,
     s: &mut ContactScratch,
     kinds: &mut [KindScratch],
+    rooms: &Rooms,
 ) {
     s.moved.resize(contact.scene.atoms, [0.0; 4]);
     s.volumes.clear();
@@ -84,7 +86,7 @@ fn prepare(
         }
         hold_atoms(kind, range.start, s);
         if matches!(kind.volume, VolumeRule::Exact(_)) {
-            add_volumes(kind, &now.positions, range.start, mobility, s, w);
+            add_volumes(kind, &now.positions, range.start, mobility, s, w, rooms);
         }
     }
     for (row, pull) in s.rows.iter_mut().zip(&mut s.pulls) {
@@ -114,15 +116,26 @@ fn hold_atoms(kind: &Kind, first: usize, s: &mut ContactScratch) {
 }
 
 /// The volumes of a kind and their gradients where the atoms went freely.
-fn add_volumes(kind: &Kind, x: &[f64], first: usize, mobility: f64, s: &mut ContactScratch, w: &mut KindScratch) {
-    for ((gradient, x), volumes) in (w.spare.chunks_exact_mut(kind.block_len()))
-        .zip(x.chunks_exact(kind.block_len()))
-        .zip(w.left.chunks_exact_mut(kind.lanes))
+fn add_volumes(
+    kind: &Kind,
+    x: &[f64],
+    first: usize,
+    mobility: f64,
+    s: &mut ContactScratch,
+    w: &mut KindScratch,
+    rooms: &Rooms,
+) {
+    let KindScratch { gradient, left, target, .. } = w;
+    let own = vectors(kind, gradient);
+    let (length, per_block) = (kind.block_len(), kind.lanes * kind.atoms());
+    for ((x, volumes), own) in
+        (x.chunks_exact(length)).zip(left.chunks_exact_mut(kind.lanes)).zip(own.chunks_mut(per_block))
     {
-        volume::measure_block(&kind.rest.facets, x, &kind.held, gradient, volumes);
+        rooms.enter(length, |[gradient, ..]| {
+            volume::measure_block(&kind.rest.facets, x, &kind.held, gradient, volumes);
+            gather(kind, gradient, own, <[f64; 3]>::from);
+        });
     }
-    let own = vectors(kind, &mut w.gradient);
-    gather(kind, &w.spare, own, <[f64; 3]>::from);
     for (cell, g) in own.chunks_exact(kind.atoms()).enumerate() {
         let (start, end) = (cell * kind.atoms(), (cell + 1) * kind.atoms());
         let (mut along, mut squared) = (0.0, 0.0);
@@ -130,7 +143,7 @@ fn add_volumes(kind: &Kind, x: &[f64], first: usize, mobility: f64, s: &mut Cont
             along += (0..3).map(|axis| g[axis] * d[axis]).sum::<f64>();
             squared += (0..3).map(|axis| g[axis] * g[axis]).sum::<f64>();
         }
-        let offset = w.left[cell] - w.target[cell] - along;
+        let offset = left[cell] - target[cell] - along;
         s.volumes.push(VolumeRow { first: start, end, offset, inverse: 1.0 / squared, mobility });
     }
 }
