@@ -87,7 +87,7 @@ fn run<T>(model: &Model, state: &mut State, mut row: impl FnMut(&State, &Workspa
 /// Force of all contacts on the cells from atom `first` on, pN.
 fn force_from(ws: &Workspace, first: u32) -> Vec3 {
     let of_row = |(row, pull): (&Row, &Pull)| -> Vec3 {
-        let own = row.atoms.iter().zip(row.weights).filter(|(atom, _)| **atom >= first);
+        let own = row.atoms.iter().zip(row.weights()).filter(|(atom, _)| **atom >= first);
         own.map(|(_, weight)| weight * pull.force()).sum()
     };
     ws.contact.rows.iter().zip(&ws.contact.pulls).map(of_row).sum()

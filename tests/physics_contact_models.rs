@@ -238,7 +238,7 @@ fn links_bear_exactly_the_load_and_break_above_what_their_range_allows() {
     pull_links(model.contact.as_ref().unwrap(), &Controls::default(), &state.contact.links, &x, &mut force);
     let rows = ws.contact.rows.iter().zip(&ws.contact.pulls);
     for (row, pull) in rows {
-        for (atom, weight) in row.atoms.iter().zip(row.weights) {
+        for (atom, weight) in row.atoms.iter().zip(row.weights()) {
             force[*atom as usize] += weight * pull.force();
         }
     }

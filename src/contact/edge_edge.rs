@@ -188,13 +188,8 @@ const SLACK: f64 = 0.35;
 /// one edge rise a little towards the other in one moment and fall away in the next; a contact that carries a force must
 /// not come and go with that. Nothing when the edges have slid off each other, are farther apart than the proximity, or
 /// their facets have really turned.
-pub fn edges_still_touch(
-    scene: &Scene,
-    positions: &[Vec3],
-    edges: [u32; 2],
-    bodies: [u32; 2],
-    normal: &Vec3,
-) -> Option<EdgeContact> {
+pub fn edges_still_touch(scene: &Scene, positions: &[Vec3], edges: [u32; 2], normal: &Vec3) -> Option<EdgeContact> {
+    let bodies = edges.map(|edge| scene.bodies.partition_point(|body| body.first_edge <= edge) as u32 - 1);
     let [first, second] = [0, 1].map(|side| {
         let (shape, own) = (scene.shape(bodies[side]), edges[side] - scene.bodies[bodies[side] as usize].first_edge);
         Ridge::of(shape, scene.of_body(bodies[side], positions), own)

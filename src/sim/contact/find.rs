@@ -49,7 +49,7 @@ pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
     s.moved.resize(contact.scene.atoms, [0.0; 4]);
     add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.moved);
     for (row, pull) in s.rows.iter().zip(&s.pulls) {
-        for (atom, weight) in row.atoms.iter().zip(row.weights) {
+        for (atom, weight) in row.atoms.iter().zip(row.weights()) {
             add(&mut s.moved[*atom as usize], &(weight * pull.carried()));
         }
     }
@@ -106,23 +106,22 @@ pub fn keep_contacts(model: &Model, state: &mut State, ws: &mut Workspace) {
 /// Writes what contacts carry. The contacts must be those of the rows.
 pub(super) fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds: &mut ContactState) {
     let ContactState { atoms, edges, planes, .. } = bonds;
-    let xyz = |pull: &Pull| [pull.force[0], pull.force[1], pull.force[2]];
     let (of_atoms, others) = pulls.split_at(found.atoms.len());
     let (of_edges, of_planes) = others.split_at(found.edges.len());
     empty_for(atoms, found.atoms.len());
     for ((pull, row), contact) in of_atoms.iter().zip(rows).zip(&found.atoms) {
         let &AtomContact { atom, body, facet, facing, .. } = contact;
-        atoms.push(AtomBond { atom, body, facet, facing, force: xyz(pull), given: given_after(row, pull) });
+        atoms.push(AtomBond { atom, body, facet, facing, force: pull.force, given: given_after(row, pull) });
     }
     empty_for(edges, found.edges.len());
     for (pull, contact) in of_edges.iter().zip(&found.edges) {
-        let normal = contact.normal.into();
-        edges.push(EdgeBond { edges: contact.edges, bodies: contact.bodies, normal, force: xyz(pull) });
+        let normal = contact.normal.map(|part| part as f32).into();
+        edges.push(EdgeBond { edges: contact.edges, normal, force: pull.force });
     }
     empty_for(planes, found.planes.len());
     let rows = &rows[rows.len() - of_planes.len()..];
     for ((pull, row), contact) in of_planes.iter().zip(rows).zip(&found.planes) {
         let &PlaneContact { atom, plane, .. } = contact;
-        planes.push(PlaneBond { atom, plane, force: xyz(pull), given: given_after(row, pull) });
+        planes.push(PlaneBond { atom, plane, force: pull.force, given: given_after(row, pull) });
     }
 }

@@ -41,20 +41,22 @@ pub fn energy_of_give(ws: &Workspace) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::rows::Sides;
     use super::*;
     use crate::random::{Purpose, Stream};
 
     /// A contact along z of this give, µm/pN, with what is in it, pN·µm.
     fn row(give: f64, given: f32) -> Row {
-        let (atoms, weights) = ([0, 1, 2, 3], [1.0, -0.3, -0.3, -0.4]);
+        let (atoms, places) = ([0, 1, 2, 3], [0.3, 0.4]);
         let normal_and_gap = [0.0, 0.0, 1.0, 0.05];
         let (least, shear) = (-10.0, 10.0);
-        Row { atoms, weights, normal_and_gap, least, shear, give: give as f32, stiffness: 0.0, kept: 1.0, given }
+        let sides = Sides::AtomOnFacet;
+        Row { atoms, places, normal_and_gap, least, shear, give: give as f32, kept: 1.0, given, sides }
     }
 
     fn pull(carried: Vec3, force: Vec3) -> Pull {
-        let four = |v: Vec3| [v.x as f32, v.y as f32, v.z as f32, 0.0];
-        Pull { force: four(force), carried: four(carried), ..Pull::default() }
+        let short = |v: Vec3| [v.x as f32, v.y as f32, v.z as f32];
+        Pull { force: short(force), carried: short(carried), ..Pull::default() }
     }
 
     #[test]

@@ -92,9 +92,8 @@ fn prepare(
     for (row, pull) in s.rows.iter_mut().zip(&mut s.pulls) {
         *pull = Pull { force: pull.carried, carried: pull.carried, ..Pull::default() };
         let gives =
-            row.atoms.iter().zip(row.weights).map(|(atom, weight)| weight * weight * s.moved[*atom as usize][3]);
+            row.atoms.iter().zip(row.weights()).map(|(atom, weight)| weight * weight * s.moved[*atom as usize][3]);
         row.give = gives.sum::<f64>() as f32;
-        row.stiffness = 1.0 / row.give;
         set_give(row, pull, s.in_account);
     }
     s.adhesives.begin();

@@ -33,7 +33,7 @@ impl Penalty {
 pub fn press(penalty: &Penalty, rows: &[Row], start: &[Vec3], positions: &[Vec3], force: &mut [Vec3]) -> f64 {
     let mut energy = 0.0;
     for row in rows {
-        let sides = || row.atoms.map(|atom| atom as usize).into_iter().zip(row.weights);
+        let sides = || row.atoms.map(|atom| atom as usize).into_iter().zip(row.weights());
         let apart: Vec3 = sides().map(|(atom, weight)| weight * (positions[atom] - start[atom])).sum();
         let normal = row.normal();
         let (push, stored) = penalty.at(row.gap() + normal.dot(&apart), -f64::from(row.least));

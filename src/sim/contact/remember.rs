@@ -52,8 +52,8 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
     let count = found.edges.len();
     for bond in before.edges.iter().filter(|bond| bond.force != [0.0; 3]) {
         if found.edges[..count].binary_search_by(|edge| edge.edges.cmp(&bond.edges)).is_err() {
-            let normal = Vec3::from(bond.normal);
-            found.edges.extend(edges_still_touch(&contact.scene, positions, bond.edges, bond.bodies, &normal));
+            let normal = Vec3::from(bond.normal.map(f64::from));
+            found.edges.extend(edges_still_touch(&contact.scene, positions, bond.edges, &normal));
         }
     }
     found.edges.sort_unstable_by_key(|edge| edge.edges);

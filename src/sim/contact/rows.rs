@@ -14,8 +14,8 @@ use crate::sim::chemistry::Controls;
 pub struct Row {
     /// Its atoms; those that are not there have weight 0.
     pub atoms: [u32; 4],
-    /// Their weights: positive on the first side of the contact, negative on the other; each side sums to ±1.
-    pub weights: [f64; 4],
+    /// Where it is: the weights of the second and third atom of a facet, or the places along two edges; see [`Row::weights`].
+    pub places: [f64; 2],
     /// From the other side to the first, and the gap where the step began, µm.
     pub normal_and_gap: [f32; 4],
     /// Least normal force, pN: minus the pull at which the contact parts.
@@ -24,25 +24,38 @@ pub struct Row {
     pub shear: f32,
     /// Displacement over force, µm/pN; 0 where nothing can move.
     pub give: f32,
-    /// Force over displacement, pN/µm.
-    pub stiffness: f32,
     /// What it holds of a change of its force; the rest gives way.
     pub kept: f32,
     /// What went into its give and has not come back where the step began, pN·µm.
     pub given: f32,
+    /// What touches.
+    pub sides: Sides,
+}
+
+/// What touches in a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sides {
+    /// An atom, and the three of a facet.
+    AtomOnFacet,
+    /// The two atoms of an edge, and those of another.
+    Edges,
+    /// An atom, four times.
+    AtomOnPlane,
+    /// All atoms move as one, so that the contact does nothing.
+    Rigid,
 }
 
 /// What a contact carries; forces on the first side, pN.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pull {
     /// Now.
-    pub force: [f32; 4],
+    pub force: [f32; 3],
     /// Where the step began.
-    pub carried: [f32; 4],
+    pub carried: [f32; 3],
     /// What the last sweep changed.
-    pub(super) change: [f32; 4],
+    pub(super) change: [f32; 3],
     /// The direction that speeds the sweeps up.
-    pub(super) way: [f32; 4],
+    pub(super) way: [f32; 3],
 }
 
 /// Both sides of an interface have atoms that touch the other: each carries half of its strength.
@@ -65,12 +78,12 @@ pub fn write_rows(
     empty_for(rows, count);
     empty_for(pulls, count);
     let mut add =
-        |atoms, weights, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], (force, given): ([f32; 3], f32)| {
+        |sides, atoms, places, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], (force, given): ([f32; 3], f32)| {
             let normal_and_gap = [normal.x as f32, normal.y as f32, normal.z as f32, gap as f32];
             let (least, shear) = (least as f32, shear as f32);
-            let row = Row { atoms, weights, normal_and_gap, least, shear, give: 0.0, stiffness: 0.0, kept: 1.0, given };
+            let row = Row { atoms, places, normal_and_gap, least, shear, give: 0.0, kept: 1.0, given, sides };
             let force = row.bound(Vec3::from(force.map(f64::from)));
-            let force = [force.x as f32, force.y as f32, force.z as f32, 0.0];
+            let force = [force.x as f32, force.y as f32, force.z as f32];
             rows.push(row);
             pulls.push(Pull { force, carried: force, ..Pull::default() });
         };
@@ -94,7 +107,6 @@ pub fn write_rows(
         let slid = || of_atom().find(|bond| bond.body == contact.body && is_free(bond.facet));
         let carried = same.or_else(slid).map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.given));
         let [i, j, k] = scene.facet_atoms(contact.body, contact.facet);
-        let [u, v, w] = contact.weights();
         let own = contact.body as usize == body;
         let other = contact.body as usize;
         let strength = if own { Strength::default() } else { model.strength_between(body, other) };
@@ -103,8 +115,9 @@ pub fn write_rows(
         let area = area / places_on_body(found, number) as f64;
         let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
         add(
+            Sides::AtomOnFacet,
             [contact.atom, i, j, k],
-            [1.0, -u, -v, -w],
+            contact.second_weights,
             &contact.normal,
             contact.gap - if own || model.is_thin(contact.body) { skin } else { 0.0 },
             [-strength.tensile * area, strength.shear * area],
@@ -118,12 +131,12 @@ pub fn write_rows(
         }
         let same = before.edges.get(first).filter(|bond| bond.edges == contact.edges);
         let [[a, b], [c, d]] = [0, 1].map(|side| scene.edge_atoms(contact.bodies[side], contact.edges[side]));
-        let [s, t] = contact.along;
         let [one, other] = contact.bodies;
         let is_thin = one == other || model.is_thin(one) || model.is_thin(other);
         add(
+            Sides::Edges,
             [a, b, c, d],
-            [1.0 - s, s, t - 1.0, -t],
+            contact.along,
             &contact.normal,
             contact.gap - if is_thin { skin } else { 0.0 },
             [0.0, 0.0],
@@ -145,8 +158,9 @@ pub fn write_rows(
         let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
         let area = area * controls.adhesion_of(body);
         add(
+            Sides::AtomOnPlane,
             [contact.atom; 4],
-            [1.0, 0.0, 0.0, 0.0],
+            [0.0; 2],
             &scene.planes[contact.plane as usize].normal,
             contact.gap,
             [-strength.tensile * area, strength.shear * area],
@@ -163,6 +177,24 @@ fn places_on_body(found: &Contacts, number: usize) -> usize {
 }
 
 impl Row {
+    /// The weights of its atoms: positive on the first side of the contact, negative on the other; each side sums to ±1.
+    #[inline(always)]
+    pub fn weights(&self) -> [f64; 4] {
+        let [s, t] = self.places;
+        match self.sides {
+            Sides::AtomOnFacet => [1.0, -(1.0 - s - t), -s, -t],
+            Sides::Edges => [1.0 - s, s, t - 1.0, -t],
+            Sides::AtomOnPlane => [1.0, 0.0, 0.0, 0.0],
+            Sides::Rigid => [0.0; 4],
+        }
+    }
+
+    /// Force over displacement, pN/µm.
+    #[inline(always)]
+    pub fn stiffness(&self) -> f64 {
+        f64::from(1.0 / self.give)
+    }
+
     /// Unit vector from the other side to the first.
     pub fn normal(&self) -> Vec3 {
         let [x, y, z, _] = self.normal_and_gap.map(f64::from);
@@ -197,7 +229,6 @@ impl Pull {
     }
 }
 
-fn vector(numbers: &[f32; 4]) -> Vec3 {
-    let [x, y, z, _] = numbers.map(f64::from);
-    Vec3::new(x, y, z)
+fn vector(numbers: &[f32; 3]) -> Vec3 {
+    Vec3::from(numbers.map(f64::from))
 }

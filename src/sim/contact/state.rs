@@ -27,10 +27,8 @@ pub struct AtomBond {
 pub struct EdgeBond {
     /// The edges, numbered through all cells.
     pub edges: [u32; 2],
-    /// Their bodies.
-    pub bodies: [u32; 2],
     /// Unit normal from the second to the first.
-    pub normal: [f64; 3],
+    pub normal: [f32; 3],
     /// Force on the first, pN; the second feels the opposite.
     pub force: [f32; 3],
 }

@@ -48,27 +48,32 @@ fn dot(a: &V4, b: &V4) -> f64 {
 }
 
 #[inline(always)]
-fn wide(narrow: &[f32; 4]) -> V4 {
-    map(|i| f64::from(narrow[i]))
+fn wide([x, y, z]: [f32; 3]) -> V4 {
+    [f64::from(x), f64::from(y), f64::from(z), 0.0]
 }
 
 #[inline(always)]
-fn narrow(wide: &V4) -> [f32; 4] {
-    [wide[0] as f32, wide[1] as f32, wide[2] as f32, 0.0]
+fn narrow(wide: &V4) -> [f32; 3] {
+    [wide[0] as f32, wide[1] as f32, wide[2] as f32]
+}
+
+#[inline(always)]
+fn normal(row: &Row) -> V4 {
+    let [x, y, z, _] = row.normal_and_gap;
+    wide([x, y, z])
 }
 
 /// How much farther apart displacements bring the two sides of a row, µm. The fourth number means nothing.
 #[inline(always)]
-fn apart(row: &Row, moved: &[V4]) -> V4 {
+fn apart(row: &Row, [p, q, r, s]: [f64; 4], moved: &[V4]) -> V4 {
     let [a, b, c, d] = row.atoms.map(|atom| &moved[atom as usize]);
-    let [p, q, r, s] = row.weights;
     map(|i| (a[i] * p + b[i] * q) + (c[i] * r + d[i] * s))
 }
 
 /// Moves the atoms of a row as a change of its force does; the fourth number of that is 0.
 #[inline(always)]
-fn push(row: &Row, change: &V4, moved: &mut [V4]) {
-    for (atom, weight) in row.atoms.iter().zip(row.weights) {
+fn push(row: &Row, weights: [f64; 4], change: &V4, moved: &mut [V4]) {
+    for (atom, weight) in row.atoms.iter().zip(weights) {
         let slot = &mut moved[*atom as usize];
         let share = slot[3] * weight;
         *slot = map(|i| slot[i] + share * change[i]);
@@ -79,7 +84,7 @@ fn push(row: &Row, change: &V4, moved: &mut [V4]) {
 /// as it can, where the gap would grow. `free` is where the gap would be if it carried nothing.
 #[inline(always)]
 fn normal_force(row: &Row, free: f64, carried: f64) -> f64 {
-    let (gap, stiffness, kept) = (row.gap(), f64::from(row.stiffness), f64::from(row.kept));
+    let (gap, stiffness, kept) = (row.gap(), row.stiffness(), f64::from(row.kept));
     let (low, high) = (gap.min(0.0), gap.max(0.0));
     let pushed = (low - free) * stiffness;
     let held = (high - free) * stiffness * kept + carried.min(0.0) * (1.0 - kept);
@@ -90,17 +95,15 @@ fn normal_force(row: &Row, free: f64, carried: f64) -> f64 {
 /// The force of a row after its turn: normal by [`normal_force`]; the tangential part keeps the sides from sliding as far
 /// as it can, eq. (adhesion.4).
 #[inline(always)]
-fn turn(row: &Row, force: &V4, carried: &V4, moved: &[V4]) -> V4 {
-    let apart = apart(row, moved);
-    let mut normal = wide(&row.normal_and_gap);
-    normal[3] = 0.0;
+fn turn(row: &Row, weights: [f64; 4], force: &V4, carried: &V4, moved: &[V4]) -> V4 {
+    let (apart, normal) = (apart(row, weights, moved), normal(row));
     let (opened, along, carried_along) = (dot(&apart, &normal), dot(force, &normal), dot(carried, &normal));
     let free = (row.gap() + opened) - along * f64::from(row.give);
     let wanted = normal_force(row, free, carried_along);
     if row.shear == 0.0 {
         return map(|i| wanted * normal[i]);
     }
-    let (stiffness, kept) = (f64::from(row.stiffness), f64::from(row.kept));
+    let (stiffness, kept) = (row.stiffness(), f64::from(row.kept));
     let stuck = map(|i| {
         let (slid, across) = (apart[i] - opened * normal[i], force[i] - along * normal[i]);
         let carried = carried[i] - carried_along * normal[i];
@@ -135,13 +138,14 @@ impl NullaryFnOnce for Sweep<'_> {
             if row.give == 0.0 {
                 continue;
             }
-            let (way, last) = (wide(&pull.way), wide(&pull.change));
+            let (weights, way, last) = (row.weights(), wide(pull.way), wide(pull.change));
             // As the numbers are kept, so that force and displacement go the same way.
-            let force = wide(&pull.force);
-            let force = wide(&narrow(&map(|i| force[i] + share * way[i])));
-            let new = narrow(&turn(row, &force, &wide(&pull.carried), moved));
-            let step = map(|i| f64::from(new[i]) - force[i]);
-            push(row, &step, moved);
+            let force = wide(pull.force);
+            let force = wide(narrow(&map(|i| force[i] + share * way[i])));
+            let new = narrow(&turn(row, weights, &force, &wide(pull.carried), moved));
+            let found = wide(new);
+            let step = map(|i| found[i] - force[i]);
+            push(row, weights, &step, moved);
             pull.way = narrow(&map(|i| share * way[i] + last[i]));
             pull.change = narrow(&step);
             pull.force = new;
@@ -201,12 +205,11 @@ impl NullaryFnOnce for SweepVolumes<'_> {
 pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], most: f64) {
     for (row, pushed) in deep {
         let row = &rows[*row as usize];
-        let mut normal = wide(&row.normal_and_gap);
-        normal[3] = 0.0;
+        let (weights, normal) = (row.weights(), normal(row));
         let wanted = (row.gap() + most).min(0.0);
-        let missing = wanted - row.gap() - dot(&apart(row, moved), &normal);
-        let new = (*pushed + missing * f64::from(row.stiffness)).max(0.0);
-        push(row, &normal.map(|n| (new - *pushed) * n), moved);
+        let missing = wanted - row.gap() - dot(&apart(row, weights, moved), &normal);
+        let new = (*pushed + missing * row.stiffness()).max(0.0);
+        push(row, weights, &normal.map(|n| (new - *pushed) * n), moved);
         *pushed = new;
     }
 }

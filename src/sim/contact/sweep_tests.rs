@@ -1,6 +1,6 @@
 //! The sweeps in wide registers against the same equations written plainly.
 
-use super::rows::{Pull, Row};
+use super::rows::{Pull, Row, Sides};
 use super::sweep::{Change, V4, VolumeRow, sweep_contacts, sweep_volumes};
 use crate::Vec3;
 use crate::random::{Purpose, Stream};
@@ -37,18 +37,18 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
         let sticks = count % 4 > 0;
         rows.push(Row {
             atoms,
-            weights: [1.0, u + v - 1.0, -u, -v],
+            places: [u, v],
             normal_and_gap: [normal.x as f32, normal.y as f32, normal.z as f32, (0.05 * number(&mut dice)) as f32],
             least: if sticks { -0.3 } else { 0.0 },
             shear: if count % 4 > 1 { 0.2 } else { 0.0 },
             give: give as f32,
-            stiffness: 1.0 / give as f32,
             kept: 1.0 / (1.0 + 0.05 * (count % 5) as f32),
             given: 0.0,
+            sides: Sides::AtomOnFacet,
         });
         let along = if sticks { number(&mut dice).max(-0.3) } else { number(&mut dice).abs() };
         let force = (along * normal).map(|part| part as f32);
-        let force = [force.x, force.y, force.z, 0.0];
+        let force = [force.x, force.y, force.z];
         pulls.push(Pull { force, carried: force, ..Pull::default() });
     }
     (moved, rows, pulls)
@@ -57,7 +57,7 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
 /// Eqs. (adhesion.3) to (adhesion.5) for one contact: what it should carry.
 fn plain_turn(row: &Row, force: Vec3, carried: Vec3, moved: &[Vec3]) -> Vec3 {
     let (n, gap, give, softness) = (row.normal(), row.gap(), f64::from(row.give), 1.0 / f64::from(row.kept) - 1.0);
-    let apart: Vec3 = row.atoms.iter().zip(row.weights).map(|(atom, weight)| weight * moved[*atom as usize]).sum();
+    let apart: Vec3 = row.atoms.iter().zip(row.weights()).map(|(atom, weight)| weight * moved[*atom as usize]).sum();
     let free = gap + n.dot(&apart) - n.dot(&force) * give;
     let along = if free < gap.min(0.0) {
         (gap.min(0.0) - free) / give
@@ -80,7 +80,7 @@ fn a_sweep_in_wide_registers_is_that_of_the_book() {
         for ((row, pull), force) in rows.iter().zip(&pulls).zip(&mut forces).filter(|((row, _), _)| row.give > 0.0) {
             let change = plain_turn(row, *force, pull.force(), &plain) - *force;
             *force += change;
-            for (atom, weight) in row.atoms.iter().zip(row.weights) {
+            for (atom, weight) in row.atoms.iter().zip(row.weights()) {
                 plain[*atom as usize] += moved[*atom as usize][3] * weight * change;
             }
             work += change.norm_squared() * f64::from(row.give);

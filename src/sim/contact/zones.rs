@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::model::ContactModel;
 use super::recruit::{Glue, reset, root};
 use super::rigid::Rigid;
-use super::rows::{Pull, Row};
+use super::rows::{Pull, Row, Sides};
 use super::state::ContactState;
 use crate::Vec3;
 use crate::contact::Contacts;
@@ -161,18 +161,19 @@ impl AdhesiveScratch {
             let places = row.atoms.map(|atom| self.place[atom as usize]);
             let adhesive = |place: u32| self.atoms.get(place as usize).map(|one| one.adhesive);
             let first = adhesive(places[0]);
-            let real = |i: usize| row.weights[i] != 0.0;
-            let on_plane = row.atoms[0] == row.atoms[3];
+            let weights = row.weights();
+            let real = |i: usize| weights[i] != 0.0;
+            let on_plane = row.sides == Sides::AtomOnPlane;
             let grounded = !on_plane || self.grounded[row.atoms[0] as usize];
             if first.is_none() || !grounded || (0..4).any(|i| real(i) && adhesive(places[i]) != first) {
                 continue;
             }
             for i in (0..4).filter(|i| real(*i)) {
                 let force = &mut self.atoms[places[i] as usize].force;
-                let carried = row.weights[i] * pull.carried();
+                let carried = weights[i] * pull.carried();
                 (0..3).for_each(|axis| force[axis] += carried[axis]);
             }
-            row.weights = [0.0; 4];
+            row.sides = Sides::Rigid;
             *pull = Pull::default();
         }
         for body in &self.bodies {
