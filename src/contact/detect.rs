@@ -6,7 +6,7 @@ use super::atom_facet::{Low, find_atom_contacts};
 use super::boxes::{Bounds, Pack, Steps};
 use super::edge_edge::find_edge_contacts;
 use super::found::{Contacts, PlaneContact, push};
-use super::lists::{Boxes, Lists, Moved, levels_over};
+use super::lists::{Boxes, Lists, Motion, Moved, levels_over};
 use super::neighbours::Neighbours;
 use super::scene::Scene;
 use crate::Vec3;
@@ -35,8 +35,8 @@ pub struct Detector {
     looks: u32,
     /// Where the atoms were when the pairs were collected, µm.
     collected_at: Vec<[f32; 3]>,
-    /// The farthest that an atom of each body has moved since then, µm.
-    moved_of: Vec<f64>,
+    /// How each body has moved since then.
+    moved_of: Vec<Motion>,
     /// One per batch: what several threads find before it is put in order, and scratch.
     found: Vec<Found>,
     lows: Vec<Low>,
@@ -88,7 +88,7 @@ impl Detector {
             self.looks = 0;
             self.collect(scene, positions);
             moved_of.clear();
-            moved_of.resize(scene.bodies.len(), 0.0);
+            moved_of.resize(scene.bodies.len(), Motion::NONE);
         }
         self.looks += 1;
         contacts.clear();
@@ -144,26 +144,17 @@ impl Detector {
 
     /// The largest displacement since the pairs were collected, rounding included, µm; infinite when there are none
     /// for this scene, NaN or infinite when a position is not finite. That of each body is written to `of_bodies`.
-    pub(super) fn moved(&self, scene: &Scene, positions: &[Vec3], of_bodies: &mut Vec<f64>) -> f64 {
+    pub(super) fn moved(&self, scene: &Scene, positions: &[Vec3], of_bodies: &mut Vec<Motion>) -> f64 {
         if self.collected_at.len() != positions.len() || self.lists.len() + 1 != scene.batches.len() {
             return f64::INFINITY;
         }
-        let farthest = |body: u32| {
-            let first = scene.bodies[body as usize].first_atom as usize;
-            let mut farthest = 0.0;
-            for (now, then) in scene.of_body(body, positions).iter().zip(&self.collected_at[first..]) {
-                let mut squared = 0.0;
-                for axis in 0..3 {
-                    let way = (now[axis] - f64::from(then[axis])).abs() + ROUNDING * now[axis].abs();
-                    squared += way * way;
-                }
-                farthest = larger(farthest, squared);
-            }
-            farthest.sqrt()
+        let motion = |body: u32| {
+            let here = scene.of_body(body, positions);
+            motion(here, &self.collected_at[scene.bodies[body as usize].first_atom as usize..][..here.len()])
         };
         let bodies = 0..scene.bodies.len() as u32;
-        bodies.into_par_iter().with_min_len(BODIES_PER_JOB).map(farthest).collect_into_vec(of_bodies);
-        of_bodies.iter().copied().fold(0.0, larger)
+        bodies.into_par_iter().with_min_len(BODIES_PER_JOB).map(motion).collect_into_vec(of_bodies);
+        of_bodies.iter().map(|motion| motion.farthest).fold(0.0, larger)
     }
 
     /// Collects the pairs of all batches.
@@ -223,6 +214,20 @@ impl Detector {
         let then = 12 * self.collected_at.capacity() + 8 * self.moved_of.capacity();
         packs + lists + found + bounds + self.boxes.neighbours.bytes() + then
     }
+}
+
+/// How the atoms of a body have moved.
+fn motion(now: &[Vec3], then: &[[f32; 3]]) -> Motion {
+    let way = |now: &Vec3, then: &[f32; 3]| now - Vec3::from(then.map(f64::from));
+    let sum: Vec3 = now.iter().zip(then).map(|(now, then)| way(now, then)).sum();
+    let mean = sum / now.len().max(1) as f64;
+    let (mut farthest, mut beside) = (0.0, 0.0);
+    for (now, then) in now.iter().zip(then) {
+        let (way, rounding) = (way(now, then), now.abs() * ROUNDING);
+        farthest = larger(farthest, (way.abs() + rounding).norm_squared());
+        beside = larger(beside, ((way - mean).abs() + rounding).norm_squared());
+    }
+    Motion { mean, beside: beside.sqrt(), farthest: farthest.sqrt() }
 }
 
 /// Looks at the pairs of a batch and adds its contacts.

@@ -59,7 +59,7 @@ impl Outer {
 }
 
 /// How far facets may rise towards the other edge, as a sine, where the edges have not passed each other.
-const RISE: f64 = 0.1;
+pub(super) const RISE: f64 = 0.1;
 
 /// How far edges with such facets may have passed each other, over the proximity: what sweeps leave.
 const PASSED: f64 = 0.01;
@@ -71,7 +71,7 @@ const BEYOND: f64 = 0.1;
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
 #[inline]
 fn cross(
-    First { ridge: first, flanks, squares, .. }: &First,
+    First { ridge: first, flanks, squares, is_convex: first_is_convex, .. }: &First,
     second: &Ridge,
     outer: Outer,
     scene: &Scene,
@@ -82,33 +82,34 @@ fn cross(
     // or its opposite must do for all four, or nearly so. Most pairs fail here, whatever their distance.
     let [a, b] = flanks.map(|flank| normal.dot(&flank));
     let slight = RISE * RISE * squared;
-    if a * b < 0.0 && (!outer.any() || (a * a > slight * squares[0] && b * b > slight * squares[1])) {
-        return None;
-    }
     let between = first.start - second.start;
     let height = normal.dot(&between);
     let is_within = |distance: f64| height * height <= distance * distance * squared;
-    let may_rise = outer.any() && is_within(scene.reach.proximity);
-    if (a * b < 0.0 && !may_rise) || !is_within(scene.reach.range()) {
-        return None;
-    }
+    let may_rise = outer.any() & is_within(scene.reach.proximity);
     let on_first = -between.cross(&second.along).dot(&normal);
     let on_second = -between.cross(&first.along).dot(&normal);
     let least = -BEYOND * squared;
-    if on_first < least || on_first > squared - least || on_second < least || on_second > squared - least {
+    // No pair fails these tests more often than it passes them in a way that could be foretold, so all are made before the result
+    // is looked at.
+    let rises = a * b < 0.0;
+    let rises_much = (a * a > slight * squares[0]) & (b * b > slight * squares[1]);
+    let beyond =
+        (on_first < least) | (on_first > squared - least) | (on_second < least) | (on_second > squared - least);
+    if (rises & (!may_rise | rises_much)) | !is_within(scene.reach.range()) | beyond {
         return None;
     }
     let [c, d] = second.flanks().map(|flank| -normal.dot(&flank));
     let (lowest, highest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
-    let rises = lowest < 0.0 && highest > 0.0;
-    if rises && !may_rise {
-        return None;
-    }
-    if squared <= LEAST_SINE_SQUARED * first.along.norm_squared() * second.along.norm_squared() {
+    let rises = (lowest < 0.0) & (highest > 0.0);
+    let along = [on_first / squared, on_second / squared];
+    let within = (0.0..=1.0).contains(&along[0]) & (0.0..=1.0).contains(&along[1]);
+    let is_convex = [!outer.0[0] | first_is_convex, !outer.0[1] | second.is_convex()];
+    let is_straight = squared <= LEAST_SINE_SQUARED * first.along.norm_squared() * second.along.norm_squared();
+    if (rises & (!may_rise | !within)) | (outer.any() & (!is_convex[0] | !is_convex[1])) | is_straight {
         return None;
     }
     let facing = if rises {
-        1f64.copysign(normal.dot(&outward(first, second, outer)))
+        1f64.copysign(leads_out(first, second, outer, &normal))
     } else if highest > 0.0 {
         1.0
     } else if lowest < 0.0 {
@@ -121,15 +122,10 @@ fn cross(
     if gap >= scene.reach.proximity || gap < -scene.reach.depth {
         return None;
     }
-    let along = [on_first / squared, on_second / squared];
-    let within = along.iter().all(|share| (0.0..=1.0).contains(share));
-    let is_convex = |side: usize| !outer.0[side] || if side == 0 { first.is_convex() } else { second.is_convex() };
     let fits = if !outer.any() {
         gap >= 0.0 && within
-    } else if !is_convex(0) || !is_convex(1) {
-        false
     } else if rises {
-        within && gap >= -PASSED * scene.reach.proximity && !have_turned(first, second, &normal, RISE)
+        gap >= -PASSED * scene.reach.proximity && !have_turned(first, second, &normal, RISE)
     } else if gap >= 0.0 {
         within
     } else {
@@ -141,16 +137,17 @@ fn cross(
     fits.then(|| (along.map(|share| share.clamp(0.0, 1.0)), gap, normal))
 }
 
-/// From the second edge to the first, where the outsides of their surfaces are; not scaled.
-fn outward(first: &Ridge, second: &Ridge, outer: Outer) -> Vec3 {
-    let of = |ridge: &Ridge, side: usize| if outer.0[side] { ridge.outward() } else { Vec3::zeros() };
+/// How far a way leads from the second edge to the first, by where the outsides of their surfaces are.
+#[inline(always)]
+fn leads_out(first: &Ridge, second: &Ridge, outer: Outer, way: &Vec3) -> f64 {
+    let of = |ridge: &Ridge, side: usize| if outer.0[side] { ridge.leads_out(way) } else { 0.0 };
     of(second, 1) - of(first, 0)
 }
 
 /// Whether a facet of one edge rises towards the other edge, along the normal from the second to the first, by more than
 /// this sine.
 fn have_turned(first: &Ridge, second: &Ridge, normal: &Vec3, slack: f64) -> bool {
-    let rises = |flank: &Vec3, along: f64| along < -slack * flank.norm();
+    let rises = |flank: &Vec3, along: f64| along < 0.0 && along * along > slack * slack * flank.norm_squared();
     first.flanks().iter().any(|flank| rises(flank, normal.dot(flank)))
         || second.flanks().iter().any(|flank| rises(flank, -normal.dot(flank)))
 }

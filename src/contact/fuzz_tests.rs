@@ -40,6 +40,31 @@ fn kept_pairs_find_exactly_what_all_pairs_find_while_everything_moves() {
 }
 
 #[test]
+fn kept_pairs_find_what_all_pairs_find_in_packed_cells_that_drift_and_roll() {
+    let reach = Reach { margin: 0.3, ..REACH };
+    let (mut kept, mut edges) = (0, 0);
+    for seed in 0..4 {
+        let mut stage = packed_stage(12, reach, seed);
+        let mut dice = Dice(2_000 + seed);
+        let (mut detector, mut contacts) = (Detector::default(), Contacts::default());
+        let ways: Vec<Vec3> = stage.scene.bodies.iter().map(|_| dice.vector() * 0.008).collect();
+        let turns: Vec<Vec3> = ways.iter().map(|_| dice.vector() * 0.008).collect();
+        for step in 0..12 {
+            let detection = detector.detect(&stage.scene, &stage.positions, &mut contacts);
+            assert_eq!(contacts, all_pairs(&stage), "seed {seed}, step {step}");
+            kept += usize::from(!detection.collected);
+            edges += contacts.edges.len();
+            for (body, (way, turn)) in stage.scene.bodies.iter().zip(ways.iter().zip(&turns)) {
+                let own = &mut stage.positions[body.first_atom as usize..][..42];
+                let centre = own.iter().sum::<Vec3>() / 42.0;
+                own.iter_mut().for_each(|x| *x += way + turn.cross(&(*x - centre)) + dice.vector() * 0.002);
+            }
+        }
+    }
+    assert!(kept > 30 && edges > 2000, "a fuzz of nothing: {kept}, {edges}");
+}
+
+#[test]
 fn contacts_are_the_same_bits_for_any_number_of_threads_and_any_past() {
     let stage = packed_stage(60, REACH, 5);
     let with_threads = |threads: usize| {

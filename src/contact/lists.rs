@@ -4,28 +4,47 @@
 use super::boxes::{Bounds, Pack, Steps};
 use super::closest::{closest_on_facet, closest_on_segments};
 use super::neighbours::Neighbours;
+use super::ridge::Ridge;
 use super::scene::Scene;
+use super::turned::turned_for;
 use super::words::{HIGHEST, Words};
 use crate::Vec3;
 
+/// How a body has moved since the pairs were collected, µm.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Motion {
+    /// The mean way of its atoms.
+    pub mean: Vec3,
+    /// The farthest that an atom has moved beside that.
+    pub beside: f64,
+    /// The farthest that an atom has moved.
+    pub farthest: f64,
+}
+
+impl Motion {
+    /// None.
+    pub const NONE: Self = Self { mean: Vec3::new(0.0, 0.0, 0.0), beside: 0.0, farthest: 0.0 };
+}
+
 /// How far bodies have moved since the pairs were collected: pairs that cannot have come to touch are passed over.
 pub(super) struct Moved<'a> {
-    /// The farthest that an atom of each body has moved, µm.
-    pub of_bodies: &'a [f64],
+    /// How each body has moved.
+    pub of_bodies: &'a [Motion],
     /// Levels in a µm; 0 when pairs have none.
     pub scale: f64,
 }
 
 impl Moved<'_> {
-    /// The highest level of a pair of two bodies that may touch now. One more than their motion says, so that rounding
-    /// never hides a pair.
+    /// The highest level of a pair of two bodies that may touch now, by their motion beside each other since pairs were collected,
+    /// eq. (contacts.11). One more than that says, so that rounding never hides a pair.
     #[inline]
     pub fn limit(&self, bodies: [u32; 2]) -> u32 {
         if self.scale == 0.0 {
             return HIGHEST;
         }
-        let [one, other] = bodies.map(|body| self.of_bodies[body as usize]);
-        ((one + other) * self.scale) as u32 + 1
+        let [one, other] = bodies.map(|body| &self.of_bodies[body as usize]);
+        let beside = (one.mean - other.mean).norm() + one.beside + other.beside;
+        (beside.min(one.farthest + other.farthest) * self.scale) as u32 + 1
     }
 }
 
@@ -165,7 +184,7 @@ impl Lists {
             }
         }
         for edge in edges {
-            let ends = shape.ends(edge, here);
+            let (ends, ridge) = (shape.ends(edge, here), Ridge::of(shape, here, edge));
             let (low, high) = (ends[0].inf(&ends[1]).add_scalar(-reach), ends[0].sup(&ends[1]).add_scalar(reach));
             let mut rest = &self.near[..];
             while let [place, count, others @ ..] = rest {
@@ -186,7 +205,9 @@ impl Lists {
                     }
                     let squared = closest_on_segments(ends, [a, b]).0;
                     if squared <= reach * reach {
-                        self.pairs.push((candidate, level_at(squared, self.range, self.scale)));
+                        let turned = turned_for(&ridge, &Ridge::of(shape, there, candidate), reach - self.range);
+                        let level = level_at(squared, self.range, self.scale).max((turned * self.scale) as u32);
+                        self.pairs.push((candidate, level));
                     }
                 }
                 self.edges.add(first_edge + edge, *place, &self.pairs);

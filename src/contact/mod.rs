@@ -22,6 +22,7 @@ mod ridge;
 mod scene;
 mod shape;
 mod swept;
+mod turned;
 mod way;
 mod words;
 

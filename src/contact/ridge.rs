@@ -39,10 +39,11 @@ impl<'a> Ridge<'a> {
         [self.along.cross(&left), right.cross(&self.along)]
     }
 
-    /// Between the unit normals of the two facets, not scaled.
+    /// How far a way leads along the sum of the unit normals of the two facets.
     #[inline(always)]
-    pub fn outward(&self) -> Vec3 {
-        self.normals().iter().map(|normal| normal.normalize()).sum()
+    pub fn leads_out(&self, way: &Vec3) -> f64 {
+        let [left, right] = self.normals();
+        left.dot(way) / left.norm() + right.dot(way) / right.norm()
     }
 
     /// Whether the surface bends away from its outside here.
