@@ -113,12 +113,12 @@ impl Contacts {
     }
 }
 
-/// Appends to a list that grows by an eighth where a `Vec` would double: contacts are most of the memory of a packed
+/// Appends to a list that grows by a sixteenth where a `Vec` would double: contacts are most of the memory of a packed
 /// population, and they hardly grow once it is packed.
 #[inline]
 pub(super) fn push<T>(list: &mut Vec<T>, item: T) {
     if list.len() == list.capacity() {
-        list.reserve_exact((list.len() / 8).max(32));
+        list.reserve_exact((list.len() / 16).max(32));
     }
     list.push(item);
 }

@@ -11,6 +11,12 @@ const ROUND_OFF: f64 = 1e-9;
 /// `most`, eq. (contacts.12); 0 where nothing keeps them from it now.
 pub(super) fn turned_for(first: &Ridge, second: &Ridge, most: f64) -> f64 {
     let normal = first.along.cross(&second.along);
+    let heights =
+        [first.flanks(), second.flanks().map(|flank| -flank)].map(|flanks| flanks.map(|flank| normal.dot(&flank)));
+    let all = heights.as_flattened();
+    if all.iter().all(|height| *height >= 0.0) || all.iter().all(|height| *height <= 0.0) {
+        return 0.0;
+    }
     let length = normal.norm();
     let (sine, flank) = both_sides(first, second, &(normal / length));
     let spare = sine - RISE - ROUND_OFF;
