@@ -89,8 +89,7 @@ fn cross(
     let on_first = -between.cross(&second.along).dot(&normal);
     let on_second = -between.cross(&first.along).dot(&normal);
     let least = -BEYOND * squared;
-    // No pair fails these tests more often than it passes them in a way that could be foretold, so all are made before the result
-    // is looked at.
+    // All tests are made before a result is looked at: which of them a pair fails cannot be foretold.
     let rises = a * b < 0.0;
     let rises_much = (a * a > slight * squares[0]) & (b * b > slight * squares[1]);
     let beyond =
