@@ -58,3 +58,116 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
     }
     found.edges.sort_unstable_by_key(|edge| edge.edges);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::state::EdgeBond;
+    use super::*;
+    use crate::contact::Reach;
+    use crate::geometry::{Surface, icosphere, sheet};
+    use crate::mechanics::elasticity::Elasticity;
+    use crate::sim::model::Kind;
+
+    const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+
+    fn scene(surfaces: Vec<Surface>) -> (ContactModel, Vec<Vec3>) {
+        let kinds: Vec<Kind> = (surfaces.into_iter().enumerate())
+            .map(|(number, rest)| Kind::new("body", rest, Elasticity::default()).with_cells(number, 1))
+            .collect();
+        let positions = kinds.iter().flat_map(|kind| kind.rest.positions.clone()).collect();
+        (ContactModel::new(&kinds, &[], REACH), positions)
+    }
+
+    fn found(model: &ContactModel, before: &ContactState, positions: &[Vec3]) -> Contacts {
+        let (mut detector, mut found) = (Detector::default(), Contacts::default());
+        find_at(model, before, positions, &mut detector, &mut found);
+        found
+    }
+
+    fn bonds_of(found: &Contacts) -> ContactState {
+        let atoms = found.atoms.iter().map(|near| AtomBond {
+            atom: near.atom,
+            body: near.body,
+            facet: near.facet,
+            facing: near.facing,
+            force: [0.0; 3],
+            given: 0.0,
+        });
+        ContactState { atoms: atoms.collect(), ..ContactState::default() }
+    }
+
+    /// A sheet in the plane z = 0 and a ball whose lowest atom is at a height over the middle of one of its facets.
+    fn ball_over_a_sheet(height: f64) -> (ContactModel, Vec<Vec3>) {
+        let ground = sheet(4.0, 4.0, 4, 4);
+        let [a, b, c] = ground.facets[9].map(|atom| ground.positions[atom as usize]);
+        let mut ball = icosphere(1.0, 1);
+        let lowest = ball.positions.iter().copied().min_by(|one, other| one.z.total_cmp(&other.z)).expect("a ball");
+        let shift = (a + b + c) / 3.0 + Vec3::z() * height - lowest;
+        ball.positions.iter_mut().for_each(|x| *x += shift);
+        scene(vec![ground, ball])
+    }
+
+    #[test]
+    fn an_atom_stays_on_its_side_of_a_sheet_though_it_is_behind_it_by_what_sweeps_leave() {
+        let (model, positions) = ball_over_a_sheet(0.01);
+        let above = found(&model, &ContactState::default(), &positions);
+        let touches = |found: &Contacts| {
+            let lowest = found.atoms.iter().find(|near| near.body == 0).copied().expect("the lowest atom touches");
+            (lowest.gap, lowest.normal.z, lowest.facing)
+        };
+        let (gap, up, front) = touches(&above);
+        assert!((gap - 0.01).abs() < 1e-12 && up > 0.999 && front != Facing::Any, "{gap} {up} {front:?}");
+        let (model, below) = ball_over_a_sheet(-0.001);
+        let (gap, up, back) = touches(&found(&model, &ContactState::default(), &below));
+        assert!(
+            (gap - 0.001).abs() < 1e-12 && up < -0.999 && back.is_opposite(front),
+            "by its place alone: {gap} {up}"
+        );
+        let (gap, up, side) = touches(&found(&model, &bonds_of(&above), &below));
+        assert!((gap + 0.001).abs() < 1e-12 && up > 0.999 && side == front, "as it was before: {gap} {up} {side:?}");
+    }
+
+    #[test]
+    fn edges_that_carried_a_force_stay_until_they_are_apart() {
+        // Two tetrahedra edge over edge; turned about the lower edge by this angle, one facet of it rises towards the other.
+        let tetrahedron = |up: f64| {
+            let corners = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, -1.2], [0.0, -1.0, -1.2]];
+            let mut surface = Surface {
+                positions: corners.map(Vec3::from).to_vec(),
+                facets: vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
+            };
+            if up > 0.0 {
+                // Upside down, a quarter turn about z.
+                surface.positions.iter_mut().for_each(|x| *x = Vec3::new(x.y, x.x, up - x.z));
+            }
+            if crate::geometry::volume(&surface) < 0.0 {
+                surface.facets.iter_mut().for_each(|facet| facet.swap(1, 2));
+            }
+            surface
+        };
+        let (model, positions) = scene(vec![tetrahedron(0.0), tetrahedron(0.02)]);
+        let first = found(&model, &ContactState::default(), &positions);
+        let [near] = first.edges[..] else { panic!("one pair of edges: {:?}", first.edges) };
+        let bond = |force: f32| ContactState {
+            edges: vec![EdgeBond {
+                edges: near.edges,
+                normal: near.normal.map(|part| part as f32).into(),
+                force: [0.0, 0.0, force],
+            }],
+            ..ContactState::default()
+        };
+        // A facet of the lower one rises by a sine of 0.2: more than makes a contact, less than ends one.
+        let mut risen = positions.clone();
+        let lift = |x: &mut Vec3| x.z = 0.2 * x.y.abs();
+        risen[..4].iter_mut().filter(|x| x.y > 0.5).for_each(lift);
+        assert!(found(&model, &ContactState::default(), &risen).edges.iter().all(|edge| edge.edges != near.edges));
+        assert!(found(&model, &bond(0.0), &risen).edges.iter().all(|edge| edge.edges != near.edges), "carried nothing");
+        let kept = found(&model, &bond(1.0), &risen);
+        let kept = kept.edges.iter().find(|edge| edge.edges == near.edges).expect("still there");
+        assert!(
+            (kept.gap - near.gap).abs() < 1e-12 && kept.bodies == near.bodies && kept.normal.dot(&near.normal) > 0.99
+        );
+        risen[4..].iter_mut().for_each(|x| x.z += 0.2);
+        assert!(found(&model, &bond(1.0), &risen).edges.is_empty(), "apart");
+    }
+}
