@@ -73,7 +73,7 @@ fn the_schema_in_the_documents_is_the_one_of_the_types() {
         std::fs::write(path, &now).expect("the schema can be written");
     }
     let kept = std::fs::read_to_string(path).unwrap_or_default();
-    assert!(kept == now, "{path} is not current; run: pseudopod schema -o {path}");
+    assert!(kept == now, "{path} is not current; run: pseudopod schema --force -o {path}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `pseudopod schema`: prints the JSON schema of the experiment document.
 
+use super::render::{Named, refuse_existing};
 use super::report::Report;
 use crate::error::{Error, Result};
 use std::path::PathBuf;
@@ -10,6 +11,9 @@ pub struct SchemaArgs {
     /// Writes to this file instead of the terminal.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Replaces a file that is there.
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// The schema as text, the same as in `docs/experiment.schema.json`.
@@ -20,9 +24,10 @@ pub fn text() -> String {
 /// Runs the command.
 ///
 /// # Errors
-/// The file cannot be written.
+/// The file exists or cannot be written.
 pub fn run(args: &SchemaArgs) -> Result<Report> {
     let Some(path) = &args.output else { return Ok(Report { words: text(), ..Report::default() }) };
+    refuse_existing(path, args.force, Named::ByUser)?;
     std::fs::write(path, text()).map_err(|error| Error::Machine {
         message: format!("{} cannot be written: {error}", path.display()),
         help: "name a file in a folder that exists and that you may write to with -o".into(),

@@ -1,6 +1,6 @@
 //! A document: its text, what it says, and where in the text it says so.
 
-use super::tree::Node;
+use super::tree::{Node, Value};
 use super::{Experiment, check, schema, semantics};
 use crate::error::{Error, Fault, Place, Result, Source};
 use serde::Deserialize;
@@ -71,6 +71,9 @@ impl Document {
             let key = set.split('=').next().unwrap_or_default();
             sources.push(Arc::new(Source { name: format!("--set {key}=…"), text: set.clone() }));
             faults.extend(sources.last().and_then(|source| tree.set(source).err()));
+        }
+        if let Some(fault) = not_an_experiment(&tree) {
+            return Err(Error::input(fault));
         }
         let found = check::check(&tree, &schema());
         faults.extend(found.faults);
@@ -164,6 +167,16 @@ impl Document {
 /// A path as the experiment writes it.
 fn written(path: &Path) -> String {
     path.display().to_string()
+}
+
+/// A document that is not an experiment but what one is expected to measure.
+fn not_an_experiment(tree: &Node) -> Option<Fault> {
+    let Value::Table(keys) = &tree.value else { return None };
+    let claim = keys.get("claim").filter(|_| !keys.contains_key("cells") && !keys.contains_key("run"))?;
+    let fault = Fault::new("this is not an experiment but what one is expected to measure");
+    let beside = Path::new(&tree.source.name).with_file_name("experiment.toml");
+    let help = format!("name the experiment itself: {}", beside.display());
+    Some(fault.at(claim.key_place("a claim")).help(help))
 }
 
 /// What a tree without faults says. The checker has seen everything that `serde` could refuse; should it refuse
