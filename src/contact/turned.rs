@@ -87,6 +87,7 @@ mod tests {
                     assert!(sine > RISE, "{seed}, {edge}: {sine} after {wait} from {before}");
                 }
                 told += 1;
+                // Motions at random are far from the worst; that twelve times as far is enough for some shows that pairs do turn back.
                 at_last += usize::from(after(12.0 * wait) <= RISE);
             }
         }

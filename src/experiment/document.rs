@@ -174,8 +174,7 @@ fn not_an_experiment(tree: &Node) -> Option<Fault> {
     let Value::Table(keys) = &tree.value else { return None };
     let claim = keys.get("claim").filter(|_| !keys.contains_key("cells") && !keys.contains_key("run"))?;
     let fault = Fault::new("this is not an experiment but what one is expected to measure");
-    let beside = Path::new(&tree.source.name).with_file_name("experiment.toml");
-    let help = format!("name the experiment itself: {}", beside.display());
+    let help = "name the experiment itself, usually experiment.toml in the same folder";
     Some(fault.at(claim.key_place("a claim")).help(help))
 }
 

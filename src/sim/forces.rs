@@ -56,26 +56,13 @@ impl Forces<'_> {
 
 /// Sets `force` of every kind to the sum of all forces at time `time` (pN), and `energy` to the energy of every cell.
 pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
-    ws.rooms.suit(model);
-    pull_contacts(model, state, &mut ws.contact);
     for (w, now) in ws.kinds.iter_mut().zip(&state.kinds) {
         w.force.resize(now.positions.len(), 0.0);
     }
-    let Workspace { kinds, rooms, drive, contact, .. } = ws;
-    for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
-        let forces = Forces { model, number, time, controls: &state.chemistry.controls, drive, contact };
-        let (length, lanes) = (kind.block_len(), kind.lanes);
-        (w.force.par_chunks_exact_mut(length))
-            .zip(now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
-            .zip(w.energy.par_chunks_exact_mut(lanes))
-            .enumerate()
-            .for_each(|(block, ((f, cells), energy))| {
-                rooms.enter(length, |[_, spare, _]| forces.on_block(block, cells, (f, energy), spare));
-            });
-    }
+    measure_energy(model, time, state, ws);
 }
 
-/// Sets `energy` of every kind to the energy of every cell, pN·µm.
+/// Sets `energy` of every kind to the energy of every cell, pN·µm, and `force` where it is held.
 pub fn measure_energy(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
     ws.rooms.suit(model);
     pull_contacts(model, state, &mut ws.contact);
@@ -83,11 +70,16 @@ pub fn measure_energy(model: &Model, time: f64, state: &State, ws: &mut Workspac
     for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
         let forces = Forces { model, number, time, controls: &state.chemistry.controls, drive, contact };
         let (length, lanes) = (kind.block_len(), kind.lanes);
+        let not_held = if w.force.is_empty() { kind.blocks() } else { 0 };
+        let held =
+            w.force.par_chunks_exact_mut(length).map(Some).chain(rayon::iter::repeat_n((), not_held).map(|()| None));
         (now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
-            .zip(w.energy.par_chunks_exact_mut(lanes))
+            .zip(w.energy.par_chunks_exact_mut(lanes).zip(held))
             .enumerate()
-            .for_each(|(block, (cells, energy))| {
-                rooms.enter(length, |[f, spare, _]| forces.on_block(block, cells, (f, energy), spare));
+            .for_each(|(block, (cells, (energy, held)))| {
+                rooms.enter(length, |[f, spare, _]| {
+                    forces.on_block(block, cells, (held.unwrap_or(f), energy), spare);
+                });
             });
     }
 }

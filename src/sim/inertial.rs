@@ -101,7 +101,7 @@ fn runge_kutta(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
     }
 }
 
-/// Corrects the velocities by what the constraints moved, eq. (step.7); `spare` holds the free positions.
+/// Corrects the velocities by what the constraints moved, eq. (step.7); `force` holds the free positions.
 pub fn correct_velocities(model: &Model, dt: f64, state: &mut State, ws: &Workspace) {
     for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&ws.kinds) {
         let constrained = !model.planes.is_empty() || matches!(kind.volume, VolumeRule::Exact(_));

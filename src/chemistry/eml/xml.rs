@@ -163,7 +163,7 @@ fn broken(desk: &mut Desk, error: &roxmltree::Error) {
     let told = told.rsplit_once(" at ").map_or(told.as_str(), |(told, _)| told);
     let length = source.text[at..].chars().next().filter(|c| *c != '\n').map_or(0, char::len_utf8);
     if !source.text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
-        let help = "an EML document is <eml name=\"…\"> … </eml>, an SBML model begins with <sbml; an experiment is a document of its own (TOML)";
+        let help = "an EML document is <eml name=\"…\"> … </eml>, an SBML model begins with <sbml; an experiment (TOML) is checked by `pseudopod check`";
         desk.fault(at..at + length, "this is not XML", "XML begins with <", help);
         return;
     }

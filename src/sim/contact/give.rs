@@ -41,7 +41,7 @@ pub fn energy_of_give(ws: &Workspace) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rows::Sides;
+    use super::super::rows::Pairing;
     use super::*;
     use crate::random::{Purpose, Stream};
 
@@ -50,8 +50,8 @@ mod tests {
         let (atoms, places) = ([0, 1, 2, 3], [0.3, 0.4]);
         let normal_and_gap = [0.0, 0.0, 1.0, 0.05];
         let (least, shear) = (-10.0, 10.0);
-        let sides = Sides::AtomOnFacet;
-        Row { atoms, places, normal_and_gap, least, shear, give: give as f32, kept: 1.0, given, sides }
+        let pairing = Pairing::AtomOnFacet;
+        Row { atoms, places, normal_and_gap, least, shear, give: give as f32, kept: 1.0, given, pairing }
     }
 
     fn pull(carried: Vec3, force: Vec3) -> Pull {

@@ -36,7 +36,7 @@ pub use hold::{hold_contacts, travel};
 pub use links::{Link, LinkTable, links_at, pull_links};
 pub use model::{ContactModel, Law, Strength};
 pub use penalty::{Penalty, press};
-pub use rows::{Pull, Row, Sides};
+pub use rows::{Pairing, Pull, Row};
 pub use scratch::ContactScratch;
 pub use settle::settle_adhesives;
 pub use state::{AtomBond, ContactState, EdgeBond, PlaneBond};

@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn edges_that_carried_a_force_stay_until_they_are_apart() {
-        // Two tetrahedra edge over edge; turned about the lower edge by this angle, one facet of it rises towards the other.
+        // Two tetrahedra with an edge on top and below, across each other and 0.02 µm apart.
         let tetrahedron = |up: f64| {
             let corners = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, -1.2], [0.0, -1.0, -1.2]];
             let mut surface = Surface {
@@ -156,10 +156,16 @@ mod tests {
             }],
             ..ContactState::default()
         };
-        // A facet of the lower one rises by a sine of 0.2: more than makes a contact, less than ends one.
-        let mut risen = positions.clone();
-        let lift = |x: &mut Vec3| x.z = 0.2 * x.y.abs();
-        risen[..4].iter_mut().filter(|x| x.y > 0.5).for_each(lift);
+        // A facet of the lower one is lifted towards the upper one; its flank is 1.4 µm long.
+        let lifted = |height: f64| {
+            let mut positions = positions.clone();
+            positions[2].z = height;
+            positions
+        };
+        let slightly = found(&model, &ContactState::default(), &lifted(0.1));
+        assert!(slightly.edges.iter().any(|edge| edge.edges == near.edges), "a sine of 0.07 leaves it a contact");
+        // A sine of 0.14: more than makes a contact, less than ends one.
+        let mut risen = lifted(0.2);
         assert!(found(&model, &ContactState::default(), &risen).edges.iter().all(|edge| edge.edges != near.edges));
         assert!(found(&model, &bond(0.0), &risen).edges.iter().all(|edge| edge.edges != near.edges), "carried nothing");
         let kept = found(&model, &bond(1.0), &risen);

@@ -29,12 +29,12 @@ pub struct Row {
     /// What went into its give and has not come back where the step began, pN·µm.
     pub given: f32,
     /// What touches.
-    pub sides: Sides,
+    pub pairing: Pairing,
 }
 
 /// What touches in a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sides {
+pub enum Pairing {
     /// An atom, and the three of a facet.
     AtomOnFacet,
     /// The two atoms of an edge, and those of another.
@@ -78,10 +78,10 @@ pub fn write_rows(
     empty_for(rows, count);
     empty_for(pulls, count);
     let mut add =
-        |sides, atoms, places, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], (force, given): ([f32; 3], f32)| {
+        |pairing, atoms, places, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], (force, given): ([f32; 3], f32)| {
             let normal_and_gap = [normal.x as f32, normal.y as f32, normal.z as f32, gap as f32];
             let (least, shear) = (least as f32, shear as f32);
-            let row = Row { atoms, places, normal_and_gap, least, shear, give: 0.0, kept: 1.0, given, sides };
+            let row = Row { atoms, places, normal_and_gap, least, shear, give: 0.0, kept: 1.0, given, pairing };
             let force = row.bound(Vec3::from(force.map(f64::from)));
             let force = [force.x as f32, force.y as f32, force.z as f32];
             rows.push(row);
@@ -115,7 +115,7 @@ pub fn write_rows(
         let area = area / places_on_body(found, number) as f64;
         let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
         add(
-            Sides::AtomOnFacet,
+            Pairing::AtomOnFacet,
             [contact.atom, i, j, k],
             contact.second_weights,
             &contact.normal,
@@ -134,7 +134,7 @@ pub fn write_rows(
         let [one, other] = contact.bodies;
         let is_thin = one == other || model.is_thin(one) || model.is_thin(other);
         add(
-            Sides::Edges,
+            Pairing::Edges,
             [a, b, c, d],
             contact.along,
             &contact.normal,
@@ -158,7 +158,7 @@ pub fn write_rows(
         let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
         let area = area * controls.adhesion_of(body);
         add(
-            Sides::AtomOnPlane,
+            Pairing::AtomOnPlane,
             [contact.atom; 4],
             [0.0; 2],
             &scene.planes[contact.plane as usize].normal,
@@ -181,11 +181,11 @@ impl Row {
     #[inline(always)]
     pub fn weights(&self) -> [f64; 4] {
         let [s, t] = self.places;
-        match self.sides {
-            Sides::AtomOnFacet => [1.0, -(1.0 - s - t), -s, -t],
-            Sides::Edges => [1.0 - s, s, t - 1.0, -t],
-            Sides::AtomOnPlane => [1.0, 0.0, 0.0, 0.0],
-            Sides::Rigid => [0.0; 4],
+        match self.pairing {
+            Pairing::AtomOnFacet => [1.0, -(1.0 - s - t), -s, -t],
+            Pairing::Edges => [1.0 - s, s, t - 1.0, -t],
+            Pairing::AtomOnPlane => [1.0, 0.0, 0.0, 0.0],
+            Pairing::Rigid => [0.0; 4],
         }
     }
 

@@ -1,6 +1,6 @@
 //! The sweeps in wide registers against the same equations written plainly.
 
-use super::rows::{Pull, Row, Sides};
+use super::rows::{Pairing, Pull, Row};
 use super::sweep::{Change, V4, VolumeRow, sweep_contacts, sweep_volumes};
 use crate::Vec3;
 use crate::random::{Purpose, Stream};
@@ -44,7 +44,7 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
             give: give as f32,
             kept: 1.0 / (1.0 + 0.05 * (count % 5) as f32),
             given: 0.0,
-            sides: Sides::AtomOnFacet,
+            pairing: Pairing::AtomOnFacet,
         });
         let along = if sticks { number(&mut dice).max(-0.3) } else { number(&mut dice).abs() };
         let force = (along * normal).map(|part| part as f32);

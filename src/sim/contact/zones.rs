@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::model::ContactModel;
 use super::recruit::{Glue, reset, root};
 use super::rigid::Rigid;
-use super::rows::{Pull, Row, Sides};
+use super::rows::{Pairing, Pull, Row};
 use super::state::ContactState;
 use crate::Vec3;
 use crate::contact::Contacts;
@@ -163,7 +163,7 @@ impl AdhesiveScratch {
             let first = adhesive(places[0]);
             let weights = row.weights();
             let real = |i: usize| weights[i] != 0.0;
-            let on_plane = row.sides == Sides::AtomOnPlane;
+            let on_plane = row.pairing == Pairing::AtomOnPlane;
             let grounded = !on_plane || self.grounded[row.atoms[0] as usize];
             if first.is_none() || !grounded || (0..4).any(|i| real(i) && adhesive(places[i]) != first) {
                 continue;
@@ -173,7 +173,7 @@ impl AdhesiveScratch {
                 let carried = weights[i] * pull.carried();
                 (0..3).for_each(|axis| force[axis] += carried[axis]);
             }
-            row.sides = Sides::Rigid;
+            row.pairing = Pairing::Rigid;
             *pull = Pull::default();
         }
         for body in &self.bodies {
