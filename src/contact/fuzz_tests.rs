@@ -57,7 +57,7 @@ fn kept_pairs_find_what_all_pairs_find_in_packed_cells_that_drift_and_roll() {
             for (body, (way, turn)) in stage.scene.bodies.iter().zip(ways.iter().zip(&turns)) {
                 let own = &mut stage.positions[body.first_atom as usize..][..42];
                 let centre = own.iter().sum::<Vec3>() / 42.0;
-                own.iter_mut().for_each(|x| *x += way + turn.cross(&(*x - centre)) + dice.vector() * 0.002);
+                own.iter_mut().for_each(|x| *x += way + turn.cross(&(*x - centre)) + dice.vector() * 0.015);
             }
         }
     }
