@@ -14,7 +14,7 @@ use pseudopod::Vec3;
 use pseudopod::contact::{Sides, closest_on_facet, winding_number};
 use pseudopod::geometry::{atom_areas, bounding_box};
 use pseudopod::mechanics::integrator::StepSize;
-use pseudopod::sim::contact::{check_passed, find_contacts};
+use pseudopod::sim::contact::{Pairing, check_passed, find_contacts};
 use pseudopod::sim::observe::{CellMeasure, measure_cells};
 use pseudopod::sim::{Attraction, Model, State, Trouble, VolumeRule, Workspace, step};
 
@@ -251,7 +251,9 @@ fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, s
         let places = bonds.atoms.iter().filter(|other| (other.atom, other.body) == (bond.atom, bond.body)).count();
         (strength, 0.5 * area_of(bond.atom) / places as f64)
     });
-    let of_edges = bonds.edges.iter().map(|_| ([0.0; 2], 0.0));
+    // Of edges only those are kept that carry a force.
+    let edges = s.rows.iter().filter(|row| row.pairing == Pairing::Edges).count();
+    let of_edges = std::iter::repeat_n(([0.0; 2], 0.0), edges);
     let of_planes = bonds.planes.iter().map(|bond| {
         let kind = kind_of(body_of(bond.atom));
         (scene.on_planes[kind][bond.plane as usize], area_of(bond.atom))

@@ -58,6 +58,10 @@ const LASTING: std::ops::RangeInclusive<u32> = 6..=20;
 const WIDER: f64 = 1.5;
 const WIDEST: f64 = 6.0;
 
+/// Words of pairs an atom from which on the margin is not made wider: where bodies are packed more pairs would cost more than
+/// collecting them less often saves, in time and in memory.
+const MOST_WORDS: usize = 12;
+
 /// A position rounded to four bytes an axis is off by less than this share of its coordinates.
 const ROUNDING: f64 = 1.1e-7;
 
@@ -110,7 +114,12 @@ impl Detector {
             }
         }
         self.moved_of = moved_of;
-        Detection { collected, moved, pairs: self.lists.iter().map(Lists::words).sum() }
+        Detection { collected, moved, pairs: self.words() }
+    }
+
+    /// Words of all lists.
+    fn words(&self) -> usize {
+        self.lists.iter().map(Lists::words).sum()
     }
 
     /// The margin to collect with: wider when the last pairs did not last, narrower when they lasted long.
@@ -119,8 +128,9 @@ impl Detector {
         if !moved.is_finite() {
             return least;
         }
+        let is_packed = self.words() > MOST_WORDS * scene.atoms;
         let margin = match self.looks {
-            looks if looks < *LASTING.start() => self.margin * WIDER,
+            looks if looks < *LASTING.start() && !is_packed => self.margin * WIDER,
             looks if looks > *LASTING.end() => self.margin / WIDER,
             _ => self.margin,
         };

@@ -55,7 +55,7 @@ pub fn enforce_constraints(model: &Model, state: &mut State, ws: &mut Workspace)
                 if !model.planes.is_empty() {
                     project_block(model, kind, exact, x, target, left, scratch);
                 } else {
-                    rooms.enter(length, |[_, spare, spare2]| {
+                    rooms.enter(length, |[spare, spare2, ..]| {
                         volume::enforce_block(&kind.rest.facets, x, &kind.held, target, spare, spare2, left);
                     });
                     left.iter_mut().zip(target).for_each(|(left, target)| *left /= target);

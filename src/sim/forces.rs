@@ -5,12 +5,13 @@ use rayon::prelude::*;
 use super::chemistry::Controls;
 use super::contact::{ContactScratch, add_contact_forces, pull_contacts};
 use super::model::{Kind, Model, VolumeRule};
+use super::rooms::each_or_none;
 use super::state::State;
 use super::workspace::Workspace;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::volume;
 
-/// All forces on the cells of a kind at one instant, drag not included. Motility enters as the drag that its velocity
+/// All forces on the cells of a kind, drag not included. Motility enters as the drag that its velocity
 /// overcomes.
 #[derive(Clone, Copy)]
 pub struct Forces<'a> {
@@ -18,8 +19,6 @@ pub struct Forces<'a> {
     pub model: &'a Model,
     /// The number of the kind.
     pub number: usize,
-    /// The instant, s.
-    pub time: f64,
     /// What chemistry sets.
     pub controls: &'a Controls,
     /// Mean velocity that motility asks of every cell of the model, µm/s.
@@ -29,16 +28,17 @@ pub struct Forces<'a> {
 }
 
 impl Forces<'_> {
-    /// Writes the sum of all forces on the atoms of a block at `x` (pN) over `f`, and the energy of its cells (pN·µm) over
+    /// Writes the sum of all forces on the atoms of a block at `x` and a time, pN, over `f`, and the energy of its cells (pN·µm) over
     /// `energy`. `rest` are the rest volumes of the cells; `spare` is scratch of the size of `x`.
     pub fn on_block(
         &self,
         block: usize,
+        time: f64,
         (x, rest): (&[f64], &[f64]),
         (f, energy): (&mut [f64], &mut [f64]),
         spare: &mut [f64],
     ) {
-        let &Self { model, number, time, controls, drive, contact } = self;
+        let &Self { model, number, controls, drive, contact } = self;
         let kind = &model.kinds[number];
         f.fill(0.0);
         energy.fill(0.0);
@@ -68,17 +68,14 @@ pub fn measure_energy(model: &Model, time: f64, state: &State, ws: &mut Workspac
     pull_contacts(model, state, &mut ws.contact);
     let Workspace { kinds, rooms, drive, contact, .. } = ws;
     for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
-        let forces = Forces { model, number, time, controls: &state.chemistry.controls, drive, contact };
+        let forces = Forces { model, number, controls: &state.chemistry.controls, drive, contact };
         let (length, lanes) = (kind.block_len(), kind.lanes);
-        let not_held = if w.force.is_empty() { kind.blocks() } else { 0 };
-        let held =
-            w.force.par_chunks_exact_mut(length).map(Some).chain(rayon::iter::repeat_n((), not_held).map(|()| None));
         (now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
-            .zip(w.energy.par_chunks_exact_mut(lanes).zip(held))
+            .zip(w.energy.par_chunks_exact_mut(lanes).zip(each_or_none(&mut w.force, length, kind.blocks())))
             .enumerate()
             .for_each(|(block, (cells, (energy, held)))| {
-                rooms.enter(length, |[f, spare, _]| {
-                    forces.on_block(block, cells, (held.unwrap_or(f), energy), spare);
+                rooms.enter(length, |[f, spare, ..]| {
+                    forces.on_block(block, time, cells, (held.unwrap_or(f), energy), spare);
                 });
             });
     }

@@ -8,11 +8,14 @@
 
 use rayon::prelude::*;
 
-use super::contact::pull_contacts;
+use super::contact::{has_live_forces, pull_contacts};
 use super::forces::Forces;
-use super::model::{Kind, Model, VolumeRule};
+use super::model::{Kind, Model};
 use super::planes::{self, TouchScratch};
+use super::pressure::{carry_pressure, constrain};
+use super::rooms::each_or_none;
 use super::state::State;
+use super::targets::Targets;
 use super::workspace::{KindScratch, Solver, Workspace};
 use crate::mechanics::integrator::Order;
 use crate::mechanics::lanes::LANES;
@@ -39,58 +42,52 @@ pub enum Stage {
     Second,
 }
 
-/// The displacement that a unit of pressure causes in every cell, eq. (step.5).
-pub fn solve_swell(model: &Model, dt: f64, order: Order, ws: &mut Workspace) {
-    let Workspace { kinds, rooms, .. } = ws;
-    for (kind, w) in model.kinds.iter().zip(kinds) {
-        if kind.volume == VolumeRule::Free {
-            continue;
+/// Moves all atoms freely by one step: forces, the increments that they cause, and where these take the atoms; constraints hold to
+/// first order. Returns the largest error estimate over the mean edge of its kind, 0 at first order. A block goes through all
+/// stages at once, in the room of its thread, so that what they need is near and is not held for all cells. Forces that change
+/// with where other cells are, as those of links do, are known for a second stage only after the first of all blocks.
+pub fn advance_implicitly(model: &Model, dt: f64, order: Order, state: &mut State, ws: &mut Workspace) -> f64 {
+    match order {
+        Order::First => advance_stages(model, dt, order, &[Stage::First], state, ws),
+        Order::Second if has_live_forces(model) => {
+            advance_stages(model, dt, order, &[Stage::First], state, ws);
+            advance_stages(model, dt, order, &[Stage::Second], state, ws)
         }
-        let solver = w.solver(kind, dt, gamma(order));
-        let length = kind.block_len();
-        (w.swell.par_chunks_exact_mut(length))
-            .zip(w.start.par_chunks_exact(length).zip(w.gradient.par_chunks_exact(length)))
-            .for_each(|(swell, (x, gradient))| {
-                swell.copy_from_slice(gradient);
-                rooms.enter(length, |[_, spare, spare2]| {
-                    solve_block(kind, kind.lanes, &solver, x, swell, spare, spare2);
-                });
-            });
+        Order::Second => advance_stages(model, dt, order, &[Stage::First, Stage::Second], state, ws),
     }
 }
 
-/// One stage of a step for all cells: forces, the increments that they cause, and where these take the atoms; constraints hold to
-/// first order. The first stage moves atoms to X + Y₁, the second to X + 3/2 Y₁ + 1/2 Y₂. Returns the largest error estimate
-/// over the mean edge of its kind, 0 in the first stage. A block goes through all of it at once, so that what it needs stays near.
-pub fn advance_stage(model: &Model, dt: f64, order: Order, stage: Stage, state: &mut State, ws: &mut Workspace) -> f64 {
+/// Stages of a step for all cells. The first stage moves atoms to X + Y₁, the second to X + 3/2 Y₁ + 1/2 Y₂.
+fn advance_stages(
+    model: &Model,
+    dt: f64,
+    order: Order,
+    stages: &[Stage],
+    state: &mut State,
+    ws: &mut Workspace,
+) -> f64 {
     pull_contacts(model, state, &mut ws.contact);
-    let time = if stage == Stage::First { state.time } else { state.time + dt };
     let Workspace { kinds, rooms, drive, contact, .. } = ws;
     let mut worst = 0.0;
     for (number, ((kind, now), w)) in model.kinds.iter().zip(&mut state.kinds).zip(kinds).enumerate() {
-        let forces = Forces { model, number, time, controls: &state.chemistry.controls, drive, contact };
-        let solver = w.solver(kind, dt, gamma(order));
-        let scene = planes::Scene { model, kind, solver: &solver, stage, gamma: gamma(order) };
+        let forces = Forces { model, number, controls: &state.chemistry.controls, drive, contact };
+        let solver = &*w.solver(kind, dt, gamma(order));
+        let targets = Targets::of(model, kind, [state.time, state.time + dt]);
+        let step = Step { model, kind, forces, solver, targets, order, start: state.time, dt };
         let (length, lanes) = (kind.block_len(), kind.lanes);
-        let KindScratch { first, start, gradient, swell, energy, volume, target, pressure, touch, .. } = w;
+        if order == Order::Second && stages.len() == 1 {
+            w.first.resize(now.positions.len(), 0.0);
+        }
+        let KindScratch { first, start, energy, volume, target, pressure, touch, .. } = w;
         let error = (now.positions.par_chunks_exact_mut(length))
-            .zip(now.rest_volumes.par_chunks_exact(lanes))
-            .zip(first.par_chunks_exact_mut(length).zip(start.par_chunks_exact(length)))
-            .zip(gradient.par_chunks_exact(length).zip(swell.par_chunks_exact(length)))
-            .zip(volume.par_chunks_exact(lanes).zip(target.par_chunks_exact(lanes)))
-            .zip(energy.par_chunks_exact_mut(lanes).zip(pressure.par_chunks_exact_mut(lanes)).zip(touch))
+            .zip(now.rest_volumes.par_chunks_exact(lanes).zip(start.par_chunks_exact(length)))
+            .zip(volume.par_chunks_exact_mut(lanes).zip(target.par_chunks_exact_mut(lanes)))
+            .zip(energy.par_chunks_exact_mut(lanes).zip(pressure.par_chunks_exact_mut(lanes)))
+            .zip(each_or_none(first, length, kind.blocks()).zip(touch))
             .enumerate()
-            .map(|(number, (((((x, rest), (first, start)), (gradient, swell)), (volume, target)), others))| {
-                let ((energy, pressure), touch) = others;
-                let block = Block { start, gradient, swell, volume, target };
-                rooms.enter(length, |[y, spare, spare2]| {
-                    forces.on_block(number, (x, rest), (y, energy), spare);
-                    if stage == Stage::Second {
-                        carry_pressure(kind, x, pressure, y, spare);
-                    }
-                    block.solve(&scene, y, first, pressure, touch, [spare, spare2]);
-                    block.go_on(stage, x, y, first)
-                })
+            .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), (kept, touch)))| {
+                let mut block = Block { number, x, rest, start, volume, target, energy, pressure, touch };
+                rooms.enter(length, |room| step.advance(&mut block, stages, kept, room))
             })
             .reduce(|| 0.0, larger);
         worst = larger(worst, error / kind.edge);
@@ -98,29 +95,83 @@ pub fn advance_stage(model: &Model, dt: f64, order: Order, stage: Stage, state: 
     worst
 }
 
-/// What the stages of a block have in common.
-struct Block<'a> {
-    /// Positions where the step begins.
-    start: &'a [f64],
-    gradient: &'a [f64],
-    swell: &'a [f64],
-    volume: &'a [f64],
-    target: &'a [f64],
+/// What the stages of a step need of a kind.
+struct Step<'a> {
+    model: &'a Model,
+    kind: &'a Kind,
+    forces: Forces<'a>,
+    solver: &'a Solver,
+    targets: Option<Targets<'a>>,
+    order: Order,
+    /// When it begins, s.
+    start: f64,
+    dt: f64,
 }
 
-impl Block<'_> {
+/// A block of cells in a step.
+struct Block<'a> {
+    number: usize,
+    /// Positions now.
+    x: &'a mut [f64],
+    /// Rest volumes of its cells.
+    rest: &'a [f64],
+    /// Positions where the step begins.
+    start: &'a [f64],
+    volume: &'a mut [f64],
+    target: &'a mut [f64],
+    energy: &'a mut [f64],
+    pressure: &'a mut [f64],
+    touch: &'a mut TouchScratch,
+}
+
+impl Step<'_> {
+    /// Takes a block through stages of the step. The increments of the first are `kept` where stages are made one by one. Returns the
+    /// largest error estimate, µm.
+    fn advance(
+        &self,
+        block: &mut Block,
+        stages: &[Stage],
+        mut kept: Option<&mut [f64]>,
+        [y, first, gradient, swell, spare, spare2]: [&mut [f64]; 6],
+    ) -> f64 {
+        let (kind, end) = (self.kind, self.start + self.dt);
+        if let Some(targets) = &self.targets {
+            targets.on_block(block.start, block.rest, gradient, block.volume, block.target);
+            // The displacement that a unit of pressure causes, eq. (step.5).
+            swell.copy_from_slice(gradient);
+            solve_block(kind, kind.lanes, self.solver, block.start, swell, spare, spare2);
+        }
+        let mut error = 0.0;
+        for &stage in stages {
+            if let (Stage::Second, Some(kept)) = (stage, &kept) {
+                first.copy_from_slice(kept);
+            }
+            let time = if stage == Stage::First { self.start } else { end };
+            self.forces.on_block(block.number, time, (&*block.x, block.rest), (&mut *y, &mut *block.energy), spare);
+            if stage == Stage::Second {
+                carry_pressure(kind, block.x, block.pressure, y, spare);
+            }
+            self.solve(block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
+            error = block.go_on(stage, y, first);
+            if let (Stage::First, Some(kept)) = (stage, &mut kept) {
+                kept.copy_from_slice(first);
+            }
+        }
+        error
+    }
+
     /// Turns forces into the increments of a stage, in place.
     fn solve(
         &self,
-        scene: &planes::Scene,
+        block: &mut Block,
+        stage: Stage,
         y: &mut [f64],
         first: &[f64],
-        pressure: &mut [f64],
-        touch: &mut TouchScratch,
+        (gradient, swell): (&[f64], &[f64]),
         [spare, spare2]: [&mut [f64]; 2],
     ) {
-        let &Self { start, gradient, swell, volume, target } = self;
-        let &planes::Scene { kind, solver, stage, gamma, .. } = scene;
+        let &Self { model, kind, solver, order, .. } = self;
+        let Block { start, volume, target, pressure, touch, .. } = block;
         if stage == Stage::Second {
             let back = 2.0 / solver.mobility;
             y.iter_mut().zip(first).for_each(|(y, k)| *y -= back * k);
@@ -131,21 +182,25 @@ impl Block<'_> {
             let missing = target[lane] - volume[lane];
             wanted[lane] = if stage == Stage::First { missing } else { -missing };
         }
+        let gamma = gamma(order);
         constrain(kind, gamma, gradient, swell, &wanted[..kind.lanes], target, y, pressure);
-        planes::correct_block(scene, start, first, gradient, swell, target, y, pressure, touch);
+        let scene = planes::Scene { model, kind, solver, stage, gamma };
+        planes::correct_block(&scene, start, first, gradient, swell, target, y, pressure, touch);
     }
+}
 
+impl Block<'_> {
     /// Moves atoms by the increments of a stage, and keeps those of the first. Returns the largest error estimate, µm.
-    fn go_on(&self, stage: Stage, x: &mut [f64], y: &[f64], first: &mut [f64]) -> f64 {
+    fn go_on(&mut self, stage: Stage, y: &[f64], first: &mut [f64]) -> f64 {
         if stage == Stage::First {
             first.copy_from_slice(y);
-            for ((x, start), y) in x.iter_mut().zip(self.start).zip(y) {
+            for ((x, start), y) in self.x.iter_mut().zip(self.start).zip(y) {
                 *x = start + y;
             }
             return 0.0;
         }
         let mut largest = 0.0;
-        for (((x, start), y1), y2) in x.iter_mut().zip(self.start).zip(&*first).zip(y) {
+        for (((x, start), y1), y2) in self.x.iter_mut().zip(self.start).zip(&*first).zip(y) {
             *x = start + 1.5 * y1 + 0.5 * y2;
             largest = larger(largest, (0.5 * (y1 + y2)).abs());
         }
@@ -170,63 +225,6 @@ pub fn solve_block(
         rigid::split_block(lanes, kind.atoms(), x, y, spare, solver.mobility);
         solver.solve(lanes, y, spare2);
         rigid::join_block(lanes, kind.atoms(), x, y, spare);
-    }
-}
-
-/// The pressure multiplier of eq. (step.5): how much of `swell` is added to meet the wanted change of volume, or, in a
-/// compressible cell, how much the pressure's own stiffness takes back.
-pub fn pressure(kind: &Kind, gamma: f64, along: f64, swelling: f64, wanted: f64, target: f64) -> f64 {
-    match &kind.volume {
-        VolumeRule::Free => 0.0,
-        VolumeRule::Exact(_) => (wanted - along) / swelling,
-        VolumeRule::Compressible { modulus, .. } => -along / (swelling + target / (modulus * gamma)),
-    }
-}
-
-/// Adds the first stage's pressure to the forces of the second, along the gradient where the atoms now are: the
-/// gradient turns with the cell, and without this the scheme would be of first order in an incompressible cell.
-fn carry_pressure(kind: &Kind, x: &[f64], pressure: &[f64], f: &mut [f64], gradient: &mut [f64]) {
-    if !matches!(kind.volume, VolumeRule::Exact(_)) {
-        return;
-    }
-    let lanes = kind.lanes;
-    let mut volumes = [0.0; LANES];
-    volume::measure_block(&kind.rest.facets, x, &kind.held, gradient, &mut volumes[..lanes]);
-    for (f, g) in f.chunks_exact_mut(lanes).zip(gradient.chunks_exact(lanes)) {
-        for lane in 0..lanes {
-            f[lane] += pressure[lane] * g[lane];
-        }
-    }
-}
-
-fn constrain(
-    kind: &Kind,
-    gamma: f64,
-    gradient: &[f64],
-    swell: &[f64],
-    wanted: &[f64],
-    target: &[f64],
-    y: &mut [f64],
-    factor: &mut [f64],
-) {
-    if kind.volume == VolumeRule::Free {
-        return;
-    }
-    let lanes = kind.lanes;
-    let (mut along, mut swelling) = ([0.0; LANES], [0.0; LANES]);
-    for ((g, s), y) in gradient.chunks_exact(lanes).zip(swell.chunks_exact(lanes)).zip(y.chunks_exact(lanes)) {
-        for lane in 0..lanes {
-            along[lane] += g[lane] * y[lane];
-            swelling[lane] += g[lane] * s[lane];
-        }
-    }
-    for lane in 0..lanes {
-        factor[lane] = pressure(kind, gamma, along[lane], swelling[lane], wanted[lane], target[lane]);
-    }
-    for (y, s) in y.chunks_exact_mut(lanes).zip(swell.chunks_exact(lanes)) {
-        for lane in 0..lanes {
-            y[lane] += factor[lane] * s[lane];
-        }
     }
 }
 

@@ -13,24 +13,24 @@ pub fn advance_freely(model: &Model, dt: f64, state: &mut State, ws: &mut Worksp
     let start = state.time;
     add_forces(model, start, state, ws);
     match model.integrator.method {
-        Method::Explicit => each(model, state, ws, |kind, x, _, f, _, _| {
+        Method::Explicit => each(model, state, ws, |kind, x, _, f| {
             let mobility = dt / kind.drag;
             x.iter_mut().zip(f).for_each(|(x, f)| *x += mobility * f);
         }),
-        Method::Euler => each(model, state, ws, |kind, x, v, f, _, _| {
+        Method::Euler => each(model, state, ws, |kind, x, v, f| {
             for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
                 *x += dt * *v;
                 *v += dt * (f - kind.drag * *v) / kind.mass;
             }
         }),
-        Method::SemiImplicitEuler => each(model, state, ws, |kind, x, v, f, _, _| {
+        Method::SemiImplicitEuler => each(model, state, ws, |kind, x, v, f| {
             for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
                 *v += dt * (f - kind.drag * *v) / kind.mass;
                 *x += dt * *v;
             }
         }),
         Method::Verlet => {
-            each(model, state, ws, |kind, x, v, f, _, _| {
+            each(model, state, ws, |kind, x, v, f| {
                 let (kick, slow) = (0.5 * dt / kind.mass, 1.0 / (1.0 + 0.5 * dt * kind.drag / kind.mass));
                 for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
                     *v = (*v + kick * f) * slow;
@@ -38,7 +38,7 @@ pub fn advance_freely(model: &Model, dt: f64, state: &mut State, ws: &mut Worksp
                 }
             });
             add_forces(model, start + dt, state, ws);
-            each(model, state, ws, |kind, _, v, f, _, _| {
+            each(model, state, ws, |kind, _, v, f| {
                 let (kick, keep) = (0.5 * dt / kind.mass, 1.0 - 0.5 * dt * kind.drag / kind.mass);
                 v.iter_mut().zip(f).for_each(|(v, f)| *v = *v * keep + kick * f);
             });
@@ -48,12 +48,12 @@ pub fn advance_freely(model: &Model, dt: f64, state: &mut State, ws: &mut Worksp
     }
 }
 
-/// Runs work over the arrays of every kind: positions, velocities, forces and two sums, with held atoms kept still.
+/// Runs work over the arrays of every kind: positions, velocities and forces, with held atoms kept still.
 fn each(
     model: &Model,
     state: &mut State,
     ws: &mut Workspace,
-    work: impl Fn(&Kind, &mut [f64], &mut [f64], &[f64], &mut [f64], &mut [f64]),
+    work: impl Fn(&Kind, &mut [f64], &mut [f64], &[f64]),
 ) {
     for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds) {
         if kind.is_held() {
@@ -61,11 +61,11 @@ fn each(
                 volume::hold(kind.lanes, &kind.held, block);
             }
         }
-        work(kind, &mut now.positions, &mut now.velocities, &w.force, &mut w.first, &mut w.swell);
+        work(kind, &mut now.positions, &mut now.velocities, &w.force);
     }
 }
 
-/// The classical scheme; `first` sums the velocities and `swell` the accelerations of the four stages.
+/// The classical scheme; `first` sums the velocities and `accelerations` the accelerations of the four stages.
 fn runge_kutta(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
     let start = state.time;
     // (weight of the stage in the sum, time and step from the start at which the next stage is taken)
@@ -82,17 +82,19 @@ fn runge_kutta(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
                 }
             }
             if number == 0 {
-                w.first.fill(0.0);
-                w.swell.fill(0.0);
+                for sum in [&mut w.first, &mut w.accelerations] {
+                    sum.clear();
+                    sum.resize(now.positions.len(), 0.0);
+                }
             }
             for i in 0..now.positions.len() {
                 let (rate, acceleration) =
                     (now.velocities[i], (w.force[i] - kind.drag * now.velocities[i]) / kind.mass);
                 w.first[i] += weight * rate;
-                w.swell[i] += weight * acceleration;
+                w.accelerations[i] += weight * acceleration;
                 let (move_by, x_rate, v_rate) = match next {
                     Some(part) => (part * dt, rate, acceleration),
-                    None => (dt / 6.0, w.first[i], w.swell[i]),
+                    None => (dt / 6.0, w.first[i], w.accelerations[i]),
                 };
                 now.positions[i] = w.start[i] + move_by * x_rate;
                 now.velocities[i] = w.start_velocity[i] + move_by * v_rate;

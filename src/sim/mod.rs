@@ -12,6 +12,7 @@ mod motility;
 pub mod observe;
 mod pace;
 pub mod planes;
+mod pressure;
 pub mod projection;
 mod refresh;
 mod rooms;

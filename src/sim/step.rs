@@ -4,7 +4,7 @@ use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
 use super::constraints::make_exact;
 use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, keep_contacts, look_for_depth, travel};
 use super::gain::{energy_before, has_gained};
-use super::implicit::{Stage, advance_stage, solve_swell};
+use super::implicit::advance_implicitly;
 use super::inertial::{advance_freely, correct_velocities};
 use super::model::Model;
 use super::motility::advance_motility;
@@ -14,7 +14,7 @@ use super::state::State;
 use super::targets::measure_volumes;
 use super::trouble::{Trouble, check_finite};
 use super::workspace::Workspace;
-use crate::mechanics::integrator::{Method, Order, StepSize};
+use crate::mechanics::integrator::{Method, StepSize};
 
 /// What a step did.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -134,10 +134,10 @@ fn look_again(
 fn try_step(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<Estimate, Trouble> {
     let end = state.time + dt;
     advance_motility(model, dt, state, ws);
-    measure_volumes(model, end, state, ws);
     let error = match model.integrator.method {
         Method::Implicit { order } => advance_implicitly(model, dt, order, state, ws),
         _ => {
+            measure_volumes(model, end, state, ws);
             advance_freely(model, dt, state, ws);
             0.0
         }
@@ -163,16 +163,6 @@ fn limit_travel(model: &Model, dt: f64, error: f64, state: &State, ws: &Workspac
         StepSize::Fixed(_) if share > 1.0 => Err(Trouble::TooFast { time: state.time + dt, share }),
         StepSize::Fixed(_) => Ok(Estimate { error, with_contacts: error }),
     }
-}
-
-/// Stages of the linearly implicit schemes.
-fn advance_implicitly(model: &Model, dt: f64, order: Order, state: &mut State, ws: &mut Workspace) -> f64 {
-    solve_swell(model, dt, order, ws);
-    advance_stage(model, dt, order, Stage::First, state, ws);
-    if order == Order::First {
-        return 0.0;
-    }
-    advance_stage(model, dt, order, Stage::Second, state, ws)
 }
 
 fn remember(state: &State, ws: &mut Workspace) {

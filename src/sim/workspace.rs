@@ -40,12 +40,11 @@ pub struct KindScratch {
     pub start_velocity: Vec<f64>,
     /// Forces, pN, where they are asked for; the stages of the implicit step hold no more than those of a block.
     pub force: Vec<f64>,
-    /// First stage.
+    /// Increments of the first stage, µm, where the second is made after it and not block by block, or the sum of the velocities of
+    /// all stages, µm/s (RK4); else empty.
     pub first: Vec<f64>,
-    /// Gradient of the volume.
-    pub gradient: Vec<f64>,
-    /// Displacement that a unit of pressure causes.
-    pub swell: Vec<f64>,
+    /// Sum of the accelerations of all stages, µm/s² (RK4); else empty.
+    pub accelerations: Vec<f64>,
     /// Energy of each cell, padded, pN·µm.
     pub energy: Vec<f64>,
     /// Volume of each cell, padded, µm³.
@@ -122,9 +121,8 @@ impl KindScratch {
             start: vec![0.0; size],
             start_velocity: vec![0.0; if inertial { size } else { 0 }],
             force: Vec::new(),
-            first: vec![0.0; size],
-            gradient: vec![0.0; size],
-            swell: vec![0.0; size],
+            first: Vec::new(),
+            accelerations: Vec::new(),
             energy: vec![0.0; padded],
             volume: vec![0.0; padded],
             left: vec![0.0; padded],
@@ -170,8 +168,7 @@ impl KindScratch {
             &mut self.start_velocity,
             &mut self.force,
             &mut self.first,
-            &mut self.gradient,
-            &mut self.swell,
+            &mut self.accelerations,
             &mut self.energy,
             &mut self.volume,
             &mut self.left,

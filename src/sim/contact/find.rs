@@ -8,7 +8,7 @@ use super::penalty::press;
 use super::remember::find_at;
 use super::rows::{Pull, Row, write_rows};
 use super::scratch::{ContactScratch, empty_for};
-use super::spread::{add, add_spreading};
+use super::spread::{add, add_spreading, releases_energy};
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
 use crate::contact::{AtomContact, Contacts, PlaneContact};
@@ -40,9 +40,12 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
 pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
     let Some(contact) = &model.contact else { return };
     let s = &mut ws.contact;
-    if std::mem::take(&mut s.has_looked) {
-        // The try was looked at to its end.
+    let has_looked = std::mem::take(&mut s.has_looked);
+    if has_looked || releases_energy(contact) {
         gather_places(model, contact, state, &mut s.start);
+    }
+    if has_looked {
+        // The try was looked at to its end.
         find_at(contact, &state.contact, &s.start, &mut s.detector, &mut s.found);
     }
     s.moved.clear();
@@ -58,11 +61,15 @@ pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
     }
 }
 
+/// Whether contacts act with forces that change while a step is made.
+pub fn has_live_forces(model: &Model) -> bool {
+    model.contact.as_ref().is_some_and(|contact| matches!(contact.law, Law::Links(_) | Law::Penalty(_)))
+}
+
 /// Sets the forces of links and penalties where the atoms are now: they change while a step is made, and its error estimate
 /// must see that.
 pub fn pull_contacts(model: &Model, state: &State, s: &mut ContactScratch) {
-    let is_live = |law: &Law| matches!(law, Law::Links(_) | Law::Penalty(_));
-    let Some(contact) = model.contact.as_ref().filter(|contact| is_live(&contact.law)) else { return };
+    let Some(contact) = model.contact.as_ref().filter(|_| has_live_forces(model)) else { return };
     gather_places(model, contact, state, &mut s.places);
     s.live_force.clear();
     s.live_force.resize(contact.scene.atoms, Vec3::zeros());
@@ -113,8 +120,10 @@ pub(super) fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds:
         let &AtomContact { atom, body, facet, facing, .. } = contact;
         atoms.push(AtomBond { atom, body, facet, facing, force: pull.force, given: given_after(row, pull) });
     }
-    empty_for(edges, found.edges.len());
-    for (pull, contact) in of_edges.iter().zip(&found.edges) {
+    // Edges are remembered for their force alone.
+    let loaded = || of_edges.iter().zip(&found.edges).filter(|(pull, _)| pull.force != [0.0; 3]);
+    empty_for(edges, loaded().count());
+    for (pull, contact) in loaded() {
         let normal = contact.normal.map(|part| part as f32).into();
         edges.push(EdgeBond { edges: contact.edges, normal, force: pull.force });
     }

@@ -32,13 +32,13 @@ pub fn gather_places(model: &Model, contact: &ContactModel, state: &State, place
     same
 }
 
-/// Puts the vectors of a kind back, `from` their numbers within it; lanes beyond the last cell repeat it.
-pub fn scatter(kind: &Kind, from: impl Fn(usize) -> Vec3, values: &mut [f64]) {
+/// Puts the vectors of a kind back, `from` the numbers of a cell and an atom of it; lanes beyond the last cell repeat it.
+pub fn scatter(kind: &Kind, from: impl Fn(usize, usize) -> Vec3, values: &mut [f64]) {
     for slot in 0..kind.blocks() * kind.lanes {
         let cell = slot.min(kind.cells - 1);
         let first = index(kind, slot, 0, 0);
         for atom in 0..kind.atoms() {
-            let x = from(cell * kind.atoms() + atom);
+            let x = from(cell, atom);
             let at = first + 3 * atom * kind.lanes;
             (values[at], values[at + kind.lanes], values[at + 2 * kind.lanes]) = (x.x, x.y, x.z);
         }

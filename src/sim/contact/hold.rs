@@ -12,7 +12,7 @@ use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
 use crate::sim::model::{Kind, Model, VolumeRule};
 use crate::sim::rooms::Rooms;
-use crate::sim::state::{State, index};
+use crate::sim::state::{State, vector};
 use crate::sim::trouble::Trouble;
 use crate::sim::workspace::{KindScratch, Workspace};
 
@@ -35,12 +35,12 @@ pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspa
         return Ok(());
     }
     prepare(model, contact, dt, state, s, kinds, rooms);
-    let left = sweep(model, contact, s, kinds);
+    let left = sweep(model, contact, s, state);
     if s.care == 1.0 && s.rows.iter().any(|row| row.gap() < 0.0) {
-        mend(model, contact, s, kinds);
+        mend(model, contact, s);
     }
     s.adhesives.place_all(&s.start, &mut s.moved);
-    put_back(model, contact, s, state);
+    put_back(model, contact, s, kinds, state);
     if left.largest <= contact.tolerance {
         return Ok(());
     }
@@ -50,12 +50,18 @@ pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspa
 }
 
 /// Puts the atoms where their displacements take them.
-pub(super) fn put_back(model: &Model, contact: &ContactModel, s: &ContactScratch, state: &mut State) {
-    for (number, (kind, now)) in model.kinds.iter().zip(&mut state.kinds).enumerate() {
-        let first = contact.atoms_of(number).start;
-        let place = |atom: usize| {
-            let [x, y, z, _] = s.moved[first + atom];
-            s.start[first + atom] + Vec3::new(x, y, z)
+pub(super) fn put_back(
+    model: &Model,
+    contact: &ContactModel,
+    s: &ContactScratch,
+    kinds: &[KindScratch],
+    state: &mut State,
+) {
+    for (number, ((kind, now), w)) in model.kinds.iter().zip(&mut state.kinds).zip(kinds).enumerate() {
+        let moved = &s.moved[contact.atoms_of(number)];
+        let place = |cell: usize, atom: usize| {
+            let [x, y, z, _] = moved[cell * kind.atoms() + atom];
+            vector(kind, &w.start, cell, atom) + Vec3::new(x, y, z)
         };
         scatter(kind, place, &mut now.positions);
     }
@@ -72,6 +78,7 @@ fn prepare(
     rooms: &Rooms,
 ) {
     s.moved.resize(contact.scene.atoms, [0.0; 4]);
+    s.gradient.resize(contact.scene.atoms, [0.0; 3]);
     s.volumes.clear();
     s.held.clear();
     for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
@@ -80,9 +87,11 @@ fn prepare(
             Method::Implicit { .. } | Method::Explicit => dt / kind.drag,
             _ => dt * dt / kind.mass,
         };
-        gather(kind, &now.positions, &mut s.moved[range.clone()], |x| [x.x, x.y, x.z, mobility]);
-        for (d, start) in s.moved[range.clone()].iter_mut().zip(&s.start[range.clone()]) {
-            (0..3).for_each(|axis| d[axis] -= start[axis]);
+        for (cell, moved) in s.moved[range.clone()].chunks_exact_mut(kind.atoms()).enumerate() {
+            for (atom, moved) in moved.iter_mut().enumerate() {
+                let way = vector(kind, &now.positions, cell, atom) - vector(kind, &w.start, cell, atom);
+                *moved = [way.x, way.y, way.z, mobility];
+            }
         }
         hold_atoms(kind, range.start, s);
         if matches!(kind.volume, VolumeRule::Exact(_)) {
@@ -124,8 +133,8 @@ fn add_volumes(
     w: &mut KindScratch,
     rooms: &Rooms,
 ) {
-    let KindScratch { gradient, left, target, .. } = w;
-    let own = vectors(kind, gradient);
+    let KindScratch { left, target, .. } = w;
+    let own = &mut s.gradient[first..first + kind.cells * kind.atoms()];
     let (length, per_block) = (kind.block_len(), kind.lanes * kind.atoms());
     for ((x, volumes), own) in
         (x.chunks_exact(length)).zip(left.chunks_exact_mut(kind.lanes)).zip(own.chunks_mut(per_block))
@@ -147,52 +156,47 @@ fn add_volumes(
     }
 }
 
-/// The start of an array of a kind that the free step has done with, as one vector for each of its atoms.
-fn vectors<'a>(kind: &Kind, array: &'a mut [f64]) -> &'a mut [[f64; 3]] {
-    &mut array.as_chunks_mut().0[..kind.cells * kind.atoms()]
-}
-
-/// What the sweeps need of a kind; the vectors stand in arrays that the free step has done with.
+/// What the sweeps need of a kind.
 struct Part<'a> {
     volumes: &'a [VolumeRow],
     /// Gradients of the volumes, µm².
     gradient: &'a [[f64; 3]],
     moved: &'a mut [V4],
-    /// Displacements before the sweep, µm.
-    before: &'a mut [[f64; 3]],
-    /// The last direction, µm.
-    way: &'a mut [[f64; 3]],
 }
 
-/// Does something for each kind, in their order, with the number of its first atom.
+/// Does something for each kind, in their order, with its number, that of its first atom, and what is there of it.
 fn for_each_part(
     model: &Model,
     contact: &ContactModel,
-    (volumes, moved): (&[VolumeRow], &mut [V4]),
-    kinds: &mut [KindScratch],
-    mut work: impl FnMut(usize, Part),
+    (volumes, gradient, moved): (&[VolumeRow], &[[f64; 3]], &mut [V4]),
+    mut work: impl FnMut(usize, usize, Part),
 ) {
     let mut next = 0;
-    for (number, (kind, w)) in model.kinds.iter().zip(kinds).enumerate() {
+    for (number, kind) in model.kinds.iter().enumerate() {
         let count = if matches!(kind.volume, VolumeRule::Exact(_)) { kind.cells } else { 0 };
         let range = contact.atoms_of(number);
-        let part = Part {
-            volumes: &volumes[next..next + count],
-            gradient: vectors(kind, &mut w.gradient),
-            moved: &mut moved[range.clone()],
-            before: vectors(kind, &mut w.first),
-            way: vectors(kind, &mut w.swell),
-        };
-        work(range.start, part);
+        let volumes = &volumes[next..next + count];
+        work(number, range.start, Part { volumes, gradient: &gradient[range.clone()], moved: &mut moved[range] });
         next += count;
     }
 }
 
-/// Sweeps until nothing moves any more; returns what the last sweep changed.
-fn sweep(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &mut [KindScratch]) -> Change {
-    for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |_, part| {
-        part.before.iter_mut().zip(part.moved).for_each(|(before, &mut [x, y, z, _])| *before = [x, y, z]);
-        part.way.fill([0.0; 3]);
+/// The vectors of all atoms of a kind in the order of its cells, in an array that has room for them.
+fn vectors<'a>(kind: &Kind, array: &'a mut [f64]) -> &'a mut [[f64; 3]] {
+    &mut array.as_chunks_mut().0[..kind.cells * kind.atoms()]
+}
+
+/// Sweeps until nothing moves any more; returns what the last sweep changed. Where the atoms went freely stands in the displacements
+/// by now: the positions of the state are those before a sweep, as displacements, until atoms are put back.
+fn sweep(model: &Model, contact: &ContactModel, s: &mut ContactScratch, state: &mut State) -> Change {
+    // Adhesives move from where the step began.
+    let keeps_start = contact.law != Law::Adhesives;
+    let mut way = std::mem::take(if keeps_start { &mut s.way } else { &mut s.start });
+    way.clear();
+    way.resize(contact.scene.atoms, Vec3::zeros());
+    for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |number, _, part| {
+        let before = vectors(&model.kinds[number], &mut state.kinds[number].positions);
+        before.iter_mut().zip(part.moved).for_each(|(before, &mut [x, y, z, _])| *before = [x, y, z]);
     });
     s.momentum.begin();
     let (mut change, mut share) = (Change::default(), 0.0);
@@ -201,10 +205,11 @@ fn sweep(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &
         sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, share, &mut change);
         s.adhesives.sweep(&s.start, &mut s.moved, share, &mut change);
         let mut held = s.held.iter().peekable();
-        for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |first, part| {
+        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |number, first, part| {
+            let before = vectors(&model.kinds[number], &mut state.kinds[number].positions);
             while let Some((atom, axis)) = held.next_if(|(atom, _)| (*atom as usize) < first + part.moved.len()) {
                 let (atom, axis) = (*atom as usize - first, *axis as usize);
-                part.moved[atom][axis] = part.before[atom][axis];
+                part.moved[atom][axis] = before[atom][axis];
             }
             sweep_volumes(part.volumes, part.gradient, part.moved, &mut change);
         });
@@ -214,22 +219,25 @@ fn sweep(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &
             break;
         }
         share = s.momentum.share(change.work);
-        for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |_, part| {
-            go_on(share, part.moved, part.before, part.way);
+        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |number, first, part| {
+            let before = vectors(&model.kinds[number], &mut state.kinds[number].positions);
+            let way = &mut way[first..first + part.moved.len()];
+            go_on(share, part.moved, before, way);
         });
     }
+    *(if keeps_start { &mut s.way } else { &mut s.start }) = way;
     change
 }
 
 /// Pushes out what is inside.
-fn mend(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &mut [KindScratch]) {
+fn mend(model: &Model, contact: &ContactModel, s: &mut ContactScratch) {
     let is_deep = |(_, row): &(u32, &Row)| row.give > 0.0 && row.gap() < 0.0;
     s.deep.clear();
     s.deep.extend((0..).zip(&s.rows).filter(is_deep).map(|(number, _)| (number, 0.0)));
     for _ in 0..MENDING {
         sweep_depths(&s.rows, &mut s.deep, &mut s.moved, MENDED * contact.scene.safe_travel());
         s.adhesives.place_all(&s.start, &mut s.moved);
-        for_each_part(model, contact, (&s.volumes, &mut s.moved), kinds, |_, part| {
+        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |_, _, part| {
             sweep_volumes(part.volumes, part.gradient, part.moved, &mut Change::default());
         });
     }
@@ -239,14 +247,12 @@ fn mend(model: &Model, contact: &ContactModel, s: &mut ContactScratch, kinds: &m
 pub fn travel(model: &Model, state: &State, ws: &Workspace) -> f64 {
     let Some(contact) = &model.contact else { return 0.0 };
     let mut farthest: f64 = 0.0;
-    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
-        for (cell, start) in ws.contact.start[contact.atoms_of(number)].chunks_exact(kind.atoms()).enumerate() {
-            let first = index(kind, cell, 0, 0);
-            for (atom, start) in start.iter().enumerate() {
-                let at = first + 3 * atom * kind.lanes;
-                let x = [0, 1, 2].map(|axis| now.positions[at + axis * kind.lanes]);
-                farthest = farthest.max((Vec3::from(x) - start).norm_squared());
-            }
+    for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&ws.kinds) {
+        // Lanes beyond the last cell may go elsewhere.
+        for cell in 0..kind.cells {
+            let place = |x: &[f64], atom: usize| vector(kind, x, cell, atom);
+            let ways = (0..kind.atoms()).map(|atom| place(&now.positions, atom) - place(&w.start, atom));
+            farthest = ways.map(|way| way.norm_squared()).fold(farthest, f64::max);
         }
     }
     farthest.sqrt() / contact.scene.safe_travel()

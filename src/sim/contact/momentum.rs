@@ -2,6 +2,7 @@
 //! taken for a gradient, and a share of the last direction is added to it.
 
 use super::sweep::V4;
+use crate::Vec3;
 
 /// After a sweep that changed this much more than the one before, the iteration starts again. Where two contacts are almost
 /// the same, as edges that meet where another crosses them, one hands its load to the other in many sweeps that change the
@@ -36,7 +37,7 @@ impl Momentum {
 
 /// Goes on from displacements after a sweep along a share of the last direction: `before` are those before the sweep, and
 /// become those before the next.
-pub fn go_on(share: f64, moved: &mut [V4], before: &mut [[f64; 3]], way: &mut [[f64; 3]]) {
+pub fn go_on(share: f64, moved: &mut [V4], before: &mut [[f64; 3]], way: &mut [Vec3]) {
     for ((now, before), way) in moved.iter_mut().zip(before).zip(way) {
         for i in 0..3 {
             let (change, old) = (now[i] - before[i], share * way[i]);
@@ -50,10 +51,11 @@ pub fn go_on(share: f64, moved: &mut [V4], before: &mut [[f64; 3]], way: &mut [[
 #[cfg(test)]
 mod tests {
     use super::{Momentum, go_on};
+    use crate::Vec3;
 
     #[test]
     fn a_sweep_that_changes_a_little_more_keeps_the_direction_and_one_that_changes_much_more_loses_it() {
-        let (mut moved, mut before, mut way) = ([[0.0; 4]], [[0.0; 3]], [[0.0; 3]]);
+        let (mut moved, mut before, mut way) = ([[0.0; 4]], [[0.0; 3]], [Vec3::zeros()]);
         let mut momentum = Momentum::default();
         momentum.begin();
         let mut after = |work: f64| {

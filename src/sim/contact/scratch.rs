@@ -20,8 +20,12 @@ pub struct ContactScratch {
     pub(super) has_looked: bool,
     /// What contacts carry to the next step, once that is so.
     pub(super) bonds: ContactState,
-    /// Positions where that is, µm.
+    /// Positions where that is, µm; in the projection under adhesives, which has no more use for them, the last direction.
     pub start: Vec<Vec3>,
+    /// The last direction in the projection under other laws, µm.
+    pub(super) way: Vec<Vec3>,
+    /// Gradients of the volumes that are kept, µm².
+    pub(super) gradient: Vec<[f64; 3]>,
     /// Links of the step.
     pub links: Vec<Link>,
     /// Virtual adhesives of the step.
@@ -71,8 +75,9 @@ impl ContactScratch {
         self.links.clear();
         self.linked.clear();
         self.adhesives.poison();
-        [&mut self.places, &mut self.live_force].into_iter().for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
-        self.start.fill(Vec3::repeat(f64::NAN));
+        let vectors = [&mut self.start, &mut self.way, &mut self.places, &mut self.live_force];
+        vectors.into_iter().for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
+        self.gradient.fill([f64::NAN; 3]);
         self.moved.fill([f64::NAN; 4]);
         self.deep.clear();
         self.relief.fill(f64::NAN);

@@ -13,14 +13,15 @@ const SETTLED: f64 = 1e-3;
 /// Gives adhesives their shapes back that exact volumes have changed; says whether there was something to do, so that volumes must
 /// be made exact again.
 pub fn settle_adhesives(model: &Model, state: &mut State, ws: &mut Workspace) -> bool {
-    let (Some(contact), s) = (&model.contact, &mut ws.contact) else { return false };
+    let Workspace { contact: s, kinds, .. } = ws;
+    let Some(contact) = &model.contact else { return false };
     if s.adhesives.atoms.is_empty() {
         return false;
     }
     take_displacements(model, contact, state, s);
     let moved = s.adhesives.place_all(&s.start, &mut s.moved) > SETTLED * contact.tolerance;
     if moved {
-        put_back(model, contact, s, state);
+        put_back(model, contact, s, kinds, state);
     }
     moved
 }

@@ -8,6 +8,12 @@ use crate::Vec3;
 use crate::contact::Contacts;
 use crate::sim::chemistry::Controls;
 
+/// Whether any surfaces in contact release energy.
+pub fn releases_energy(model: &ContactModel) -> bool {
+    let releases = |strength: &Strength| strength.energy > 0.0;
+    model.between.iter().chain(&model.on_planes).any(releases)
+}
+
 /// Adds the forces of the energy that contacts release, eq. (adhesion.9), to those of all atoms. `relief` is scratch, one number an
 /// atom.
 pub fn add_spreading(
@@ -18,8 +24,7 @@ pub fn add_spreading(
     relief: &mut Vec<f64>,
     force: &mut [V4],
 ) {
-    let releases = |strength: &Strength| strength.energy > 0.0;
-    if !model.between.iter().chain(&model.on_planes).any(releases) {
+    if !releases_energy(model) {
         return;
     }
     relieve(model, found, controls, relief);
