@@ -215,10 +215,13 @@ fn fill(scene: &Scene, model: &Model, cells: &[CellMeasure]) -> f64 {
 /// Gaps where the step ended.
 fn check_depth(model: &Model, ws: &Workspace, seen: &mut Seen) -> Result<(), String> {
     let (found, scene) = (&ws.contact.found, &model.contact.as_ref().unwrap().scene);
-    let body_of = |atom: u32| scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1;
+    let body_of = |atom: u32| scene.body_of_atom(atom);
     let edge = |body: u32| model.kinds[scene.bodies[body as usize].shape as usize].edge;
-    let of_atoms = found.atoms.iter().map(|near| (near.gap, body_of(near.atom), near.body));
-    let of_edges = found.edges.iter().map(|near| (near.gap, near.bodies[0], near.bodies[1]));
+    let of_atoms = found.atoms.iter().map(|near| (near.gap, body_of(near.atom), near.body(scene)));
+    let of_edges = found.edges.iter().map(|near| {
+        let [one, other] = near.bodies(scene);
+        (near.gap, one, other)
+    });
     let of_planes = found.planes.iter().map(|near| (near.gap, body_of(near.atom), body_of(near.atom)));
     for (gap, one, other) in of_atoms.chain(of_edges).chain(of_planes) {
         let depth = -gap / edge(one).min(edge(other));
@@ -235,10 +238,11 @@ fn check_depth(model: &Model, ws: &Workspace, seen: &mut Seen) -> Result<(), Str
 
 /// No contact pulls or shears more than its strength times its area, which the places share where an atom touches a cell.
 fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, seen: &mut Seen) -> Result<(), String> {
-    let (s, bodies) = (&ws.contact, &model.contact.as_ref().unwrap().scene.bodies);
+    let (s, on) = (&ws.contact, &model.contact.as_ref().unwrap().scene);
+    let bodies = &on.bodies;
     // In the order of the rows.
     let bonds = &state.contact;
-    let body_of = |atom: u32| bodies.partition_point(|body| body.first_atom <= atom) - 1;
+    let body_of = |atom: u32| on.body_of_atom(atom) as usize;
     let kind_of = |body: usize| bodies[body].shape as usize;
     let areas: Vec<Vec<f64>> = model.kinds.iter().map(|kind| atom_areas(&kind.rest)).collect();
     let area_of = |atom: u32| {
@@ -246,9 +250,10 @@ fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, s
         areas[kind_of(body)][(atom - bodies[body].first_atom) as usize]
     };
     let of_atoms = bonds.atoms.iter().map(|bond| {
-        let (own, other) = (body_of(bond.atom), bond.body as usize);
+        let (own, other) = (body_of(bond.atom), bond.body(on) as usize);
         let strength = if own == other { [0.0; 2] } else { scene.between[kind_of(own)][kind_of(other)] };
-        let places = bonds.atoms.iter().filter(|other| (other.atom, other.body) == (bond.atom, bond.body)).count();
+        let places =
+            bonds.atoms.iter().filter(|other| (other.atom, other.body(on)) == (bond.atom, bond.body(on))).count();
         (strength, 0.5 * area_of(bond.atom) / places as f64)
     });
     // Of edges only those are kept that carry a force.
@@ -274,8 +279,9 @@ fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, s
             return Err(format!("contact {number} shears {across} pN of {} pN", shear * area));
         }
         if let Some(bond) = bonds.atoms.get(number).filter(|_| tensile > 0.0) {
-            if sum.0 != (bond.atom, bond.body) {
-                sum = ((bond.atom, bond.body), 0.0);
+            let pair = (bond.atom, bond.body(on));
+            if sum.0 != pair {
+                sum = (pair, 0.0);
             }
             sum.1 -= along.min(0.0);
             seen.pull = seen.pull.max(sum.1 / (0.5 * tensile * area_of(bond.atom)));

@@ -65,11 +65,10 @@ pub(super) fn find_atom_contacts(
             AtomContact {
                 atom: numbered,
                 facet: first_facet + low.facet,
-                body: other,
                 feature: low.point.feature,
                 second_weights: low.point.weights,
                 gap,
-                normal,
+                normal: normal.into(),
                 facing,
             },
         );

@@ -6,7 +6,8 @@ use super::atom_facet::{Low, find_atom_contacts};
 use super::boxes::{Bounds, Pack, Steps};
 use super::edge_edge::find_edge_contacts;
 use super::found::{Contacts, PlaneContact, push};
-use super::lists::{Boxes, Lists, Motion, Moved, levels_over};
+use super::lists::{Boxes, Lists, Moved, levels_over};
+use super::motion::{Motion, Then, larger};
 use super::neighbours::Neighbours;
 use super::scene::Scene;
 use crate::Vec3;
@@ -33,16 +34,16 @@ pub struct Detector {
     margin: f64,
     /// Detections since then.
     looks: u32,
-    /// Where the atoms were when the pairs were collected, µm.
-    collected_at: Vec<[f32; 3]>,
+    /// Where the atoms were when the pairs were collected.
+    collected_at: Then,
     /// How each body has moved since then.
     moved_of: Vec<Motion>,
-    /// One per batch: what several threads find before it is put in order, and scratch.
+    /// One per batch: boxes, and what several threads find before it is put in order.
     found: Vec<Found>,
     lows: Vec<Low>,
 }
 
-/// What is found in one batch.
+/// What is found in one batch, and scratch.
 #[derive(Debug, Clone, Default)]
 struct Found {
     contacts: Contacts,
@@ -62,16 +63,11 @@ const WIDEST: f64 = 6.0;
 /// collecting them less often saves, in time and in memory.
 const MOST_WORDS: usize = 12;
 
-/// A position rounded to four bytes an axis is off by less than this share of its coordinates.
-const ROUNDING: f64 = 1.1e-7;
+/// Batches that each thread looks at before what is found is put in order.
+const BATCHES_PER_THREAD: usize = 8;
 
 /// Bodies whose motion one job measures: it takes less than a microsecond each.
 const BODIES_PER_JOB: usize = 16;
-
-/// The larger of two numbers, or whatever is not a number.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
 
 impl Detector {
     /// Finds all contacts at these positions (µm, one per atom of the scene) and writes them over `contacts`. For a
@@ -103,14 +99,15 @@ impl Detector {
                 look(scene, positions, batch, lists, neighbours, &since, &mut self.lows, contacts);
             }
         } else {
-            self.found.par_iter_mut().zip(&self.lists).enumerate().for_each(|(batch, (found, lists))| {
-                found.contacts.clear();
-                look(scene, positions, batch, lists, neighbours, &since, &mut found.lows, &mut found.contacts);
-            });
-            for Found { contacts: found, .. } in &self.found {
-                contacts.atoms.extend_from_slice(&found.atoms);
-                contacts.edges.extend_from_slice(&found.edges);
-                contacts.planes.extend_from_slice(&found.planes);
+            // So many at a time that threads seldom wait for each other, and few contacts are held twice.
+            let together = BATCHES_PER_THREAD * rayon::current_num_threads();
+            for (first, lists) in (0..).step_by(together).zip(self.lists.chunks(together)) {
+                self.found[..lists.len()].par_iter_mut().zip(lists).enumerate().for_each(|(number, (found, lists))| {
+                    found.contacts.clear();
+                    let (batch, lows, to) = (first + number, &mut found.lows, &mut found.contacts);
+                    look(scene, positions, batch, lists, neighbours, &since, lows, to);
+                });
+                self.found[..lists.len()].iter().for_each(|found| contacts.append(&found.contacts));
             }
         }
         self.moved_of = moved_of;
@@ -139,7 +136,7 @@ impl Detector {
 
     /// Forgets the pairs, so that the next detection collects them anew. Contacts do not depend on it.
     pub fn forget(&mut self) {
-        self.collected_at.clear();
+        self.collected_at.forget();
     }
 
     /// How much farther than a contact the pairs were collected from, µm.
@@ -155,13 +152,11 @@ impl Detector {
     /// The largest displacement since the pairs were collected, rounding included, µm; infinite when there are none
     /// for this scene, NaN or infinite when a position is not finite. That of each body is written to `of_bodies`.
     pub(super) fn moved(&self, scene: &Scene, positions: &[Vec3], of_bodies: &mut Vec<Motion>) -> f64 {
-        if self.collected_at.len() != positions.len() || self.lists.len() + 1 != scene.batches.len() {
+        if !self.collected_at.is_of(positions.len()) || self.lists.len() + 1 != scene.batches.len() {
             return f64::INFINITY;
         }
-        let motion = |body: u32| {
-            let here = scene.of_body(body, positions);
-            motion(here, &self.collected_at[scene.bodies[body as usize].first_atom as usize..][..here.len()])
-        };
+        let boxes = &self.boxes.bounds;
+        let motion = |body: u32| self.collected_at.motion(scene, body, &boxes[body as usize], positions);
         let bodies = 0..scene.bodies.len() as u32;
         bodies.into_par_iter().with_min_len(BODIES_PER_JOB).map(motion).collect_into_vec(of_bodies);
         of_bodies.iter().map(|motion| motion.farthest).fold(0.0, larger)
@@ -205,8 +200,7 @@ impl Detector {
             .par_iter_mut()
             .enumerate()
             .for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes, margin));
-        self.collected_at.clear();
-        self.collected_at.extend(positions.iter().map(|x| [x.x as f32, x.y as f32, x.z as f32]));
+        self.collected_at.take(scene, positions, &self.boxes.bounds);
     }
 
     /// Bytes held.
@@ -221,23 +215,9 @@ impl Detector {
         let found: usize = self.found.iter().map(of_found).sum();
         let bounds =
             size_of::<Bounds>() * self.boxes.bounds.capacity() + size_of::<Steps>() * self.boxes.steps.capacity();
-        let then = 12 * self.collected_at.capacity() + 8 * self.moved_of.capacity();
+        let then = self.collected_at.bytes() + size_of::<Motion>() * self.moved_of.capacity();
         packs + lists + found + bounds + self.boxes.neighbours.bytes() + then
     }
-}
-
-/// How the atoms of a body have moved.
-fn motion(now: &[Vec3], then: &[[f32; 3]]) -> Motion {
-    let way = |now: &Vec3, then: &[f32; 3]| now - Vec3::from(then.map(f64::from));
-    let sum: Vec3 = now.iter().zip(then).map(|(now, then)| way(now, then)).sum();
-    let mean = sum / now.len().max(1) as f64;
-    let (mut farthest, mut beside) = (0.0, 0.0);
-    for (now, then) in now.iter().zip(then) {
-        let (way, rounding) = (way(now, then), now.abs() * ROUNDING);
-        farthest = larger(farthest, (way.abs() + rounding).norm_squared());
-        beside = larger(beside, ((way - mean).abs() + rounding).norm_squared());
-    }
-    Motion { mean, beside: beside.sqrt(), farthest: farthest.sqrt() }
 }
 
 /// Looks at the pairs of a batch and adds its contacts.

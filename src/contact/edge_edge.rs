@@ -35,10 +35,9 @@ pub(super) fn find_edge_contacts<'a>(
             contacts,
             EdgeContact {
                 edges: [numbered(body, edge), numbered(other, candidate)],
-                bodies: [body, other],
                 along,
                 gap,
-                normal,
+                normal: normal.into(),
             },
         );
     }
@@ -185,7 +184,7 @@ const SLACK: f64 = 0.35;
 /// not come and go with that. Nothing when the edges have slid off each other, are farther apart than the proximity, or
 /// their facets have really turned.
 pub fn edges_still_touch(scene: &Scene, positions: &[Vec3], edges: [u32; 2], normal: &Vec3) -> Option<EdgeContact> {
-    let bodies = edges.map(|edge| scene.bodies.partition_point(|body| body.first_edge <= edge) as u32 - 1);
+    let bodies = edges.map(|edge| scene.body_of_edge(edge));
     let [first, second] = [0, 1].map(|side| {
         let (shape, own) = (scene.shape(bodies[side]), edges[side] - scene.bodies[bodies[side] as usize].first_edge);
         Ridge::of(shape, scene.of_body(bodies[side], positions), own)
@@ -206,9 +205,8 @@ pub fn edges_still_touch(scene: &Scene, positions: &[Vec3], edges: [u32; 2], nor
     let near = gap < scene.reach.proximity && gap >= -scene.reach.depth;
     (near && !have_turned(&first, &second, &normal, SLACK)).then(|| EdgeContact {
         edges,
-        bodies,
         along: [on_first / squared, on_second / squared],
         gap,
-        normal,
+        normal: normal.into(),
     })
 }

@@ -1,6 +1,7 @@
 //! What detection finds: atoms on facets, edges on edges, atoms on planes.
 
 use super::closest::Feature;
+use super::scene::Scene;
 use crate::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,31 @@ impl Facing {
     }
 }
 
+/// A unit vector with four bytes an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Normal(pub [f32; 3]);
+
+impl Normal {
+    /// With eight.
+    pub fn wide(self) -> Vec3 {
+        Vec3::from(self.0.map(f64::from))
+    }
+}
+
+impl From<Vec3> for Normal {
+    fn from(normal: Vec3) -> Self {
+        Self([normal.x as f32, normal.y as f32, normal.z as f32])
+    }
+}
+
+impl std::ops::Neg for Normal {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(self.0.map(|part| -part))
+    }
+}
+
 /// An atom that touches a facet, or is inside the facet's surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtomContact {
@@ -30,21 +56,24 @@ pub struct AtomContact {
     pub atom: u32,
     /// The facet, numbered through the scene.
     pub facet: u32,
-    /// The body of the facet; the atom's own in self-contact.
-    pub body: u32,
     /// Where on the facet the closest point lies. A point on a side or a corner is told once, for one of its facets.
     pub feature: Feature,
     /// Barycentric weights of the facet's second and third atom; see [`AtomContact::weights`].
     pub second_weights: [f64; 2],
     /// Distance along the normal, µm; negative inside.
     pub gap: f64,
-    /// Unit normal from the facet to the outside: atom = closest point + gap × normal.
-    pub normal: Vec3,
+    /// Unit normal from the facet to the outside, to seven digits: atom = closest point + gap × normal.
+    pub normal: Normal,
     /// The side to which the normal points, where both are outside.
     pub facing: Facing,
 }
 
 impl AtomContact {
+    /// The body of the facet; the atom's own in self-contact.
+    pub fn body(&self, scene: &Scene) -> u32 {
+        scene.body_of_facet(self.facet)
+    }
+
     /// The barycentric weights of the closest point on the three atoms of the facet; their sum is 1.
     pub fn weights(&self) -> [f64; 3] {
         let [second, third] = self.second_weights;
@@ -57,14 +86,19 @@ impl AtomContact {
 pub struct EdgeContact {
     /// The two edges, numbered through the scene; the first has the smaller number.
     pub edges: [u32; 2],
-    /// Their bodies; twice the same in self-contact.
-    pub bodies: [u32; 2],
     /// Where along each edge the closest points lie, from 0 at its first atom to 1.
     pub along: [f64; 2],
     /// Distance along the normal, µm; negative inside.
     pub gap: f64,
-    /// Unit normal from the second edge to the first: point on first = point on second + gap × normal.
-    pub normal: Vec3,
+    /// Unit normal from the second edge to the first, to seven digits: point on first = point on second + gap × normal.
+    pub normal: Normal,
+}
+
+impl EdgeContact {
+    /// The bodies of the two edges; twice the same in self-contact.
+    pub fn bodies(&self, scene: &Scene) -> [u32; 2] {
+        self.edges.map(|edge| scene.body_of_edge(edge))
+    }
 }
 
 /// An atom near a rigid plane or behind it, however far.
@@ -105,6 +139,13 @@ impl Contacts {
         self.planes.clear();
     }
 
+    /// Adds those of other bodies, behind these.
+    pub(super) fn append(&mut self, others: &Self) {
+        append(&mut self.atoms, &others.atoms);
+        append(&mut self.edges, &others.edges);
+        append(&mut self.planes, &others.planes);
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         size_of::<AtomContact>() * self.atoms.capacity()
@@ -113,12 +154,20 @@ impl Contacts {
     }
 }
 
-/// Appends to a list that grows by a sixteenth where a `Vec` would double: contacts are most of the memory of a packed
+/// Appends to a list that grows by a thirty-second where a `Vec` would double: contacts are most of the memory of a packed
 /// population, and they hardly grow once it is packed.
 #[inline]
 pub(super) fn push<T>(list: &mut Vec<T>, item: T) {
     if list.len() == list.capacity() {
-        list.reserve_exact((list.len() / 16).max(32));
+        list.reserve_exact((list.len() / 32).max(32));
     }
     list.push(item);
+}
+
+/// Appends a list to another as [`push`] does an item.
+fn append<T: Copy>(list: &mut Vec<T>, items: &[T]) {
+    if list.capacity() - list.len() < items.len() {
+        list.reserve_exact(items.len() + list.len() / 32);
+    }
+    list.extend_from_slice(items);
 }

@@ -6,6 +6,9 @@ use super::scene::Scene;
 use super::shape::NONE;
 use crate::Vec3;
 
+/// A facet that rises by no more than this sine lies in the plane of the one beside it, as far as normals of seven digits tell.
+const FLAT: f64 = 1e-6;
+
 /// Adds to contacts with surfaces that have two outsides the facets beside them that rise towards the atom, where it is nearer to the
 /// side that they share than `within` (µm). The region in front of a groove is that in front of the planes of both walls, eq. (contacts.10), so that
 /// the second plane is no obstacle before its facet is one; found by the place where the distance is least, an atom at a
@@ -17,8 +20,9 @@ pub fn add_walls_of_grooves(scene: &Scene, positions: &[Vec3], within: f64, cont
         if near.facing == Facing::Any {
             continue;
         }
-        let body = &scene.bodies[near.body as usize];
-        let (shape, there) = (scene.shape(near.body), scene.of_body(near.body, positions));
+        let number = near.body(scene);
+        let body = &scene.bodies[number as usize];
+        let (shape, there) = (scene.shape(number), scene.of_body(number, positions));
         let own = near.atom.checked_sub(body.first_atom).filter(|atom| (*atom as usize) < shape.atoms);
         let (facet, place) = (near.facet - body.first_facet, positions[near.atom as usize]);
         let corners = shape.corners(facet, there);
@@ -28,7 +32,7 @@ pub fn add_walls_of_grooves(scene: &Scene, positions: &[Vec3], within: f64, cont
                 continue;
             }
             let (start, along) = (corners[side], corners[(side + 1) % 3] - corners[side]);
-            let across = near.normal.cross(&along).normalize();
+            let across = near.normal.wide().cross(&along).normalize();
             if across.dot(&(place - start)).abs() > within {
                 continue;
             }
@@ -64,8 +68,10 @@ fn wall(
     // The corner that is not on the side is farthest from it.
     let off_side = |corner: &Vec3| (corner - start).cross(along).norm_squared();
     let third = corners.into_iter().max_by(|one, other| off_side(one).total_cmp(&off_side(other)))?;
-    let rises = near.normal.dot(&(third - start)) > 0.0 && normal.dot(&near.normal) > 0.0;
+    let facing = near.normal.wide();
+    let up = third - start;
+    let rises = facing.dot(&up) > FLAT * up.norm() && normal.dot(&facing) > 0.0;
     let point = closest_on_facet(place, corners);
     let (gap, second_weights, feature) = (normal.dot(&(place - a)), point.weights, point.feature);
-    rises.then_some(AtomContact { facet, feature, second_weights, gap, normal, ..*near })
+    rises.then_some(AtomContact { facet, feature, second_weights, gap, normal: normal.into(), ..*near })
 }

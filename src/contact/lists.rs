@@ -3,28 +3,13 @@
 
 use super::boxes::{Bounds, Pack, Steps};
 use super::closest::{closest_on_facet, closest_on_segments};
+use super::motion::Motion;
 use super::neighbours::Neighbours;
 use super::ridge::Ridge;
 use super::scene::Scene;
 use super::turned::turned_for;
 use super::words::{HIGHEST, Words};
 use crate::Vec3;
-
-/// How a body has moved since the pairs were collected, µm.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Motion {
-    /// The mean way of its atoms.
-    pub mean: Vec3,
-    /// The farthest that an atom has moved beside that.
-    pub beside: f64,
-    /// The farthest that an atom has moved.
-    pub farthest: f64,
-}
-
-impl Motion {
-    /// None.
-    pub const NONE: Self = Self { mean: Vec3::new(0.0, 0.0, 0.0), beside: 0.0, farthest: 0.0 };
-}
 
 /// How far bodies have moved since the pairs were collected: pairs that cannot have come to touch are passed over.
 pub(super) struct Moved<'a> {

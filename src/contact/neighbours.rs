@@ -12,7 +12,6 @@ pub(super) struct Neighbours {
     first: Vec<u32>,
     bodies: Vec<u32>,
     places: Vec<(u64, u32)>,
-    pairs: Vec<(u32, u32)>,
     widths: Vec<f32>,
 }
 
@@ -28,6 +27,22 @@ fn key(place: [i64; 3]) -> u64 {
 fn places_of(bounds: &Bounds, width: f32) -> [std::ops::RangeInclusive<i64>; 3] {
     let (low, high) = (place(bounds.low, width), place(bounds.high, width));
     [0, 1, 2].map(|axis| low[axis]..=high[axis])
+}
+
+/// Calls `found` once for every two bodies whose boxes meet; `places` are sorted.
+fn for_each_pair(places: &[(u64, u32)], bounds: &[Bounds], width: f32, mut found: impl FnMut(u32, u32)) {
+    for together in places.chunk_by(|left, right| left.0 == right.0) {
+        for (index, &(here, first)) in together.iter().enumerate() {
+            for &(_, second) in &together[index + 1..] {
+                let (one, other) = (&bounds[first as usize], &bounds[second as usize]);
+                // Two boxes may share many places: the lowest corner of what they share lies in one only.
+                let corner = [0, 1, 2].map(|axis| one.low[axis].max(other.low[axis]));
+                if one.meets(other) && key(place(corner, width)) == here {
+                    found(first, second);
+                }
+            }
+        }
+    }
 }
 
 impl Neighbours {
@@ -49,30 +64,33 @@ impl Neighbours {
             }
         }
         self.places.sort_unstable();
-        self.pairs.clear();
-        self.pairs.extend((0..bounds.len() as u32).map(|body| (body, body)));
-        for together in self.places.chunk_by(|left, right| left.0 == right.0) {
-            for (index, &(here, first)) in together.iter().enumerate() {
-                for &(_, second) in &together[index + 1..] {
-                    let (one, other) = (&bounds[first as usize], &bounds[second as usize]);
-                    // Two boxes may share many places: the lowest corner of what they share lies in one only.
-                    let corner = [0, 1, 2].map(|axis| one.low[axis].max(other.low[axis]));
-                    if one.meets(other) && key(place(corner, width)) == here {
-                        self.pairs.extend([(first, second), (second, first)]);
-                    }
-                }
-            }
-        }
-        self.pairs.sort_unstable();
-        self.bodies.clear();
-        self.bodies.extend(self.pairs.iter().map(|pair| pair.1));
+        // Counted at first, so that no list of pairs is held beside that of neighbours.
         self.first.clear();
-        let mut next = 0;
-        for body in 0..=bounds.len() as u32 {
-            while next < self.pairs.len() && self.pairs[next].0 < body {
-                next += 1;
-            }
-            self.first.push(next as u32);
+        self.first.resize(bounds.len() + 1, 0);
+        (1..=bounds.len()).for_each(|body| self.first[body] = 1);
+        for_each_pair(&self.places, bounds, width, |one, other| {
+            self.first[one as usize + 1] += 1;
+            self.first[other as usize + 1] += 1;
+        });
+        (0..bounds.len()).for_each(|body| self.first[body + 1] += self.first[body]);
+        self.bodies.clear();
+        self.bodies.resize(self.first[bounds.len()] as usize, 0);
+        let (first, bodies) = (&mut self.first, &mut self.bodies);
+        let mut add = |body: u32, other: u32| {
+            bodies[first[body as usize] as usize] = other;
+            first[body as usize] += 1;
+        };
+        (0..bounds.len() as u32).for_each(|body| add(body, body));
+        for_each_pair(&self.places, bounds, width, |one, other| {
+            add(one, other);
+            add(other, one);
+        });
+        // The place of the next neighbour is by now that of the next body's first.
+        self.first.rotate_right(1);
+        self.first[0] = 0;
+        for body in 0..bounds.len() {
+            let own = self.first[body] as usize..self.first[body + 1] as usize;
+            self.bodies[own].sort_unstable();
         }
     }
 
@@ -98,8 +116,6 @@ impl Neighbours {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * (self.first.capacity() + self.bodies.capacity() + self.widths.capacity())
-            + 16 * self.places.capacity()
-            + 8 * self.pairs.capacity()
+        4 * (self.first.capacity() + self.bodies.capacity() + self.widths.capacity()) + 16 * self.places.capacity()
     }
 }

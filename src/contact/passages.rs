@@ -67,7 +67,7 @@ impl Detector {
             let Some(first) = scene.bodies.get(scene.bodies_of(batch).start as usize) else { continue };
             for (atom, place, facets) in lists.facets.parts() {
                 let atom = first.first_atom + atom;
-                let body = scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1;
+                let body = scene.body_of_atom(atom);
                 let other = neighbours.of(body)[place];
                 for facet in facets.up_to(HIGHEST).map(|facet| facet + scene.bodies[other as usize].first_facet) {
                     let corners = scene.facet_atoms(other, facet);
@@ -81,7 +81,7 @@ impl Detector {
             }
             for (edge, place, edges) in lists.edges.parts() {
                 let edge = first.first_edge + edge;
-                let body = scene.bodies.partition_point(|body| body.first_edge <= edge) as u32 - 1;
+                let body = scene.body_of_edge(edge);
                 let other = neighbours.of(body)[place];
                 let ends = |body: u32, edge: u32| {
                     let atoms = scene.edge_atoms(body, edge);

@@ -1,6 +1,7 @@
 //! Everything that can touch: the surfaces of cells, sheets and rigid bodies, one after the other, and rigid planes.
 
 use super::boxes::Levels;
+use super::owners::Owners;
 use super::shape::Shape;
 use crate::Vec3;
 
@@ -69,6 +70,8 @@ pub struct Scene {
     pub atoms: usize,
     /// Number of facets of all bodies.
     pub facets: usize,
+    /// Of atoms, of facets and of edges.
+    owners: [Owners; 3],
     pub(super) levels: Vec<Levels>,
     /// The first body of each batch, and the number of bodies.
     pub(super) batches: Vec<u32>,
@@ -109,12 +112,31 @@ impl Scene {
         }
         number(facets.max(edges));
         batches.push(bodies.len() as u32);
-        Self { shapes, bodies, planes, reach, atoms, facets, levels, batches }
+        let owners = [0, 1, 2].map(|what| {
+            let count = |shape: &usize| [shapes[*shape].atoms, shapes[*shape].facets.len(), shapes[*shape].edges.len()];
+            Owners::of(shape_of_body.iter().map(|shape| count(shape)[what]))
+        });
+        Self { shapes, bodies, planes, reach, atoms, facets, owners, levels, batches }
     }
 
     /// The mesh of a body.
     pub fn shape(&self, body: u32) -> &Shape {
         &self.shapes[self.bodies[body as usize].shape as usize]
+    }
+
+    /// The body of an atom.
+    pub fn body_of_atom(&self, atom: u32) -> u32 {
+        self.owners[0].body(atom)
+    }
+
+    /// The body of a facet.
+    pub fn body_of_facet(&self, facet: u32) -> u32 {
+        self.owners[1].body(facet)
+    }
+
+    /// The body of an edge.
+    pub fn body_of_edge(&self, edge: u32) -> u32 {
+        self.owners[2].body(edge)
     }
 
     /// The three atoms of a facet of a body, both numbered through the scene.

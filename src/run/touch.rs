@@ -41,7 +41,7 @@ impl Touch {
         let mut touching = vec![0_u32; bodies];
         for of_atom in self.partners.chunk_by(|one, other| one.0 == other.0) {
             // A plane stands after all bodies.
-            touching[body_of(&contact.scene, of_atom[0].0) as usize] += u32::from((of_atom[0].1 as usize) < bodies);
+            touching[contact.scene.body_of_atom(of_atom[0].0) as usize] += u32::from((of_atom[0].1 as usize) < bodies);
         }
         self.measure_areas(contact, frame);
         let Self { found, positions, links, linked, .. } = self;
@@ -82,8 +82,8 @@ impl Touch {
     fn find_partners(&mut self, scene: &Scene) {
         let bodies = scene.bodies.len() as u32;
         self.partners.clear();
-        let others = self.found.atoms.iter().filter(|near| body_of(scene, near.atom) != near.body);
-        self.partners.extend(others.map(|near| (near.atom, near.body)));
+        let others = self.found.atoms.iter().filter(|near| scene.body_of_atom(near.atom) != near.body(scene));
+        self.partners.extend(others.map(|near| (near.atom, near.body(scene))));
         self.partners.extend(self.found.planes.iter().map(|near| (near.atom, bodies + near.plane)));
         self.partners.sort_unstable();
         self.partners.dedup();
@@ -95,14 +95,15 @@ impl Touch {
         self.areas.clear();
         for of_atom in self.partners.chunk_by(|one, other| one.0 == other.0) {
             let atom = of_atom[0].0;
-            let (cell, area) = (body_of(&contact.scene, atom), contact.area_of(atom) / of_atom.len() as f64);
+            let (cell, area) = (contact.scene.body_of_atom(atom), contact.area_of(atom) / of_atom.len() as f64);
             self.areas.extend(of_atom.iter().map(|&(_, other)| match other < bodies {
                 true => (cell.min(other), cell.max(other), 0.5 * area),
                 false => (cell, other, area),
             }));
         }
         // Edges have no area, and yet they join.
-        let of_edges = self.found.edges.iter().map(|near| near.bodies).filter(|[one, other]| one != other);
+        let of_edges =
+            self.found.edges.iter().map(|near| near.bodies(&contact.scene)).filter(|[one, other]| one != other);
         self.areas.extend(of_edges.map(|[one, other]| (one.min(other), one.max(other), 0.0)));
         self.areas.sort_by_key(|area| (area.0, area.1));
         for alike in self.areas.chunk_by(|one, other| (one.0, one.1) == (other.0, other.1)) {
@@ -113,9 +114,4 @@ impl Touch {
             }
         }
     }
-}
-
-/// The body of an atom.
-fn body_of(scene: &Scene, atom: u32) -> u32 {
-    scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1
 }

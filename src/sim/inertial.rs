@@ -49,12 +49,7 @@ pub fn advance_freely(model: &Model, dt: f64, state: &mut State, ws: &mut Worksp
 }
 
 /// Runs work over the arrays of every kind: positions, velocities and forces, with held atoms kept still.
-fn each(
-    model: &Model,
-    state: &mut State,
-    ws: &mut Workspace,
-    work: impl Fn(&Kind, &mut [f64], &mut [f64], &[f64]),
-) {
+fn each(model: &Model, state: &mut State, ws: &mut Workspace, work: impl Fn(&Kind, &mut [f64], &mut [f64], &[f64])) {
     for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds) {
         if kind.is_held() {
             for block in w.force.chunks_exact_mut(kind.block_len()) {

@@ -65,8 +65,10 @@ pub(super) fn measure_cells(model: &Model, state: &State, ws: &mut Workspace, dt
             let (first, near) = near_cell(model, found, kind.first_cell + cell);
             *out = measure(model, kind, &now.positions, cell, |atom| {
                 let at = near.partition_point(|contact| contact.atom < first + atom);
-                let own = (kind.first_cell + cell) as u32;
-                near[at..].iter().take_while(|contact| contact.atom == first + atom).any(|contact| contact.body != own)
+                let mut of_atom = near[at..].iter().take_while(|contact| contact.atom == first + atom);
+                let scene = model.contact.as_ref().map(|contact| &contact.scene);
+                let is_other = |scene, contact: &AtomContact| contact.body(scene) as usize != kind.first_cell + cell;
+                scene.is_some_and(|scene| of_atom.any(|contact| is_other(scene, contact)))
             });
             out.rest = *rest;
             if dt > 0.0 {

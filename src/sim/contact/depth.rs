@@ -22,9 +22,9 @@ const DEEPEST: f64 = 0.5;
 pub fn check_depth(model: &Model, state: &State, ws: &Workspace) -> Result<(), Trouble> {
     let Some(contact) = &model.contact else { return Ok(()) };
     let found = &ws.contact.found;
-    let of_atoms = found.atoms.iter().map(|near| (near.gap, near.atom, near.body));
+    let of_atoms = found.atoms.iter().map(|near| (near.gap, near.atom, near.body(&contact.scene)));
     let of_edges = found.edges.iter().map(|near| {
-        let [own, other] = near.bodies;
+        let [own, other] = near.bodies(&contact.scene);
         (near.gap, contact.scene.bodies[own as usize].first_atom, other)
     });
     let deepest = of_atoms.chain(of_edges).min_by(|one, other| one.0.total_cmp(&other.0));
@@ -104,8 +104,9 @@ impl Deepest {
     fn of(model: &Model, contact: &ContactModel, found: &Contacts) -> Option<Self> {
         let edge = |body: u32| model.kinds[contact.kind_of(body)].edge;
         let of_atoms = found.atoms.iter().filter(|near| near.gap < 0.0);
-        let of_atoms = of_atoms.map(|near| (near.gap, [contact.body_of(near.atom), near.body]));
-        let of_edges = found.edges.iter().filter(|near| near.gap < 0.0).map(|near| (near.gap, near.bodies));
+        let of_atoms = of_atoms.map(|near| (near.gap, [contact.body_of(near.atom), near.body(&contact.scene)]));
+        let of_edges =
+            found.edges.iter().filter(|near| near.gap < 0.0).map(|near| (near.gap, near.bodies(&contact.scene)));
         let of_planes = found.planes.iter().filter(|near| near.gap < 0.0);
         let of_planes = of_planes.map(|near| (near.gap, [contact.body_of(near.atom); 2]));
         let all = of_atoms.chain(of_edges).chain(of_planes).map(|(gap, bodies)| {
@@ -121,7 +122,7 @@ fn lost_inside(contact: &ContactModel, state: &State, ws: &Workspace) -> Option<
     let (found, scene) = (&ws.contact.found.atoms, &contact.scene);
     let is_found = |atom: u32, body: u32| {
         let at = found.partition_point(|near| near.atom < atom);
-        found[at..].iter().take_while(|near| near.atom == atom).any(|near| near.body == body)
+        found[at..].iter().take_while(|near| near.atom == atom).any(|near| near.body(scene) == body)
     };
     let is_inside = |atom: u32, body: u32| {
         let (shape, first) = (scene.shape(body), scene.bodies[body as usize].first_atom as usize);
@@ -130,7 +131,7 @@ fn lost_inside(contact: &ContactModel, state: &State, ws: &Workspace) -> Option<
         let there = &ws.contact.start[first..first + shape.atoms];
         closed && !own && winding_number(ws.contact.start[atom as usize], there, &shape.facets) > 0.5
     };
-    let mut touched = state.contact.atoms.iter().map(|bond| (bond.atom, bond.body));
+    let mut touched = state.contact.atoms.iter().map(|bond| (bond.atom, bond.body(scene)));
     touched.find(|&(atom, body)| !is_found(atom, body) && is_inside(atom, body))
 }
 

@@ -117,15 +117,14 @@ pub(super) fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds:
     let (of_edges, of_planes) = others.split_at(found.edges.len());
     empty_for(atoms, found.atoms.len());
     for ((pull, row), contact) in of_atoms.iter().zip(rows).zip(&found.atoms) {
-        let &AtomContact { atom, body, facet, facing, .. } = contact;
-        atoms.push(AtomBond { atom, body, facet, facing, force: pull.force, given: given_after(row, pull) });
+        let &AtomContact { atom, facet, facing, .. } = contact;
+        atoms.push(AtomBond { atom, facet, facing, force: pull.force, given: given_after(row, pull) });
     }
     // Edges are remembered for their force alone.
     let loaded = || of_edges.iter().zip(&found.edges).filter(|(pull, _)| pull.force != [0.0; 3]);
     empty_for(edges, loaded().count());
     for (pull, contact) in loaded() {
-        let normal = contact.normal.map(|part| part as f32).into();
-        edges.push(EdgeBond { edges: contact.edges, normal, force: pull.force });
+        edges.push(EdgeBond { edges: contact.edges, normal: contact.normal.0, force: pull.force });
     }
     empty_for(planes, found.planes.len());
     let rows = &rows[rows.len() - of_planes.len()..];

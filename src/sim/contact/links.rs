@@ -93,15 +93,16 @@ pub fn links_at(
         while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= near.atom) {
             body += 1;
         }
-        if body as u32 != near.body
+        let other = near.body(scene);
+        if body as u32 != other
             && let Some(facet) = facing(scene, body as u32, near, positions)
         {
-            add(Link::between(scene, [body as u32, near.body], [facet, near.facet], positions));
+            add(Link::between(scene, [body as u32, other], [facet, near.facet], positions));
         }
     }
-    for near in found.edges.iter().filter(|near| near.bodies[0] != near.bodies[1]) {
+    for near in found.edges.iter().filter(|near| near.bodies(scene)[0] != near.bodies(scene)[1]) {
         if let Some(facets) = facing_at_edges(scene, near, positions) {
-            add(Link::between(scene, near.bodies, facets, positions));
+            add(Link::between(scene, near.bodies(scene), facets, positions));
         }
     }
     links.sort_unstable();
@@ -127,18 +128,20 @@ fn around(scene: &Scene, body: u32, atom: u32) -> impl Iterator<Item = u32> {
 
 /// The facet around an atom in contact that looks most against what it touches.
 fn facing(scene: &Scene, body: u32, near: &AtomContact, positions: &[Vec3]) -> Option<u32> {
-    let turned = |facet: &u32| along(scene, body, *facet, &near.normal, positions);
+    let normal = near.normal.wide();
+    let turned = |facet: &u32| along(scene, body, *facet, &normal, positions);
     let facets = around(scene, body, near.atom);
     facets.min_by(|one, other| turned(one).total_cmp(&turned(other)))
 }
 
 /// The facets beside two edges in contact that look most against each other; none at the rim of a sheet.
 fn facing_at_edges(scene: &Scene, near: &EdgeContact, positions: &[Vec3]) -> Option<[u32; 2]> {
+    let (bodies, normal) = (near.bodies(scene), near.normal.wide());
     let most = |side: usize, sign: f64| {
-        let body = near.bodies[side];
+        let body = bodies[side];
         let [one, other] = scene.edge_atoms(body, near.edges[side]);
         let beside = around(scene, body, one).filter(|facet| scene.facet_atoms(body, *facet).contains(&other));
-        let turned = |facet: &u32| sign * along(scene, body, *facet, &near.normal, positions);
+        let turned = |facet: &u32| sign * along(scene, body, *facet, &normal, positions);
         beside.min_by(|one, other| turned(one).total_cmp(&turned(other)))
     };
     Some([most(0, 1.0)?, most(1, -1.0)?])

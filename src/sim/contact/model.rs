@@ -152,7 +152,7 @@ impl ContactModel {
 
     /// The body of an atom.
     pub(super) fn body_of(&self, atom: u32) -> u32 {
-        self.scene.bodies.partition_point(|body| body.first_atom <= atom) as u32 - 1
+        self.scene.body_of_atom(atom)
     }
 
     /// Whether both sides of a body are outside.

@@ -22,17 +22,18 @@ impl<'a> Glue<'a> {
 
     /// The atom and the corners of the facet that it touches.
     pub(super) fn corners(&self, near: &AtomContact) -> [u32; 4] {
-        let [i, j, k] = self.model.scene.facet_atoms(near.body, near.facet);
+        let [i, j, k] = self.model.scene.facet_atoms(near.body(&self.model.scene), near.facet);
         [near.atom, i, j, k]
     }
 
-    /// The body of an atom that touches a facet, and how well the two are glued; a body not to itself.
-    pub(super) fn kappa_of(&self, near: &AtomContact) -> (u32, f64) {
+    /// The bodies of an atom and of the facet that it touches, and how well the two are glued; a body not to itself.
+    pub(super) fn kappa_of(&self, near: &AtomContact) -> ([u32; 2], f64) {
         let body = self.model.body_of(near.atom);
-        let [kind, other] = [body, near.body].map(|body| self.model.kind_of(body));
-        let factors = self.controls.adhesion_of(body as usize) * self.controls.adhesion_of(near.body as usize);
-        let kappa = self.table.between[kind * self.model.areas.len() + other] * factors;
-        (body, if body == near.body { 0.0 } else { kappa })
+        let other = near.body(&self.model.scene);
+        let [kind, kind_of_other] = [body, other].map(|body| self.model.kind_of(body));
+        let factors = self.controls.adhesion_of(body as usize) * self.controls.adhesion_of(other as usize);
+        let kappa = self.table.between[kind * self.model.areas.len() + kind_of_other] * factors;
+        ([body, other], if body == other { 0.0 } else { kappa })
     }
 
     /// How well an atom is glued to a plane.
@@ -65,12 +66,12 @@ impl AdhesiveScratch {
             }
         };
         for near in &found.atoms {
-            let (body, kappa) = glue.kappa_of(near);
+            let ([body, other], kappa) = glue.kappa_of(near);
             if kappa > 0.0 {
                 let at = before.atoms.partition_point(|bond| bond.atom < near.atom);
                 let mut bonds = before.atoms[at..].iter().take_while(|bond| bond.atom == near.atom);
-                let pressed = bonds.any(|bond| bond.body == near.body && bond.force != [0.0; 3]);
-                let pair = [body.min(near.body), body.max(near.body)];
+                let pressed = bonds.any(|bond| bond.body(&model.scene) == other && bond.force != [0.0; 3]);
+                let pair = [body.min(other), body.max(other)];
                 glue.corners(near).into_iter().for_each(|atom| add(atom, kappa, pair, near.gap, pressed));
             }
         }

@@ -4,7 +4,7 @@
 use super::model::ContactModel;
 use super::state::{AtomBond, ContactState};
 use crate::Vec3;
-use crate::contact::{Contacts, Detector, Facing, Feature, add_walls_of_grooves, edges_still_touch};
+use crate::contact::{Contacts, Detector, Facing, Feature, Normal, add_walls_of_grooves, edges_still_touch};
 
 /// Finds what touches at these positions, with what is remembered of contacts that were there before.
 pub fn find_at(
@@ -29,9 +29,11 @@ fn keep_sides(contact: &ContactModel, before: &ContactState, found: &mut Contact
     let mut bonds = before.atoms.iter().filter(|bond| bond.facing != Facing::Any).peekable();
     for near in found.atoms.iter_mut().filter(|near| near.facing != Facing::Any) {
         while bonds.next_if(|bond| bond.atom < near.atom).is_some() {}
-        let same_atom = bonds.clone().take_while(|bond| bond.atom == near.atom).filter(|bond| bond.body == near.body);
+        let body = near.body(&contact.scene);
+        let same_atom =
+            bonds.clone().take_while(|bond| bond.atom == near.atom).filter(|bond| bond.body(&contact.scene) == body);
         let beside = |facet: u32| {
-            let [here, there] = [near.facet, facet].map(|facet| contact.scene.facet_atoms(near.body, facet));
+            let [here, there] = [near.facet, facet].map(|facet| contact.scene.facet_atoms(body, facet));
             here.iter().any(|atom| there.contains(atom))
         };
         let was = same_atom.min_by_key(|bond| (bond.facet != near.facet, !beside(bond.facet)));
@@ -52,7 +54,7 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
     let count = found.edges.len();
     for bond in before.edges.iter().filter(|bond| bond.force != [0.0; 3]) {
         if found.edges[..count].binary_search_by(|edge| edge.edges.cmp(&bond.edges)).is_err() {
-            let normal = Vec3::from(bond.normal.map(f64::from));
+            let normal = Normal(bond.normal).wide();
             found.edges.extend(edges_still_touch(&contact.scene, positions, bond.edges, &normal));
         }
     }
@@ -87,7 +89,6 @@ mod tests {
     fn bonds_of(found: &Contacts) -> ContactState {
         let atoms = found.atoms.iter().map(|near| AtomBond {
             atom: near.atom,
-            body: near.body,
             facet: near.facet,
             facing: near.facing,
             force: [0.0; 3],
@@ -112,8 +113,9 @@ mod tests {
         let (model, positions) = ball_over_a_sheet(0.01);
         let above = found(&model, &ContactState::default(), &positions);
         let touches = |found: &Contacts| {
-            let lowest = found.atoms.iter().find(|near| near.body == 0).copied().expect("the lowest atom touches");
-            (lowest.gap, lowest.normal.z, lowest.facing)
+            let lowest =
+                found.atoms.iter().find(|near| near.body(&model.scene) == 0).copied().expect("the lowest atom touches");
+            (lowest.gap, lowest.normal.wide().z, lowest.facing)
         };
         let (gap, up, front) = touches(&above);
         assert!((gap - 0.01).abs() < 1e-12 && up > 0.999 && front != Facing::Any, "{gap} {up} {front:?}");
@@ -149,11 +151,7 @@ mod tests {
         let first = found(&model, &ContactState::default(), &positions);
         let [near] = first.edges[..] else { panic!("one pair of edges: {:?}", first.edges) };
         let bond = |force: f32| ContactState {
-            edges: vec![EdgeBond {
-                edges: near.edges,
-                normal: near.normal.map(|part| part as f32).into(),
-                force: [0.0, 0.0, force],
-            }],
+            edges: vec![EdgeBond { edges: near.edges, normal: near.normal.0, force: [0.0, 0.0, force] }],
             ..ContactState::default()
         };
         // A facet of the lower one is lifted towards the upper one; its flank is 1.4 µm long.
@@ -171,7 +169,9 @@ mod tests {
         let kept = found(&model, &bond(1.0), &risen);
         let kept = kept.edges.iter().find(|edge| edge.edges == near.edges).expect("still there");
         assert!(
-            (kept.gap - near.gap).abs() < 1e-12 && kept.bodies == near.bodies && kept.normal.dot(&near.normal) > 0.99
+            (kept.gap - near.gap).abs() < 1e-12
+                && kept.edges == near.edges
+                && kept.normal.wide().dot(&near.normal.wide()) > 0.99
         );
         risen[4..].iter_mut().for_each(|x| x.z += 0.2);
         assert!(found(&model, &bond(1.0), &risen).edges.is_empty(), "apart");

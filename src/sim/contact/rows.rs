@@ -4,7 +4,7 @@ use super::model::{ContactModel, Strength};
 use super::scratch::empty_for;
 use super::state::ContactState;
 use crate::Vec3;
-use crate::contact::{AtomContact, Contacts};
+use crate::contact::{AtomContact, Contacts, Normal, Scene};
 use crate::sim::chemistry::Controls;
 
 /// One contact as it stands in a step, eq. (adhesion.1). The gap changes by `normal · Σ weights[i] D[atoms[i]]` when atoms are displaced by
@@ -77,16 +77,21 @@ pub fn write_rows(
     let count = found.atoms.len() + found.edges.len() + found.planes.len();
     empty_for(rows, count);
     empty_for(pulls, count);
-    let mut add =
-        |pairing, atoms, places, normal: &Vec3, gap: f64, [least, shear]: [f64; 2], (force, given): ([f32; 3], f32)| {
-            let normal_and_gap = [normal.x as f32, normal.y as f32, normal.z as f32, gap as f32];
-            let (least, shear) = (least as f32, shear as f32);
-            let row = Row { atoms, places, normal_and_gap, least, shear, give: 0.0, kept: 1.0, given, pairing };
-            let force = row.bound(Vec3::from(force.map(f64::from)));
-            let force = [force.x as f32, force.y as f32, force.z as f32];
-            rows.push(row);
-            pulls.push(Pull { force, carried: force, ..Pull::default() });
-        };
+    let mut add = |pairing,
+                   atoms,
+                   places,
+                   Normal([x, y, z]),
+                   gap: f64,
+                   [least, shear]: [f64; 2],
+                   (force, given): ([f32; 3], f32)| {
+        let normal_and_gap = [x, y, z, gap as f32];
+        let (least, shear) = (least as f32, shear as f32);
+        let row = Row { atoms, places, normal_and_gap, least, shear, give: 0.0, kept: 1.0, given, pairing };
+        let force = row.bound(Vec3::from(force.map(f64::from)));
+        let force = [force.x as f32, force.y as f32, force.z as f32];
+        rows.push(row);
+        pulls.push(Pull { force, carried: force, ..Pull::default() });
+    };
     let scene = &model.scene;
     let skin = SKIN * scene.reach.proximity;
     let (mut body, mut first) = (0, 0);
@@ -104,22 +109,23 @@ pub fn write_rows(
             let near = found.atoms.partition_point(|other| (other.atom, other.facet) < (contact.atom, facet));
             found.atoms.get(near).is_none_or(|other| (other.atom, other.facet) != (contact.atom, facet))
         };
-        let slid = || of_atom().find(|bond| bond.body == contact.body && is_free(bond.facet));
+        let on = contact.body(scene);
+        let slid = || of_atom().find(|bond| bond.body(scene) == on && is_free(bond.facet));
         let carried = same.or_else(slid).map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.given));
-        let [i, j, k] = scene.facet_atoms(contact.body, contact.facet);
-        let own = contact.body as usize == body;
-        let other = contact.body as usize;
+        let [i, j, k] = scene.facet_atoms(on, contact.facet);
+        let other = on as usize;
+        let own = other == body;
         let strength = if own { Strength::default() } else { model.strength_between(body, other) };
         let kind = model.kind_of(body as u32);
         let area = SHARE * model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
-        let area = area / places_on_body(found, number) as f64;
+        let area = area / places_on_body(scene, found, number) as f64;
         let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
         add(
             Pairing::AtomOnFacet,
             [contact.atom, i, j, k],
             contact.second_weights,
-            &contact.normal,
-            contact.gap - if own || model.is_thin(contact.body) { skin } else { 0.0 },
+            contact.normal,
+            contact.gap - if own || model.is_thin(on) { skin } else { 0.0 },
             [-strength.tensile * area, strength.shear * area],
             carried,
         );
@@ -130,14 +136,15 @@ pub fn write_rows(
             first += 1;
         }
         let same = before.edges.get(first).filter(|bond| bond.edges == contact.edges);
-        let [[a, b], [c, d]] = [0, 1].map(|side| scene.edge_atoms(contact.bodies[side], contact.edges[side]));
-        let [one, other] = contact.bodies;
+        let [one, other] = contact.bodies(scene);
+        let [a, b] = scene.edge_atoms(one, contact.edges[0]);
+        let [c, d] = scene.edge_atoms(other, contact.edges[1]);
         let is_thin = one == other || model.is_thin(one) || model.is_thin(other);
         add(
             Pairing::Edges,
             [a, b, c, d],
             contact.along,
-            &contact.normal,
+            contact.normal,
             contact.gap - if is_thin { skin } else { 0.0 },
             [0.0, 0.0],
             (same.map_or([0.0; 3], |bond| bond.force), 0.0),
@@ -161,7 +168,7 @@ pub fn write_rows(
             Pairing::AtomOnPlane,
             [contact.atom; 4],
             [0.0; 2],
-            &scene.planes[contact.plane as usize].normal,
+            scene.planes[contact.plane as usize].normal.into(),
             contact.gap,
             [-strength.tensile * area, strength.shear * area],
             same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.given)),
@@ -170,8 +177,9 @@ pub fn write_rows(
 }
 
 /// In how many places the atom of a contact touches the body of it: in a groove in two or more, which share what it bears.
-fn places_on_body(found: &Contacts, number: usize) -> usize {
-    let same = |other: &&AtomContact| (other.atom, other.body) == (found.atoms[number].atom, found.atoms[number].body);
+fn places_on_body(scene: &Scene, found: &Contacts, number: usize) -> usize {
+    let this = &found.atoms[number];
+    let same = |other: &&AtomContact| other.atom == this.atom && other.body(scene) == this.body(scene);
     let before = found.atoms[..number].iter().rev().take_while(same).count();
     before + found.atoms[number..].iter().take_while(same).count()
 }

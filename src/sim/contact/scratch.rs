@@ -87,11 +87,11 @@ impl ContactScratch {
     }
 }
 
-/// Empties a list that will have this many items. Where it must grow it takes a sixteenth more, where a `Vec` would double: rows
+/// Empties a list that will have this many items. Where it must grow it takes a thirty-second more, where a `Vec` would double: rows
 /// are much of the memory of a packed population.
 pub(super) fn empty_for<T>(list: &mut Vec<T>, count: usize) {
     list.clear();
     if list.capacity() < count {
-        list.reserve_exact(count + count / 16);
+        list.reserve_exact(count + count / 32);
     }
 }

@@ -64,9 +64,9 @@ fn relieve(model: &ContactModel, found: &Contacts, controls: &Controls, relief: 
     let scene = &model.scene;
     relief.clear();
     relief.resize(scene.atoms, 0.0);
-    let body_of = |atom: u32| scene.bodies.partition_point(|body| body.first_atom <= atom) - 1;
+    let body_of = |atom: u32| scene.body_of_atom(atom) as usize;
     for contact in &found.atoms {
-        let (body, other) = (body_of(contact.atom), contact.body as usize);
+        let (body, other) = (body_of(contact.atom), contact.body(scene) as usize);
         if body != other {
             let strength = model.strength_between(body, other);
             let energy = SHARE * strength.energy * controls.adhesion_of(body) * controls.adhesion_of(other);

@@ -2,7 +2,7 @@
 
 use super::links::Link;
 use super::zones::AdhesiveAtom;
-use crate::contact::Facing;
+use crate::contact::{Facing, Scene};
 use serde::{Deserialize, Serialize};
 
 /// An atom that touches a facet of a body.
@@ -10,8 +10,6 @@ use serde::{Deserialize, Serialize};
 pub struct AtomBond {
     /// The atom, numbered through all cells.
     pub atom: u32,
-    /// The body of the facet.
-    pub body: u32,
     /// The facet, numbered through all cells.
     pub facet: u32,
     /// The side of it that the atom is on, where both are outside: it stays there.
@@ -22,7 +20,14 @@ pub struct AtomBond {
     pub given: f32,
 }
 
-/// Two edges that touch; they do not stick.
+impl AtomBond {
+    /// The body of the facet.
+    pub fn body(&self, scene: &Scene) -> u32 {
+        scene.body_of_facet(self.facet)
+    }
+}
+
+/// Two edges that touch and carry a force; they do not stick.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EdgeBond {
     /// The edges, numbered through all cells.

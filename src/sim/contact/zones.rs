@@ -205,8 +205,8 @@ impl AdhesiveScratch {
         };
         for near in found.atoms.iter().filter(|near| glue.kappa_of(near).1 > 0.0) {
             let [atom, facet @ ..] = glue.corners(near);
-            part(atom, near.normal);
-            facet.into_iter().for_each(|atom| part(atom, -near.normal));
+            part(atom, near.normal.wide());
+            facet.into_iter().for_each(|atom| part(atom, -near.normal.wide()));
         }
         for near in &found.planes {
             if glue.kappa_on(near.atom, near.plane) > 0.0 {
