@@ -19,7 +19,7 @@ const TABLE: &[(&str, &[&str])] = &[
     // The result file knows no simulator: it is given frames.
     ("output", &[]),
     // Numbers and plots come from a finished file; the kinds of measures are words of the document.
-    ("analysis", &["output", "experiment", "cell", "geometry"]),
+    ("analysis", &["output", "experiment", "cell", "contact", "geometry"]),
     ("picture", &["output", "experiment", "analysis", "cell", "geometry", "run"]),
     ("run", &["experiment", "sim", "output", "analysis", "cell", "mechanics", "contact", "geometry"]),
     ("cli", &["run", "experiment", "chemistry", "sim", "output", "analysis", "picture", "geometry"]),

@@ -386,6 +386,37 @@ fn cells_inside_each_other_are_seen_whatever_their_contacts_say() {
 }
 
 #[test]
+fn contacts_that_do_not_come_to_rest_end_a_run_name_the_cells_and_leave_the_state() {
+    let mut pair = [cell("left", 5.0), cell("right", 5.0)];
+    pair[0].loads = vec![load(Vec3::x(), &[(0.0, 10.0), (10.0, 10.0)])];
+    pair[1].loads = vec![load(-Vec3::x(), &[(0.0, 10.0), (10.0, 10.0)])];
+    let mut model = model(pair.into(), adaptive(0.1), 10.0, Strength::default());
+    let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
+    let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
+    let mut ws = Workspace::new(&model);
+    while state.time < 5.0 {
+        step(&model, &mut state, &mut ws).unwrap();
+    }
+    // From here on a single sweep would have to find all forces, to the last digit.
+    let contact = model.contact.as_mut().unwrap();
+    (contact.most_sweeps, contact.tolerance) = (1, 0.0);
+    let before = state.clone();
+    let trouble = step(&model, &mut state, &mut ws).expect_err("no step can rest");
+    assert_eq!(state, before, "the last good state is kept");
+    let Trouble::Contact { cells, sweeps, left, .. } = &trouble else { panic!("{trouble}") };
+    let mut named: Vec<&str> = cells.iter().map(|(kind, _)| kind.as_str()).collect();
+    named.sort_unstable();
+    assert_eq!((named, *sweeps), (vec!["left", "right"], 1));
+    assert!(*left > 0.0);
+    assert_eq!(trouble.help().split(':').next(), Some("cells are pressed together harder than their volumes allow"));
+    let cells = [("left", 0), ("right", 0)].map(|(kind, cell)| (kind.to_owned(), cell));
+    let words = Trouble::Contact { cells, time: 1.5, left: 2e-4, sweeps: 200 }.to_string();
+    let expected = "contacts and volumes do not come to rest at t = 1.500000 s: after 200 sweeps atoms of cell 0 of type `left` \
+                    and of cell 0 of type `right`, which touch, still move by 2.0e-4 um";
+    assert_eq!(words, expected);
+}
+
+#[test]
 fn a_cell_too_deep_in_itself_is_told_once() {
     let cells = ["cell", "cell"].map(|name| (name.to_owned(), 3));
     let words = Trouble::Pressed { cells, time: 1.5, depth: 0.25 }.to_string();

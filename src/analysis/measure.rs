@@ -3,6 +3,7 @@
 use super::chemistry;
 use super::curve::Curve;
 use super::fields::Fields;
+use super::gaps;
 use super::msd;
 use super::recording::Recording;
 use super::sorting;
@@ -40,7 +41,8 @@ pub fn series_of(kind: &MeasureKind) -> Vec<&str> {
         | MeasureKind::WaveSpeed(_)
         | MeasureKind::FieldValue(_)
         | MeasureKind::Wavelength(_)
-        | MeasureKind::Segregation(_) => Vec::new(),
+        | MeasureKind::Segregation(_)
+        | MeasureKind::Gaps(_) => Vec::new(),
     };
     names.into_iter().filter(|name| *name != "time").collect()
 }
@@ -99,6 +101,7 @@ pub fn evaluate(
         MeasureKind::WaveSpeed(wave) => chemistry::wave_speed(wave, recording, fields),
         MeasureKind::Wavelength(pattern) => chemistry::wavelength(pattern, &recording.times, fields),
         MeasureKind::Segregation(wanted) => sorting::segregation(wanted, recording, file),
+        MeasureKind::Gaps(wanted) => gaps::gaps(wanted, recording, file),
     }
 }
 

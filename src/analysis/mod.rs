@@ -5,6 +5,7 @@ mod chemistry;
 pub mod claims;
 pub mod curve;
 pub mod fields;
+mod gaps;
 pub mod measure;
 pub mod msd;
 #[cfg(test)]

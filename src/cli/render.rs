@@ -40,6 +40,9 @@ pub struct RenderArgs {
     /// The height at which a field of the medium is cut, in um; the mean height of the cells when absent.
     #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true)]
     pub field_height: Option<f64>,
+    /// Takes away what is nearer to the eye than the middle of the cells by more than this, in um: 0 cuts through it.
+    #[arg(long, value_name = "LENGTH", value_parser = finite, allow_hyphen_values = true)]
+    pub cut: Option<f64>,
     /// Shows the loads as arrows.
     #[arg(long)]
     pub loads: bool,
@@ -73,6 +76,7 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     args.field.iter().for_each(|field| picture.field = Some(field.clone()));
     picture.field_range = args.field_range.or(picture.field_range);
     picture.field_height = args.field_height.map(Length::new).or(picture.field_height);
+    picture.cut = args.cut.map(Length::new).or(picture.cut);
     picture.loads |= args.loads;
     picture.width = args.width.unwrap_or(picture.width);
     picture.height = args.height.unwrap_or(picture.height);

@@ -24,7 +24,7 @@ pub fn pair_series<'a>(types: &[&'a str], planes: &[&'a str]) -> Vec<String> {
     let on_planes = types.iter().flat_map(|kind| planes.iter().map(move |plane| format!("{kind}.{plane}")));
     let mut names: Vec<String> = pairs().chain(on_planes).map(|pair| format!("contact.area.{pair}")).collect();
     names.extend(pairs().map(|pair| format!("contact.pairs.{pair}")));
-    names.extend(["contact.heterotypic_share", "contact.segregation"].map(str::to_owned));
+    names.extend(["contact.area_share", "contact.heterotypic_share", "contact.segregation"].map(str::to_owned));
     for stem in ["contact.clusters", "contact.largest_cluster"] {
         names.extend(types.iter().map(|kind| format!("{stem}.{kind}")));
     }

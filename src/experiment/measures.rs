@@ -1,10 +1,12 @@
 //! Numbers that are computed from a finished run and stored with it.
 
 mod chemistry;
+mod gaps;
 mod sorting;
 
 pub use chemistry::{ChemotacticIndex, FieldValue, OverBoxes, Period, Statistic, WaveSpeed, WaveStatistic, Wavelength};
 
+pub use gaps::{GapStatistic, Gaps};
 pub use sorting::{Segregation, SegregationStatistic};
 
 use super::values::{OneOrMany, words_or_time};
@@ -121,6 +123,9 @@ pub enum MeasureKind {
     /// How much cells of a type touch each other beyond chance: the segregation index, from below 0 (mixed) to 1 (apart),
     /// or what permutations of the types say of it.
     Segregation(Segregation),
+    /// What the cells of the largest aggregate leave empty between them: the radius of the largest ball that fits there, µm, or the
+    /// part of the inside that no cell fills.
+    Gaps(Gaps),
 }
 
 /// A part of a curve to which a straight line is fitted.

@@ -54,8 +54,8 @@ pub use document::Document;
 pub(crate) use document::near_file;
 pub use loads::{Cap, CapExtent, Fibre, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
 pub use measures::{
-    ChemotacticIndex, Comparison, FieldValue, Fit, Measure, MeasureKind, Over, OverBoxes, Period, Reduction,
-    Segregation, SegregationStatistic, SphereFit, Statistic, WaveSpeed, WaveStatistic, Wavelength,
+    ChemotacticIndex, Comparison, FieldValue, Fit, GapStatistic, Gaps, Measure, MeasureKind, Over, OverBoxes, Period,
+    Reduction, Segregation, SegregationStatistic, SphereFit, Statistic, WaveSpeed, WaveStatistic, Wavelength,
 };
 pub use mechanics::{
     Barrier, BendingRest, Form, Law, Mechanics, Membrane, Reaction, ShapeMemory, ShapeStrength, Springs, VolumeControl,

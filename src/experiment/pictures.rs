@@ -29,6 +29,10 @@ pub struct Picture {
     /// The height at which a field of the medium is cut; the mean height of the cells when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub field_height: Option<Length>,
+    /// Takes away what is nearer to the eye than the middle of the cells by more than this, so that their inside is seen; less than
+    /// nothing cuts behind the middle. Nothing is taken away when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut: Option<Length>,
     /// Shows the loads as arrows, the longest for the strongest.
     pub loads: bool,
     /// Where the picture is taken from.
@@ -51,6 +55,7 @@ impl Default for Picture {
             field: None,
             field_range: None,
             field_height: None,
+            cut: None,
             loads: false,
             view: View::default(),
             width,

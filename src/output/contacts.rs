@@ -146,6 +146,10 @@ pub fn segregation(types: &[u32], pairs: &[[u32; 2]]) -> f64 {
     found.index(found.alike)
 }
 
+/// Series of a result with contacts that are one for all types: the part of the surface of all cells that touches another cell, the part
+/// of that area between types, and the segregation index.
+const SHARES: [&str; 3] = ["contact.area_share", "contact.heterotypic_share", "contact.segregation"];
+
 /// Names and units of the series of a result with contacts, in the order of [`values`]; a pair of types has the order
 /// of the document.
 pub(super) fn series(layout: &Layout) -> Vec<(String, &'static str)> {
@@ -158,7 +162,7 @@ pub(super) fn series(layout: &Layout) -> Vec<(String, &'static str)> {
     let mut names: Vec<(String, &str)> =
         pairs().chain(of_planes).map(|pair| (format!("contact.area.{pair}"), "um^2")).collect();
     names.extend(pairs().map(|pair| (format!("contact.pairs.{pair}"), "1")));
-    names.extend(["contact.heterotypic_share", "contact.segregation"].map(|name| (name.to_owned(), "1")));
+    names.extend(SHARES.map(|name| (name.to_owned(), "1")));
     for stem in ["contact.clusters", "contact.largest_cluster"] {
         names.extend(types.iter().map(|kind| (format!("{stem}.{kind}"), "1")));
     }
@@ -176,15 +180,17 @@ fn pairs_of(types: usize) -> impl Iterator<Item = [usize; 2]> {
 /// A damaged file.
 pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
     let mut all = vec![Vec::new(); series(result.layout()).len()];
+    let surfaces = result.cell_series("area")?;
     for frame in 0..result.frames() {
-        let values = values(result.layout(), &result.pairs(frame)?, &result.on_planes(frame)?);
+        let surface = surfaces.row(frame).sum();
+        let values = values(result.layout(), surface, &result.pairs(frame)?, &result.on_planes(frame)?);
         all.iter_mut().zip(values).for_each(|(series, value)| series.push(value));
     }
     Ok(all)
 }
 
-/// The values of all [`series`] in a frame.
-fn values(layout: &Layout, touching: &[Touching], on_planes: &[Touching]) -> Vec<f64> {
+/// The values of all [`series`] in a frame in which the cells have this surface, µm².
+fn values(layout: &Layout, surface: f64, touching: &[Touching], on_planes: &[Touching]) -> Vec<f64> {
     let types: Vec<u32> = layout.cells.iter().map(|cell| cell.kind).collect();
     let (number, planes) = (layout.types.len(), layout.planes.len());
     let kind = |cell: u32| types[cell as usize] as usize;
@@ -212,7 +218,8 @@ fn values(layout: &Layout, touching: &[Touching], on_planes: &[Touching]) -> Vec
     let mut values: Vec<f64> = pairs_of(number).map(|[one, other]| areas[one * number + other]).collect();
     values.extend(on);
     values.extend(pairs_of(number).map(|[one, other]| f64::from(counts[one * number + other])));
-    values.extend([(whole - alike) / whole, segregation(&types, &pairs)]);
+    // An area of contact is one of both cells.
+    values.extend([2.0 * whole / surface, (whole - alike) / whole, segregation(&types, &pairs)]);
     values.extend((0..number).map(|kind| sizes_of(kind).filter(|size| *size > 0).count() as f64));
     values.extend((0..number).map(|kind| f64::from(sizes_of(kind).max().unwrap_or(0))));
     values

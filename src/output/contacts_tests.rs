@@ -24,7 +24,7 @@ fn areas_pairs_and_clusters_are_counted_by_types() {
     // A row of cells: red red white white, and a red one alone; the first and the third stand on the floor.
     let layout = layout(&[0, 0, 1, 1, 0]);
     let pairs = touching(&[(0, 1, 4.0), (1, 2, 2.0), (2, 3, 3.0)]);
-    let found = values(&layout, &pairs, &touching(&[(0, 0, 10.0), (2, 0, 20.0)]));
+    let found = values(&layout, 90.0, &pairs, &touching(&[(0, 0, 10.0), (2, 0, 20.0)]));
     let names = series(&layout);
     assert_eq!(names.len(), found.len());
     let value = |wanted: &str| {
@@ -37,6 +37,7 @@ fn areas_pairs_and_clusters_are_counted_by_types() {
     assert_eq!((value("contact.area.red.floor"), value("contact.area.white.floor")), (10.0, 20.0));
     assert_eq!((value("contact.pairs.red.red"), value("contact.pairs.red.white")), (1.0, 1.0));
     assert_eq!(value("contact.heterotypic_share"), 2.0 / 9.0);
+    assert_eq!(value("contact.area_share"), 18.0 / 90.0);
     // Two of three pairs are alike; of four cells, two of each type, a pair is alike with probability 1/3.
     assert!((value("contact.segregation") - 0.5).abs() < 1e-15);
     assert_eq!((value("contact.clusters.red"), value("contact.largest_cluster.red")), (2.0, 2.0));
@@ -47,7 +48,7 @@ fn areas_pairs_and_clusters_are_counted_by_types() {
 #[test]
 fn without_contacts_shares_are_no_numbers_and_every_cell_is_a_cluster() {
     let layout = layout(&[0, 1, 1]);
-    let found = values(&layout, &[], &[]);
+    let found = values(&layout, 1.0, &[], &[]);
     let undefined: Vec<String> =
         series(&layout).into_iter().zip(found).filter(|(_, value)| value.is_nan()).map(|((name, _), _)| name).collect();
     assert_eq!(undefined, ["contact.heterotypic_share", "contact.segregation"]);

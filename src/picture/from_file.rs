@@ -158,6 +158,7 @@ fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &
         label,
         direction: picture.view.from,
         up: picture.view.up,
+        cut: picture.cut.map(|cut| cut.value()),
         ..Look::default()
     }
 }

@@ -3,6 +3,8 @@
 //! [`Framing`] looks at all frames that will be drawn and fixes what must not jump between them (camera, floor, range
 //! of colours); [`picture_of`] then draws any one of them.
 
+use std::collections::HashSet;
+
 use super::Image;
 use super::colour::{Colour, ColourMap};
 use super::render::{
@@ -65,6 +67,8 @@ pub struct Look {
     pub edges: Edges,
     /// How much skins hide, 0 to 1; `None` lets them be translucent where there are links inside.
     pub opacity: Option<f32>,
+    /// How far before the middle of the cells things are cut off, µm; `None` for not at all.
+    pub cut: Option<f64>,
     /// From the scene towards the camera; only the direction counts.
     pub direction: [f64; 3],
     /// The direction that is up in the picture.
@@ -88,6 +92,7 @@ impl Default for Look {
             field_label: String::new(),
             edges: Edges::Hidden,
             opacity: None,
+            cut: None,
             direction: [0.35, -1.0, 0.75],
             up: [0.0, 0.0, 1.0],
             projection: Projection::Orthographic { height: 1.0 },
@@ -269,11 +274,13 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
                 atoms.clone().map(|atom| number_colour(values.get(atom).copied().unwrap_or(f64::NAN))).collect(),
             ),
         };
+        let facets: Vec<[u32; 3]> = facets.iter().map(|facet| facet.map(|atom| atom - cell.first_atom)).collect();
         let own = positions[atoms].to_vec();
         sizes.extend(Bounds::around(&own).map(|bounds| bounds.diagonal()));
         scene.surfaces.push(Surface {
             positions: own,
-            facets: facets.iter().map(|facet| facet.map(|atom| atom - cell.first_atom)).collect(),
+            is_solid: look.cut.is_some() && is_closed(&facets),
+            facets,
             colour,
             edges: look.edges,
             opacity,
@@ -291,10 +298,19 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     }
     if let Some(bounds) = framing.bounds.or_else(|| Bounds::around(positions)) {
         add_planes(&mut scene, layout, &bounds, typical);
+        let before = |cut: f64| Vec3::from(bounds.centre()) + cut * framing.axes[2];
+        scene.cut = look.cut.map(|cut| before(cut).into());
     }
     let coloured = |sheet: &Sheet| Sheet { map: look.field_map, range: framing.field_ends(look), ..sheet.clone() };
     scene.sheet = snapshot.field.map(coloured);
     scene
+}
+
+/// Whether every side of a facet is one of another, which runs along it the other way.
+fn is_closed(facets: &[[u32; 3]]) -> bool {
+    let sides = || facets.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let known: HashSet<[u32; 2]> = sides().collect();
+    sides().all(|[from, to]| known.contains(&[to, from]))
 }
 
 /// The plane that looks up most becomes the floor, the others panes around the cells.

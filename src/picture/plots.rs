@@ -16,7 +16,7 @@ use crate::output::ResultFile;
 const MEASURED: Colour = Colour([0x33, 0x33, 0x33]);
 
 /// Names of series as a reader would say them.
-const READABLE: [(&str, &str); 21] = [
+const READABLE: [(&str, &str); 22] = [
     ("size_x", "extent along x"),
     ("size_y", "extent along y"),
     ("size_z", "extent along z"),
@@ -36,6 +36,7 @@ const READABLE: [(&str, &str); 21] = [
     ("contact.deepest", "deepest penetration over edge"),
     ("contact.energy", "energy in contacts"),
     ("contact.sweeps", "sweeps over contacts"),
+    ("contact.area_share", "share of surface in contact"),
     ("contact.heterotypic_share", "heterotypic share of contact area"),
     ("contact.segregation", "segregation index"),
 ];

@@ -100,6 +100,7 @@ impl Check<'_> {
                     self.instant(&format!("{path}.lag_to"), lag_to.value());
                 }
                 MeasureKind::Segregation(wanted) => self.segregation(&path, wanted),
+                MeasureKind::Gaps(wanted) => self.gaps(&path, wanted),
                 kind => self.measure_of_chemistry(&path, kind),
             }
         }

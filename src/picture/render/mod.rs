@@ -5,6 +5,7 @@
 //! never share a sum, so the picture is the same to the last bit for any number of threads.
 
 mod camera;
+mod cut;
 mod floor;
 mod overlay;
 mod raster;
@@ -46,13 +47,13 @@ pub fn draw(scene: &Scene, camera: &Camera, overlay: &Overlay, width: usize, hei
     let mut image = Image { width, height, rgb: vec![0; 3 * width * height] };
     image.rgb.par_chunks_mut(3 * width * BAND_ROWS).enumerate().for_each(|(number, rows)| {
         let first_row = number * BAND_ROWS;
-        let mut band = Band::new(width, rows.len() / (3 * width), first_row);
+        let mut band = Band::new(width, rows.len() / (3 * width), first_row, geometry.cut.is_some());
         shader.lay_floor(&mut band);
         shader.lay_sheet(&mut band);
         for triangle in &bins[number] {
             band.add(&geometry, *triangle);
         }
-        band.settle();
+        band.settle(&geometry);
         shader.resolve(&band, &geometry, rows);
     });
     overlay.lay_over(&mut image, camera);

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::cut::{Cut, Face, Side};
 use super::scene::{Edges, Scene, Surface, SurfaceColour};
 use super::view::View;
 use super::{BAND_ROWS, SAMPLES};
@@ -28,6 +29,8 @@ pub(super) struct Geometry {
     pub triangles: Vec<Triangle>,
     /// Half the diagonal of a typical surface, µm: the scale of shadows.
     pub typical_radius: f64,
+    /// Where things are cut off.
+    pub cut: Option<Cut>,
 }
 
 /// One facet.
@@ -39,6 +42,8 @@ pub(super) struct Triangle {
     pub edges: Edges,
     /// 1 for a skin that hides everything behind it.
     pub opacity: f32,
+    /// Of a solid that is cut: the side on which lines of sight go in, or out.
+    pub side: Option<Side>,
 }
 
 impl Geometry {
@@ -51,6 +56,7 @@ impl Geometry {
             colours: Vec::new(),
             triangles: Vec::new(),
             typical_radius: 1.0,
+            cut: None,
         };
         let mut radii: Vec<f64> = Vec::with_capacity(scene.surfaces.len());
         for surface in &scene.surfaces {
@@ -62,6 +68,7 @@ impl Geometry {
             let middle = radii.len() / 2;
             geometry.typical_radius = radii.select_nth_unstable_by(middle, f64::total_cmp).1.max(1e-6);
         }
+        geometry.cut = scene.cut.and_then(|cut| Cut::at(cut, geometry.typical_radius, view));
         geometry
     }
 
@@ -91,12 +98,16 @@ impl Geometry {
         let last = colours.len() as u32 - 1;
         for (number, facet) in surface.facets.iter().enumerate() {
             if surface.is_drawable(facet) && facet.iter().all(|atom| visible[*atom as usize]) {
+                let [a, b, c] = facet.map(|atom| self.points[(first + atom) as usize]);
+                let faces_viewer = (b - a).cross(&(c - a)).dot(&view.towards_viewer(&a)) >= 0.0;
+                let side = if faces_viewer { Side::In } else { Side::Out };
                 let own = if per_atom { *facet } else { [number as u32; 3] };
                 self.triangles.push(Triangle {
                     corners: facet.map(|atom| first + atom),
                     colour: own.map(|place| first_colour + place.min(last)),
                     edges: surface.edges,
                     opacity: surface.opacity.clamp(0.0, 1.0),
+                    side: surface.is_solid.then_some(side),
                 });
             }
         }
@@ -144,18 +155,28 @@ pub(super) struct Band {
     /// The nearest translucent facet, or [`NOTHING`], and its nearness; left out when it lies behind what is seen.
     pub veil: Vec<u32>,
     pub veil_nearness: Vec<f32>,
+    /// What is seen of solids where they are cut; empty without a cut.
+    faces: Vec<Face>,
 }
 
 impl Band {
     /// A band of `rows` rows of pixels that begins at row `first_row`.
-    pub fn new(width: usize, rows: usize, first_row: usize) -> Self {
+    pub fn new(width: usize, rows: usize, first_row: usize, is_cut: bool) -> Self {
         let (width, height, first) = (width * SAMPLES, rows * SAMPLES, first_row * SAMPLES);
         let (far, nothing) = (vec![f32::NEG_INFINITY; width * height], vec![NOTHING; width * height]);
-        Self { width, height, first, nearness: far.clone(), seen: nothing.clone(), veil: nothing, veil_nearness: far }
+        let faces = vec![Face::NONE; if is_cut { width * height } else { 0 }];
+        let (nearness, seen) = (far.clone(), nothing.clone());
+        Self { width, height, first, nearness, seen, veil: nothing, veil_nearness: far, faces }
     }
 
-    /// Forgets translucent facets that lie behind something opaque.
-    pub fn settle(&mut self) {
+    /// Shows the faces of what is cut, and forgets translucent facets that lie behind something opaque.
+    pub fn settle(&mut self, geometry: &Geometry) {
+        let overlap = geometry.cut.map_or(0.0, |cut| cut.overlap);
+        for (k, face) in self.faces.iter().enumerate() {
+            if let Some((facet, near)) = face.shown(self.nearness[k], overlap) {
+                (self.seen[k], self.nearness[k]) = (facet, near);
+            }
+        }
         for k in 0..self.veil.len() {
             if self.veil_nearness[k] <= self.nearness[k] {
                 self.veil[k] = NOTHING;
@@ -189,6 +210,8 @@ impl Band {
             (&mut self.nearness, &mut self.seen)
         };
         let steps = [-step_b - step_c, step_b, step_c];
+        let cut = geometry.cut.map_or(f32::INFINITY, |cut| cut.nearness);
+        let side = triangle.side.filter(|_| !self.faces.is_empty());
         for y in top..=bottom {
             let (dx, dy) = (left as f32 + 0.5 - a[0], y as f32 + 0.5 - a[1]);
             let start_b = (dx * (c[1] - a[1]) - (c[0] - a[0]) * dy) / area;
@@ -201,6 +224,12 @@ impl Band {
                 let wa = 1.0 - wb - wc;
                 if wa >= SLACK && wb >= SLACK && wc >= SLACK {
                     let near = wa * a[2] + wb * b[2] + wc * c[2];
+                    if near > cut {
+                        continue;
+                    }
+                    if let Some(side) = side {
+                        self.faces[row + x].pass(side, near, number);
+                    }
                     if near > nearness[row + x] {
                         nearness[row + x] = near;
                         seen[row + x] = number;

@@ -15,6 +15,8 @@ pub struct Scene {
     pub sheet: Option<Sheet>,
     /// Translucent rectangles: walls, plates.
     pub panes: Vec<Pane>,
+    /// Cells and lines are cut off where they are nearer to the camera than this point, µm.
+    pub cut: Option<[f64; 3]>,
     /// What is behind everything.
     pub background: Background,
 }
@@ -35,6 +37,8 @@ pub struct Surface {
     /// How much the skin hides: 1 everything, less lets lines, floor and opaque surfaces behind it shine through. Of
     /// several such skins behind each other only the nearest shows.
     pub opacity: f32,
+    /// Whether the surface is closed and full: where it is cut off a flat face is seen.
+    pub is_solid: bool,
 }
 
 impl Default for Surface {
@@ -46,6 +50,7 @@ impl Default for Surface {
             colour: SurfaceColour::default(),
             edges: Edges::default(),
             opacity: 1.0,
+            is_solid: false,
         }
     }
 }

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::SAMPLES;
+use super::cut::Side;
 use super::floor::Ground;
 use super::raster::{Band, FLOOR, Geometry, NOTHING, SHEET, Triangle};
 use super::scene::{Background, Edges, Pane, Scene};
@@ -13,6 +14,8 @@ use crate::Vec3;
 /// Colour of the floor and of its grid, sRGB from 0 to 1.
 const FLOOR_COLOUR: [f32; 3] = [0.930, 0.940, 0.952];
 const GRID_COLOUR: [f32; 3] = [0.795, 0.82, 0.85];
+/// How much white there is in the colour of a cut face, as an amount of light.
+const PALE: f32 = 0.35;
 /// Entries of the table from linear light to sRGB: steps below a third of a grey level at the dark end.
 const GAMMA_STEPS: usize = 8192;
 
@@ -186,6 +189,10 @@ impl<'a> Shader<'a> {
             (0..3).map(|k| geometry.colours[triangle.colour[k] as usize][channel] * weights[k]).sum()
         });
         let viewer = self.view.towards_viewer(&mix(&geometry.points));
+        if geometry.cut.is_some() && triangle.side == Some(Side::Out) {
+            // The flat face where a body is cut.
+            return (self.cut_face(paint), 1.0);
+        }
         let mut normal = mix(&geometry.normals).try_normalize(1e-12).unwrap_or(viewer);
         if normal.dot(&viewer) < 0.0 {
             normal = -normal;
@@ -200,6 +207,11 @@ impl<'a> Shader<'a> {
             share = share.max(0.6 * line);
         }
         (colour, share)
+    }
+
+    /// What is seen of a body where it is cut: its colour, paler and without light or shade.
+    fn cut_face(&self, paint: [f32; 3]) -> [f32; 3] {
+        paint.map(|light| self.gamma[((PALE + (1.0 - PALE) * light).clamp(0.0, 1.0) * GAMMA_STEPS as f32) as usize])
     }
 
     /// A painted skin under a bright sky, a main light and a weak lamp at the camera: sRGB from 0 to 1.

@@ -127,6 +127,39 @@ fn a_sphere_covers_the_disc_it_should() {
 }
 
 #[test]
+fn solids_that_are_cut_show_flat_faces_of_their_size() {
+    let white = Colour([255; 3]);
+    let solid = |x: f64, colour: Colour| Surface {
+        colour: SurfaceColour::Uniform(colour),
+        is_solid: true,
+        ..sphere([x, 0.0, 0.0], 4.0, 4)
+    };
+    // A little inside each other, as cells that press on each other may be, and one more behind both.
+    let surfaces = vec![
+        solid(-3.98, Colour([200, 0, 0])),
+        solid(3.98, Colour([0, 0, 200])),
+        Surface { positions: sphere([0.0, 9.0, 0.0], 4.0, 4).positions, ..solid(0.0, Colour([0, 200, 0])) },
+    ];
+    // Half a radius behind the middles of the first two: their faces have radius √12.
+    let scene =
+        Scene { surfaces, cut: Some([0.0, 2.0, 0.0]), background: Background::plain(white), ..Scene::default() };
+    for projection in [front().projection, Projection::Perspective { angle: 0.05 }] {
+        let camera = Camera { projection, eye: [0.0, -400.0, 0.0], ..front() };
+        let image = draw(&scene, &camera, &bare(), 400, 400);
+        let [red, blue] = [119, 281].map(|x| image.pixel(x, 200));
+        assert!(red.0[0] > red.0[2] && blue.0[2] > blue.0[0], "{red:?} {blue:?}");
+        let scale =
+            camera.pixels_per_micron(400) * 400.0 / if projection == front().projection { 400.0 } else { 402.0 };
+        for face in [red, blue] {
+            let count = (0..400 * 400).filter(|n| image.pixel(n % 400, n / 400) == face).count() as f64;
+            let radius = (count / std::f64::consts::PI).sqrt() / scale;
+            // Pixels of the rim are of two colours.
+            assert!((radius - 12f64.sqrt()).abs() < 0.06, "{radius} µm");
+        }
+    }
+}
+
+#[test]
 fn near_things_hide_far_ones() {
     let red = Surface { colour: SurfaceColour::Uniform(Colour([255, 0, 0])), ..sphere([0.0, -8.0, 0.0], 3.0, 2) };
     let blue = Surface { colour: SurfaceColour::Uniform(Colour([0, 0, 255])), ..sphere([0.0; 3], 5.0, 2) };

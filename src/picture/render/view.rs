@@ -48,6 +48,11 @@ impl View {
         Some((at.map(|v| v as f32), (self.distance / z) as f32))
     }
 
+    /// The nearness of a point, µm; `None` behind the camera.
+    pub fn nearness(&self, point: [f64; 3]) -> Option<f32> {
+        self.project(&(Vec3::from(point) - self.target)).map(|([_, _, near], _)| near)
+    }
+
     /// The line of sight through a place in the picture: a point on it, relative to the target, and its direction,
     /// which has length 1 along the camera's axis.
     fn ray(&self, x: f64, y: f64) -> (Vec3, Vec3) {

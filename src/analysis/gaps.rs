@@ -1,0 +1,195 @@
+//! What cells of an aggregate leave empty between them.
+
+use rayon::prelude::*;
+
+use super::chemistry::frame_at;
+use super::recording::Recording;
+use crate::Vec3;
+use crate::contact::{closest_on_facet, winding_number};
+use crate::error::{Error, Fault, Result};
+use crate::experiment::{GapStatistic, Gaps};
+use crate::geometry::icosphere;
+use crate::output::ResultFile;
+
+/// Points along the side of a cube with the volume of a cell.
+const POINTS_PER_SIDE: f64 = 20.0;
+
+/// Points in all, at most: of very many cells fewer each.
+const MOST_POINTS: f64 = 400_000.0;
+
+/// Points from which the largest ball is looked for, those with most room.
+const STARTS: usize = 16;
+
+/// How exactly its centre is found, over the distance between points.
+const EXACT: f64 = 1e-3;
+
+/// A cell: its atoms and facets, and a ball around it.
+pub(super) struct Body {
+    atoms: Vec<Vec3>,
+    facets: Vec<[u32; 3]>,
+    centre: Vec3,
+    radius: f64,
+}
+
+/// What is empty inside an aggregate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Empty {
+    /// Radius of the largest ball that fits between the cells, µm.
+    pub largest_ball: f64,
+    /// Part of the inside that no cell fills.
+    pub share: f64,
+}
+
+impl Body {
+    /// A closed surface that faces outwards.
+    pub(super) fn new(atoms: Vec<Vec3>, facets: Vec<[u32; 3]>) -> Self {
+        let centre = atoms.iter().sum::<Vec3>() / atoms.len() as f64;
+        let radius = atoms.iter().map(|atom| (atom - centre).norm()).fold(0.0, f64::max);
+        Self { atoms, facets, centre, radius }
+    }
+
+    fn has_inside(&self, place: Vec3) -> bool {
+        (place - self.centre).norm() < self.radius && winding_number(place, &self.atoms, &self.facets) > 0.5
+    }
+
+    fn distance(&self, place: Vec3) -> f64 {
+        let of_facet = |facet: &[u32; 3]| {
+            closest_on_facet(place, facet.map(|atom| self.atoms[atom as usize])).offset.norm_squared()
+        };
+        self.facets.iter().map(of_facet).fold(f64::INFINITY, f64::min).sqrt()
+    }
+
+    fn volume(&self) -> f64 {
+        let corner = |atom: u32| self.atoms[atom as usize] - self.centre;
+        let of_facet = |&[a, b, c]: &[u32; 3]| corner(a).dot(&corner(b).cross(&corner(c))) / 6.0;
+        self.facets.iter().map(of_facet).sum()
+    }
+}
+
+/// The room around a place: the distance to the nearest cell, µm, 0 inside one.
+fn room(bodies: &[Body], place: Vec3) -> f64 {
+    if bodies.iter().any(|body| body.has_inside(place)) {
+        return 0.0;
+    }
+    let mut nearest = f64::INFINITY;
+    for body in bodies {
+        if (place - body.centre).norm() - body.radius < nearest {
+            nearest = nearest.min(body.distance(place));
+        }
+    }
+    nearest
+}
+
+/// The inside of an aggregate, eq. (analysis.18): what no plane through a centre, with all others behind it, cuts off, in 642 directions.
+struct Inside {
+    /// Directions and how far the outermost centre is along each, µm.
+    planes: Vec<(Vec3, f64)>,
+}
+
+impl Inside {
+    fn of(bodies: &[Body]) -> Self {
+        let farthest = |way: &Vec3| bodies.iter().map(|body| body.centre.dot(way)).fold(f64::NEG_INFINITY, f64::max);
+        Self { planes: icosphere(1.0, 3).positions.into_iter().map(|way| (way, farthest(&way))).collect() }
+    }
+
+    /// How thick it is where it is thinnest, µm.
+    fn thickness(&self, bodies: &[Body]) -> f64 {
+        let nearest = |way: &Vec3| bodies.iter().map(|body| body.centre.dot(way)).fold(f64::INFINITY, f64::min);
+        self.planes.iter().map(|(way, farthest)| farthest - nearest(way)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn holds(&self, place: &Vec3) -> bool {
+        self.planes.iter().all(|(way, farthest)| place.dot(way) <= *farthest)
+    }
+}
+
+/// Finds what is empty inside an aggregate; none where its centres are almost in one plane, so that nothing is inside.
+pub(super) fn find_empty(bodies: &[Body]) -> Option<Empty> {
+    let inside = Inside::of(bodies);
+    let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    for body in bodies {
+        (low, high) = (low.inf(&body.centre), high.sup(&body.centre));
+    }
+    let size = high - low;
+    let volume = bodies.iter().map(Body::volume).sum::<f64>() / bodies.len() as f64;
+    let spacing = (volume.cbrt() / POINTS_PER_SIDE).max((size.x * size.y * size.z / MOST_POINTS).cbrt());
+    if inside.thickness(bodies) < spacing {
+        return None;
+    }
+    // In the middles of boxes that fill the extent, so that none lies on its rim.
+    let counts = size.map(|side| (side / spacing).ceil().max(1.0));
+    let step = size.component_div(&counts);
+    let [nx, ny, nz] = [counts.x, counts.y, counts.z].map(|count| count as usize);
+    let rooms: Vec<(f64, Vec3)> = (0..nx * ny * nz)
+        .into_par_iter()
+        .map(|number| [number / ny / nz, number / nz % ny, number % nz].map(|index| index as f64 + 0.5))
+        .map(|index| low + Vec3::from(index).component_mul(&step))
+        .filter(|place| inside.holds(place))
+        .map(|place| (room(bodies, place), place))
+        .collect();
+    if rooms.is_empty() {
+        return None;
+    }
+    let share = rooms.iter().filter(|(room, _)| *room > 0.0).count() as f64 / rooms.len() as f64;
+    let mut starts = rooms;
+    starts.sort_by(|one, other| other.0.total_cmp(&one.0));
+    starts.truncate(STARTS);
+    let largest = starts.into_par_iter().map(|start| climb(bodies, &inside, start, step.max()));
+    Some(Empty { largest_ball: largest.reduce(|| 0.0, f64::max), share })
+}
+
+/// The most room near a place: the best of the points around it, ever closer. Room has ridges, where it rises along few directions, so
+/// that points on all sides are looked at.
+fn climb(bodies: &[Body], inside: &Inside, (mut most, mut place): (f64, Vec3), first: f64) -> f64 {
+    let mut step = 0.5 * first;
+    while step > EXACT * first {
+        let around =
+            (0..125).map(|number| [number / 25, number / 5 % 5, number % 5].map(|index| f64::from(index) - 2.0));
+        let next = around.map(|index| place + step * Vec3::from(index)).filter(|next| inside.holds(next));
+        let next = next.map(|next| (room(bodies, next), next)).max_by(|one, other| one.0.total_cmp(&other.0));
+        match next.filter(|next| next.0 > most) {
+            Some(next) => (most, place) = next,
+            None => step *= 0.5,
+        }
+    }
+    most
+}
+
+/// The number that a measure asks for.
+///
+/// # Errors
+/// When the run has no contacts, or the largest aggregate no inside.
+pub(super) fn gaps(wanted: &Gaps, recording: &Recording, file: Option<&ResultFile>) -> Result<f64> {
+    let Some(file) = file else {
+        let fault = Fault::new("there is no file that says where the cells are");
+        return Err(Error::input(fault.help("measure the result of a run")));
+    };
+    let frame = frame_at(wanted.time, &recording.times);
+    let aggregate = file.cell_series("aggregate")?;
+    let aggregate: Vec<u64> = aggregate.row(frame).iter().map(|first| *first as u64).collect();
+    let size = |first: u64| aggregate.iter().filter(|other| **other == first).count();
+    let largest = aggregate.iter().copied().min_by_key(|first| (std::cmp::Reverse(size(*first)), *first));
+    let (positions, layout) = (file.positions(frame)?, file.layout());
+    let of_largest = layout.cells.iter().zip(&aggregate).filter(|(_, first)| Some(**first) == largest);
+    let bodies: Vec<Body> = of_largest
+        .map(|(cell, _)| {
+            let atoms = &positions[cell.first_atom as usize..][..cell.atoms as usize];
+            let facets = &layout.facets[cell.first_facet as usize..][..cell.facets as usize];
+            let facets = facets.iter().map(|facet| facet.map(|atom| atom - cell.first_atom)).collect();
+            Body::new(atoms.iter().map(|place| Vec3::from(*place)).collect(), facets)
+        })
+        .collect();
+    let Some(empty) = find_empty(&bodies) else {
+        let time = recording.times[frame];
+        let fault = Fault::new(format!("the largest aggregate at {time} s, of {} cells, has no inside", bodies.len()));
+        return Err(Error::input(fault.help("give a time at which cells lie around others")));
+    };
+    Ok(match wanted.statistic {
+        GapStatistic::LargestBall => empty.largest_ball,
+        GapStatistic::EmptyShare => empty.share,
+    })
+}
+
+#[cfg(test)]
+#[path = "gaps_tests.rs"]
+mod tests;
