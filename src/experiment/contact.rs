@@ -28,6 +28,7 @@ pub fn pair_series<'a>(types: &[&'a str], planes: &[&'a str]) -> Vec<String> {
     for stem in ["contact.clusters", "contact.largest_cluster"] {
         names.extend(types.iter().map(|kind| format!("{stem}.{kind}")));
     }
+    names.extend(["births", "merges", "splits", "deaths"].map(|change| format!("contact.{change}")));
     names
 }
 

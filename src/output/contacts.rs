@@ -2,6 +2,7 @@
 //! of the scene that follow from them. The file holds the pairs alone.
 
 use super::catalogue::List;
+use super::changes::counts_of_changes;
 use super::{Layout, ResultFile};
 use crate::error::{Error, Fault, Result};
 
@@ -150,13 +151,22 @@ pub fn segregation(types: &[u32], pairs: &[[u32; 2]]) -> f64 {
 /// of that area between types, and the segregation index.
 const SHARES: [&str; 3] = ["contact.area_share", "contact.heterotypic_share", "contact.segregation"];
 
-/// Names and units of the series of a result with contacts, in the order of [`values`]; a pair of types has the order
+/// Names and units of the series of a result with contacts, in the order of [`all_series`]; a pair of types has the order
 /// of the document.
 pub(super) fn series(layout: &Layout) -> Vec<(String, &'static str)> {
-    let types = &layout.types;
     if !layout.contacts {
         return Vec::new();
     }
+    let changes = CHANGES.iter().map(|name| ((*name).to_owned(), "1"));
+    series_of_frame(layout).into_iter().chain(changes).collect()
+}
+
+/// Series of how many aggregates were born, merged, split and died since the frame before.
+const CHANGES: [&str; 4] = ["contact.births", "contact.merges", "contact.splits", "contact.deaths"];
+
+/// Those of [`series`] whose [`values`] follow from a frame alone.
+fn series_of_frame(layout: &Layout) -> Vec<(String, &'static str)> {
+    let types = &layout.types;
     let pairs = || pairs_of(types.len()).map(|[one, other]| format!("{}.{}", types[one], types[other]));
     let of_planes = types.iter().flat_map(|kind| layout.planes.iter().map(move |plane| format!("{kind}.{}", plane.0)));
     let mut names: Vec<(String, &str)> =
@@ -179,17 +189,18 @@ fn pairs_of(types: usize) -> impl Iterator<Item = [usize; 2]> {
 /// # Errors
 /// A damaged file.
 pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
-    let mut all = vec![Vec::new(); series(result.layout()).len()];
+    let mut all = vec![Vec::new(); series_of_frame(result.layout()).len()];
     let surfaces = result.cell_series("area")?;
     for frame in 0..result.frames() {
         let surface = surfaces.row(frame).sum();
         let values = values(result.layout(), surface, &result.pairs(frame)?, &result.on_planes(frame)?);
         all.iter_mut().zip(values).for_each(|(series, value)| series.push(value));
     }
+    all.extend(counts_of_changes(result.cell_series("aggregate")?.view()));
     Ok(all)
 }
 
-/// The values of all [`series`] in a frame in which the cells have this surface, µm².
+/// The values of [`series_of_frame`] in a frame in which the cells have this surface, µm².
 fn values(layout: &Layout, surface: f64, touching: &[Touching], on_planes: &[Touching]) -> Vec<f64> {
     let types: Vec<u32> = layout.cells.iter().map(|cell| cell.kind).collect();
     let (number, planes) = (layout.types.len(), layout.planes.len());

@@ -5,6 +5,7 @@
 //! module is the only one that knows HDF5.
 
 pub mod catalogue;
+mod changes;
 mod checkpoint;
 mod column;
 mod columns;
@@ -23,6 +24,7 @@ mod systems;
 mod tables;
 mod writer;
 
+pub use changes::{Change, Event, changes};
 pub use checkpoint::{Checkpoint, CheckpointMeta, checkpoint_path, load_checkpoint, save_checkpoint};
 pub use contacts::{Alike, Touching, clusters, count_alike, segregation, touching_cells};
 pub use field_export::{write_field_image, write_field_table};

@@ -16,7 +16,7 @@ use crate::output::ResultFile;
 const MEASURED: Colour = Colour([0x33, 0x33, 0x33]);
 
 /// Names of series as a reader would say them.
-const READABLE: [(&str, &str); 22] = [
+const READABLE: [(&str, &str); 26] = [
     ("size_x", "extent along x"),
     ("size_y", "extent along y"),
     ("size_z", "extent along z"),
@@ -32,6 +32,10 @@ const READABLE: [(&str, &str); 22] = [
     ("smallest_cosine", "smallest cosine of normal and radius"),
     ("contact_share", "share of atoms in contact"),
     ("largest_aggregate", "cells of the largest aggregate"),
+    ("contact.births", "births of aggregates"),
+    ("contact.merges", "merges of aggregates"),
+    ("contact.splits", "splits of aggregates"),
+    ("contact.deaths", "deaths of aggregates"),
     ("contact.count", "contacts"),
     ("contact.deepest", "deepest penetration over edge"),
     ("contact.energy", "energy in contacts"),

@@ -1,8 +1,8 @@
 //! What the changes of aggregates promise.
 
 use super::*;
-use crate::analysis::noise;
 use crate::output::clusters;
+use crate::random::{Purpose, Stream};
 use ndarray::Array2;
 
 /// The events of frames that give the aggregate of each cell.
@@ -48,7 +48,8 @@ fn cells_that_change_partners_split_and_merge_at_once() {
 
 #[test]
 fn the_events_account_for_the_number_of_aggregates() {
-    let mut next = noise::uniform(3);
+    let mut dice = Stream::new(3, Purpose::Permutation, 0, 0);
+    let mut next = || dice.uniform_pair()[0];
     for _ in 0..500 {
         let mut frame = || -> Vec<u32> {
             let pairs = (next() * 12.0) as usize;
@@ -68,4 +69,20 @@ fn the_events_account_for_the_number_of_aggregates() {
             .sum();
         assert_eq!(number(&after) - number(&before), change, "{before:?} {after:?}");
     }
+}
+
+#[test]
+fn changes_are_counted_in_the_frame_in_which_they_are_seen() {
+    let frames = ndarray::arr2(&[
+        [0.0, 1.0, 2.0, 3.0],
+        [0.0, 0.0, 2.0, 2.0],
+        [0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 2.0, 2.0],
+        [0.0, 1.0, 2.0, 2.0],
+    ]);
+    let [births, merges, splits, deaths] = counts_of_changes(frames.view());
+    assert_eq!(births, [0.0, 2.0, 0.0, 0.0, 0.0]);
+    assert_eq!(merges, [0.0, 0.0, 1.0, 0.0, 0.0]);
+    assert_eq!(splits, [0.0, 0.0, 0.0, 1.0, 0.0]);
+    assert_eq!(deaths, [0.0, 0.0, 0.0, 0.0, 1.0]);
 }

@@ -1,0 +1,105 @@
+//! What becomes of aggregates from frame to frame: they are born, merge, split and die.
+
+use ndarray::ArrayView2;
+use std::fmt;
+
+/// What happened to aggregates of two cells or more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    /// Cells that were alone made one.
+    Birth,
+    /// Cells of two or more came together in one.
+    Merge,
+    /// Cells of one are now in two or more.
+    Split,
+    /// All cells of one are alone.
+    Death,
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Birth => "birth",
+            Self::Merge => "merge",
+            Self::Split => "split",
+            Self::Death => "death",
+        })
+    }
+}
+
+/// A change between a recorded instant and the one before.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Event {
+    /// The frame in which it is seen first.
+    pub frame: usize,
+    /// What happened.
+    pub change: Change,
+    /// Numbers of the aggregates that it happened to, as they were in the frame before; none for a birth.
+    pub before: Vec<u32>,
+    /// Numbers of the aggregates that came of it; none for a death.
+    pub after: Vec<u32>,
+    /// Cells of the one aggregate that was born, merged, split or died.
+    pub cells: usize,
+}
+
+/// Finds the changes in a recording of the aggregate of each cell, [frame, cell]. An aggregate goes on in all that have
+/// cells of it; single cells that join or leave it are no change. So the number of aggregates changes by
+/// births − deaths + Σ (parts − 1) of splits − Σ (parts − 1) of merges.
+pub fn changes(aggregates: ArrayView2<f64>) -> Vec<Event> {
+    let numbers = |frame: usize| -> Vec<u32> { aggregates.row(frame).iter().map(|number| *number as u32).collect() };
+    let frames = aggregates.nrows();
+    (1..frames).flat_map(|frame| changes_between(frame, &numbers(frame - 1), &numbers(frame))).collect()
+}
+
+/// The changes from one frame to the next: deaths and splits, then merges and births.
+fn changes_between(frame: usize, before: &[u32], after: &[u32]) -> Vec<Event> {
+    let (sizes_before, sizes_after) = (sizes(before), sizes(after));
+    let size = |sizes: &[(u32, usize)], number: u32| {
+        sizes.binary_search_by_key(&number, |known| known.0).map_or(0, |place| sizes[place].1)
+    };
+    let mut went: Vec<[u32; 2]> = before.iter().zip(after).map(|(before, after)| [*before, *after]).collect();
+    went.retain(|[before, after]| size(&sizes_before, *before) > 1 && size(&sizes_after, *after) > 1);
+    went.sort_unstable();
+    went.dedup();
+    let mut events = Vec::new();
+    for &(number, cells) in sizes_before.iter().filter(|known| known.1 > 1) {
+        let after: Vec<u32> = went.iter().filter(|went| went[0] == number).map(|went| went[1]).collect();
+        let change = match after.len() {
+            0 => Change::Death,
+            1 => continue,
+            _ => Change::Split,
+        };
+        events.push(Event { frame, change, before: vec![number], after, cells });
+    }
+    for &(number, cells) in sizes_after.iter().filter(|known| known.1 > 1) {
+        let before: Vec<u32> = went.iter().filter(|went| went[1] == number).map(|went| went[0]).collect();
+        let change = match before.len() {
+            0 => Change::Birth,
+            1 => continue,
+            _ => Change::Merge,
+        };
+        events.push(Event { frame, change, before, after: vec![number], cells });
+    }
+    events
+}
+
+/// The numbers of aggregates, ascending, with their cells.
+fn sizes(aggregates: &[u32]) -> Vec<(u32, usize)> {
+    let mut numbers = aggregates.to_vec();
+    numbers.sort_unstable();
+    numbers.chunk_by(|one, other| one == other).map(|alike| (alike[0], alike.len())).collect()
+}
+
+/// How many aggregates are born, merge, split and die from the frame before to each; none in the first.
+pub(super) fn counts_of_changes(aggregates: ArrayView2<f64>) -> [Vec<f64>; 4] {
+    let events = changes(aggregates);
+    [Change::Birth, Change::Merge, Change::Split, Change::Death].map(|change| {
+        let mut counts = vec![0.0; aggregates.nrows()];
+        events.iter().filter(|event| event.change == change).for_each(|event| counts[event.frame] += 1.0);
+        counts
+    })
+}
+
+#[cfg(test)]
+#[path = "changes_tests.rs"]
+mod tests;
