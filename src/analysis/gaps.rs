@@ -181,8 +181,11 @@ pub(super) fn gaps(wanted: &Gaps, recording: &Recording, file: Option<&ResultFil
         .collect();
     let Some(empty) = find_empty(&bodies) else {
         let time = recording.times[frame];
-        let fault = Fault::new(format!("the largest aggregate at {time} s, of {} cells, has no inside", bodies.len()));
-        return Err(Error::input(fault.help("give a time at which cells lie around others")));
+        let cells = if bodies.len() == 1 { "one cell".to_owned() } else { format!("{} cells", bodies.len()) };
+        let fault = Fault::new(format!("the largest aggregate at {time} s, of {cells}, has no inside"));
+        return Err(Error::input(
+            fault.help("give a time at which four cells or more that do not lie in a plane touch"),
+        ));
     };
     Ok(match wanted.statistic {
         GapStatistic::LargestBall => empty.largest_ball,
