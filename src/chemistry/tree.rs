@@ -256,6 +256,18 @@ fn truth(holds: bool) -> f64 {
     f64::from(u8::from(holds))
 }
 
+/// The smaller of two numbers, or that which is one. Of zeros with two signs the second, which `f64::min` leaves open.
+#[inline(always)]
+pub fn smaller(a: f64, b: f64) -> f64 {
+    if (a < b) | b.is_nan() { a } else { b }
+}
+
+/// The larger of two numbers, as [`smaller`].
+#[inline(always)]
+pub fn larger(a: f64, b: f64) -> f64 {
+    if (a > b) | b.is_nan() { a } else { b }
+}
+
 impl Unary {
     /// The function's value.
     pub fn apply(self, a: f64) -> f64 {
@@ -283,7 +295,8 @@ impl Unary {
             Self::Acosh => a.acosh(),
             Self::Atanh => a.atanh(),
             Self::Heaviside => truth(a >= 0.0),
-            Self::Factorial => (2..=a.round().max(0.0) as u64).map(|k| k as f64).product(),
+            // From 171 on it is infinite.
+            Self::Factorial => (2..=a.round().clamp(0.0, 171.0) as u64).map(|k| k as f64).product(),
         }
     }
 }
@@ -297,8 +310,8 @@ impl Binary {
             Self::Mul => a * b,
             Self::Div => a / b,
             Self::Pow => a.powf(b),
-            Self::Min => a.min(b),
-            Self::Max => a.max(b),
+            Self::Min => smaller(a, b),
+            Self::Max => larger(a, b),
             Self::Rem => a % b,
             Self::Quotient => (a / b).floor(),
             Self::Lt => truth(a < b),

@@ -5,13 +5,15 @@ use std::sync::{Mutex, PoisonError};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use super::alone::Alone;
 use super::block::{self, CellTrouble};
 use super::cells::{Cells, Kept};
 use super::narrow::Narrow;
 use super::population::{LANES, Population};
 use super::scratch::Scratch;
+use super::tableau::tsitouras::TABLEAU;
 use super::{Method, OdeTrouble, Tolerances, Work};
-use crate::chemistry::program::{Lanes, Program};
+use crate::chemistry::program::{Lanes, PairStep, Program};
 
 impl Population {
     /// Advances all cells through a window. Each cell has an error and a step of its own; its result does not depend on
@@ -38,19 +40,30 @@ impl Population {
             return Ok(Work::default());
         }
         self.keep_rates(program);
-        let result = if self.cells <= FEW {
-            self.advance_one_by_one(program, (from, until), tolerances)
-        } else {
-            self.advance_side_by_side(program, (from, until), tolerances)
+        let code =
+            if self.cells <= FEW_IN_CODE && self.method == Method::Rk45 { program.pair_step(&TABLEAU) } else { None };
+        let result = match code {
+            Some(code) => self.advance_in_code((program, code), (from, until), tolerances),
+            None if self.cells <= FEW => self.advance_one_by_one(program, (from, until), tolerances),
+            None => self.advance_side_by_side(program, (from, until), tolerances),
         };
-        result.map_err(|trouble| OdeTrouble {
-            system: program.name.clone(),
-            cell: Some(trouble.cell),
-            time: trouble.time,
-            variable: trouble.variable.map(|v| program.names[program.variables[v] as usize].clone()),
-            reason: trouble.reason,
-            detail: String::new(),
-        })
+        match result {
+            Ok(work) => Ok(work),
+            Err(trouble) => Err(trouble.of(program)),
+        }
+    }
+
+    fn advance_in_code(
+        &mut self,
+        (program, code): (&Program, &PairStep<LANES>),
+        window: (f64, f64),
+        tolerances: &Tolerances,
+    ) -> TaskResult {
+        let Self { states, steps, errors, given, rates, known, .. } = self;
+        let (steps, errors) = (&mut steps[0], &mut errors[0]);
+        let mut cells = Alone { program, code, states, given, rates, known, steps, errors };
+        let first = cells.advance(0, window, tolerances);
+        (1..self.cells).fold(first, |result, l| first_trouble(result, cells.advance(l, window, tolerances)))
     }
 
     fn advance_one_by_one(&mut self, program: &Program, window: (f64, f64), tolerances: &Tolerances) -> TaskResult {
@@ -98,6 +111,9 @@ type Part<'a> = (((&'a mut [Lanes<LANES>], &'a mut [Lanes<LANES>]), &'a mut [Lan
 /// So few cells are sooner done one by one than side by side in lanes of which most are empty.
 const FEW: usize = 2;
 
+/// As above, in machine code: a block of [`LANES`] takes as long as about ten cells by themselves.
+const FEW_IN_CODE: usize = 8;
+
 /// Tasks of so many blocks have enough cells to fill lanes that are done early.
 const MOST_BLOCKS: usize = 256;
 
@@ -123,6 +139,20 @@ impl WithSimd for Task<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> TaskResult {
         let Self { program, method, scratch, mut cells, window, tolerances } = self;
         block::advance(simd, program, method, scratch, &mut cells, window, tolerances)
+    }
+}
+
+impl CellTrouble {
+    #[cold]
+    fn of(self, program: &Program) -> OdeTrouble {
+        OdeTrouble {
+            system: program.name.clone(),
+            cell: Some(self.cell),
+            time: self.time,
+            variable: self.variable.map(|v| program.names[program.variables[v] as usize].clone()),
+            reason: self.reason,
+            detail: String::new(),
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 use super::cells::{Cells, Seats};
-use super::control::{self, Controller, EXPLICIT, LEAST, STIFF, Tolerances};
+use super::control::{self, Controller, EXPLICIT, LEAST, SAFE_SHRINK, STIFF, Tolerances};
 use super::mask::{self, Mask, YES, both, choose, pick, when};
 use super::scratch::Scratch;
 use super::{Method, Reason, Work, explicit, rosenbrock};
@@ -45,8 +45,14 @@ pub fn advance<S: Simd, const L: usize>(
     }
 }
 
-/// A refused step shrinks at least to this share.
-const SAFE_SHRINK: f64 = 0.9;
+/// Steps are not shorter than this: the clock could not tell their ends apart.
+#[inline(always)]
+pub fn shortest(from: f64, until: f64) -> f64 {
+    4.0 * f64::EPSILON * from.abs().max(until.abs())
+}
+
+/// A step of at least this share of what is left of a window is the last.
+pub const NEAR: f64 = 1.0 - 1e-10;
 
 /// Lanes wait for each other until one in so many is free: that costs less than to change cells more often.
 const FREE_SHARE: usize = 2;
@@ -81,7 +87,7 @@ fn adaptive<S: Simd, const L: usize, const STIFFLY: bool>(
     let (mut work, mut trouble) = (Work::default(), None);
     let mut seats = Seats::<L>::new();
     let mut way = Way { time: [from; L], rounds: [0.0; L], refused: [0; L] };
-    let shortest = 4.0 * f64::EPSILON * from.abs().max(until.abs());
+    let shortest = shortest(from, until);
     let open = program.first_open();
     loop {
         sit(&mut seats, &mut way, cells, open, s, from);
@@ -131,7 +137,7 @@ fn plan<const L: usize>(seats: &Seats<L>, way: &Way<L>, (from, until): (f64, f64
     let mut round = Round { step: [0.0; L], last: [0; L], cut: [0; L] };
     for l in 0..L {
         let (rest, wanted) = (until - way.time[l], seats.step[l]);
-        let (last, cut) = (when(wanted >= rest * (1.0 - 1e-10)), when(wanted > 0.5 * rest));
+        let (last, cut) = (when(wanted >= rest * NEAR), when(wanted > 0.5 * rest));
         let within = pick(last, rest, pick(cut, 0.5 * rest, wanted));
         round.step[l] = pick(seats.active[l], within, until - from);
         (round.last[l], round.cut[l]) = (last, cut);
@@ -281,7 +287,7 @@ fn begin<const L: usize, const STIFFLY: bool>(
 
 /// What is wrong with the cell of a lane.
 #[inline(never)]
-fn explain<const L: usize>(
+pub fn explain<const L: usize>(
     program: &Program,
     s: &mut Scratch<L>,
     (time, step): (Lanes<L>, Lanes<L>),

@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use super::scratch::Scratch;
 use super::tableau::tsitouras::{A2, A3, A4, A5, A6, B, C, D, E};
-use super::wide::combine;
+use super::wide::{combine, combine_from};
 use crate::chemistry::program::{Lanes, Program};
 
 /// The rates at the state that the first `W` stages give, as the next stage.
@@ -19,7 +19,7 @@ fn stage<S: Simd, const W: usize, const L: usize>(
 ) {
     let n = s.state.len();
     for v in 0..n {
-        combine(simd, weights, &s.stages, (n, v), s.state[v], step, &mut s.file[1 + v]);
+        combine_from(simd, weights, &s.stages, (n, v), &s.state[v], step, &mut s.file[1 + v]);
     }
     let clock = &mut s.file[0];
     for l in 0..L {

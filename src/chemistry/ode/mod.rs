@@ -2,6 +2,7 @@
 //! system alone with events and values at any time.
 
 mod advance;
+mod alone;
 pub(in crate::chemistry) mod block;
 pub(in crate::chemistry) mod cells;
 mod control;

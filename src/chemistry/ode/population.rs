@@ -11,8 +11,7 @@ use super::scratch::Scratch;
 use crate::chemistry::program::{Lanes, Program, run};
 use crate::chemistry::tree::QuantityId;
 
-/// Cells side by side in a block.
-pub const LANES: usize = 16;
+pub use crate::chemistry::program::LANES;
 
 /// The states of cells that share a program. Arrays are `[block][number][lane]`.
 #[derive(Debug, Serialize, Deserialize)]
@@ -173,11 +172,17 @@ impl Population {
             self.narrow = None;
             self.known.clear();
         }
-        if self.method != Method::Rk45 || !program.rates_stand_still {
+        if self.method != Method::Rk45 {
             self.known.clear();
             self.rates.clear();
+            return;
+        }
+        if !program.rates_stand_still {
+            self.known.clear();
         } else if self.known.is_empty() {
             self.known.resize(self.steps.len(), [0; LANES]);
+        }
+        if self.rates.len() != self.states.len() {
             self.rates.resize(self.states.len(), [0.0; LANES]);
         }
     }

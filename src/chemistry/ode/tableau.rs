@@ -3,6 +3,9 @@
 /// The explicit pair of order 5(4) of Tsitouras (Computers & Mathematics with Applications 62, 2011, 770–775) with its
 /// continuous extension of order 4. The last stage is the first of the next step.
 pub mod tsitouras {
+    use crate::chemistry::ode::block::NEAR;
+    use crate::chemistry::program::Tableau;
+
     /// Times of the stages.
     pub const C: [f64; 7] = [0.0, 0.161, 0.327, 0.9, 0.980_025_540_904_509_7, 1.0, 1.0];
     /// Weights of earlier stages.
@@ -64,6 +67,9 @@ pub mod tsitouras {
             _ => &B,
         }
     }
+
+    /// All of it, for machine code.
+    pub const TABLEAU: Tableau = Tableau { times: C, weights: row, error: E, near: NEAR };
 }
 
 /// RODAS, the L-stable, stiffly accurate Rosenbrock method of order 4(3) with 6 stages of Hairer and Wanner, *Solving

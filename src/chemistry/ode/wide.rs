@@ -4,28 +4,64 @@ use pulp::Simd;
 
 use crate::chemistry::program::Lanes;
 
-/// begin + factor·Σ weight·stage for one variable, lane by lane, without fused multiply-add: the same bits whatever the
-/// registers. The stages stand one after the other, `n` variables each.
+/// Σ weight·stage for a place of one variable, without fused multiply-add: the same bits whatever the registers. The stages
+/// stand one after the other, `n` variables each.
+#[inline(always)]
+fn sum<S: Simd, const L: usize>(
+    simd: S,
+    weights: &[f64],
+    stages: &[Lanes<L>],
+    (n, variable): (usize, usize),
+    place: usize,
+) -> S::f64s {
+    let mut sum = simd.splat_f64s(0.0);
+    for (stage, &weight) in weights.iter().enumerate() {
+        let part = simd.mul_f64s(simd.splat_f64s(weight), S::as_simd_f64s(&stages[stage * n + variable]).0[place]);
+        sum = if stage == 0 { part } else { simd.add_f64s(sum, part) };
+    }
+    sum
+}
+
+/// begin + factor·Σ weight·stage for one variable.
 #[inline(always)]
 pub fn combine<S: Simd, const W: usize, const L: usize>(
     simd: S,
     weights: &[f64; W],
     stages: &[Lanes<L>],
-    (n, variable): (usize, usize),
+    which: (usize, usize),
     begin: Lanes<L>,
     factor: &Lanes<L>,
     to: &mut Lanes<L>,
 ) {
-    let parts: [&[S::f64s]; W] = std::array::from_fn(|stage| S::as_simd_f64s(&stages[stage * n + variable]).0);
-    let weights: [S::f64s; W] = std::array::from_fn(|stage| simd.splat_f64s(weights[stage]));
     let (begin, factor, to) = (S::as_simd_f64s(&begin).0, S::as_simd_f64s(factor).0, S::as_mut_simd_f64s(to).0);
     for place in 0..to.len() {
-        let mut sum = simd.splat_f64s(0.0);
-        for stage in 0..W {
-            let part = simd.mul_f64s(weights[stage], parts[stage][place]);
-            sum = if stage == 0 { part } else { simd.add_f64s(sum, part) };
+        let change = simd.mul_f64s(factor[place], sum(simd, weights, stages, which, place));
+        to[place] = simd.add_f64s(begin[place], change);
+    }
+}
+
+/// begin + factor·Σ weight·stage for one variable, and then the latest stage by itself: what waits for it is short.
+#[inline(always)]
+pub fn combine_from<S: Simd, const W: usize, const L: usize>(
+    simd: S,
+    weights: &[f64; W],
+    stages: &[Lanes<L>],
+    (n, variable): (usize, usize),
+    begin: &Lanes<L>,
+    factor: &Lanes<L>,
+    to: &mut Lanes<L>,
+) {
+    let (last, earlier) = (weights[W - 1], &weights[..W - 1]);
+    let latest = S::as_simd_f64s(&stages[(W - 1) * n + variable]).0;
+    let (begin, factor, to) = (S::as_simd_f64s(begin).0, S::as_simd_f64s(factor).0, S::as_mut_simd_f64s(to).0);
+    for place in 0..to.len() {
+        let mut value = begin[place];
+        if W > 1 {
+            let change = simd.mul_f64s(factor[place], sum(simd, earlier, stages, (n, variable), place));
+            value = simd.add_f64s(value, change);
         }
-        to[place] = simd.add_f64s(begin[place], simd.mul_f64s(factor[place], sum));
+        let weight = simd.mul_f64s(factor[place], simd.splat_f64s(last));
+        to[place] = simd.add_f64s(value, simd.mul_f64s(weight, latest[place]));
     }
 }
 

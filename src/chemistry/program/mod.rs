@@ -8,18 +8,25 @@ pub mod code;
 mod derivative;
 pub mod graph;
 mod initial;
+mod machine;
 pub mod math;
 mod run;
 mod simplify;
 
 pub use initial::initial_values;
+pub use machine::{PairStep, Tableau, Way};
 pub use run::{Lanes, run};
 
 use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
 use crate::chemistry::tree::{Binary, Expr, QuantityId, Role, System};
 use code::{Code, Constants};
 use graph::{Graph, NodeId};
+use machine::Machine;
+
+/// Cells side by side in a block of a population.
+pub const LANES: usize = 16;
 
 /// A system of equations ready to run.
 #[derive(Debug, Clone)]
@@ -56,6 +63,8 @@ pub struct Program {
     constants: Vec<f64>,
     /// Registers that every code of the program fits in.
     registers: usize,
+    /// Machine code, once it is of use.
+    machine: Arc<Machine>,
 }
 
 impl Program {
@@ -123,6 +132,7 @@ impl Program {
             further,
             registers,
             constants: constants.values,
+            machine: Arc::default(),
         })
     }
 

@@ -2,7 +2,7 @@
 
 use super::code::{Action, Code};
 use super::math;
-use crate::chemistry::tree::{Binary, Unary};
+use crate::chemistry::tree::{Binary, Unary, larger, smaller};
 
 /// One number for each of `L` cells.
 pub type Lanes<const L: usize> = [f64; L];
@@ -62,8 +62,8 @@ pub fn run<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
                 Binary::Sub => zip(a, b, |a, b| a - b),
                 Binary::Mul => zip(a, b, |a, b| a * b),
                 Binary::Div => zip(a, b, |a, b| a / b),
-                Binary::Min => zip(a, b, f64::min),
-                Binary::Max => zip(a, b, f64::max),
+                Binary::Min => zip(a, b, smaller),
+                Binary::Max => zip(a, b, larger),
                 Binary::Lt => zip(a, b, |a, b| truth(a < b)),
                 Binary::Le => zip(a, b, |a, b| truth(a <= b)),
                 Binary::Gt => zip(a, b, |a, b| truth(a > b)),

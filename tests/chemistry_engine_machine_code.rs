@@ -1,0 +1,174 @@
+//! Machine code gives the bits of register code, cell by cell and fault by fault.
+
+mod every_function;
+mod ode_problems;
+
+use ode_problems::{goldbeter_per, martiel_goldbeter, van_der_pol_pair};
+use pseudopod::chemistry::ode::tableau::tsitouras::TABLEAU;
+use pseudopod::chemistry::ode::{Method, OdeTrouble, Population, Reason, Tolerances, Work};
+use pseudopod::chemistry::program::Program;
+use pseudopod::chemistry::tree::{Role, System};
+
+/// The program of a system, and the same with machine code; says whether there can be some here.
+fn programs(system: &System) -> (Program, Program) {
+    let [plain, code] = [(); 2].map(|()| Program::new(system).expect("no circles"));
+    for _ in 0..=1000 {
+        let _ = code.pair_step(&TABLEAU);
+    }
+    let small = plain.size() <= 64 && plain.rates.ops.len() <= 500;
+    assert_eq!(code.pair_step(&TABLEAU).is_some(), small, "machine code is made on this machine");
+    (plain, code)
+}
+
+/// All that a cell takes on: state, next step.
+fn bits(population: &Population, cell: usize, variables: usize) -> Vec<u64> {
+    let state = (0..variables).map(|v| population.state(cell, v).to_bits());
+    state.chain([population.next_step(cell).to_bits()]).collect()
+}
+
+/// What came of a window, as far as it can be compared: a number that is none is equal to itself.
+fn told(result: Result<Work, OdeTrouble>) -> String {
+    match result {
+        Ok(work) => format!("{work:?}"),
+        Err(trouble) => format!("{trouble}"),
+    }
+}
+
+#[test]
+fn every_function_gives_the_same_bits() {
+    let odd = [0.0, -0.0, 1.0, -2.5, 5e-324, 1e300, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+    let points = every_function::POINTS.into_iter().chain(odd.into_iter().flat_map(|a| odd.map(|b| (a, b))));
+    let points: Vec<(f64, f64)> = points.collect();
+    for expression in every_function::functions() {
+        let other = every_function::unary(pseudopod::chemistry::tree::Unary::Neg, expression.clone());
+        let (plain, code) = programs(&every_function::system(expression.clone(), other));
+        for &(x, y) in &points {
+            let [one, two] = [&plain, &code].map(|program| {
+                let mut cell = Population::new(program, 1, Method::Rk45);
+                cell.set_state(0, 0, x);
+                cell.set_state(0, 1, y);
+                let few = Tolerances { max_steps: 20, ..Tolerances::default() };
+                let ends = [0.0, 1e-3, 0.1].windows(2).map(|w| told(cell.advance(program, w[0], w[1], &few))).collect();
+                (ends, bits(&cell, 0, 2))
+            });
+            let same: (Vec<String>, Vec<u64>) = two;
+            assert_eq!(one, same, "{expression:?} at {x}, {y}");
+        }
+    }
+}
+
+/// A system driven by an input and by the clock.
+fn driven() -> System {
+    let rates = [("x", 1.0, "y"), ("y", 0.0, "k*(1-x^2)*y-x+0.3*cos(3*t)"), ("z", 2.0, "exp(0-x)-z/(1+x^2)")];
+    let mut system = ode_problems::system("driven", &rates, &[("k", 5.0)]);
+    system.quantities[3] = ode_problems::quantity("k", Role::Input, 5.0);
+    system
+}
+
+#[test]
+fn a_few_cells_in_machine_code_are_those_of_a_crowd_in_lanes() {
+    let problems = [(van_der_pol_pair(20.0), 0.3), (goldbeter_per(), 0.5), (martiel_goldbeter(), 0.5), (driven(), 0.4)];
+    for (system, window) in problems {
+        let (plain, code) = programs(&system);
+        let (n, open) = (plain.size(), plain.open.len());
+        for relative in [1e-3, 1e-6, 1e-10] {
+            let tolerances = Tolerances { relative, absolute: relative, ..Tolerances::default() };
+            let mut crowd = Population::new(&plain, 19, Method::Rk45);
+            let initial: Vec<f64> = (0..n).map(|v| crowd.state(0, v)).collect();
+            let start = |cell: usize, v: usize| initial[v] * (1.0 + 0.5 * (cell as f64 * 0.37 + v as f64).sin());
+            let mut few: Vec<Population> = [1, 2, 5, 8].map(|count| Population::new(&code, count, Method::Rk45)).into();
+            for population in few.iter_mut().chain([&mut crowd]) {
+                (0..population.cells())
+                    .for_each(|cell| (0..n).for_each(|v| population.set_state(cell, v, start(cell, v))));
+            }
+            let mut rejected = 0;
+            for number in 0..40 {
+                let (from, until) = (window * f64::from(number), window * f64::from(number + 1));
+                for population in few.iter_mut().chain([&mut crowd]) {
+                    // Inputs change now and then, and states jump.
+                    let cells = 0..population.cells();
+                    cells.clone().for_each(|cell| {
+                        (0..open).for_each(|o| population.set_given(cell, o, 4.0 + f64::from(number / 3) * 0.2));
+                    });
+                    if number % 7 == 3 {
+                        cells.for_each(|cell| population.set_state(cell, 0, population.state(cell, 0) + 0.1));
+                    }
+                    let program = if population.cells() > 8 { &plain } else { &code };
+                    let work = population.advance(program, from, until, &tolerances).expect("oscillators stay");
+                    rejected += work.rejected;
+                }
+                for population in &few {
+                    for cell in 0..population.cells() {
+                        let (one, many) = (bits(population, cell, n), bits(&crowd, cell, n));
+                        assert_eq!(one, many, "{}, {relative}, window {number}, cell {cell}", system.name);
+                    }
+                }
+            }
+            assert!(rejected > 0 || relative > 1e-4, "{}, {relative}: no step was ever refused", system.name);
+        }
+    }
+}
+
+#[test]
+fn trouble_is_the_same_trouble() {
+    let bomb = ode_problems::system("bomb", &[("calm", 1.0, "0-calm"), ("growth", 1.25, "growth^2")], &[]);
+    let hole = ode_problems::system("hole", &[("x", 1.0, "1/(x-x)")], &[]);
+    let root = ode_problems::system("root", &[("x", 1.0, "0-1+0.01*ln(x)")], &[]);
+    for (system, reason, max_steps) in [
+        (&bomb, Reason::StepUnderflow, 100_000),
+        (&bomb, Reason::TooManySteps, 12),
+        (&hole, Reason::NotFinite, 100_000),
+        (&root, Reason::NotFinite, 100_000),
+    ] {
+        let (plain, code) = programs(system);
+        let tolerances = Tolerances { max_steps, ..Tolerances::default() };
+        for cells in [1, 3] {
+            let [(one, a), (two, b)] = [&plain, &code].map(|program| {
+                let mut population = Population::new(program, cells, Method::Rk45);
+                let trouble = population.advance(program, 0.0, 3.0, &tolerances).expect_err("there is no way on");
+                (trouble, bits(&population, cells - 1, program.size()))
+            });
+            assert_eq!((&one, a), (&two, b), "{} with {cells} cells", system.name);
+            assert_eq!(two.cell, Some(0), "{two}");
+            assert_eq!(two.reason, reason, "{two}");
+        }
+    }
+}
+
+#[test]
+fn large_systems_have_large_frames_and_very_large_ones_no_code() {
+    for count in [63, 64, 65] {
+        // A chain in which each variable pulls the next.
+        let names: Vec<String> = (0..count).map(|v| format!("x{v}")).collect();
+        let rates: Vec<String> = (0..count).map(|v| format!("x{}-2*x{v}+0.1*x{v}^2", (v + 1) % count)).collect();
+        let variables: Vec<(&str, f64, &str)> =
+            (0..count).map(|v| (&*names[v], 1.0 / (1.0 + v as f64), &*rates[v])).collect();
+        let (plain, code) = programs(&ode_problems::system("chain", &variables, &[]));
+        let [one, two] = [&plain, &code].map(|program| {
+            let mut population = Population::new(program, 1, Method::Rk45);
+            population.advance(program, 0.0, 2.0, &Tolerances::default()).expect("a decay");
+            bits(&population, 0, count)
+        });
+        assert_eq!(one, two, "{count} variables");
+    }
+}
+
+#[test]
+fn threads_share_the_code_and_it_outlives_the_program_it_was_cloned_from() {
+    let (plain, code) = programs(&van_der_pol_pair(5.0));
+    let run = |program: &Program| {
+        let mut population = Population::new(program, 1, Method::Rk45);
+        for window in 0..500 {
+            let from = 0.1 * f64::from(window);
+            population.advance(program, from, from + 0.1, &Tolerances::default()).expect("an oscillator");
+        }
+        bits(&population, 0, 4)
+    };
+    let clone = code.clone();
+    drop(code);
+    let wanted = run(&plain);
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..4).map(|_| scope.spawn(|| run(&clone))).collect();
+        threads.into_iter().for_each(|thread| assert_eq!(thread.join().expect("no panic"), wanted));
+    });
+}
