@@ -82,7 +82,7 @@ fn a_few_cells_in_machine_code_are_those_of_a_crowd_in_lanes() {
                     .for_each(|cell| (0..n).for_each(|v| population.set_state(cell, v, start(cell, v))));
             }
             let mut rejected = 0;
-            for number in 0..40 {
+            for number in 0..120 {
                 let (from, until) = (window * f64::from(number), window * f64::from(number + 1));
                 for population in few.iter_mut().chain([&mut crowd]) {
                     // Inputs change now and then, and states jump.
@@ -90,8 +90,9 @@ fn a_few_cells_in_machine_code_are_those_of_a_crowd_in_lanes() {
                     cells.clone().for_each(|cell| {
                         (0..open).for_each(|o| population.set_given(cell, o, 4.0 + f64::from(number / 3) * 0.2));
                     });
-                    if number % 7 == 3 {
-                        cells.for_each(|cell| population.set_state(cell, 0, population.state(cell, 0) + 0.1));
+                    if number % 3 == 1 {
+                        let jump = |cell: usize| 0.3 + 0.1 * (cell as f64 + f64::from(number)).sin();
+                        cells.for_each(|cell| population.set_state(cell, 0, population.state(cell, 0) + jump(cell)));
                     }
                     let program = if population.cells() > 8 { &plain } else { &code };
                     let work = population.advance(program, from, until, &tolerances).expect("oscillators stay");
