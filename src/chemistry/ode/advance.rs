@@ -59,9 +59,10 @@ impl Population {
         window: (f64, f64),
         tolerances: &Tolerances,
     ) -> TaskResult {
-        let Self { states, steps, errors, given, rates, known, .. } = self;
+        let Self { states, steps, errors, given, rates, known, narrow, .. } = self;
+        let room = narrow.get_or_insert_with(|| Box::new(Narrow::new(program, self.method))).room();
         let (steps, errors) = (&mut steps[0], &mut errors[0]);
-        let mut cells = Alone { program, code, states, given, rates, known, steps, errors };
+        let mut cells = Alone { program, code, room, states, given, rates, known, steps, errors };
         let first = cells.advance(0, window, tolerances);
         (1..self.cells).fold(first, |result, l| first_trouble(result, cells.advance(l, window, tolerances)))
     }

@@ -14,6 +14,8 @@ pub struct Alone<'a, const L: usize> {
     pub program: &'a Program,
     /// Its machine code.
     pub code: &'a PairStep<L>,
+    /// Room for what is worked out by register code.
+    pub room: &'a mut Scratch<1>,
     /// States.
     pub states: &'a mut [Lanes<L>],
     /// Open quantities.
@@ -85,26 +87,26 @@ impl<const L: usize> Alone<'_, L> {
         failed.map_or(Ok(work), |error| Err(self.trouble(l, &way, error, shortest)))
     }
 
-    /// Room with the cell of a lane in it.
-    fn scratch(&self, l: usize) -> Scratch<1> {
-        let (mut s, open) = (Scratch::new(self.program, false), self.program.first_open());
-        s.state.iter_mut().zip(&*self.states).for_each(|(to, from)| to[0] = from[l]);
-        s.file[open..].iter_mut().zip(self.given).for_each(|(to, from)| to[0] = from[l]);
-        s
+    /// Puts the cell of a lane into the room.
+    fn load(&mut self, l: usize) {
+        let open = self.program.first_open();
+        self.room.state.iter_mut().zip(&*self.states).for_each(|(to, from)| to[0] = from[l]);
+        self.room.file[open..].iter_mut().zip(self.given).for_each(|(to, from)| to[0] = from[l]);
     }
 
     #[cold]
     #[inline(never)]
-    fn first_step(&self, l: usize, (from, until): (f64, f64), tolerances: &Tolerances) -> f64 {
-        let mut s = self.scratch(l);
-        s.rates_at_state(self.program, [from]);
-        control::first_step(&s.state, &s.stages[..s.state.len()], &self.program.sizes, until - from, tolerances)[0]
+    fn first_step(&mut self, l: usize, (from, until): (f64, f64), tolerances: &Tolerances) -> f64 {
+        self.load(l);
+        let (program, s) = (self.program, &mut *self.room);
+        s.rates_at_state(program, [from]);
+        control::first_step(&s.state, &s.stages[..s.state.len()], &program.sizes, until - from, tolerances)[0]
     }
 
     #[cold]
     #[inline(never)]
-    fn trouble(&self, l: usize, way: &Way, error: f64, shortest: f64) -> CellTrouble {
-        let mut s = self.scratch(l);
-        block::explain(self.program, &mut s, ([way.time], [way.wanted]), 0, (l, error, shortest))
+    fn trouble(&mut self, l: usize, way: &Way, error: f64, shortest: f64) -> CellTrouble {
+        self.load(l);
+        block::explain(self.program, self.room, ([way.time], [way.wanted]), 0, (l, error, shortest))
     }
 }
