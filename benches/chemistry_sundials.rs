@@ -29,10 +29,16 @@ fn main() {
         return;
     };
     println!(
-        "{:10} {:>22} {:>10} {:>10} {:>8}   {:>22} {:>10} {:>8} {:>7}",
-        "problem", "ours: tolerance", "error", "µs", "steps", "CVODE: tolerance", "µs", "steps", "ratio"
+        "{:10} {:10} {:>22} {:>10} {:>10} {:>8}   {:>22} {:>10} {:>8} {:>7}",
+        "problem", "method", "ours: tolerance", "error", "µs", "steps", "CVODE: tolerance", "µs", "steps", "ratio"
     );
-    for (name, method) in [("vdpol", Method::Rosenbrock), ("rober", Method::Rosenbrock), ("pleiades", Method::Rk45)] {
+    let runs = [
+        ("vdpol", Method::Rosenbrock),
+        ("rober", Method::Rosenbrock),
+        ("pleiades", Method::Rk45),
+        ("pleiades", Method::Rk65),
+    ];
+    for (name, method) in runs {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../shared/data/ivp-testset/{name}.json"));
         let Ok(text) = std::fs::read_to_string(path) else {
             println!("{name}: the reference solution in ../shared/data is not there");
@@ -49,7 +55,8 @@ fn main() {
                 .max_by(|a, b| a.tolerance.total_cmp(&b.tolerance));
             let Some(equal) = equal else { continue };
             println!(
-                "{name:10} {tolerance:>22.0e} {:>10.1e} {:>10.0} {:>8}   {:>22.1e} {:>10.0} {:>8} {:>7.2}",
+                "{name:10} {:10} {tolerance:>22.0e} {:>10.1e} {:>10.0} {:>8}   {:>22.1e} {:>10.0} {:>8} {:>7.2}",
+                format!("{method:?}"),
                 ours.error,
                 1e6 * ours.seconds,
                 ours.steps,

@@ -33,8 +33,12 @@ fn on(system: &System, text: &str) -> Expr {
     expression(text, &numbers)
 }
 
-const SCHEMES: [Scheme; 3] =
-    [Scheme::OneStep(Method::Rosenbrock), Scheme::OneStep(Method::Rk45), Scheme::OneStep(Method::Rk4 { step: 0.01 })];
+const SCHEMES: [Scheme; 4] = [
+    Scheme::OneStep(Method::Rosenbrock),
+    Scheme::OneStep(Method::Rk45),
+    Scheme::OneStep(Method::Rk65),
+    Scheme::OneStep(Method::Rk4 { step: 0.01 }),
+];
 
 #[test]
 fn a_ball_bounces_when_it_should() {
@@ -192,7 +196,7 @@ fn a_parameter_that_an_event_sets_stays_set_from_window_to_window() {
     let high = compare(Binary::Gt, Expr::Quantity(0), Expr::Number(1.5));
     switched.events.push(event(high, vec![(1, Expr::Number(3.0))]));
     let (program, plan) = EventPlan::compile(&switched, 0.0).expect("a program");
-    for method in [Method::Rosenbrock, Method::Rk45, Method::Rk4 { step: 0.01 }] {
+    for method in [Method::Rosenbrock, Method::Rk45, Method::Rk65, Method::Rk4 { step: 0.01 }] {
         let mut cells = Population::new(&program, 2, method);
         let mut memories = vec![plan.before_start(); 2];
         cells.set_given(1, 0, 0.5);

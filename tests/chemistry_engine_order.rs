@@ -35,7 +35,9 @@ fn fixed_steps_converge_with_their_order() {
 
 #[test]
 fn adaptive_methods_converge_with_their_order() {
-    for (order, method, tight) in [(5.0, Method::Rk45, 1e-11), (4.0, Method::Rosenbrock, 1e-10)] {
+    for (order, method, tight) in
+        [(5.0, Method::Rk45, 1e-11), (6.0, Method::Rk65, 1e-11), (4.0, Method::Rosenbrock, 1e-10)]
+    {
         let scheme = Scheme::OneStep(method);
         let found = errors(&[(scheme, 1e-6), (scheme, tight)]);
         let slope = (found[0].0 / found[1].0).ln() / (found[1].1 / found[0].1).ln();
@@ -49,7 +51,9 @@ fn values_between_steps_are_as_good_as_the_steps() {
     let rates = [("x", 0.0, "y"), ("y", 1.0, "0-x")];
     let system = system("circle", &rates, &[]);
     let points: Vec<f64> = (0..=1000).map(|n| 0.01 * f64::from(n)).collect();
-    for (method, bound) in [(Method::Rk45, 1e-7), (Method::Rosenbrock, 1e-6), (Method::Rk4 { step: 0.01 }, 1e-8)] {
+    for (method, bound) in
+        [(Method::Rk45, 1e-7), (Method::Rk65, 1e-7), (Method::Rosenbrock, 1e-6), (Method::Rk4 { step: 0.01 }, 1e-8)]
+    {
         let options =
             SolveOptions { scheme: Scheme::OneStep(method), relative: 1e-8, absolute: 1e-8, ..Default::default() };
         let solution = solve(&system, 0.0, 10.0, &points, &options).expect("a circle");
@@ -62,7 +66,11 @@ fn values_between_steps_are_as_good_as_the_steps() {
 
 #[test]
 fn populations_agree_with_single_solves() {
-    for (system, method) in [(van_der_pol_pair(1.0), Method::Rk45), (martiel_goldbeter(), Method::Rosenbrock)] {
+    for (system, method) in [
+        (van_der_pol_pair(1.0), Method::Rk45),
+        (martiel_goldbeter(), Method::Rk65),
+        (martiel_goldbeter(), Method::Rosenbrock),
+    ] {
         let program = Program::new(&system).expect("no circles");
         let mut population = Population::new(&program, 20, method);
         let tolerances = Tolerances { relative: 1e-8, absolute: 1e-10, ..Tolerances::default() };
@@ -105,7 +113,7 @@ fn crowd(cells: std::ops::Range<usize>, method: Method, threads: usize) -> Vec<u
 
 #[test]
 fn a_cell_is_the_same_to_the_last_bit_alone_or_in_a_crowd_on_any_threads() {
-    for method in [Method::Rk45, Method::Rosenbrock, Method::Rk4 { step: 0.01 }] {
+    for method in [Method::Rk45, Method::Rk65, Method::Rosenbrock, Method::Rk4 { step: 0.01 }] {
         let many = crowd(0..10_001, method, 2);
         assert!(many == crowd(0..10_001, method, 1), "{method:?}: one thread and two differ");
         for cell in [0, 15, 777, 10_000] {
@@ -122,7 +130,7 @@ fn a_cell_is_the_same_to_the_last_bit_alone_or_in_a_crowd_on_any_threads() {
 fn trouble_names_cell_time_and_variable_and_spares_the_neighbours() {
     let system = system("bomb", &[("calm", 1.0, "0-calm"), ("growth", 0.1, "growth^2")], &[]);
     let program = Program::new(&system).expect("no circles");
-    for method in [Method::Rk45, Method::Rosenbrock] {
+    for method in [Method::Rk45, Method::Rk65, Method::Rosenbrock] {
         let mut population = Population::new(&program, 40, method);
         population.set_state(30, 1, 2.0); // 1/(0.5 − t)
         population.set_state(20, 1, 1.25); // 1/(0.8 − t)
@@ -168,9 +176,11 @@ fn rates_kept_between_windows_change_no_bit() {
         system.quantities[2] = ode_problems::quantity("k", Role::Input, 1.0);
         system
     };
-    for (rate, keeps) in [("k*(1-x^2)*y-x", true), ("k*cos(3*t)-x", false)] {
+    let cases = [Method::Rk45, Method::Rk65].into_iter();
+    let cases = cases.flat_map(|method| [(method, "k*(1-x^2)*y-x", true), (method, "k*cos(3*t)-x", false)]);
+    for (method, rate, keeps) in cases {
         let program = Program::new(&driven(rate)).expect("no circles");
-        let mut kept = Population::new(&program, 37, Method::Rk45);
+        let mut kept = Population::new(&program, 37, method);
         (0..37).for_each(|cell| kept.set_state(cell, 1, 0.1 * cell as f64));
         let mut anew = kept.clone();
         let (mut work, mut all) = (0, 0);

@@ -74,7 +74,12 @@ fn brusselator(wall: &str, solver: &str) -> String {
 
 #[test]
 fn the_splitting_agrees_with_the_method_of_lines_to_second_order() {
-    for solver in ["", "<solver scheme=\"rosenbrock\"/>", "<solver scheme=\"rk45\" rtol=\"1e-8\"/>"] {
+    for solver in [
+        "",
+        "<solver scheme=\"rosenbrock\"/>",
+        "<solver scheme=\"rk45\" rtol=\"1e-8\"/>",
+        "<solver scheme=\"rk65\" rtol=\"1e-8\"/>",
+    ] {
         for wall in ["no_flux", "periodic", "fixed"] {
             let (system, start) = open(&brusselator(wall, solver));
             let reference = system.reference(&start, 0.4, &[], 1e-10, 1e-12).expect("the method of lines");

@@ -56,6 +56,8 @@ pub struct Chemistry {
 pub enum Scheme {
     /// Explicit Runge–Kutta of order 5, finds its step.
     Rk45,
+    /// Explicit Runge–Kutta of order 6, finds its step: for tight tolerances.
+    Rk65,
     /// Rosenbrock, for stiff systems, finds its step.
     Rosenbrock,
     /// Explicit Runge–Kutta of order 4 with `inner_step`.

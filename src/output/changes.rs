@@ -61,24 +61,21 @@ fn changes_between(frame: usize, before: &[u32], after: &[u32]) -> Vec<Event> {
     went.retain(|[before, after]| size(&sizes_before, *before) > 1 && size(&sizes_after, *after) > 1);
     went.sort_unstable();
     went.dedup();
+    // Of every aggregate of one side, those of the other that it shares cells with: one is no change.
     let mut events = Vec::new();
-    for &(number, cells) in sizes_before.iter().filter(|known| known.1 > 1) {
-        let after: Vec<u32> = went.iter().filter(|went| went[0] == number).map(|went| went[1]).collect();
-        let change = match after.len() {
-            0 => Change::Death,
-            1 => continue,
-            _ => Change::Split,
-        };
-        events.push(Event { frame, change, before: vec![number], after, cells });
-    }
-    for &(number, cells) in sizes_after.iter().filter(|known| known.1 > 1) {
-        let before: Vec<u32> = went.iter().filter(|went| went[1] == number).map(|went| went[0]).collect();
-        let change = match before.len() {
-            0 => Change::Birth,
-            1 => continue,
-            _ => Change::Merge,
-        };
-        events.push(Event { frame, change, before, after: vec![number], cells });
+    for (side, known, alone, several) in
+        [(0, &sizes_before, Change::Death, Change::Split), (1, &sizes_after, Change::Birth, Change::Merge)]
+    {
+        for &(number, cells) in known.iter().filter(|known| known.1 > 1) {
+            let others: Vec<u32> = went.iter().filter(|went| went[side] == number).map(|went| went[1 - side]).collect();
+            let change = match others.len() {
+                0 => alone,
+                1 => continue,
+                _ => several,
+            };
+            let (before, after) = if side == 0 { (vec![number], others) } else { (others, vec![number]) };
+            events.push(Event { frame, change, before, after, cells });
+        }
     }
     events
 }

@@ -15,54 +15,6 @@ pub fn binary(function: Binary, a: Expr, b: Expr) -> Expr {
     Expr::Binary(function, Box::new(a), Box::new(b))
 }
 
-pub const UNARY: [Unary; 24] = [
-    Unary::Neg,
-    Unary::Not,
-    Unary::Abs,
-    Unary::Sign,
-    Unary::Floor,
-    Unary::Ceil,
-    Unary::Exp,
-    Unary::Ln,
-    Unary::Log10,
-    Unary::Sqrt,
-    Unary::Sin,
-    Unary::Cos,
-    Unary::Tan,
-    Unary::Asin,
-    Unary::Acos,
-    Unary::Atan,
-    Unary::Sinh,
-    Unary::Cosh,
-    Unary::Tanh,
-    Unary::Asinh,
-    Unary::Acosh,
-    Unary::Atanh,
-    Unary::Heaviside,
-    Unary::Factorial,
-];
-
-pub const BINARY: [Binary; 18] = [
-    Binary::Add,
-    Binary::Sub,
-    Binary::Mul,
-    Binary::Div,
-    Binary::Pow,
-    Binary::Min,
-    Binary::Max,
-    Binary::Rem,
-    Binary::Quotient,
-    Binary::Lt,
-    Binary::Le,
-    Binary::Gt,
-    Binary::Ge,
-    Binary::Eq,
-    Binary::Ne,
-    Binary::And,
-    Binary::Or,
-    Binary::Xor,
-];
-
 /// A system of two variables whose rates are two expressions of quantities 0 and 1, with an input and a parameter.
 pub fn system(first: Expr, second: Expr) -> System {
     let quantities = vec![
@@ -78,8 +30,8 @@ pub fn system(first: Expr, second: Expr) -> System {
 /// Every function of the tree, alone.
 pub fn functions() -> Vec<Expr> {
     let (x, y) = (|| Expr::Quantity(0), || Expr::Quantity(1));
-    let mut all: Vec<Expr> = UNARY.iter().map(|&function| unary(function, x())).collect();
-    all.extend(BINARY.iter().map(|&function| binary(function, x(), y())));
+    let mut all: Vec<Expr> = Unary::ALL.iter().map(|&function| unary(function, x())).collect();
+    all.extend(Binary::ALL.iter().map(|&function| binary(function, x(), y())));
     for exponent in [-3.0, -1.0, 0.0, 0.5, 1.0, 2.0, 7.0, 16.0, 17.0, 2.5] {
         all.push(binary(Binary::Pow, x(), Expr::Number(exponent)));
         all.push(binary(Binary::Pow, Expr::Number(exponent.abs() + 0.5), x()));

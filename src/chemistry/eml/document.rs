@@ -61,6 +61,8 @@ pub struct SolverChoice {
 pub enum Scheme {
     /// Explicit Runge–Kutta of order 5 with error control.
     Rk45,
+    /// Explicit Runge–Kutta of order 6 with error control.
+    Rk65,
     /// Rosenbrock for stiff systems.
     Rosenbrock,
     /// Explicit Runge–Kutta of order 4, fixed step.

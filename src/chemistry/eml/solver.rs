@@ -5,8 +5,9 @@ use super::document::{Level, Scheme, SolverChoice};
 use super::xml::Element;
 
 /// Names of the schemes; those with a fixed step come last.
-pub const SCHEMES: [(&str, Scheme); 5] = [
+pub const SCHEMES: [(&str, Scheme); 6] = [
     ("rk45", Scheme::Rk45),
+    ("rk65", Scheme::Rk65),
     ("rosenbrock", Scheme::Rosenbrock),
     ("bdf", Scheme::Bdf),
     ("rk4", Scheme::Rk4),
@@ -35,13 +36,14 @@ impl Builder<'_, '_> {
         let fixed = matches!(scheme, Some(Scheme::Rk4 | Scheme::Euler));
         if fixed && element.attribute("inner_step").is_none() {
             let help =
-                "write inner_step=\"…\" in the unit of time, or choose rk45, rosenbrock or bdf, which find their step";
+                "write inner_step=\"…\" in the unit of time, or take rk45, rk65, rosenbrock or bdf, which find it";
             let message = format!("the scheme {} has no inner step", element.word("scheme"));
             self.desk.fault(element.place("scheme"), &message, "a fixed step", help);
         }
         if let (Level::Field, Some(Scheme::Bdf | Scheme::Euler)) = (self.known.level, scheme) {
             let message = format!("the reactions of fields cannot be taken with {}", element.word("scheme"));
-            let help = "write \"rk4\", \"rk45\" or, for stiff reactions, \"rosenbrock\", or leave the scheme out";
+            let help =
+                "write \"rk4\", \"rk45\", \"rk65\" or, for stiff reactions, \"rosenbrock\", or leave the scheme out";
             self.desk.fault(element.place("scheme"), &message, "this scheme", help);
         }
         if let (Some(step), Some(inner)) = (choice.step, choice.inner_step)

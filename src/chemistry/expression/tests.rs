@@ -138,31 +138,12 @@ fn a_deep_or_growing_expression_is_refused_and_not_followed() {
 }
 
 fn any_expr() -> impl Strategy<Value = Expr> {
-    use Binary::*;
     let number = prop_oneof![any::<f64>().prop_filter("finite", |v| v.is_finite()), (-9i32..9).prop_map(f64::from)];
     let leaf = prop_oneof![number.prop_map(Expr::Number), Just(Expr::Time), (0u32..3).prop_map(Expr::Quantity)];
     leaf.prop_recursive(5, 40, 3, |inner| {
-        let binary = [Add, Sub, Mul, Div, Pow, Min, Max, Rem, Quotient, Lt, Le, Gt, Ge, Eq, Ne, And, Or, Xor];
-        let unary = [
-            Unary::Neg,
-            Unary::Not,
-            Unary::Abs,
-            Unary::Sign,
-            Unary::Floor,
-            Unary::Ceil,
-            Unary::Exp,
-            Unary::Ln,
-            Unary::Log10,
-            Unary::Sqrt,
-            Unary::Sin,
-            Unary::Asinh,
-            Unary::Atanh,
-            Unary::Heaviside,
-            Unary::Factorial,
-        ];
         prop_oneof![
-            (prop::sample::select(unary.to_vec()), inner.clone()).prop_map(|(f, a)| a.unary(f)),
-            (prop::sample::select(binary.to_vec()), inner.clone(), inner.clone()).prop_map(|(f, a, b)| a.binary(f, b)),
+            (prop::sample::select(&Unary::ALL[..]), inner.clone()).prop_map(|(f, a)| a.unary(f)),
+            (prop::sample::select(&Binary::ALL[..]), inner.clone(), inner.clone()).prop_map(|(f, a, b)| a.binary(f, b)),
             (prop::collection::vec((inner.clone(), inner.clone()), 1..3), inner)
                 .prop_map(|(branches, otherwise)| Expr::Piecewise { branches, otherwise: Box::new(otherwise) }),
         ]

@@ -236,12 +236,14 @@ fn method(document: &Document) -> Result<Option<Method>> {
     match document.solver.scheme {
         None => Ok(None),
         Some(Scheme::Rk45) => Ok(Some(Method::Rk45)),
+        Some(Scheme::Rk65) => Ok(Some(Method::Rk65)),
         Some(Scheme::Rosenbrock) => Ok(Some(Method::Rosenbrock)),
         Some(Scheme::Rk4) => Ok(Some(Method::Rk4 { step: inner })),
         Some(other @ (Scheme::Euler | Scheme::Bdf)) => {
             let name = if other == Scheme::Bdf { "bdf" } else { "euler" };
             let message = format!("the reactions of the fields of '{}' cannot be taken with {name}", document.name);
-            let help = "write scheme=\"rk4\", \"rk45\" or, for stiff reactions, \"rosenbrock\", or leave it out";
+            let help =
+                "write scheme=\"rk4\", \"rk45\", \"rk65\" or, for stiff reactions, \"rosenbrock\", or leave it out";
             Err(Error::input(Fault::new(message).help(help)))
         }
     }

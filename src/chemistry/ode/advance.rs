@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use super::alone::Alone;
 use super::block::{self, CellTrouble};
 use super::cells::{Cells, Kept};
+use super::control::Controller;
 use super::narrow::Narrow;
 use super::population::{LANES, Population};
 use super::scratch::Scratch;
-use super::tableau::tsitouras::TABLEAU;
 use super::{Method, OdeTrouble, Tolerances, Work};
 use crate::chemistry::program::{Lanes, PairStep, Program};
 
@@ -40,10 +40,10 @@ impl Population {
             return Ok(Work::default());
         }
         self.keep_rates(program);
-        let code =
-            if self.cells <= FEW_IN_CODE && self.method == Method::Rk45 { program.pair_step(&TABLEAU) } else { None };
+        let pair = if self.cells <= FEW_IN_CODE { self.method.pair() } else { None };
+        let code = pair.and_then(|(tableau, controller)| Some((program.pair_step(tableau)?, controller)));
         let result = match code {
-            Some(code) => self.advance_in_code((program, code), (from, until), tolerances),
+            Some(code) => self.advance_in_code(program, code, (from, until), tolerances),
             None if self.cells <= FEW => self.advance_one_by_one(program, (from, until), tolerances),
             None => self.advance_side_by_side(program, (from, until), tolerances),
         };
@@ -55,14 +55,15 @@ impl Population {
 
     fn advance_in_code(
         &mut self,
-        (program, code): (&Program, &PairStep<LANES>),
+        program: &Program,
+        (code, controller): (&PairStep<LANES>, Controller),
         window: (f64, f64),
         tolerances: &Tolerances,
     ) -> TaskResult {
         let Self { states, steps, errors, given, rates, known, narrow, .. } = self;
         let room = narrow.get_or_insert_with(|| Box::new(Narrow::new(program, self.method))).room();
         let (steps, errors) = (&mut steps[0], &mut errors[0]);
-        let mut cells = Alone { program, code, room, states, given, rates, known, steps, errors };
+        let mut cells = Alone { program, code, controller, room, states, given, rates, known, steps, errors };
         let first = cells.advance(0, window, tolerances);
         (1..self.cells).fold(first, |result, l| first_trouble(result, cells.advance(l, window, tolerances)))
     }

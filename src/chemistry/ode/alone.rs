@@ -1,9 +1,9 @@
-//! Cells one by one by the explicit pair in machine code: for each the decisions of [`block`](super::block), so the same
+//! Cells one by one by an explicit pair in machine code: for each the decisions of [`block`](super::block), so the same
 //! bits.
 
 use super::Work;
 use super::block::{self, CellTrouble};
-use super::control::{self, EXPLICIT, LEAST, SAFE_SHRINK, Tolerances};
+use super::control::{self, Controller, Tolerances};
 use super::mask::{Mask, when};
 use super::scratch::Scratch;
 use crate::chemistry::program::{Lanes, PairStep, Program, Way};
@@ -14,6 +14,8 @@ pub struct Alone<'a, const L: usize> {
     pub program: &'a Program,
     /// Its machine code.
     pub code: &'a PairStep<L>,
+    /// How the pair chooses the next step.
+    pub controller: Controller,
     /// Room for what is worked out by register code.
     pub room: &'a mut Scratch<1>,
     /// States.
@@ -46,29 +48,25 @@ impl<const L: usize> Alone<'_, L> {
         let wanted = if self.steps[l] > 0.0 { self.steps[l] } else { self.first_step(l, (from, until), tolerances) };
         let Tolerances { absolute, relative, max_steps } = *tolerances;
         let mut way = Way { time: from, until, wanted, step: 0.0, absolute, relative, fresh: !known & 1 };
-        let shortest = block::shortest(from, until);
-        let (mut steps, mut rejected, mut previous, mut most) = (0, 0, self.errors[l], EXPLICIT.most);
+        let shortest = control::shortest(from, until);
+        let controller = self.controller;
+        let (mut steps, mut rejected, mut previous, mut most) = (0, 0, self.errors[l], controller.most);
         let failed = loop {
             let wanted = way.wanted;
             let half = 0.5 * (until - way.time);
             let error = self.code.run(l, self.given, self.states, self.rates, &mut way);
             way.fresh = 0;
-            let factor = EXPLICIT.factor(error, previous);
+            let factor = controller.factor(error, previous);
             if error <= 1.0 {
                 steps += 1;
-                let grown = if factor < most { factor } else { most };
-                let next = way.step * grown;
-                // As in a block: a step cut by the window that was good enough says nothing against the longer one.
-                let keeps = (wanted > half) & (grown >= most) & (next < wanted);
-                way.wanted = if keeps { wanted } else { next };
-                (previous, most) = (error, EXPLICIT.most);
+                way.wanted = control::after_good(way.step, (wanted, wanted > half), factor, most);
+                (previous, most) = (error, controller.most);
                 if way.time >= until {
                     break None;
                 }
             } else {
                 rejected += 1;
-                let shrunk = if factor < SAFE_SHRINK { factor } else { SAFE_SHRINK };
-                way.wanted = way.step * if error < f64::INFINITY { shrunk } else { LEAST };
+                way.wanted = control::after_refused(way.step, error, factor);
                 most = 1.0;
                 if way.wanted <= shortest {
                     break Some(error);
@@ -82,7 +80,7 @@ impl<const L: usize> Alone<'_, L> {
         if let Some(known) = self.known.first_mut() {
             known[l] = when(failed.is_none());
         }
-        let rates = 6 * (steps + rejected) + (!known & 1);
+        let rates = self.code.rates() * (steps + rejected) + (!known & 1);
         let work = Work { steps, rejected, rates, ..Work::default() };
         failed.map_or(Ok(work), |error| Err(self.trouble(l, &way, error, shortest)))
     }

@@ -2,11 +2,12 @@
 
 use pulp::Simd;
 
+use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
 use super::cells::{Cells, Seats};
-use super::control::{self, Controller, EXPLICIT, LEAST, SAFE_SHRINK, STIFF, Tolerances};
-use super::mask::{self, Mask, YES, both, choose, pick, when};
+use super::control::{self, Controller, NEAR, Tolerances};
+use super::mask::{self, Mask, both, choose, pick, when};
 use super::scratch::Scratch;
-use super::{Method, Reason, Work, explicit, rosenbrock};
+use super::{Method, Reason, Work, fixed};
 use crate::chemistry::program::{Lanes, Program};
 
 /// The first cell of a task that failed.
@@ -38,21 +39,13 @@ pub fn advance<S: Simd, const L: usize>(
     tolerances: &Tolerances,
 ) -> Result<Work, CellTrouble> {
     match method {
-        Method::Rk45 => adaptive::<S, L, false>(simd, program, scratch, cells, window, tolerances),
-        Method::Rosenbrock => adaptive::<S, L, true>(simd, program, scratch, cells, window, tolerances),
-        Method::Rk4 { step } => fixed::<L, true>(program, scratch, cells, window, step),
-        Method::Euler { step } => fixed::<L, false>(program, scratch, cells, window, step),
+        Method::Rk45 => adaptive::<S, L, Tsitouras>(simd, program, scratch, cells, window, tolerances),
+        Method::Rk65 => adaptive::<S, L, Verner>(simd, program, scratch, cells, window, tolerances),
+        Method::Rosenbrock => adaptive::<S, L, Rodas>(simd, program, scratch, cells, window, tolerances),
+        Method::Rk4 { step } => fixed::advance::<L, true>(program, scratch, cells, window, step),
+        Method::Euler { step } => fixed::advance::<L, false>(program, scratch, cells, window, step),
     }
 }
-
-/// Steps are not shorter than this: the clock could not tell their ends apart.
-#[inline(always)]
-pub fn shortest(from: f64, until: f64) -> f64 {
-    4.0 * f64::EPSILON * from.abs().max(until.abs())
-}
-
-/// A step of at least this share of what is left of a window is the last.
-pub const NEAR: f64 = 1.0 - 1e-10;
 
 /// Lanes wait for each other until one in so many is free: that costs less than to change cells more often.
 const FREE_SHARE: usize = 2;
@@ -70,12 +63,12 @@ struct Round<const L: usize> {
     step: Lanes<L>,
     /// Those that end with the window.
     last: Mask<L>,
-    /// Those that would else have been longer than half of what is left.
+    /// Those that would else have been longer than half of what is left, the last ones among them.
     cut: Mask<L>,
 }
 
 #[inline(always)]
-fn adaptive<S: Simd, const L: usize, const STIFFLY: bool>(
+fn adaptive<S: Simd, const L: usize, M: Adaptive>(
     simd: S,
     program: &Program,
     s: &mut Scratch<L>,
@@ -83,11 +76,10 @@ fn adaptive<S: Simd, const L: usize, const STIFFLY: bool>(
     (from, until): (f64, f64),
     tolerances: &Tolerances,
 ) -> Result<Work, CellTrouble> {
-    let controller = if STIFFLY { STIFF } else { EXPLICIT };
     let (mut work, mut trouble) = (Work::default(), None);
     let mut seats = Seats::<L>::new();
     let mut way = Way { time: [from; L], rounds: [0.0; L], refused: [0; L] };
-    let shortest = shortest(from, until);
+    let shortest = control::shortest(from, until);
     let open = program.first_open();
     loop {
         sit(&mut seats, &mut way, cells, open, s, from);
@@ -95,21 +87,17 @@ fn adaptive<S: Simd, const L: usize, const STIFFLY: bool>(
         if left == 0 {
             break;
         }
-        begin::<L, STIFFLY>(program, s, &mut seats, &way.time, until - from, tolerances, &mut work);
+        begin::<L, M>(program, s, &mut seats, &way.time, until - from, tolerances, &mut work);
         let round = plan(&seats, &way, (from, until));
-        if STIFFLY {
-            rosenbrock::step(simd, program, s, &way.time, &round.step);
-            work.jacobians += left as u64;
-        } else {
-            explicit::tsitouras(simd, program, s, &way.time, &round.step);
-        }
-        work.rates += 6 * left as u64;
+        M::step(simd, program, s, &way.time, &round.step);
+        work.jacobians += M::JACOBIANS * left as u64;
+        work.rates += M::RATES * left as u64;
         let error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
-        let accepted = judge(&mut seats, &mut way, &round, &error, &controller, until);
+        let accepted = judge(&mut seats, &mut way, &round, &error, &M::CONTROLLER, until);
         let steps = mask::count(&accepted);
         work.steps += steps as u64;
         work.rejected += (left - steps) as u64;
-        advance_state::<L, STIFFLY>(s, &accepted, steps);
+        advance_state::<L, M>(s, &accepted, steps);
         let (arrived, leaving) = leaving(&seats, &way, until, shortest, f64::from(tolerances.max_steps));
         let leave = mask::count(&leaving);
         if leave == 0 {
@@ -167,13 +155,8 @@ fn judge<const L: usize>(
     for l in 0..L {
         let (step, wanted) = (round.step[l], seats.step[l]);
         let most = pick(way.refused[l], 1.0, controller.most);
-        let grown = if factor[l] < most { factor[l] } else { most };
-        let next = step * grown;
-        // A step cut by the window that was good enough says nothing against the longer one.
-        let keeps = (round.cut[l] | round.last[l]) & when(grown >= most) & when(next < wanted);
-        let known = if factor[l] < SAFE_SHRINK { factor[l] } else { SAFE_SHRINK };
-        let shrunk = step * if error[l] < f64::INFINITY { known } else { LEAST };
-        seats.step[l] = pick(accepted[l], pick(keeps, wanted, next), shrunk);
+        let next = control::after_good(step, (wanted, round.cut[l] != 0), factor[l], most);
+        seats.step[l] = pick(accepted[l], next, control::after_refused(step, error[l], factor[l]));
     }
     for l in 0..L {
         let end = pick(round.last[l], until, way.time[l] + round.step[l]);
@@ -204,23 +187,23 @@ fn leaving<const L: usize>(
     (arrived, leaving)
 }
 
-/// Makes proposals that were accepted the state, and with the explicit pair the rates there the first stage.
+/// Makes proposals that were accepted the state, and with an explicit pair the rates there the first stage.
 #[inline(always)]
-fn advance_state<const L: usize, const STIFFLY: bool>(s: &mut Scratch<L>, accepted: &Mask<L>, steps: usize) {
+fn advance_state<const L: usize, M: Adaptive>(s: &mut Scratch<L>, accepted: &Mask<L>, steps: usize) {
     let n = s.state.len();
     if steps == L {
         std::mem::swap(&mut s.state, &mut s.proposal);
-        if !STIFFLY {
-            s.stages.copy_within(6 * n.., 0);
+        if let Some(last) = M::LAST {
+            s.stages.copy_within(last * n..(last + 1) * n, 0);
         }
         return;
     }
     for (state, proposal) in s.state.iter_mut().zip(&s.proposal) {
         choose(state, proposal, accepted);
     }
-    if !STIFFLY {
+    if let Some(last) = M::LAST {
         let (first, others) = s.stages.split_at_mut(n);
-        for (first, last) in first.iter_mut().zip(&others[5 * n..]) {
+        for (first, last) in first.iter_mut().zip(&others[(last - 1) * n..last * n]) {
             choose(first, last, accepted);
         }
     }
@@ -253,7 +236,7 @@ fn sit<const L: usize>(
 
 /// What cells that have just sat down need: the rates at their state, and a first step where none is known.
 #[inline(always)]
-fn begin<const L: usize, const STIFFLY: bool>(
+fn begin<const L: usize, M: Adaptive>(
     program: &Program,
     s: &mut Scratch<L>,
     seats: &mut Seats<L>,
@@ -269,7 +252,7 @@ fn begin<const L: usize, const STIFFLY: bool>(
     let fresh = mask::count(&both(&seats.fresh, &seats.active));
     let unknown = mask::count(&unknown) > 0;
     seats.fresh = [0; L];
-    if !unknown && (fresh == 0 || STIFFLY) {
+    if !unknown && (fresh == 0 || M::LAST.is_none()) {
         return;
     }
     if fresh > 0 {
@@ -301,51 +284,4 @@ pub fn explain<const L: usize>(
         (true, false) => Reason::NotFinite,
     };
     CellTrouble { cell, time: time[l], variable, reason }
-}
-
-/// Equal inner steps no longer than `longest`.
-#[inline(always)]
-fn fixed<const L: usize, const CLASSICAL: bool>(
-    program: &Program,
-    s: &mut Scratch<L>,
-    cells: &mut Cells<L>,
-    (from, until): (f64, f64),
-    longest: f64,
-) -> Result<Work, CellTrouble> {
-    let (n, open) = (s.state.len(), program.first_open());
-    // An inner step that goes into the window but for round-off does so exactly.
-    let count = ((until - from) / longest - 1e-9).ceil().max(1.0);
-    let step = (until - from) / count;
-    let numbers = cells.given.len() / cells.steps.len();
-    let mut trouble: Option<CellTrouble> = None;
-    for block in 0..cells.steps.len() {
-        s.state.copy_from_slice(&cells.states[block * n..(block + 1) * n]);
-        s.file[open..open + numbers].copy_from_slice(&cells.given[block * numbers..(block + 1) * numbers]);
-        let mut going = [YES; L];
-        for number in 0..count as u64 {
-            let time = from + number as f64 * step;
-            if CLASSICAL {
-                explicit::classical(program, s, [time; L], [step; L]);
-            } else {
-                explicit::euler(program, s, [time; L], [step; L]);
-            }
-            for l in 0..L {
-                let broken = (0..n).find(|&v| !s.proposal[v][l].is_finite());
-                if broken.is_some() && going[l] != 0 {
-                    going[l] = 0;
-                    let cell = block * L + l;
-                    if cell < cells.count && trouble.is_none_or(|known| cell < known.cell) {
-                        trouble = Some(CellTrouble { cell, time, variable: broken, reason: Reason::NotFinite });
-                    }
-                }
-            }
-            for (state, proposal) in s.state.iter_mut().zip(&s.proposal) {
-                choose(state, proposal, &going);
-            }
-        }
-        cells.states[block * n..(block + 1) * n].copy_from_slice(&s.state);
-    }
-    let steps = count as u64 * cells.count as u64;
-    let work = Work { steps, rates: steps * if CLASSICAL { 4 } else { 1 }, ..Work::default() };
-    trouble.map_or(Ok(work), Err)
 }

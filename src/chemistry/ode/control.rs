@@ -33,16 +33,20 @@ pub struct Controller {
     pub most: f64,
 }
 
-/// For the explicit pair, as in Hairer, Nørsett, Wanner, II.4.
+/// For the explicit pair of order 5(4), as in Hairer, Nørsett, Wanner, II.4.
 pub const EXPLICIT: Controller = Controller { now: 0.17, before: 0.04, most: 8.0 };
+/// For the explicit pair of order 6(5): the exponents go with one over the order, as there.
+pub const SIXTH: Controller = Controller { now: 0.144, before: 0.03, most: 8.0 };
 /// For the Rosenbrock method.
 pub const STIFF: Controller = Controller { now: 0.23, before: 0.0, most: 6.0 };
 
 const SAFETY: f64 = 0.9;
 /// Least that a step may shrink to.
-pub const LEAST: f64 = 0.2;
+const LEAST: f64 = 0.2;
 /// A refused step shrinks at least to this share.
-pub const SAFE_SHRINK: f64 = 0.9;
+const SAFE_SHRINK: f64 = 0.9;
+/// A step of at least this share of what is left of a window is the last.
+pub const NEAR: f64 = 1.0 - 1e-10;
 /// Errors are not counted as smaller than this in the controller.
 const SMALLEST: f64 = 1e-8;
 
@@ -60,6 +64,29 @@ impl Controller {
         let factor = if factor < self.most { factor } else { self.most };
         if factor > LEAST { factor } else { LEAST }
     }
+}
+
+/// The step after one that was good enough, by a factor of which no more than `most` is allowed. `cut` says that a longer
+/// one was wanted than the window left room for.
+#[inline(always)]
+pub fn after_good(step: f64, (wanted, cut): (f64, bool), factor: f64, most: f64) -> f64 {
+    let grown = if factor < most { factor } else { most };
+    let next = step * grown;
+    // A step cut by the window that was good enough says nothing against the longer one.
+    if cut & (grown >= most) & (next < wanted) { wanted } else { next }
+}
+
+/// The step after one that was refused.
+#[inline(always)]
+pub fn after_refused(step: f64, error: f64, factor: f64) -> f64 {
+    let known = if factor < SAFE_SHRINK { factor } else { SAFE_SHRINK };
+    step * if error < f64::INFINITY { known } else { LEAST }
+}
+
+/// Steps are not shorter than this: the clock could not tell their ends apart.
+#[inline(always)]
+pub fn shortest(from: f64, until: f64) -> f64 {
+    4.0 * f64::EPSILON * from.abs().max(until.abs())
 }
 
 /// The logarithm to base 2 of a positive number that is not tiny, to 1.2·10⁻⁴; that of infinity is 1024. A step need not be
@@ -143,7 +170,7 @@ pub fn first_step<const L: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::{Controller, EXPLICIT, LEAST, STIFF};
+    use super::{Controller, EXPLICIT, LEAST, SIXTH, STIFF};
 
     #[test]
     fn the_factor_is_the_formula_to_a_ten_thousandth() {
@@ -151,7 +178,7 @@ mod tests {
             let power = error.max(1e-8).powf(-controller.now) * last.max(1e-4).powf(controller.before);
             (0.9 * power).min(controller.most).max(LEAST)
         };
-        for controller in [EXPLICIT, STIFF] {
+        for controller in [EXPLICIT, SIXTH, STIFF] {
             for (a, b) in (0..4000).flat_map(|a| (0..13).map(move |b| (a, b))) {
                 let (error, last) = (10_f64.powf(0.01 * f64::from(a) - 12.0), 10_f64.powf(-0.5 * f64::from(b)));
                 let (found, exact) = (controller.factor(error, last), exact(&controller, error, last));

@@ -1,6 +1,7 @@
 //! Solving the equations, eq. (ode.1): for all cells of a population side by side, each cell with a step of its own, or for one
 //! system alone with events and values at any time.
 
+mod adaptive;
 mod advance;
 mod alone;
 pub(in crate::chemistry) mod block;
@@ -10,6 +11,7 @@ mod course;
 mod eventful;
 mod events;
 mod explicit;
+mod fixed;
 mod lu;
 mod mask;
 mod multistep;
@@ -30,7 +32,9 @@ pub use solve::{Scheme, Solution, SolveOptions, solve, solve_each};
 
 use serde::{Deserialize, Serialize};
 
+use crate::chemistry::program::Tableau;
 use crate::error::Error;
+use control::Controller;
 
 /// A one-step method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -49,6 +53,19 @@ pub enum Method {
         /// Longest inner step, in the system's time.
         step: f64,
     },
+    /// Explicit, order 6(5), steps chosen by the error: for systems that are not stiff and tight tolerances.
+    Rk65,
+}
+
+impl Method {
+    /// The explicit pair, if it is one, and how it chooses its steps.
+    fn pair(self) -> Option<(&'static Tableau, Controller)> {
+        match self {
+            Self::Rk45 => Some((&tableau::tsitouras::TABLEAU, control::EXPLICIT)),
+            Self::Rk65 => Some((&tableau::verner::TABLEAU, control::SIXTH)),
+            _ => None,
+        }
+    }
 }
 
 /// How much work was done.

@@ -25,7 +25,7 @@ pub struct Population {
     pub(super) given: Vec<Lanes<LANES>>,
     pub(super) steps: Vec<Lanes<LANES>>,
     pub(super) errors: Vec<Lanes<LANES>>,
-    /// Rates at the states for the explicit pair, where `known`: what comes out of them again, so that nothing depends on
+    /// Rates at the states for explicit pairs, where `known`: what comes out of them again, so that nothing depends on
     /// whether they are kept.
     #[serde(skip)]
     pub(super) rates: Vec<Lanes<LANES>>,
@@ -172,7 +172,7 @@ impl Population {
             self.narrow = None;
             self.known.clear();
         }
-        if self.method != Method::Rk45 {
+        if self.method.pair().is_none() {
             self.known.clear();
             self.rates.clear();
             return;

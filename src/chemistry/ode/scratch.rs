@@ -3,8 +3,8 @@
 use super::lu::Swap;
 use crate::chemistry::program::{Lanes, Program, run};
 
-/// Stages of the method that has most.
-const MOST_STAGES: usize = 7;
+/// Stages of the method that has most, with the one in the middle of its step.
+const MOST_STAGES: usize = 10;
 
 /// Registers, stages and matrices of one block of cells.
 #[derive(Debug, Clone)]

@@ -26,12 +26,13 @@ pub enum Scheme {
 }
 
 impl Scheme {
-    /// The scheme of a name: `rk45`, `rosenbrock`, `bdf`, `esdirk34`, `tr-bdf2`, `tsit45`, and with an inner step `rk4`
-    /// and `euler`.
+    /// The scheme of a name: `rk45`, `rk65`, `rosenbrock`, `bdf`, `esdirk34`, `tr-bdf2`, `tsit45`, and with an inner step
+    /// `rk4` and `euler`.
     pub fn named(name: &str, inner_step: Option<f64>) -> Option<Self> {
         let positive = inner_step.filter(|step| *step > 0.0);
         match name {
             "rk45" => Some(Self::OneStep(Method::Rk45)),
+            "rk65" => Some(Self::OneStep(Method::Rk65)),
             "rosenbrock" => Some(Self::OneStep(Method::Rosenbrock)),
             "rk4" => positive.map(|step| Self::OneStep(Method::Rk4 { step })),
             "euler" => positive.map(|step| Self::OneStep(Method::Euler { step })),
@@ -146,7 +147,7 @@ pub fn solve_each(
             solve_each(system, from, until, points, &options, each)
         }
         _ if !system.events.is_empty() => {
-            Err(trouble("this scheme takes no events: use rosenbrock, rk45, rk4 or euler".into()))
+            Err(trouble("this scheme takes no events: use rosenbrock, rk45, rk65, rk4 or euler".into()))
         }
         scheme => multistep::solve(&program, scheme, from, until, points, &tolerances, each),
     }

@@ -2,7 +2,8 @@
 
 use pulp::Scalar;
 
-use super::control::{self, EXPLICIT, LEAST, STIFF, Tolerances};
+use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
+use super::control::{self, NEAR, Tolerances};
 use super::scratch::Scratch;
 use super::{Method, OdeTrouble, Reason, Work, explicit, rosenbrock};
 use crate::chemistry::program::code::Code;
@@ -23,6 +24,8 @@ pub struct Stepper<'a> {
     error: f64,
     fresh: bool,
     taken: f64,
+    /// The state in the middle of the last step, for methods that need it for values between and once it was asked for.
+    middle: Vec<f64>,
     /// Work so far.
     pub work: Work,
     /// Longest step allowed.
@@ -50,6 +53,7 @@ impl<'a> Stepper<'a> {
             error: 1.0,
             fresh: true,
             taken: 0.0,
+            middle: Vec::new(),
             work,
             longest,
         }
@@ -125,7 +129,9 @@ impl<'a> Stepper<'a> {
     pub fn step(&mut self, limit: f64) -> Result<f64, OdeTrouble> {
         self.load(self.time);
         self.taken = match self.method {
-            Method::Rk45 | Method::Rosenbrock => self.adaptive_step(limit)?,
+            Method::Rk45 => self.adaptive_step::<Tsitouras>(limit)?,
+            Method::Rk65 => self.adaptive_step::<Verner>(limit)?,
+            Method::Rosenbrock => self.adaptive_step::<Rodas>(limit)?,
             Method::Rk4 { step } | Method::Euler { step } => self.fixed_step(limit, step)?,
         };
         self.work.steps += 1;
@@ -152,9 +158,9 @@ impl<'a> Stepper<'a> {
         if good { Ok(step) } else { Err(self.trouble(Reason::NotFinite)) }
     }
 
-    fn adaptive_step(&mut self, limit: f64) -> Result<f64, OdeTrouble> {
-        let (stiff, n) = (self.method == Method::Rosenbrock, self.s.state.len());
-        let controller = if stiff { STIFF } else { EXPLICIT };
+    fn adaptive_step<M: Adaptive>(&mut self, limit: f64) -> Result<f64, OdeTrouble> {
+        let n = self.s.state.len();
+        self.middle.clear();
         if self.fresh {
             self.s.rates_at_state(self.program, [self.time]);
             self.work.rates += 1;
@@ -166,36 +172,31 @@ impl<'a> Stepper<'a> {
                 control::first_step(&self.s.state, &self.s.stages[..n], &self.program.sizes, window, &self.tolerances)
                     [0];
         }
-        let shortest = 4.0 * f64::EPSILON * self.time.abs().max(limit.abs() * 1e-3);
-        let mut most = controller.most;
+        let shortest = control::shortest(self.time, 1e-3 * limit);
+        let mut most = M::CONTROLLER.most;
         loop {
             let rest = limit - self.time;
             let wanted = self.step.min(self.longest);
-            let last = wanted >= rest * (1.0 - 1e-10);
+            let last = wanted >= rest * NEAR;
             let cut = wanted > 0.5 * rest;
             let step = match (last, cut) {
                 (true, _) => rest,
                 (false, true) => 0.5 * rest,
                 (false, false) => wanted,
             };
-            if stiff {
-                rosenbrock::step(Scalar, self.program, &mut self.s, &[self.time], &[step]);
-                self.work.jacobians += 1;
-            } else {
-                explicit::tsitouras(Scalar, self.program, &mut self.s, &[self.time], &[step]);
-            }
-            self.work.rates += 6;
+            M::step(Scalar, self.program, &mut self.s, &[self.time], &[step]);
+            self.work.jacobians += M::JACOBIANS;
+            self.work.rates += M::RATES;
             let error =
                 control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.program.sizes, &self.tolerances)[0];
-            let factor = controller.factor(error, self.error);
+            let factor = M::CONTROLLER.factor(error, self.error);
             if error <= 1.0 {
-                let next = step * factor.min(most);
-                self.step = if cut && factor >= most { next.max(self.step) } else { next };
+                self.step = control::after_good(step, (self.step, cut), factor, most);
                 self.error = error;
                 return Ok(step);
             }
             self.work.rejected += 1;
-            self.step = step * if error < f64::INFINITY { factor.min(0.9) } else { LEAST };
+            self.step = control::after_refused(step, error, factor);
             most = 1.0;
             if self.step <= shortest {
                 return Err(self.trouble(if error.is_finite() { Reason::StepUnderflow } else { Reason::NotFinite }));
@@ -204,7 +205,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// The state at a share of the step that is not yet committed.
-    pub fn between(&self, share: f64, state: &mut [f64]) {
+    pub fn between(&mut self, share: f64, state: &mut [f64]) {
         let n = state.len();
         if share >= 1.0 {
             state.iter_mut().zip(&self.s.proposal).for_each(|(value, end)| *value = end[0]);
@@ -212,6 +213,13 @@ impl<'a> Stepper<'a> {
         }
         match self.method {
             Method::Rk45 => explicit::tsitouras_between(&self.s, self.taken, share, state),
+            Method::Rk65 => {
+                if self.middle.is_empty() {
+                    explicit::verner_middle(self.program, &mut self.s, self.time, self.taken, &mut self.middle);
+                    self.work.rates += 1;
+                }
+                explicit::verner_between(&self.s, self.taken, share, &self.middle, state);
+            }
             Method::Rosenbrock => rosenbrock::between(&self.s, share, state),
             Method::Euler { .. } => {
                 for (v, value) in state.iter_mut().enumerate() {
@@ -234,9 +242,14 @@ impl<'a> Stepper<'a> {
     pub fn commit(&mut self, time: f64) {
         self.time = time;
         self.s.state.copy_from_slice(&self.s.proposal);
-        if self.method == Method::Rk45 {
+        let last = match self.method {
+            Method::Rk45 => Tsitouras::LAST,
+            Method::Rk65 => Verner::LAST,
+            _ => None,
+        };
+        if let Some(last) = last {
             let n = self.s.state.len();
-            self.s.stages.copy_within(6 * n..7 * n, 0);
+            self.s.stages.copy_within(last * n..(last + 1) * n, 0);
         }
     }
 

@@ -5,7 +5,7 @@ use pulp::Simd;
 use crate::chemistry::program::Lanes;
 
 /// Σ weight·stage for a place of one variable, without fused multiply-add: the same bits whatever the registers. The stages
-/// stand one after the other, `n` variables each.
+/// stand one after the other, `n` variables each; those of weight 0 are left out.
 #[inline(always)]
 fn sum<S: Simd, const L: usize>(
     simd: S,
@@ -14,12 +14,14 @@ fn sum<S: Simd, const L: usize>(
     (n, variable): (usize, usize),
     place: usize,
 ) -> S::f64s {
-    let mut sum = simd.splat_f64s(0.0);
+    let mut sum = None;
     for (stage, &weight) in weights.iter().enumerate() {
-        let part = simd.mul_f64s(simd.splat_f64s(weight), S::as_simd_f64s(&stages[stage * n + variable]).0[place]);
-        sum = if stage == 0 { part } else { simd.add_f64s(sum, part) };
+        if weight != 0.0 {
+            let part = simd.mul_f64s(simd.splat_f64s(weight), S::as_simd_f64s(&stages[stage * n + variable]).0[place]);
+            sum = Some(sum.map_or(part, |sum| simd.add_f64s(sum, part)));
+        }
     }
-    sum
+    sum.unwrap_or(simd.splat_f64s(0.0))
 }
 
 /// begin + factor·Σ weight·stage for one variable.

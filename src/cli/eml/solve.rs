@@ -34,7 +34,7 @@ pub struct SolveArgs {
     /// Another value of a parameter or input, or another start of a variable, as in --set k=0.2.
     #[arg(long = "set", value_name = "ID=NUMBER")]
     pub sets: Vec<String>,
-    /// The scheme: rk45, rosenbrock, bdf, rk4 or euler; the document's when absent, or rosenbrock.
+    /// The scheme: rk45, rk65, rosenbrock, bdf, rk4 or euler; the document's when absent, or rosenbrock.
     #[arg(long, value_name = "SCHEME")]
     pub scheme: Option<String>,
     /// Tolerance relative to the size of each variable.

@@ -49,7 +49,7 @@ pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fa
     };
     for (option, _) in idle.into_iter().filter(|(_, given)| *given) {
         let help = match fixed {
-            true => format!("{name} takes steps of --inner-step; rk45 and rosenbrock keep to tolerances"),
+            true => format!("{name} takes steps of --inner-step; rk45, rk65 and rosenbrock keep to tolerances"),
             false => format!("{name} finds its step; --rtol and --atol say how exactly"),
         };
         faults.push(Fault::new(format!("{option} has no meaning for the scheme {name}")).help(help));

@@ -31,7 +31,7 @@ impl Check<'_> {
             }
         }
         for (name, entry) in &experiment.chemistry {
-            let adaptive = matches!(entry.scheme, Some(Scheme::Rk45 | Scheme::Rosenbrock));
+            let adaptive = matches!(entry.scheme, Some(Scheme::Rk45 | Scheme::Rk65 | Scheme::Rosenbrock));
             if adaptive && entry.inner_step.is_some() {
                 let path = format!("chemistry.{name}.inner_step");
                 let message = format!("`{path}` has no meaning: the scheme finds its step");

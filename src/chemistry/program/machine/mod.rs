@@ -11,6 +11,7 @@ mod twos;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use pair::PAIRS;
 pub use pair::{PairStep, Tableau, Way};
 
 use super::{LANES, Program};
@@ -26,7 +27,8 @@ const MOST_VARIABLES: usize = 64;
 /// The machine code of a program, once it is of use.
 #[derive(Debug, Default)]
 pub struct Machine {
-    step: OnceLock<Option<PairStep<LANES>>>,
+    /// One for each explicit pair.
+    steps: [OnceLock<Option<PairStep<LANES>>>; PAIRS],
     /// Windows that went by without.
     waited: AtomicU32,
 }
@@ -36,7 +38,7 @@ impl Program {
     /// very large programs, nor where the system allows none.
     #[inline(always)]
     pub fn pair_step(&self, tableau: &Tableau) -> Option<&PairStep<LANES>> {
-        match self.machine.step.get() {
+        match self.machine.steps[tableau.number].get() {
             Some(step) => step.as_ref(),
             None => self.pair_step_in_time(tableau),
         }
@@ -47,6 +49,7 @@ impl Program {
             return None;
         }
         let small = self.rates.ops.len() <= MOST_OPERATIONS && self.size() <= MOST_VARIABLES;
-        self.machine.step.get_or_init(|| small.then(|| PairStep::new(self, tableau)).flatten()).as_ref()
+        let step = &self.machine.steps[tableau.number];
+        step.get_or_init(|| small.then(|| PairStep::new(self, tableau)).flatten()).as_ref()
     }
 }

@@ -8,17 +8,22 @@ use super::module::Compiled;
 use super::twos::Kept;
 use crate::chemistry::program::Program;
 
-/// The numbers of an explicit pair with seven stages, of which the last is the first of the next step.
+/// The numbers of an explicit pair whose last stage is the first of the next step. Stages of weight 0 are left out.
 pub struct Tableau {
+    /// Which of the [`PAIRS`] pairs it is, counted from 0.
+    pub number: usize,
     /// Times of the stages.
-    pub times: [f64; 7],
+    pub times: &'static [f64],
     /// Weights of the stages before one; of the last, those of the new state.
     pub weights: fn(usize) -> &'static [f64],
     /// Weights of the error.
-    pub error: [f64; 7],
+    pub error: &'static [f64],
     /// A step that is at least this share of what is left of a window is the last.
     pub near: f64,
 }
+
+/// How many pairs there are.
+pub const PAIRS: usize = 2;
 
 /// A cell on its way through a window.
 #[repr(C)]
@@ -56,6 +61,8 @@ pub struct PairStep<const L: usize> {
     code: Compiled,
     variables: usize,
     open: usize,
+    /// Evaluations of the rates in a step.
+    rates: u64,
 }
 
 /// Open quantities, state, rates and the way of a cell.
@@ -74,7 +81,13 @@ impl<const L: usize> PairStep<L> {
             let &[open, state, rates, way] = arguments else { unreachable!("as many arguments as asked for") };
             Step { program, tableau, emitter, open, state, rates, way, stride: L }.write()
         })?;
-        Some(Self { code, variables: program.size(), open: program.open.len() })
+        let rates = tableau.times.len() as u64 - 1;
+        Some(Self { code, variables: program.size(), open: program.open.len(), rates })
+    }
+
+    /// Evaluations of the rates in a step whose first are known.
+    pub fn rates(&self) -> u64 {
+        self.rates
     }
 
     /// Tries one step of the cell in lane `l`: as long as wanted, or into what is left of the window. If it is good enough,
@@ -126,7 +139,7 @@ impl Step<'_, '_, '_> {
         let mut stages = vec![self.emitter.keep(&rates)];
         let begin = self.emitter.keep(&begin);
         let mut end = Vec::new();
-        for stage in 1..7 {
+        for stage in 1..self.tableau.times.len() {
             end = self.arguments(stage, begin, &stages, &rates, step);
             let share = self.emitter.number(self.tableau.times[stage]);
             let since = self.emitter.mul(share, step);
@@ -227,7 +240,7 @@ impl Step<'_, '_, '_> {
     /// step·Σ weight·stage of a pair of variables.
     fn change(&mut self, weights: &[f64], stages: &[Kept], pair: usize, steps: Value) -> Value {
         let mut sum = None;
-        for (&weight, stage) in weights.iter().zip(stages) {
+        for (&weight, stage) in weights.iter().zip(stages).filter(|(weight, _)| **weight != 0.0) {
             let weight = self.emitter.numbers([weight; 2]);
             let stage = self.emitter.kept(*stage, pair);
             let part = self.emitter.mul(weight, stage);
@@ -247,7 +260,7 @@ impl Step<'_, '_, '_> {
             self.emitter.twice(tolerance)
         });
         let ratio = |pair: usize| {
-            let error = self.change(&self.tableau.error, stages, pair, steps);
+            let error = self.change(self.tableau.error, stages, pair, steps);
             let own = [2 * pair, (2 * pair + 1).min(self.program.size() - 1)].map(|v| self.program.sizes[v]);
             let begin = self.emitter.kept(begin, pair);
             self.emitter.ratios(error, (begin, end[pair]), own, allowed)

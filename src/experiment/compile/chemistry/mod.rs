@@ -152,6 +152,7 @@ fn method(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<M
     let (entry, solver) = (part.entry, &part.document.solver);
     let chosen = entry.scheme.map(|scheme| match scheme {
         Scheme::Rk45 => eml::Scheme::Rk45,
+        Scheme::Rk65 => eml::Scheme::Rk65,
         Scheme::Rosenbrock => eml::Scheme::Rosenbrock,
         Scheme::Rk4 => eml::Scheme::Rk4,
         Scheme::Euler => eml::Scheme::Euler,
@@ -167,6 +168,7 @@ fn method(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<M
     };
     match chosen.or(solver.scheme).unwrap_or(eml::Scheme::Rosenbrock) {
         eml::Scheme::Rk45 => Some(Method::Rk45),
+        eml::Scheme::Rk65 => Some(Method::Rk65),
         eml::Scheme::Rosenbrock => Some(Method::Rosenbrock),
         eml::Scheme::Rk4 => fixed(|step| Method::Rk4 { step }, faults),
         eml::Scheme::Euler => fixed(|step| Method::Euler { step }, faults),

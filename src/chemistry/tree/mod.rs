@@ -1,5 +1,9 @@
 //! The equations of a system as a tree: what EML and SBML are read into and what every solver is fed from.
 
+mod functions;
+
+pub use functions::{Binary, Unary, larger, smaller};
+
 use serde::{Deserialize, Serialize};
 
 /// Number of a quantity within its [`System`].
@@ -25,63 +29,6 @@ pub enum Expr {
         /// The value when no condition holds.
         otherwise: Box<Expr>,
     },
-}
-
-/// Functions of one argument.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[allow(missing_docs)] // the names are the functions' usual ones
-pub enum Unary {
-    Neg,
-    Not,
-    Abs,
-    Sign,
-    Floor,
-    Ceil,
-    Exp,
-    Ln,
-    Log10,
-    Sqrt,
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Sinh,
-    Cosh,
-    Tanh,
-    Asinh,
-    Acosh,
-    Atanh,
-    /// 0 below zero, 1 at zero and above.
-    Heaviside,
-    Factorial,
-}
-
-/// Operators and functions of two arguments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[allow(missing_docs)] // as above
-pub enum Binary {
-    Add,
-    Sub,
-    Mul,
-    Div,
-    Pow,
-    Min,
-    Max,
-    /// The remainder with the sign of the dividend.
-    Rem,
-    /// The floor of the quotient.
-    Quotient,
-    Lt,
-    Le,
-    Gt,
-    Ge,
-    Eq,
-    Ne,
-    And,
-    Or,
-    Xor,
 }
 
 /// What a quantity is.
@@ -248,81 +195,6 @@ impl Expr {
                 let chosen = branches.iter().find(|(condition, _)| condition.evaluate(time, value) != 0.0);
                 chosen.map_or(otherwise.as_ref(), |(_, value)| value).evaluate(time, value)
             }
-        }
-    }
-}
-
-fn truth(holds: bool) -> f64 {
-    f64::from(u8::from(holds))
-}
-
-/// The smaller of two numbers, or that which is one. Of zeros with two signs the second, which `f64::min` leaves open.
-#[inline(always)]
-pub fn smaller(a: f64, b: f64) -> f64 {
-    if (a < b) | b.is_nan() { a } else { b }
-}
-
-/// The larger of two numbers, as [`smaller`].
-#[inline(always)]
-pub fn larger(a: f64, b: f64) -> f64 {
-    if (a > b) | b.is_nan() { a } else { b }
-}
-
-impl Unary {
-    /// The function's value.
-    pub fn apply(self, a: f64) -> f64 {
-        match self {
-            Self::Neg => -a,
-            Self::Not => truth(a == 0.0),
-            Self::Abs => a.abs(),
-            Self::Sign => truth(a > 0.0) - truth(a < 0.0),
-            Self::Floor => a.floor(),
-            Self::Ceil => a.ceil(),
-            Self::Exp => a.exp(),
-            Self::Ln => a.ln(),
-            Self::Log10 => a.log10(),
-            Self::Sqrt => a.sqrt(),
-            Self::Sin => a.sin(),
-            Self::Cos => a.cos(),
-            Self::Tan => a.tan(),
-            Self::Asin => a.asin(),
-            Self::Acos => a.acos(),
-            Self::Atan => a.atan(),
-            Self::Sinh => a.sinh(),
-            Self::Cosh => a.cosh(),
-            Self::Tanh => a.tanh(),
-            Self::Asinh => a.asinh(),
-            Self::Acosh => a.acosh(),
-            Self::Atanh => a.atanh(),
-            Self::Heaviside => truth(a >= 0.0),
-            // From 171 on it is infinite.
-            Self::Factorial => (2..=a.round().clamp(0.0, 171.0) as u64).map(|k| k as f64).product(),
-        }
-    }
-}
-
-impl Binary {
-    /// The function's value.
-    pub fn apply(self, a: f64, b: f64) -> f64 {
-        match self {
-            Self::Add => a + b,
-            Self::Sub => a - b,
-            Self::Mul => a * b,
-            Self::Div => a / b,
-            Self::Pow => a.powf(b),
-            Self::Min => smaller(a, b),
-            Self::Max => larger(a, b),
-            Self::Rem => a % b,
-            Self::Quotient => (a / b).floor(),
-            Self::Lt => truth(a < b),
-            Self::Le => truth(a <= b),
-            Self::Gt => truth(a > b),
-            Self::Ge => truth(a >= b),
-            Self::Eq => truth(a == b),
-            Self::Ne => truth(a != b),
-            Self::And => truth(a != 0.0 && b != 0.0),
-            Self::Or => truth(a != 0.0 || b != 0.0),
-            Self::Xor => truth((a != 0.0) != (b != 0.0)),
         }
     }
 }
