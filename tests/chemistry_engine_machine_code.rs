@@ -17,10 +17,8 @@ fn programs(system: &System) -> (Program, Program) {
     let [plain, code] = [(); 2].map(|()| Program::new(system).expect("no circles"));
     let small = plain.size() <= 64 && plain.rates.ops.len() <= 500;
     for tableau in [&tsitouras::TABLEAU, &verner::TABLEAU] {
-        for _ in 0..=1000 {
-            let _ = code.pair_step(tableau);
-        }
-        let made = code.pair_step(tableau).is_some();
+        // It waits for fewer windows than these.
+        let made = (0..20_000).any(|_| code.pair_step(tableau).is_some());
         assert_eq!(made, small, "on a machine that allows no code in memory this file compares nothing");
     }
     (plain, code)

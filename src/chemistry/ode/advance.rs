@@ -113,7 +113,7 @@ type Part<'a> = (((&'a mut [Lanes<LANES>], &'a mut [Lanes<LANES>]), &'a mut [Lan
 /// So few cells are sooner done one by one than side by side in lanes of which most are empty.
 const FEW: usize = 2;
 
-/// As above, in machine code: a block of [`LANES`] takes as long as about ten cells by themselves.
+/// As above, in machine code: a block of [`LANES`] takes as long as ten to fourteen cells by themselves.
 const FEW_IN_CODE: usize = 8;
 
 /// Tasks of so many blocks have enough cells to fill lanes that are done early.

@@ -16,10 +16,13 @@ pub use pair::{PairStep, Tableau, Way};
 
 use super::{LANES, Program};
 
-/// A program is made into machine code after so many windows: by then it has taken about as long as that takes.
-const WINDOWS: u32 = 1000;
+/// A program is made into machine code after so many windows, and so many more for each variable: by then it has taken about
+/// as long as that takes (0.6 ms for 4 variables, 5 for 16, 24 to 36 for 64).
+const WINDOWS: u32 = 2000;
+/// As above.
+const WINDOWS_A_VARIABLE: u32 = 150;
 
-/// Programs with more operations stay register code: making machine code takes milliseconds a hundred operations.
+/// Programs with more operations stay register code: making code of them takes tens of milliseconds.
 const MOST_OPERATIONS: usize = 500;
 /// As above, for variables.
 const MOST_VARIABLES: usize = 64;
@@ -30,7 +33,7 @@ pub struct Machine {
     /// One for each explicit pair.
     steps: [OnceLock<Option<PairStep<LANES>>>; PAIRS],
     /// Windows that went by without.
-    waited: AtomicU32,
+    waited: [AtomicU32; PAIRS],
 }
 
 impl Program {
@@ -45,7 +48,8 @@ impl Program {
     }
 
     fn pair_step_in_time(&self, tableau: &Tableau) -> Option<&PairStep<LANES>> {
-        if self.machine.waited.fetch_add(1, Ordering::Relaxed) < WINDOWS {
+        let wait = WINDOWS + WINDOWS_A_VARIABLE * self.size() as u32;
+        if self.machine.waited[tableau.number].fetch_add(1, Ordering::Relaxed) < wait {
             return None;
         }
         let small = self.rates.ops.len() <= MOST_OPERATIONS && self.size() <= MOST_VARIABLES;
