@@ -5,15 +5,15 @@ use std::sync::{Mutex, PoisonError};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
 use super::alone::Alone;
 use super::block::{self, CellTrouble};
 use super::cells::{Cells, Kept};
-use super::control::Controller;
 use super::narrow::Narrow;
 use super::population::{LANES, Population};
 use super::scratch::Scratch;
 use super::{Method, OdeTrouble, Tolerances, Work};
-use crate::chemistry::program::{Lanes, PairStep, Program};
+use crate::chemistry::program::{Lanes, Program};
 
 impl Population {
     /// Advances all cells through a window. Each cell has an error and a step of its own; its result does not depend on
@@ -40,10 +40,14 @@ impl Population {
             return Ok(Work::default());
         }
         self.keep_rates(program);
-        let pair = if self.cells <= FEW_IN_CODE { self.method.pair() } else { None };
-        let code = pair.and_then(|(tableau, controller)| Some((program.pair_step(tableau)?, controller)));
-        let result = match code {
-            Some(code) => self.advance_in_code(program, code, (from, until), tolerances),
+        let in_code = match self.method {
+            Method::Rk45 => self.advance_in_code::<Tsitouras>(program, (from, until), tolerances),
+            Method::Rk65 => self.advance_in_code::<Verner>(program, (from, until), tolerances),
+            Method::Rosenbrock => self.advance_in_code::<Rodas>(program, (from, until), tolerances),
+            Method::Rk4 { .. } | Method::Euler { .. } => None,
+        };
+        let result = match in_code {
+            Some(result) => result,
             None if self.cells <= FEW => self.advance_one_by_one(program, (from, until), tolerances),
             None => self.advance_side_by_side(program, (from, until), tolerances),
         };
@@ -53,19 +57,20 @@ impl Population {
         }
     }
 
-    fn advance_in_code(
+    /// A few cells one by one in machine code, where there is some.
+    fn advance_in_code<M: Adaptive>(
         &mut self,
         program: &Program,
-        (code, controller): (&PairStep<LANES>, Controller),
         window: (f64, f64),
         tolerances: &Tolerances,
-    ) -> TaskResult {
+    ) -> Option<TaskResult> {
+        let code = if self.cells <= M::FEW { M::code(program)? } else { return None };
         let Self { states, steps, errors, given, rates, known, narrow, .. } = self;
         let room = narrow.get_or_insert_with(|| Box::new(Narrow::new(program, self.method))).room();
         let (steps, errors) = (&mut steps[0], &mut errors[0]);
-        let mut cells = Alone { program, code, controller, room, states, given, rates, known, steps, errors };
-        let first = cells.advance(0, window, tolerances);
-        (1..self.cells).fold(first, |result, l| first_trouble(result, cells.advance(l, window, tolerances)))
+        let mut cells = Alone { program, code, room, states, given, rates, known, steps, errors };
+        let first = cells.advance::<M>(0, window, tolerances);
+        Some((1..self.cells).fold(first, |result, l| first_trouble(result, cells.advance::<M>(l, window, tolerances))))
     }
 
     fn advance_one_by_one(&mut self, program: &Program, window: (f64, f64), tolerances: &Tolerances) -> TaskResult {
@@ -112,9 +117,6 @@ type Part<'a> = (((&'a mut [Lanes<LANES>], &'a mut [Lanes<LANES>]), &'a mut [Lan
 
 /// So few cells are sooner done one by one than side by side in lanes of which most are empty.
 const FEW: usize = 2;
-
-/// As above, in machine code: a block of [`LANES`] takes as long as ten to fourteen cells by themselves.
-const FEW_IN_CODE: usize = 8;
 
 /// Tasks of so many blocks have enough cells to fill lanes that are done early.
 const MOST_BLOCKS: usize = 256;

@@ -5,8 +5,9 @@ use pulp::Simd;
 use super::wide::take_away;
 use crate::chemistry::program::Lanes;
 
-/// A row is taken as pivot instead of the present one when its entry is this many times larger.
-const THRESHOLD: f64 = 4.0;
+/// A row is taken as pivot instead of the present one when its entry is this many times larger: the diagonal, which always holds
+/// one over the step, is kept where that is no danger, as in KLU (Davis and Palamadai Natarajan, ACM TOMS 37, 2010).
+pub const EXCHANGE: f64 = 1000.0;
 
 /// Two rows that some lanes exchange.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +37,7 @@ pub fn factor<S: Simd, const L: usize>(simd: S, matrix: &mut [Lanes<L>], n: usiz
             let mut lanes = [false; L];
             let mut any = false;
             for l in 0..L {
-                lanes[l] = entry[l].abs() > THRESHOLD * pivot[l].abs();
+                lanes[l] = entry[l].abs() > EXCHANGE * pivot[l].abs();
                 any |= lanes[l];
             }
             if any {

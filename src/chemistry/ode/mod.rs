@@ -32,9 +32,7 @@ pub use solve::{Scheme, Solution, SolveOptions, solve, solve_each};
 
 use serde::{Deserialize, Serialize};
 
-use crate::chemistry::program::Tableau;
 use crate::error::Error;
-use control::Controller;
 
 /// A one-step method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -58,13 +56,9 @@ pub enum Method {
 }
 
 impl Method {
-    /// The explicit pair, if it is one, and how it chooses its steps.
-    fn pair(self) -> Option<(&'static Tableau, Controller)> {
-        match self {
-            Self::Rk45 => Some((&tableau::tsitouras::TABLEAU, control::EXPLICIT)),
-            Self::Rk65 => Some((&tableau::verner::TABLEAU, control::SIXTH)),
-            _ => None,
-        }
+    /// Whether the rates at the end of a step are those with which the next begins.
+    fn keeps_rates(self) -> bool {
+        matches!(self, Self::Rk45 | Self::Rk65)
     }
 }
 

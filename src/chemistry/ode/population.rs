@@ -172,7 +172,7 @@ impl Population {
             self.narrow = None;
             self.known.clear();
         }
-        if self.method.pair().is_none() {
+        if !self.method.keeps_rates() {
             self.known.clear();
             self.rates.clear();
             return;

@@ -14,7 +14,7 @@ mod run;
 mod simplify;
 
 pub use initial::initial_values;
-pub use machine::{PairStep, Tableau, Way};
+pub use machine::{LEFT, RosenbrockTableau, StepCode, Tableau, Way};
 pub use run::{Lanes, run};
 
 use std::hash::{Hash, Hasher};

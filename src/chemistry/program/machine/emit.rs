@@ -66,6 +66,36 @@ impl<'a, 'b> Emitter<'a, 'b> {
         self.builder.ins().fmul(a, b)
     }
 
+    /// a/b.
+    pub fn div(&mut self, a: Value, b: Value) -> Value {
+        self.builder.ins().fdiv(a, b)
+    }
+
+    /// −a.
+    pub fn neg(&mut self, a: Value) -> Value {
+        self.builder.ins().fneg(a)
+    }
+
+    /// |a|.
+    pub fn abs(&mut self, a: Value) -> Value {
+        self.builder.ins().fabs(a)
+    }
+
+    /// One value or the other, without a branch.
+    pub fn select(&mut self, holds: Value, yes: Value, no: Value) -> Value {
+        self.builder.ins().select(holds, yes, no)
+    }
+
+    /// Returns a number from the function where something holds.
+    pub fn return_if(&mut self, holds: Value, number: f64) {
+        let (leaves, after) = (self.builder.create_block(), self.builder.create_block());
+        self.builder.ins().brif(holds, leaves, &[], after, &[]);
+        self.enter(leaves);
+        let number = self.number(number);
+        self.builder.ins().return_(&[number]);
+        self.enter(after);
+    }
+
     /// The values that one branch gives where something holds, or else the other.
     pub fn either<const N: usize>(
         &mut self,

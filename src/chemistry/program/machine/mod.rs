@@ -6,13 +6,16 @@ mod calls;
 mod emit;
 mod module;
 mod pair;
+mod step;
+mod stiff;
 mod twos;
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use pair::PAIRS;
-pub use pair::{PairStep, Tableau, Way};
+pub use pair::Tableau;
+pub use step::{LEFT, StepCode, Way};
+pub use stiff::RosenbrockTableau;
 
 use super::{LANES, Program};
 
@@ -27,33 +30,46 @@ const MOST_OPERATIONS: usize = 500;
 /// As above, for variables.
 const MOST_VARIABLES: usize = 64;
 
+/// How many methods have machine code.
+const METHODS: usize = 3;
+
 /// The machine code of a program, once it is of use.
 #[derive(Debug, Default)]
 pub struct Machine {
-    /// One for each explicit pair.
-    steps: [OnceLock<Option<PairStep<LANES>>>; PAIRS],
+    /// One for each method.
+    steps: [OnceLock<Option<StepCode<LANES>>>; METHODS],
     /// Windows that went by without.
-    waited: [AtomicU32; PAIRS],
+    waited: [AtomicU32; METHODS],
 }
 
 impl Program {
     /// Machine code of a step of one cell by an explicit pair, asked for window by window: there is none in the first windows, for
     /// very large programs, nor where the system allows none.
     #[inline(always)]
-    pub fn pair_step(&self, tableau: &Tableau) -> Option<&PairStep<LANES>> {
+    pub fn pair_step(&self, tableau: &Tableau) -> Option<&StepCode<LANES>> {
         match self.machine.steps[tableau.number].get() {
             Some(step) => step.as_ref(),
-            None => self.pair_step_in_time(tableau),
+            None => self.in_time(tableau.number, || pair::compile(self, tableau)),
         }
     }
 
-    fn pair_step_in_time(&self, tableau: &Tableau) -> Option<&PairStep<LANES>> {
+    /// As [`Self::pair_step`], by a Rosenbrock method.
+    #[inline(always)]
+    pub fn rosenbrock_step(&self, tableau: &RosenbrockTableau) -> Option<&StepCode<LANES>> {
+        match self.machine.steps[tableau.number].get() {
+            Some(step) => step.as_ref(),
+            None => self.in_time(tableau.number, || stiff::compile(self, tableau)),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn in_time(&self, number: usize, compile: impl FnOnce() -> Option<StepCode<LANES>>) -> Option<&StepCode<LANES>> {
         let wait = WINDOWS + WINDOWS_A_VARIABLE * self.size() as u32;
-        if self.machine.waited[tableau.number].fetch_add(1, Ordering::Relaxed) < wait {
+        if self.machine.waited[number].fetch_add(1, Ordering::Relaxed) < wait {
             return None;
         }
         let small = self.rates.ops.len() <= MOST_OPERATIONS && self.size() <= MOST_VARIABLES;
-        let step = &self.machine.steps[tableau.number];
-        step.get_or_init(|| small.then(|| PairStep::new(self, tableau)).flatten()).as_ref()
+        self.machine.steps[number].get_or_init(|| if small { compile() } else { None }).as_ref()
     }
 }
