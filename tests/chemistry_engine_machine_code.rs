@@ -96,7 +96,7 @@ fn a_few_cells_in_machine_code_are_those_of_a_crowd_in_lanes() {
         (martiel_goldbeter(), 0.5),
         (driven(), 0.4),
         (compartments(), 0.4),
-        (exchanging(), 0.01),
+        (exchanging(), 0.4),
     ];
     for (system, window) in problems {
         let (plain, code) = programs(&system);

@@ -78,7 +78,7 @@ impl Adaptive for Rodas {
     const RATES: u64 = 6;
     const JACOBIANS: u64 = 1;
     const LAST: Option<usize> = None;
-    const FEW: usize = 4;
+    const FEW: usize = 6;
 
     #[inline(always)]
     fn code(program: &Program) -> Option<&StepCode<LANES>> {
