@@ -232,6 +232,28 @@ fn crowd_after(threads: usize, before: impl Fn(&mut Scene) + Sync) -> State {
 }
 
 #[test]
+fn an_experiment_chooses_the_scheme_of_a_fields_reactions() {
+    let field = r#"<eml name="field"><grid dimension="2" spacing="4" origin="-20 -20" size="40 40"/>
+        <field id="c" diffusion="10" initial="2 + 0.02*x"><reaction>-0.5*c^2</reaction></field>
+        <solver scheme="rk4" inner_step="0.1"/></eml>"#;
+    let end = |scheme: &str| {
+        let text = one_cell("2 s", "0.1 s") + "[chemistry.field]\ndocument = \"field.eml\"\nrtol = 1e-6\n" + scheme;
+        let idle = r#"<eml name="own" level="cell"><variable id="idle" initial="0" rate="0"/></eml>"#;
+        let mut scene = scene(&[("field", field), ("own", idle)], &text);
+        scene.run();
+        scene.state().chemistry.fields[0].values.clone()
+    };
+    let own = end("");
+    for scheme in ["rk45", "rk65", "rosenbrock"] {
+        let other = end(&format!("scheme = \"{scheme}\"\n"));
+        assert_ne!(own, other, "{scheme} takes other steps");
+        let apart = own.iter().zip(&other).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+        // A hundred tolerances.
+        assert!(apart < 1e-4, "{scheme}: {apart:e}");
+    }
+}
+
+#[test]
 fn threads_and_scratch_do_not_matter_to_chemistry() {
     let plain = crowd_after(1, |_| ());
     let field = &plain.chemistry.fields[0].values;

@@ -104,7 +104,7 @@ pub fn verner_between(s: &Scratch<1>, step: f64, share: f64, middle: &[f64], sta
     }
 }
 
-/// The state at a share of the last step of the pair, after a step that was accepted.
+/// The state at a share of the last step of the pair of order 5(4), after a step that was accepted.
 pub fn tsitouras_between(s: &Scratch<1>, step: f64, share: f64, state: &mut [f64]) {
     let n = state.len();
     let weights = D.map(|row| row.iter().rev().fold(0.0, |sum, weight| (sum + weight) * share));

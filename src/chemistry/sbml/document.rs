@@ -171,19 +171,40 @@ fn unknown(page: &Page<'_>, node: Node<'_>) {
     page.fault(node, found, "delete it, or correct its name; only the core of SBML is read");
 }
 
-/// Packages that the model needs are refused, others told of.
+/// The name of the package that a namespace is of, if it is one of a package.
+fn package(space: &str) -> Option<&str> {
+    let rest = ["/sbml/level3/version1/", "/sbml/level3/version2/"].iter().find_map(|mark| space.split(mark).nth(1))?;
+    let name = rest.split('/').next().unwrap_or(rest);
+    (name != "core").then_some(name)
+}
+
+/// Packages that the model needs are refused, others told of. One that does not say whether it is needed must say so.
 fn packages<'a>(page: &Page<'a>, root: Node<'a>) {
-    for attribute in root.attributes().filter(|attribute| attribute.name() == "required") {
-        let Some(space) = attribute.namespace() else { continue };
-        let core = ["level3/version1/", "level3/version2/"].iter().find_map(|mark| space.split(mark).nth(1));
-        let name = core.map_or(space, |rest| rest.split('/').next().unwrap_or(rest));
-        if matches!(attribute.value().trim(), "true" | "1") {
-            let found = format!("the model needs the package `{name}`, which is not read");
-            page.fault(root, found, "flatten or convert the model to core SBML with the tool that wrote it");
-        } else {
-            page.notice(format!(
+    let spaces = root.descendants().flat_map(|node| node.namespaces()).map(|space| space.uri());
+    let mut spaces: Vec<&str> = spaces.filter(|space| package(space).is_some()).collect();
+    // Told by its attribute though the namespace has another form.
+    spaces.extend(root.attributes().filter(|a| a.name() == "required").filter_map(|a| a.namespace()));
+    spaces.sort_unstable();
+    spaces.dedup();
+    for space in spaces {
+        let name = package(space).unwrap_or(space);
+        match root.attribute((space, "required")).map(str::trim) {
+            Some("false" | "0") => page.notice(format!(
                 "the package `{name}` is not read; the model says that it does not change the equations"
-            ));
+            )),
+            Some("true" | "1") => {
+                let found = format!("the model needs the package `{name}`, which is not read");
+                page.fault(root, found, "flatten or convert the model to core SBML with the tool that wrote it");
+            }
+            Some(other) => {
+                let found = format!("whether the package `{name}` is required is neither true nor false but `{other}`");
+                page.fault(root, found, "write required=\"false\" for it if it does not change the equations");
+            }
+            None => {
+                let found = format!("the package `{name}` is not read, and <sbml> does not say whether it is required");
+                let help = "remove the package, or write required=\"false\" for it if it does not change the equations";
+                page.fault(root, found, help);
+            }
         }
     }
 }

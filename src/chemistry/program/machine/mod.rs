@@ -25,7 +25,7 @@ const WINDOWS: u32 = 2000;
 /// As above.
 const WINDOWS_A_VARIABLE: u32 = 150;
 
-/// Programs with more operations stay register code: making code of them takes tens of milliseconds.
+/// Programs with more operations, of the rates or for the Rosenbrock method with their derivatives, stay register code: making code of them takes tens of milliseconds.
 const MOST_OPERATIONS: usize = 500;
 /// As above, for variables.
 const MOST_VARIABLES: usize = 64;
@@ -49,7 +49,7 @@ impl Program {
     pub fn pair_step(&self, tableau: &Tableau) -> Option<&StepCode<LANES>> {
         match self.machine.steps[tableau.number].get() {
             Some(step) => step.as_ref(),
-            None => self.in_time(tableau.number, || pair::compile(self, tableau)),
+            None => self.in_time(tableau.number, self.rates.ops.len(), || pair::compile(self, tableau)),
         }
     }
 
@@ -58,18 +58,23 @@ impl Program {
     pub fn rosenbrock_step(&self, tableau: &RosenbrockTableau) -> Option<&StepCode<LANES>> {
         match self.machine.steps[tableau.number].get() {
             Some(step) => step.as_ref(),
-            None => self.in_time(tableau.number, || stiff::compile(self, tableau)),
+            None => self.in_time(tableau.number, self.linear.ops.len(), || stiff::compile(self, tableau)),
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn in_time(&self, number: usize, compile: impl FnOnce() -> Option<StepCode<LANES>>) -> Option<&StepCode<LANES>> {
+    fn in_time(
+        &self,
+        number: usize,
+        operations: usize,
+        compile: impl FnOnce() -> Option<StepCode<LANES>>,
+    ) -> Option<&StepCode<LANES>> {
         let wait = WINDOWS + WINDOWS_A_VARIABLE * self.size() as u32;
         if self.machine.waited[number].fetch_add(1, Ordering::Relaxed) < wait {
             return None;
         }
-        let small = self.rates.ops.len() <= MOST_OPERATIONS && self.size() <= MOST_VARIABLES;
+        let small = operations <= MOST_OPERATIONS && self.size() <= MOST_VARIABLES;
         self.machine.steps[number].get_or_init(|| if small { compile() } else { None }).as_ref()
     }
 }

@@ -1,5 +1,9 @@
 //! A whole step of a Rosenbrock method as one function. The linear systems are factored without exchanging rows, and only what
 //! the pattern of the Jacobian fills is worked out; a step that asks for an exchange is left to the register code.
+//!
+//! Places that are always zero are left out here and worked out over lanes, where a zero is taken away without a trace; a factor that
+//! only happens to be zero may leave another sign to a zero here. No bit of a state depends on it: what is added to a state that is not
+//! −0 is the same for zeros of both signs, and numbers that are not finite make the norm one that refuses the step either way.
 
 use cranelift_codegen::ir::Value;
 use cranelift_codegen::ir::condcodes::FloatCC;

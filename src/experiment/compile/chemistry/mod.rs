@@ -150,13 +150,7 @@ fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fa
 /// The scheme of a system, with its inner step in the system's unit of time.
 fn method(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<Method> {
     let (entry, solver) = (part.entry, &part.document.solver);
-    let chosen = entry.scheme.map(|scheme| match scheme {
-        Scheme::Rk45 => eml::Scheme::Rk45,
-        Scheme::Rk65 => eml::Scheme::Rk65,
-        Scheme::Rosenbrock => eml::Scheme::Rosenbrock,
-        Scheme::Rk4 => eml::Scheme::Rk4,
-        Scheme::Euler => eml::Scheme::Euler,
-    });
+    let chosen = entry.scheme.map(eml::Scheme::from);
     let inner = entry.inner_step.map(|step| step.value() / part.document.seconds).or(solver.inner_step);
     let fixed = |make: fn(f64) -> Method, faults: &mut Vec<Fault>| {
         if inner.is_none() {
@@ -181,14 +175,40 @@ fn method(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<M
     }
 }
 
-fn field(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<(FieldReactor, Fields)> {
-    let (entry, eml) = (part.entry, &part.document);
-    for (key, given) in [("scheme", entry.scheme.is_some()), ("exchange", entry.exchange.is_some())] {
-        if given {
-            let fault = Fault::new(format!("`{}` has no meaning for fields", part.key(key)))
-                .help("remove it; fields advance with every step of the run, with rtol, or with a fixed inner_step");
-            faults.push(at(document, &part.key(key), "not used", fault));
+impl From<Scheme> for eml::Scheme {
+    fn from(scheme: Scheme) -> Self {
+        match scheme {
+            Scheme::Rk45 => Self::Rk45,
+            Scheme::Rk65 => Self::Rk65,
+            Scheme::Rosenbrock => Self::Rosenbrock,
+            Scheme::Rk4 => Self::Rk4,
+            Scheme::Euler => Self::Euler,
         }
+    }
+}
+
+/// The document of a field with the scheme of its reactions that the experiment asks for.
+fn with_scheme(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> eml::Document {
+    let mut eml = part.document.clone();
+    match part.entry.scheme {
+        Some(Scheme::Euler) => {
+            let fault = Fault::new(format!("the reactions of `{}` cannot be taken with euler", part.name)).help(
+                "write \"rk4\", \"rk45\", \"rk65\" or, for stiff reactions, \"rosenbrock\", or leave the scheme out",
+            );
+            faults.push(at(document, &part.key("scheme"), "this scheme", fault));
+        }
+        Some(scheme) => eml.solver.scheme = Some(scheme.into()),
+        None => {}
+    }
+    eml
+}
+
+fn field(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<(FieldReactor, Fields)> {
+    let (entry, eml) = (part.entry, &with_scheme(document, part, faults));
+    if entry.exchange.is_some() {
+        let fault = Fault::new(format!("`{}` has no meaning for fields", part.key("exchange")))
+            .help("remove it; fields advance with every step of the run, with rtol, or with a fixed inner_step");
+        faults.push(at(document, &part.key("exchange"), "not used", fault));
     }
     let corner = |given: Option<[crate::units::Length; 3]>| given.map(|corner| corner.map(|x| x.value()));
     let placing = match (corner(entry.origin), corner(entry.size)) {
