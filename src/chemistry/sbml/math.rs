@@ -138,6 +138,10 @@ impl<'p, 'a> Reader<'p, 'a> {
         };
         let base = node.attribute("base").is_none_or(|base| base.trim() == "10");
         match value.filter(|_| base) {
+            Some(value) if !value.is_finite() => {
+                let help = "numbers end at about 1.8e308; infinity is <infinity/>";
+                self.fault(node, "this number is not finite".to_owned(), help)
+            }
             Some(value) => Some(number(value)),
             None => {
                 let help = "real and integer numbers are one text, rational and e-notation two with <sep/> between";

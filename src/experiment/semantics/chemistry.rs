@@ -2,7 +2,6 @@
 
 use super::Check;
 use crate::error::words;
-use crate::experiment::Scheme;
 
 impl Check<'_> {
     pub(super) fn chemistry(&mut self) {
@@ -28,14 +27,6 @@ impl Check<'_> {
                     let message = format!("`{path}` names \"{system}\" a second time");
                     self.fault(&path, "named before", message, "a cell has a system once: remove it");
                 }
-            }
-        }
-        for (name, entry) in &experiment.chemistry {
-            let adaptive = matches!(entry.scheme, Some(Scheme::Rk45 | Scheme::Rk65 | Scheme::Rosenbrock));
-            if adaptive && entry.inner_step.is_some() {
-                let path = format!("chemistry.{name}.inner_step");
-                let message = format!("`{path}` has no meaning: the scheme finds its step");
-                self.fault(&path, "not used", message, "remove it, or choose scheme = \"rk4\"");
             }
         }
     }

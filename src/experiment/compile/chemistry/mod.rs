@@ -152,6 +152,13 @@ fn method(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<M
     let (entry, solver) = (part.entry, &part.document.solver);
     let chosen = entry.scheme.map(eml::Scheme::from);
     let inner = entry.inner_step.map(|step| step.value() / part.document.seconds).or(solver.inner_step);
+    let adaptive = matches!(entry.scheme, Some(Scheme::Rk45 | Scheme::Rk65 | Scheme::Rosenbrock));
+    if adaptive && entry.inner_step.is_some() {
+        let key = part.key("inner_step");
+        let fault = Fault::new(format!("`{key}` has no meaning: the scheme finds its step"))
+            .help("remove it, or choose scheme = \"rk4\"");
+        faults.push(at(document, &key, "not used", fault));
+    }
     let fixed = |make: fn(f64) -> Method, faults: &mut Vec<Fault>| {
         if inner.is_none() {
             let fault = Fault::new(format!("the scheme of `{}` needs a step", part.name))
