@@ -6,6 +6,9 @@
 //! [`sim::step()`] moves the state, [`run`] loops and records, [`analysis`] and [`picture`] read the finished file.
 #![warn(missing_docs)]
 
+#[cfg(test)]
+extern crate self as pseudopod; // So that tests in here share examples with the test programs.
+
 pub mod analysis;
 pub mod cell;
 pub mod chemistry;

@@ -75,15 +75,23 @@ fn survivors(interval: Duration, lives: impl Iterator<Item = Duration>) -> (usiz
             }
             Err(found) => eprintln!("after {life:?}: {found}"),
         }
-        let state = load_checkpoint(&path).ok().flatten();
-        let resumed = match state {
-            Some(state) => ResultWriter::reopen(&path, &header(), &layout(CELLS), state.meta.step)
-                .is_ok_and(|writer| writer.frames() as u64 == state.meta.step / 10 + 1),
-            None => ResultWriter::reopen(&path, &header(), &layout(CELLS), 0).is_ok(),
-        };
-        resumable += usize::from(resumed);
+        match resume(&path) {
+            Ok(()) => resumable += 1,
+            Err(found) => eprintln!("after {life:?}, not resumed: {found}"),
+        }
     }
     (whole, resumable, most_frames)
+}
+
+/// Goes on from the checkpoint, or from the first frame where there is none.
+fn resume(path: &Path) -> Result<(), String> {
+    let state = load_checkpoint(path).map_err(|error| error.to_string())?;
+    let step = state.map_or(0, |state| state.meta.step);
+    let writer = ResultWriter::reopen(path, &header(), &layout(CELLS), step).map_err(|error| error.to_string())?;
+    match (writer.frames() as u64, step / 10 + 1) {
+        (found, expected) if found == expected => Ok(()),
+        (found, expected) => Err(format!("{found} frames instead of {expected}")),
+    }
 }
 
 /// Reads every frame and compares it with what was written.

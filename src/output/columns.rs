@@ -76,9 +76,14 @@ enum Start {
 }
 
 impl Columns {
-    /// Makes all datasets but those of the forces, which come with the first frame that has some.
-    pub fn create(file: &File, layout: &Layout) -> hdf5::Result<Self> {
-        Self::start(file, layout, Start::New)
+    /// Makes all datasets, those of the forces if they are wanted: in a new run they come with the first frame that
+    /// has some.
+    pub fn create(file: &File, layout: &Layout, forces: bool) -> hdf5::Result<Self> {
+        let mut columns = Self::start(file, layout, Start::New)?;
+        if forces {
+            columns.add_forces(file, Start::New)?;
+        }
+        Ok(columns)
     }
 
     /// Opens all datasets and cuts them to their first frames and rows.
@@ -134,7 +139,7 @@ impl Columns {
             }
             Filled::Link(target) => link(file, target, entry.path)?,
             Filled::OnceIntegers | Filled::OnceFloats | Filled::OnceTexts => {}
-            Filled::Scene | Filled::Measure | Filled::Bytes => {}
+            Filled::Scene | Filled::Measure | Filled::Mark | Filled::Bytes => {}
         }
         Ok(())
     }

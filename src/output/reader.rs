@@ -13,6 +13,7 @@ use super::contacts;
 use super::container::{self, Access, damaged, text};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
+use super::mark::FlushMark;
 use super::systems::SystemScope;
 use crate::error::{Error, Fault, Result};
 
@@ -401,6 +402,10 @@ pub(super) fn whole_frames(file: &File) -> hdf5::Result<usize> {
         }
         Ok(time.iter().chain(&ends).all(|value| !value.is_nan()))
     };
+    if FlushMark::is_set(file) {
+        // Torn trees may miss frames anywhere.
+        return Ok((0..frames).take_while(|frame| written(*frame).unwrap_or(false)).count());
+    }
     while frames > 0 && !written(frames - 1).unwrap_or(false) {
         frames -= 1;
     }

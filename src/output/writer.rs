@@ -11,11 +11,14 @@ use super::container::{self, Access, failed, machine_error, set_number, set_text
 use super::fields::{check_layout, field_view_path, write_views};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout, write_header, write_layout};
+use super::mark::FlushMark;
+use super::mend::mend;
 use super::reader::{ResultFile, rows_up_to, whole_frames};
+use super::room;
 use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
 
-/// A flush costs about a millisecond and is the only time at which a kill could tear the file, so it is rare.
+/// A flush costs about a millisecond and is the only time at which a kill can tear the file ([`mend`]), so it is rare.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
 
 /// What to do with a result file that is already there.
@@ -34,6 +37,7 @@ pub struct ResultWriter {
     header: Header,
     columns: Columns,
     step_count: Attribute,
+    mark: FlushMark,
     last_flush: Clock,
     flush_interval: Duration,
     /// Set when the disk refused a write: the file is left as it was at the last flush.
@@ -63,7 +67,7 @@ impl ResultWriter {
         let file = container::create(path)?;
         let made = write_header(&file, header)
             .and_then(|()| write_layout(&file, layout))
-            .and_then(|()| Columns::create(&file, layout));
+            .and_then(|()| Columns::create(&file, layout, false));
         let columns = made.map_err(|error| failed(path, "could not be made", &error))?;
         write_views(path, layout)?;
         Self::around(path, file, header, columns)
@@ -79,6 +83,7 @@ impl ResultWriter {
         // Opened for reading first: a refusal changes nothing, not even the length of the file.
         let seen = container::open(path, Access::Read)?;
         let (found, cells) = (read_header(&seen).map_err(damaged)?, read_layout(&seen).map_err(damaged)?);
+        let torn = FlushMark::is_set(&seen);
         drop(seen);
         check_same_run(path, &found, header)?;
         if cells != *layout {
@@ -86,6 +91,9 @@ impl ResultWriter {
                 Fault::new(format!("{} holds other cells than this experiment makes", path.display()))
                     .help("resume with the version of pseudopod that began the run"),
             ));
+        }
+        if torn {
+            mend(path, &found, layout, keep_until_step)?;
         }
         let file = container::open(path, Access::Append)?;
         let whole = whole_frames(&file).map_err(damaged)?;
@@ -104,12 +112,14 @@ impl ResultWriter {
     fn around(path: &Path, file: File, header: &Header, columns: Columns) -> Result<Self> {
         let step_count = file.group("/VTKHDF/Steps").and_then(|steps| steps.attr("NSteps"));
         let step_count = step_count.map_err(|error| failed(path, "could not be made", &error))?;
+        let mark = FlushMark::of(&file);
         let mut writer = Self {
             path: path.to_path_buf(),
             file,
             header: header.clone(),
             columns,
             step_count,
+            mark,
             last_flush: Clock::now(),
             flush_interval: FLUSH_INTERVAL,
             broken: false,
@@ -158,11 +168,24 @@ impl ResultWriter {
     }
 
     fn write_out(&mut self) -> hdf5::Result<()> {
+        self.hand_over()?;
+        self.file.flush()?;
+        self.mark.set(&self.path, false)?;
+        self.columns.forget_history(&self.file)
+    }
+
+    /// All of a flush but what HDF5 itself knows of the file. From here on until the flush has ended a kill tears it.
+    fn hand_over(&mut self) -> hdf5::Result<()> {
         self.columns.write()?;
         self.step_count.write_scalar(&(self.columns.frames() as i64))?;
-        reserve(&self.path, self.file.size())?;
-        self.file.flush()?;
-        self.columns.forget_history(&self.file)
+        room::reserve(&self.path, self.file.size())?;
+        self.mark.set(&self.path, true)
+    }
+
+    /// The file as a kill in the middle of a flush may leave it.
+    #[cfg(test)]
+    pub(super) fn hand_over_now(&mut self) {
+        self.hand_over().unwrap();
     }
 
     /// Flushes, then saves the checkpoint of this instant beside the result, on the disk itself.
@@ -275,37 +298,6 @@ impl Drop for ResultWriter {
         std::mem::forget(self.step_count.clone());
         std::mem::forget(std::mem::take(&mut self.columns));
     }
-}
-
-/// Makes the file as long as HDF5 is going to say it is, with room for all of it on the disk.
-///
-/// HDF5 writes the length before it makes the file that long, and a kill in between would leave a file that is too
-/// short to open. And a disk that becomes full while HDF5 writes out what it knows of the file would leave half of it.
-fn reserve(path: &Path, size: u64) -> hdf5::Result<()> {
-    let reserved = || -> std::io::Result<()> {
-        let file = std::fs::OpenOptions::new().write(true).open(path)?;
-        let size = size.max(file.metadata()?.len());
-        allocate(&file, size)?;
-        file.set_len(size)
-    };
-    reserved().map_err(|error| error.to_string().as_str().into())
-}
-
-/// Takes room for the whole file on the disk; what is in the file stays.
-#[cfg(target_os = "linux")]
-fn allocate(file: &std::fs::File, size: u64) -> std::io::Result<()> {
-    use rustix::io::Errno;
-    match rustix::fs::fallocate(file, rustix::fs::FallocateFlags::empty(), 0, size) {
-        // Some file systems cannot promise room.
-        Ok(()) | Err(Errno::OPNOTSUPP | Errno::INVAL | Errno::NOSYS) => Ok(()),
-        Err(error) => Err(error.into()),
-    }
-}
-
-/// Other systems have no common way to ask for room.
-#[cfg(not(target_os = "linux"))]
-fn allocate(_: &std::fs::File, _: u64) -> std::io::Result<()> {
-    Ok(())
 }
 
 /// Makes sure that the path may be written, with errors that HDF5 does not tell apart.
