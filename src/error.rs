@@ -112,6 +112,12 @@ impl Error {
     }
 }
 
+/// Tells a person a line on standard error. Where nobody listens any more (a closed pipe, a full disk) nothing stops for it.
+pub fn say(words: &str) {
+    use std::io::Write as _;
+    let _ = writeln!(std::io::stderr(), "{words}");
+}
+
 /// A number as messages show it: at most six digits, without zeros at the end.
 pub fn short(value: f64) -> String {
     format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()

@@ -148,3 +148,30 @@ fn exit_codes_are_as_promised() {
     let (code, text) = program(&unstable, folder.path());
     assert!(code == Some(3) && text.contains("unstable.h5"), "{code:?} {text}");
 }
+
+/// A model whose units are ignored, which is told on standard error.
+const MODEL: &str = r#"<?xml version="1.0"?>
+<sbml xmlns="http://www.sbml.org/sbml/level3/version1/core" level="3" version="1">
+<model><listOfUnitDefinitions><unitDefinition id="minute"><listOfUnits>
+<unit kind="second" exponent="1" scale="0" multiplier="60"/></listOfUnits></unitDefinition></listOfUnitDefinitions>
+<listOfParameters><parameter id="x" value="1" constant="false"/></listOfParameters>
+<listOfRules><rateRule variable="x"><math xmlns="http://www.w3.org/1998/Math/MathML"><ci> x </ci></math></rateRule>
+</listOfRules></model></sbml>
+"#;
+
+#[test]
+fn nothing_stops_where_nobody_listens_to_standard_error() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("bad.toml"), TEXT.replace("drag", "darg")).unwrap();
+    std::fs::write(folder.path().join("model.xml"), MODEL).unwrap();
+    let (code, told) = program(&["eml", "solve", "model.xml", "--until", "1"], folder.path());
+    assert!(code == Some(0) && told.contains("note: "), "{told}");
+    for (expected, arguments) in [(0, &["eml", "solve", "model.xml", "--until", "1"][..]), (2, &["run", "bad.toml"])] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut child = Command::new(env!("CARGO_BIN_EXE_pseudopod"));
+        let child = child.args(arguments).current_dir(folder.path()).stdout(Stdio::null()).stderr(writer);
+        assert_eq!(child.status().unwrap().code(), Some(expected));
+    }
+}

@@ -12,7 +12,7 @@ pub mod resume;
 pub mod run;
 pub mod schema;
 
-use crate::error::{Paint, Result, render};
+use crate::error::{Paint, Result, render, say};
 use clap::{Parser, Subcommand};
 use report::{Form, Report};
 use std::io::IsTerminal;
@@ -73,7 +73,8 @@ pub fn main(arguments: Arguments) -> i32 {
     let outcome = act(arguments.command).and_then(|report| report.print(name, form));
     let Err(error) = outcome else { return 0 };
     let paint = if std::io::stderr().is_terminal() { Paint::Coloured } else { Paint::Plain };
-    eprint!("{}", render(&error, paint));
+    let words = render(&error, paint);
+    say(words.strip_suffix('\n').unwrap_or(&words));
     if form == Form::Json {
         // Standard error has told everything already.
         let _ = report::print_failure(name, &error);

@@ -2,7 +2,7 @@
 
 use super::frames::FrameArgs;
 use super::report::Report;
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Result, say};
 use crate::experiment::When;
 use crate::output::ResultFile;
 use crate::picture::Movie;
@@ -96,7 +96,7 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     let frames: Vec<usize> = (0..result.frames()).collect();
     film(&result, &document, &picture, &frames, |image| movie.add(image))?;
     let written = movie.finish()?;
-    written.notice.iter().for_each(|notice| eprintln!("{notice}"));
+    written.notice.iter().for_each(|notice| say(notice));
     let mut report = Report::of_files(&args.result, &[written.path]).fact("frames", written.frames);
     report.words = format!("{}: {} frames\n", report.words.trim_end(), written.frames);
     Ok(report)

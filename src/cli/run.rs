@@ -1,7 +1,7 @@
 //! `pseudopod run`: runs an experiment and leaves its result, picture and charts.
 
 use super::report::{Report, path_text, paths};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, say};
 use crate::experiment::Document;
 use crate::output::Overwrite;
 use crate::run::{self, Outcome, Progress, Quiet, RunOptions, STOP};
@@ -98,7 +98,7 @@ pub fn stop_on_signals() {
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        eprintln!("stopping after this step; once more to stop at once");
+        say("stopping after this step; once more to stop at once");
     });
     // A second handler in one program is refused; the first still works.
     drop(heard);

@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::error::say;
+
 /// Listens to a run.
 pub trait Report: Send {
     /// Something to know before the run begins.
@@ -60,7 +62,7 @@ impl Default for Progress {
 
 impl Report for Progress {
     fn notice(&mut self, words: &str) {
-        eprintln!("{words}");
+        say(words);
     }
 
     fn begin(&mut self, time: f64, until: f64) {
@@ -81,7 +83,7 @@ impl Report for Progress {
             }
             None => {
                 let left = self.began.elapsed().as_secs_f64() * (1.0 - share) / share.max(1e-12);
-                eprintln!("t = {time:.4} of {} s, {steps} steps, about {left:.0} s left", self.until);
+                say(&format!("t = {time:.4} of {} s, {steps} steps, about {left:.0} s left", self.until));
             }
         }
     }

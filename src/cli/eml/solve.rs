@@ -8,7 +8,7 @@ use super::wishes::{options, points};
 use crate::chemistry::ode::solve_each;
 use crate::cli::render::{Named, refuse_existing};
 use crate::cli::report::{Report, path_text, paths};
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Result, say};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -120,6 +120,6 @@ pub fn run(args: &SolveArgs) -> Result<Report> {
 /// Tells what the reader of a model should know, beside what goes to standard output.
 pub(super) fn tell(notices: &[String]) {
     for notice in notices {
-        eprintln!("note: {notice}");
+        say(&format!("note: {notice}"));
     }
 }
