@@ -53,3 +53,33 @@ fn every_fault_of_a_document_has_a_place_and_says_what_to_do() {
         }
     }
 }
+
+#[test]
+fn implicit_schemes_refuse_systems_whose_matrices_would_not_fit() {
+    let variables: String = (0..5001).map(|i| format!("<variable id=\"x{i}\" initial=\"1\"/>\n")).collect();
+    let equations: String = (0..5001).map(|i| format!("<equation of=\"x{i}\">-x{i}</equation>\n")).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!("<eml name=\"big\" level=\"scene\" time_unit=\"s\">\n{variables}{equations}</eml>\n");
+    std::fs::write(folder.path().join("big.eml"), text).unwrap();
+    let experiment = "title = \"Big\"\n[run]\nuntil = \"1 s\"\n[chemistry.big]\ndocument = \"big.eml\"\n";
+    std::fs::write(folder.path().join("big.toml"), experiment).unwrap();
+    let told = |arguments: &[&str]| {
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_pseudopod"));
+        let out = program.args(arguments).current_dir(folder.path()).output().unwrap();
+        (out.status.code(), String::from_utf8(out.stderr).unwrap())
+    };
+    let solve = ["eml", "solve", "big.eml", "--until", "1", "--points", "2", "--columns", "x0", "--scheme"];
+    let with = |scheme: &'static str| solve.iter().copied().chain([scheme]).collect::<Vec<_>>();
+    for scheme in ["rosenbrock", "bdf"] {
+        let (code, words) = told(&with(scheme));
+        let expected = format!("big has 5001 variables; the scheme {scheme} takes up to 5000");
+        let help = "take --scheme rk45 if the system is not stiff; write what spreads in space as a field";
+        assert!(code == Some(2) && words.contains(&expected) && words.contains(help), "{words}");
+    }
+    assert_eq!(told(&with("rk45")), (Some(0), String::new()));
+    let (code, words) = told(&["check", "big.toml"]);
+    assert!(code == Some(2) && words.contains("`big` has 5001 variables; the scheme rosenbrock"), "{words}");
+    assert!(words.contains("add `scheme = \"rk45\"`"), "{words}");
+    std::fs::write(folder.path().join("big.toml"), format!("{experiment}scheme = \"rk45\"\n")).unwrap();
+    assert_eq!(told(&["check", "big.toml"]), (Some(0), String::new()));
+}

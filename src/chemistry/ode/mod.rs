@@ -32,7 +32,7 @@ pub use solve::{Scheme, Solution, SolveOptions, solve, solve_each};
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
+use crate::error::{Error, Fault};
 
 /// A one-step method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -55,7 +55,22 @@ pub enum Method {
     Rk65,
 }
 
+/// Most variables of a system that an implicit method takes. Its matrices are dense: those of eight cells take 1.6 GB then, and
+/// the time to factor them grows with the third power.
+pub const MOST_IMPLICIT: usize = 5000;
+
+/// The fault of a system that is too large for an implicit scheme; `explicit` says how to choose another.
+pub fn too_large(name: &str, variables: usize, scheme: &str, explicit: &str) -> Fault {
+    let message = format!("{name} has {variables} variables; the scheme {scheme} takes up to {MOST_IMPLICIT}");
+    Fault::new(message).help(format!("{explicit} if the system is not stiff; write what spreads in space as a field"))
+}
+
 impl Method {
+    /// Whether matrices are factored on the way.
+    pub fn is_implicit(self) -> bool {
+        self == Self::Rosenbrock
+    }
+
     /// Whether the rates at the end of a step are those with which the next begins.
     fn keeps_rates(self) -> bool {
         matches!(self, Self::Rk45 | Self::Rk65)

@@ -26,6 +26,15 @@ pub enum Scheme {
 }
 
 impl Scheme {
+    /// Whether matrices are factored on the way.
+    pub fn is_implicit(self) -> bool {
+        match self {
+            Self::OneStep(method) => method.is_implicit(),
+            Self::Bdf | Self::Esdirk34 | Self::TrBdf2 => true,
+            Self::Tsit45 => false,
+        }
+    }
+
     /// The scheme of a name: `rk45`, `rk65`, `rosenbrock`, `bdf`, `esdirk34`, `tr-bdf2`, `tsit45`, and with an inner step
     /// `rk4` and `euler`.
     pub fn named(name: &str, inner_step: Option<f64>) -> Option<Self> {

@@ -2,7 +2,7 @@
 
 use super::solve::SolveArgs;
 use crate::chemistry::eml::{Document, SCHEMES};
-use crate::chemistry::ode::{Method, Scheme, SolveOptions};
+use crate::chemistry::ode::{MOST_IMPLICIT, Method, Scheme, SolveOptions, too_large};
 use crate::error::Fault;
 use crate::error::words::meant;
 
@@ -74,6 +74,10 @@ pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fa
             let fault = Fault::new(format!("{steps:.0} steps of {step} are too many"));
             faults.push(fault.help("give a longer --inner-step, or take --scheme rosenbrock, which finds its step"));
         }
+    }
+    let variables = document.system.variables().len();
+    if options.scheme.is_implicit() && variables > MOST_IMPLICIT {
+        faults.push(too_large(&document.name, variables, name, "take --scheme rk45"));
     }
     if options.scheme == Scheme::Bdf && !document.system.events.is_empty() {
         let fault = Fault::new(format!("the scheme bdf takes no events, and {} has some", document.name));

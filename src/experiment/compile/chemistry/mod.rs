@@ -10,7 +10,7 @@ mod read;
 use super::super::{Chemistry as Entry, Document, Scheme};
 use crate::chemistry::eml;
 use crate::chemistry::field::{FieldSystem, Fields, Placing};
-use crate::chemistry::ode::{EventPlan, Method, Tolerances, assigned_parameters};
+use crate::chemistry::ode::{EventPlan, MOST_IMPLICIT, Method, Tolerances, assigned_parameters, too_large};
 use crate::chemistry::program::{Program, initial_values};
 use crate::chemistry::tree::Role;
 use crate::error::{Error, Fault, Place};
@@ -102,6 +102,12 @@ fn tell(error: Error, faults: &mut Vec<Fault>) {
 fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fault>) -> Option<Reactor> {
     let (entry, eml) = (part.entry, &part.document);
     let method = method(document, part, faults)?;
+    let variables = eml.system.variables().len();
+    if method.is_implicit() && variables > MOST_IMPLICIT {
+        let fault = too_large(&format!("`{}`", part.name), variables, "rosenbrock", "add `scheme = \"rk45\"`");
+        faults.push(at(document, &part.key("document"), "this document", fault));
+        return None;
+    }
     let compiled = match eml.system.events.is_empty() {
         true => Program::new(&eml.system).map(|program| (program, EventPlan::default())),
         false => EventPlan::compile(&eml.system, 0.0),
