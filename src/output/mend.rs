@@ -1,8 +1,8 @@
 //! Mends the file of a run that was killed in a flush.
 //!
 //! A flush is many small writes. A kill between them leaves trees of which some nodes are of this flush and some of the
-//! one before. Nearly every frame can still be read, but nothing may be appended or cut off any more. So what is whole
-//! is copied, piece by piece, into a new file, which takes the place of the old one.
+//! one before. Nearly always every frame can still be read, but nothing may be appended or cut off any more. So what is
+//! whole is copied, piece by piece, into a new file, which takes the place of the old one.
 
 use std::fs;
 use std::io::{Read as _, Seek as _, SeekFrom};
