@@ -3,8 +3,8 @@
 //! Prints milliseconds for each document of `eml/` and, where `../shared/data/biomodels` is there, each model of it:
 //! the median of some readings, and the size of the system.
 
-use pseudopod::chemistry::program::Program;
-use pseudopod::chemistry::{self, Read};
+use pseudopod::equations::program::Program;
+use pseudopod::equations::{self, Read};
 use pseudopod::error::Source;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,7 +45,7 @@ fn main() {
             let start = Instant::now();
             let text = std::fs::read_to_string(&path).expect("a text");
             let source = Source { name: path.display().to_string(), text };
-            let Read { document, .. } = chemistry::read(Arc::new(source)).expect("a good document");
+            let Read { document, .. } = equations::read(Arc::new(source)).expect("a good document");
             reads.push(start.elapsed().as_secs_f64() * 1e3);
             let program = Program::new(&document.system).expect("no circle");
             wholes.push(start.elapsed().as_secs_f64() * 1e3);

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use pseudopod::Vec3;
-use pseudopod::chemistry::eml;
-use pseudopod::chemistry::field::{Chunk, FieldSystem, Fields, Grid, Range, Sensed, Species, Stepping, Wall};
+use pseudopod::equations::eml;
 use pseudopod::error::Source;
+use pseudopod::field::{Chunk, FieldSystem, Fields, Grid, Range, Sensed, Species, Stepping, Wall};
 
 /// Seconds of the fastest of several rounds: the least disturbed one.
 fn fastest(rounds: usize, mut work: impl FnMut()) -> f64 {

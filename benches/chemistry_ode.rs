@@ -11,11 +11,11 @@ use std::time::Instant;
 
 use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason};
 use diffsol::{Tableau, Vector};
-use pseudopod::chemistry::eml;
-use pseudopod::chemistry::ode::{Method, Population, Tolerances};
-use pseudopod::chemistry::program::{Program, run};
-use pseudopod::chemistry::tree::System;
+use pseudopod::equations::eml;
+use pseudopod::equations::program::{Program, run};
+use pseudopod::equations::tree::System;
 use pseudopod::error::Source;
+use pseudopod::ode::{Method, Population, Tolerances};
 
 const WINDOWS: usize = 20;
 /// Cells of the runs that are compared.

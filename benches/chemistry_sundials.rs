@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use pseudopod::chemistry::ode::{Method, Scheme, SolveOptions, solve};
+use pseudopod::ode::{Method, Scheme, SolveOptions, solve};
 use serde_json::Value;
 
 #[path = "../tests/ode_problems/mod.rs"]

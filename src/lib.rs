@@ -11,13 +11,15 @@ extern crate self as pseudopod; // So that tests in here share examples with the
 
 pub mod analysis;
 pub mod cell;
-pub mod chemistry;
 pub mod cli;
 pub mod contact;
+pub mod equations;
 pub mod error;
 pub mod experiment;
+pub mod field;
 pub mod geometry;
 pub mod mechanics;
+pub mod ode;
 pub mod output;
 pub mod picture;
 pub mod random;

@@ -1,9 +1,9 @@
 //! The EML documents that come with the program, and what is refused.
 
-use pseudopod::chemistry::eml::{
+use pseudopod::equations::eml::{
     self, Document, Index, LARGEST_DOCUMENT, Level, LinkDescription, Profile, Root, Scheme, Wall,
 };
-use pseudopod::chemistry::tree::{Expr, Role, System};
+use pseudopod::equations::tree::{Expr, Role, System};
 use pseudopod::error::{Error, Paint, Source, render};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -231,7 +231,7 @@ fn the_book_has_every_element_attribute_and_function() {
             assert!(book.contains(&format!("`{name}`")), "`{name}` of <{}> is in the chapter", kind.name);
         }
     }
-    for name in pseudopod::chemistry::expression::function_names() {
+    for name in pseudopod::equations::expression::function_names() {
         assert!(book.contains(&format!("`{name}(")), "{name} is in the chapter");
     }
     let summary = std::fs::read_to_string(Path::new(&root()).join("docs/src/SUMMARY.md")).expect("the contents");

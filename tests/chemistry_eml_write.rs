@@ -1,10 +1,10 @@
 //! What is written as EML is read as the same system, and models from SBML keep their numbers.
 
-use pseudopod::chemistry::ode::{SolveOptions, solve};
-use pseudopod::chemistry::program::initial_values;
-use pseudopod::chemistry::tree::{QuantityId, Role, System};
-use pseudopod::chemistry::{self, Read, eml};
+use pseudopod::equations::program::initial_values;
+use pseudopod::equations::tree::{QuantityId, Role, System};
+use pseudopod::equations::{self, Read, eml};
 use pseudopod::error::{Paint, Source, render};
+use pseudopod::ode::{SolveOptions, solve};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ fn models() -> Vec<PathBuf> {
 
 fn read_text(name: &str, text: String) -> Read {
     let source = Arc::new(Source { name: name.to_owned(), text });
-    chemistry::read(source).unwrap_or_else(|error| panic!("{name}: {}", render(&error, Paint::Plain)))
+    equations::read(source).unwrap_or_else(|error| panic!("{name}: {}", render(&error, Paint::Plain)))
 }
 
 fn read(path: &Path) -> Read {
@@ -144,7 +144,7 @@ fn words_of_the_language_and_foreign_names_get_new_ones() {
     document
         .system
         .quantities
-        .extend(ids.map(|id| pseudopod::chemistry::tree::Quantity { id: id.into(), ..a.clone() }));
+        .extend(ids.map(|id| pseudopod::equations::tree::Quantity { id: id.into(), ..a.clone() }));
     let written = eml::write(&document, "");
     let system = read_text("again", written.text).document.system;
     let found: Vec<&str> = system.quantities.iter().map(|quantity| quantity.id.as_str()).collect();

@@ -5,10 +5,8 @@ mod ode_problems;
 use std::collections::HashMap;
 
 use ode_problems::{expression, system};
-use pseudopod::chemistry::ode::{
-    EventPlan, Eventful, Method, Population, Reason, Scheme, SolveOptions, Tolerances, solve,
-};
-use pseudopod::chemistry::tree::{Binary, Event, Expr, System};
+use pseudopod::equations::tree::{Binary, Event, Expr, System};
+use pseudopod::ode::{EventPlan, Eventful, Method, Population, Reason, Scheme, SolveOptions, Tolerances, solve};
 
 fn compare(function: Binary, a: Expr, b: Expr) -> Expr {
     Expr::Binary(function, Box::new(a), Box::new(b))
@@ -98,7 +96,7 @@ fn a_short_pulse_of_the_clock_is_not_missed() {
         otherwise: Box::new(Expr::Number(0.0)),
     };
     let mut system = system("pulse", &[("x", 0.0, "0")], &[]);
-    system.quantities[0] = ode_problems::quantity("x", pseudopod::chemistry::tree::Role::Variable { rate: pulse }, 0.0);
+    system.quantities[0] = ode_problems::quantity("x", pseudopod::equations::tree::Role::Variable { rate: pulse }, 0.0);
     for scheme in &SCHEMES[..2] {
         let options = SolveOptions { scheme: *scheme, ..SolveOptions::default() };
         let solution = solve(&system, 0.0, 100.0, &[49.0, 60.0], &options).expect("a step");

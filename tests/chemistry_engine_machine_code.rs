@@ -4,10 +4,10 @@ mod every_function;
 mod ode_problems;
 
 use ode_problems::{goldbeter_per, martiel_goldbeter, van_der_pol_pair};
-use pseudopod::chemistry::ode::tableau::{rodas, tsitouras, verner};
-use pseudopod::chemistry::ode::{Method, OdeTrouble, Population, Reason, Tolerances, Work};
-use pseudopod::chemistry::program::Program;
-use pseudopod::chemistry::tree::{Binary, Expr, Role, System};
+use pseudopod::equations::program::Program;
+use pseudopod::equations::tree::{Binary, Expr, Role, System};
+use pseudopod::ode::tableau::{rodas, tsitouras, verner};
+use pseudopod::ode::{Method, OdeTrouble, Population, Reason, Tolerances, Work};
 
 /// The methods that have machine code.
 const METHODS: [Method; 3] = [Method::Rk45, Method::Rk65, Method::Rosenbrock];
@@ -46,7 +46,7 @@ fn every_function_gives_the_same_bits() {
     let points = every_function::POINTS.into_iter().chain(odd.into_iter().flat_map(|a| odd.map(|b| (a, b))));
     let points: Vec<(f64, f64)> = points.collect();
     for expression in every_function::functions() {
-        let other = every_function::unary(pseudopod::chemistry::tree::Unary::Neg, expression.clone());
+        let other = every_function::unary(pseudopod::equations::tree::Unary::Neg, expression.clone());
         let (plain, code) = programs(&every_function::system(expression.clone(), other));
         for (&(x, y), method) in points.iter().flat_map(|point| METHODS.map(|method| (point, method))) {
             let [one, two] = [&plain, &code].map(|program| {

@@ -3,8 +3,8 @@
 mod ode_problems;
 
 use ode_problems::{martiel_goldbeter, system, van_der_pol_pair};
-use pseudopod::chemistry::ode::{Method, Population, Reason, Scheme, SolveOptions, Tolerances, solve};
-use pseudopod::chemistry::program::Program;
+use pseudopod::equations::program::Program;
+use pseudopod::ode::{Method, Population, Reason, Scheme, SolveOptions, Tolerances, solve};
 
 /// Errors at the end, and work in steps, of a system with known answer for a list of tolerances or steps.
 fn errors(schemes: &[(Scheme, f64)]) -> Vec<(f64, f64)> {
@@ -179,7 +179,7 @@ fn trouble_names_cell_time_and_variable_and_spares_the_neighbours() {
 
 #[test]
 fn inputs_differ_between_cells() {
-    use pseudopod::chemistry::tree::{Expr, Role};
+    use pseudopod::equations::tree::{Expr, Role};
     let mut system = system("driven", &[("x", 0.0, "k")], &[("k", 1.0)]);
     system.quantities[1] = ode_problems::quantity("k", Role::Input, 1.0);
     assert_eq!(system.quantities[0].role, Role::Variable { rate: Expr::Quantity(1) });
@@ -193,7 +193,7 @@ fn inputs_differ_between_cells() {
 
 #[test]
 fn rates_kept_between_windows_change_no_bit() {
-    use pseudopod::chemistry::tree::Role;
+    use pseudopod::equations::tree::Role;
     // Driven by an input, and by the clock.
     let driven = |rate: &str| {
         let mut system = system("driven", &[("x", 1.0, "y"), ("y", 0.0, rate)], &[("k", 1.0)]);

@@ -3,8 +3,8 @@
 mod every_function;
 
 use every_function::{POINTS, binary, functions, system, unary};
-use pseudopod::chemistry::program::{Program, initial_values, run};
-use pseudopod::chemistry::tree::{Binary, Expr, Unary};
+use pseudopod::equations::program::{Program, initial_values, run};
+use pseudopod::equations::tree::{Binary, Expr, Unary};
 
 #[test]
 fn programs_give_what_the_tree_gives() {

@@ -5,7 +5,7 @@ mod ode_problems;
 use std::path::PathBuf;
 
 use ode_problems::{martiel_goldbeter, system};
-use pseudopod::chemistry::ode::{Method, Scheme, SolveOptions, Work, solve};
+use pseudopod::ode::{Method, Scheme, SolveOptions, Work, solve};
 use serde_json::Value;
 
 fn shared(path: &str) -> Option<Value> {

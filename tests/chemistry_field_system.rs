@@ -3,9 +3,9 @@
 
 use std::sync::Arc;
 
-use pseudopod::chemistry::eml;
-use pseudopod::chemistry::field::{FieldSystem, Fields, Grid, Placing, Stepping};
+use pseudopod::equations::eml;
 use pseudopod::error::{Error, Fault, Result, Source};
+use pseudopod::field::{FieldSystem, Fields, Grid, Placing, Stepping};
 
 const ADAPTIVE: Stepping = Stepping::Adaptive { relative: 1e-3, absolute: 1e-6 };
 

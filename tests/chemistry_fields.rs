@@ -1,7 +1,7 @@
 //! Fields keep what they must keep: mass, signs, steady states, symmetry, bits; and reach their order.
 
 use pseudopod::Vec3;
-use pseudopod::chemistry::field::{Chunk, Fields, Grid, Range, Sensed, Species, Stepping, Wall, Walls};
+use pseudopod::field::{Chunk, Fields, Grid, Range, Sensed, Species, Stepping, Wall, Walls};
 
 const CLOSED: Walls = [[Wall::NoFlux; 2]; 3];
 const RING: Walls = [[Wall::Periodic; 2]; 3];

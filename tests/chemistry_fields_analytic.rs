@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use pseudopod::Vec3;
-use pseudopod::chemistry::field::{Chunk, Fields, Grid, Range, Species, Stepping, Wall};
+use pseudopod::field::{Chunk, Fields, Grid, Range, Species, Stepping, Wall};
 use serde_json::Value;
 
 /// The cases of a file of the shared data, or none, said and noted, where the data are not there.

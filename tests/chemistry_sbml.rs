@@ -2,7 +2,7 @@
 
 mod sbml_suite;
 
-use pseudopod::chemistry::ode::{SolveOptions, solve};
+use pseudopod::ode::{SolveOptions, solve};
 use sbml_suite::{Case, Solved, data, folders, load, suite, table};
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! What single constructs of SBML mean, against solutions by hand.
 
-use pseudopod::chemistry::ode::{Method, Scheme, SolveOptions, solve};
-use pseudopod::chemistry::sbml::{self, Model};
-use pseudopod::chemistry::tree::Role;
+use pseudopod::equations::sbml::{self, Model};
+use pseudopod::equations::tree::Role;
 use pseudopod::error::{Paint, Source, render};
+use pseudopod::ode::{Method, Scheme, SolveOptions, solve};
 use std::sync::Arc;
 
 const MATH: &str = "http://www.w3.org/1998/Math/MathML";

@@ -11,18 +11,20 @@ const TABLE: &[(&str, &[&str])] = &[
     ("random", &[]),
     ("geometry", &[]),
     ("mechanics", &["geometry"]),
-    ("chemistry", &[]),
+    ("equations", &[]),
+    ("ode", &["equations"]),
+    ("field", &["equations", "ode"]),
     ("contact", &["geometry"]),
-    ("cell", &["mechanics", "chemistry", "geometry"]),
-    ("sim", &["cell", "mechanics", "chemistry", "contact", "geometry"]),
-    ("experiment", &["sim", "cell", "mechanics", "chemistry", "contact", "geometry"]),
+    ("cell", &["mechanics", "equations", "ode", "field", "geometry"]),
+    ("sim", &["cell", "mechanics", "equations", "ode", "field", "contact", "geometry"]),
+    ("experiment", &["sim", "cell", "mechanics", "equations", "ode", "field", "contact", "geometry"]),
     // The result file knows no simulator: it is given frames.
     ("output", &[]),
     // Numbers and plots come from a finished file; the kinds of measures are words of the document.
     ("analysis", &["output", "experiment", "cell", "contact", "geometry"]),
     ("picture", &["output", "experiment", "analysis", "cell", "geometry", "run"]),
     ("run", &["experiment", "sim", "output", "analysis", "cell", "mechanics", "contact", "geometry"]),
-    ("cli", &["run", "experiment", "chemistry", "sim", "output", "analysis", "picture", "geometry"]),
+    ("cli", &["run", "experiment", "equations", "ode", "field", "sim", "output", "analysis", "picture", "geometry"]),
 ];
 
 /// What every room may use.

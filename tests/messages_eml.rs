@@ -2,7 +2,7 @@
 //!
 //! `PSEUDOPOD_BLESS=1 cargo test --test messages_eml` writes the texts anew; read the difference before committing it.
 
-use pseudopod::chemistry::eml;
+use pseudopod::equations::eml;
 use pseudopod::error::{Error, Paint, Source, render};
 use std::path::PathBuf;
 use std::sync::Arc;

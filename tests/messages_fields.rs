@@ -5,9 +5,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pseudopod::chemistry::eml;
-use pseudopod::chemistry::field::{FieldSystem, Grid, Stepping};
+use pseudopod::equations::eml;
 use pseudopod::error::{Error, Paint, Result, Source, render};
+use pseudopod::field::{FieldSystem, Grid, Stepping};
 
 fn documents() -> Vec<(PathBuf, eml::Document)> {
     let folder = std::fs::read_dir("tests/messages/fields").expect("the folder of bad documents");

@@ -2,7 +2,7 @@
 //!
 //! `PSEUDOPOD_BLESS=1 cargo test --test messages_sbml` writes the texts anew; read the difference before committing.
 
-use pseudopod::chemistry::sbml;
+use pseudopod::equations::sbml;
 use pseudopod::error::{Error, Paint, Source, render};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -116,7 +116,7 @@ fn hostile_texts_are_refused_at_once() {
 fn a_sum_of_many_terms_is_not_deep() {
     let text = with_formula("", &format!("<apply><plus/>{}</apply>", "<ci> x </ci>".repeat(100_000)));
     let model = read("long sum", text).expect("a good model");
-    let pseudopod::chemistry::tree::Role::Variable { rate } = &model.system.quantities[0].role else {
+    let pseudopod::equations::tree::Role::Variable { rate } = &model.system.quantities[0].role else {
         panic!("a rate")
     };
     assert_eq!(rate.evaluate(0.0, &|_| 0.5), 50_000.0);

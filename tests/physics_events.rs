@@ -4,7 +4,7 @@ mod coupled_scene;
 mod sbml_suite;
 
 use coupled_scene::{Scene, crowd, one_cell, scene};
-use pseudopod::chemistry::ode::{Reason, SolveOptions, solve};
+use pseudopod::ode::{Reason, SolveOptions, solve};
 use pseudopod::sim::{State, Trouble};
 use sbml_suite::{Case, Solved, suite};
 
@@ -28,7 +28,7 @@ fn values(scene: &Scene) -> Vec<f64> {
 /// The values that the single solve of a document gives at times in its unit.
 fn solved(eml: &str, times: &[f64]) -> Vec<Vec<f64>> {
     let source = pseudopod::error::Source { name: "own.eml".into(), text: eml.into() };
-    let system = pseudopod::chemistry::read(source.into()).unwrap().document.system;
+    let system = pseudopod::equations::read(source.into()).unwrap().document.system;
     let options = SolveOptions { relative: 1e-9, absolute: 1e-12, ..SolveOptions::default() };
     solve(&system, 0.0, times[times.len() - 1], times, &options).unwrap().values
 }

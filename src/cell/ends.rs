@@ -3,7 +3,7 @@
 //! A link's end such as `cell.atom[4].y` is grammar to EML; here its words get their meaning. Words that exist are in
 //! [`READABLE`] and [`SETTABLE`], in the order in which messages list them.
 
-use crate::chemistry::eml::{Index, Step};
+use crate::equations::eml::{Index, Step};
 
 /// A number that can be read from a cell at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]

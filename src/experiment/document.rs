@@ -124,12 +124,12 @@ impl Document {
     ///
     /// # Errors
     /// As [`std::fs::read`], and [`std::io::ErrorKind::FileTooLarge`] for more than
-    /// [`LARGEST_DOCUMENT`](crate::chemistry::eml::LARGEST_DOCUMENT) bytes.
+    /// [`LARGEST_DOCUMENT`](crate::equations::eml::LARGEST_DOCUMENT) bytes.
     pub fn equations_at(&self, path: &Path) -> std::io::Result<Vec<u8>> {
         if let Some(text) = self.equations.get(&written(path)) {
             return Ok(text.clone().into_bytes());
         }
-        let (file, largest) = (self.resolve(path), crate::chemistry::eml::LARGEST_DOCUMENT);
+        let (file, largest) = (self.resolve(path), crate::equations::eml::LARGEST_DOCUMENT);
         let size = std::fs::metadata(&file)?.len();
         if size > largest as u64 {
             let words = format!("it has {size} bytes, and at most {largest} are read");

@@ -3,7 +3,7 @@
 use super::constraints::VolumeFailure;
 use super::model::Model;
 use super::state::{State, index};
-use crate::chemistry::ode::Reason;
+use crate::ode::Reason;
 
 /// Why a step could not be made. The state is the one before the step.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! Systems in which every function of the tree occurs.
 #![allow(dead_code)]
 
-use pseudopod::chemistry::tree::{Binary, Expr, Quantity, Role, System, Unary};
+use pseudopod::equations::tree::{Binary, Expr, Quantity, Role, System, Unary};
 
 pub fn quantity(id: &str, role: Role, initial: f64) -> Quantity {
     Quantity { id: id.into(), name: String::new(), role, initial: Expr::Number(initial), unit: String::new() }

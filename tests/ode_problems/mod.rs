@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use pseudopod::chemistry::tree::{Binary, Expr, Quantity, QuantityId, Role, System, Unary};
+use pseudopod::equations::tree::{Binary, Expr, Quantity, QuantityId, Role, System, Unary};
 
 /// A quantity with an initial value.
 pub fn quantity(id: &str, role: Role, initial: f64) -> Quantity {

@@ -1,7 +1,7 @@
 //! Models of SBML with known results, and the rule by which the SBML test suite compares.
 #![allow(dead_code)]
 
-use pseudopod::chemistry::sbml::{self, Model};
+use pseudopod::equations::sbml::{self, Model};
 use pseudopod::error::{Error, Source};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,10 +1,10 @@
 //! `pseudopod eml check`: finds all faults of documents of equations, or says what is in them.
 
 use super::read::read;
-use crate::chemistry::Read;
-use crate::chemistry::eml::{Level, SCHEMES};
-use crate::chemistry::tree::{Quantity, Role};
 use crate::cli::report::{Form, Report, path_text};
+use crate::equations::Read;
+use crate::equations::eml::{Level, SCHEMES};
+use crate::equations::tree::{Quantity, Role};
 use crate::error::{Error, Result};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -101,7 +101,7 @@ fn object(path: &Path, read: &Read) -> Value {
     for (kind, names) in kinds(read) {
         object[kind] = names.into();
     }
-    let link = |link: &crate::chemistry::eml::LinkDescription| json!({ "from": link.from.text, "to": link.to.text });
+    let link = |link: &crate::equations::eml::LinkDescription| json!({ "from": link.from.text, "to": link.to.text });
     object["links"] = document.links.iter().map(link).collect();
     object["solver"] = Value::Object(solver(read).into_iter().map(|(name, value)| (name.to_owned(), value)).collect());
     object["notices"] = read.notices.clone().into();

@@ -1,7 +1,7 @@
 //! The columns of a solution, and the table that is written row by row.
 
-use crate::chemistry::Read;
-use crate::chemistry::tree::{QuantityId, Role};
+use crate::equations::Read;
+use crate::equations::tree::{QuantityId, Role};
 use crate::error::words::{any_of, meant};
 use crate::error::{Error, Fault, Result};
 use std::io::{BufWriter, ErrorKind, Write};
@@ -63,7 +63,7 @@ pub(super) fn set(sets: &[String], read: &mut Read, faults: &mut Vec<Fault>) {
 }
 
 fn set_one(set: &str, read: &mut Read) -> std::result::Result<(), Fault> {
-    use crate::chemistry::tree::{Binary, Expr};
+    use crate::equations::tree::{Binary, Expr};
     let help = "write --set id=number, such as --set k=0.2";
     let (id, text) = set.split_once('=').ok_or_else(|| Fault::new(format!("--set {set} says no value")).help(help))?;
     let (id, text) = (id.trim(), text.trim());

@@ -1,7 +1,7 @@
 //! The curves of a solution as a chart.
 
 use super::columns::Column;
-use crate::chemistry::eml::Document;
+use crate::equations::eml::Document;
 use crate::error::{Fault, Result};
 use crate::picture::chart::{svg_to_png, to_svg};
 use crate::picture::image::write_file;

@@ -1,9 +1,9 @@
 //! `pseudopod eml from-sbml`: writes an SBML model as an EML document.
 
 use super::read::read;
-use crate::chemistry::eml::{self, Written};
 use crate::cli::render::{Named, refuse_existing};
 use crate::cli::report::{Report, path_text, paths};
+use crate::equations::eml::{self, Written};
 use crate::error::{Error, Fault, Result, Source};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

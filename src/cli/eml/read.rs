@@ -1,6 +1,6 @@
 //! Documents of equations from files.
 
-use crate::chemistry::{self, Read, sbml};
+use crate::equations::{self, Read, sbml};
 use crate::error::{Error, Fault, Result, Source};
 use crate::experiment::near_file;
 use std::io::{ErrorKind, Read as _};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub fn read(path: &Path) -> Result<Read> {
     let name = path.display().to_string();
     let source = Source { text: text(path, &name)?, name };
-    chemistry::read(Arc::new(source))
+    equations::read(Arc::new(source))
 }
 
 /// The text of a file; a file larger than every document is not read.

@@ -5,10 +5,10 @@ use super::draw::Drawing;
 use super::read::read;
 use super::refuse_same;
 use super::wishes::{options, points};
-use crate::chemistry::ode::solve_each;
 use crate::cli::render::{Named, refuse_existing};
 use crate::cli::report::{Report, path_text, paths};
 use crate::error::{Error, Fault, Result, say};
+use crate::ode::solve_each;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

@@ -1,10 +1,10 @@
 //! What the options of `eml solve` ask for, over what the document asks for.
 
 use super::solve::SolveArgs;
-use crate::chemistry::eml::{Document, SCHEMES};
-use crate::chemistry::ode::{MOST_IMPLICIT, Method, Scheme, SolveOptions, too_large};
+use crate::equations::eml::{Document, SCHEMES};
 use crate::error::Fault;
 use crate::error::words::meant;
+use crate::ode::{MOST_IMPLICIT, Method, Scheme, SolveOptions, too_large};
 
 /// The most rows of a table.
 const MOST_POINTS: i64 = 10_000_000;

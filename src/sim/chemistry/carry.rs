@@ -11,8 +11,8 @@ use super::model::{Control, Link, Owner, Source, Target, Whole};
 use super::scratch::{ChemistryScratch, cells_of};
 use super::stages::is_due;
 use crate::cell::ends::{Reading, Sense};
-use crate::chemistry::eml::LinkDescription;
-use crate::chemistry::field::Sensed;
+use crate::equations::eml::LinkDescription;
+use crate::field::Sensed;
 
 /// Carries the numbers of all links whose system exchanges with the model at `time`; `dt` is the step just made.
 /// The values of the fields must be with their solvers. At the start every system exchanges.

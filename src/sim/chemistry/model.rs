@@ -1,10 +1,10 @@
 //! What chemistry means: compiled systems, fields and links. Nothing here changes during a run.
 
 use crate::cell::ends::{Reading, Sense};
-use crate::chemistry::field::{FieldSystem, Stepping};
-use crate::chemistry::ode::{EventPlan, Method, Tolerances};
-use crate::chemistry::program::Program;
-use crate::chemistry::tree::{Expr, QuantityId};
+use crate::equations::program::Program;
+use crate::equations::tree::{Expr, QuantityId};
+use crate::field::{FieldSystem, Stepping};
+use crate::ode::{EventPlan, Method, Tolerances};
 
 /// All chemistry of a model; empty lists where there is none.
 #[derive(Debug, Clone, Default)]

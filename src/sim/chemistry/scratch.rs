@@ -6,7 +6,7 @@ use super::measure::CellNumbers;
 use super::model::Whose;
 use super::state::ChemistryState;
 use crate::Vec3;
-use crate::chemistry::field::{Fields, Sensed};
+use crate::field::{Fields, Sensed};
 
 /// What the stages of chemistry need beside the state.
 #[derive(Debug, Clone, Default)]

@@ -9,8 +9,8 @@ use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
 use super::carry::carry_links;
 use super::model::{Members, Reactor};
-use crate::chemistry::ode::{Eventful, OdeTrouble};
 use crate::error::Error;
+use crate::ode::{Eventful, OdeTrouble};
 
 /// Lets the links carry the numbers of the start, once, and executes the events of the start.
 pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {

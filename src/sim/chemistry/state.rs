@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::super::model::Model;
 use super::model::{Control, Reactor, Target};
-use crate::chemistry::field::Fields;
-use crate::chemistry::ode::{EventMemory, Population};
+use crate::field::Fields;
+use crate::ode::{EventMemory, Population};
 
 /// Everything of chemistry that changes.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

@@ -2,7 +2,7 @@
 
 use super::{Part, within};
 use crate::cell::ends::{self, Reading, Sense, Setting};
-use crate::chemistry::eml::{Endpoint, Index, LinkDescription, Root, Step};
+use crate::equations::eml::{Endpoint, Index, LinkDescription, Root, Step};
 use crate::error::words;
 use crate::error::{Fault, short};
 use crate::sim::Kind;

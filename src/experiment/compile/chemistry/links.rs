@@ -4,11 +4,11 @@ use super::super::super::{ChemistryLink, Document};
 use super::ends::{Ends, Side};
 use super::order::order;
 use super::{Part, at, within};
-use crate::chemistry::eml::{self, Endpoint, LinkDescription, Root};
-use crate::chemistry::expression::Trouble;
-use crate::chemistry::ode::assigned_parameters;
-use crate::chemistry::tree::{Event, Expr, Role, System};
+use crate::equations::eml::{self, Endpoint, LinkDescription, Root};
+use crate::equations::expression::Trouble;
+use crate::equations::tree::{Event, Expr, Role, System};
 use crate::error::{Fault, Place};
+use crate::ode::assigned_parameters;
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, Control, Link, Owner, Target};
 

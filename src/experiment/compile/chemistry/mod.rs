@@ -8,12 +8,12 @@ mod profile;
 mod read;
 
 use super::super::{Chemistry as Entry, Document, Scheme};
-use crate::chemistry::eml;
-use crate::chemistry::field::{FieldSystem, Fields, Placing};
-use crate::chemistry::ode::{EventPlan, MOST_IMPLICIT, Method, Tolerances, assigned_parameters, too_large};
-use crate::chemistry::program::{Program, initial_values};
-use crate::chemistry::tree::Role;
+use crate::equations::eml;
+use crate::equations::program::{Program, initial_values};
+use crate::equations::tree::Role;
 use crate::error::{Error, Fault, Place};
+use crate::field::{FieldSystem, Fields, Placing};
+use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Tolerances, assigned_parameters, too_large};
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
 

@@ -4,7 +4,7 @@
 //! must therefore come after the links that set these inputs. Variables break such chains: they change with time only.
 
 use crate::cell::ends::Reading;
-use crate::chemistry::tree::{QuantityId, Role, System};
+use crate::equations::tree::{QuantityId, Role, System};
 use crate::sim::chemistry::{Control, Link, Owner, Reactor, Source, Target};
 
 /// The numbers of the links in order.

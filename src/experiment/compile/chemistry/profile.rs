@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::chemistry::eml::Profile;
-use crate::chemistry::field::Grid;
+use crate::equations::eml::Profile;
 use crate::error::{Error, Fault, Place, Result};
+use crate::field::Grid;
 
 /// Values of a profile that a file gives, one for each box of the grid in the order of its memory. The picture covers
 /// the whole grid, its first row at the top (the largest y); values between its points are interpolated linearly. Paths start

@@ -2,8 +2,8 @@
 
 use super::super::super::{Chemistry as Entry, Document};
 use super::{Part, at, tell};
-use crate::chemistry::eml::{self, Level};
-use crate::chemistry::tree::{Expr, Role};
+use crate::equations::eml::{self, Level};
+use crate::equations::tree::{Expr, Role};
 use crate::error::words;
 use crate::error::{Fault, Source};
 use crate::sim::Kind;
@@ -51,7 +51,7 @@ fn read(document: &Document, name: &str, entry: &Entry, faults: &mut Vec<Fault>)
         }
     };
     let source = Arc::new(Source { name: path.display().to_string(), text });
-    crate::chemistry::read(source).map_err(|error| tell(error, faults)).ok().map(|read| read.document)
+    crate::equations::read(source).map_err(|error| tell(error, faults)).ok().map(|read| read.document)
 }
 
 /// Puts the experiment's values in the place of the document's.

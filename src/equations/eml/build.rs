@@ -1,0 +1,322 @@
+//! Second reading: expressions are resolved, their units checked, and the system is put together.
+
+use super::circles::circles;
+use super::declare::{Declarations, POSITION, tell};
+use super::desk::Desk;
+use super::document::Level;
+use super::xml::{Element, Text};
+use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
+use crate::equations::tree::{Expr, Quantity, QuantityId, Role, System};
+use crate::error::Place;
+use std::collections::HashMap;
+
+/// The most definitions of which each uses the one before: what orders them is recursive.
+const LONGEST_CHAIN: usize = 1000;
+
+/// What an expression may use.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Use {
+    /// Everything.
+    All,
+    /// What has a value at the start: everything but time.
+    Start,
+    /// What keeps one value: parameters.
+    Fixed,
+}
+
+/// The second reader.
+pub(super) struct Builder<'a, 'd> {
+    pub(super) desk: &'d mut Desk,
+    pub(super) known: Declarations<'a>,
+    start: Scope,
+    fixed: Scope,
+}
+
+impl<'a, 'd> Builder<'a, 'd> {
+    pub(super) fn new(desk: &'d mut Desk, known: Declarations<'a>) -> Self {
+        let no_time = "only rates, definitions, events and transfers can use the time".to_owned();
+        let start = Scope { no_time: no_time.clone(), ..known.scope.clone() };
+        let mut fixed = Scope { no_time, ..known.scope.clone() };
+        let is_parameter = |id: &str| known.sort(id) == Some("parameter");
+        fixed.quantities.retain(|id, _| is_parameter(id));
+        for id in known.scope.quantities.keys().filter(|id| !is_parameter(id)) {
+            fixed.absent.insert(id.clone(), "this must keep one value: use numbers and parameters".to_owned());
+        }
+        Self { desk, known, start, fixed }
+    }
+
+    fn scope(&self, allowed: Use) -> &Scope {
+        match allowed {
+            Use::All => &self.known.scope,
+            Use::Start => &self.start,
+            Use::Fixed => &self.fixed,
+        }
+    }
+
+    /// Reads an expression; `expected` is its unit and what it is for. A number alone is taken in that unit.
+    pub(super) fn expression(&mut self, text: &Text, allowed: Use, expected: Option<(&Unit, &str)>) -> Option<Expr> {
+        let (node, troubles) = parse(&text.text);
+        troubles.iter().for_each(|trouble| tell(self.desk, text, trouble));
+        let resolved = self.scope(allowed).resolve(&node);
+        match resolved {
+            Ok(expr) if troubles.is_empty() => {
+                if !is_constant(&node) {
+                    self.check_units(text, &node, expected);
+                }
+                Some(expr)
+            }
+            Ok(_) => None,
+            Err(more) => {
+                more.iter().for_each(|trouble| tell(self.desk, text, trouble));
+                None
+            }
+        }
+    }
+
+    fn check_units(&mut self, text: &Text, node: &Node, expected: Option<(&Unit, &str)>) {
+        let mut troubles = Vec::new();
+        let units = UnitScope { units: &self.known.units, scope: &self.known.scope, time: self.known.time_in_units() };
+        match expected {
+            Some((unit, what)) => units.expect(node, unit, what, &mut troubles),
+            None => drop(units.measure(node, &mut troubles)),
+        }
+        troubles.iter().for_each(|trouble| tell(self.desk, text, trouble));
+    }
+
+    /// The expression in an attribute; nothing when it is absent or at fault.
+    pub(super) fn attribute(
+        &mut self,
+        element: &Element,
+        name: &str,
+        allowed: Use,
+        expected: Option<(&Unit, &str)>,
+    ) -> Option<Expr> {
+        let text = element.attribute(name)?.clone();
+        self.expression(&text, allowed, expected)
+    }
+
+    /// The number in an attribute.
+    pub(super) fn number(&mut self, element: &Element, name: &str) -> Option<f64> {
+        let text = element.attribute(name)?;
+        let value = text.text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+        if value.is_none() {
+            let message = format!("`{name}` is \"{}\"; a number was expected", text.text.trim());
+            self.desk.fault(text.whole(), &message, "not a number", "write a number such as 0.1 or 1e-6");
+        }
+        value
+    }
+
+    /// A number above zero.
+    pub(super) fn positive(&mut self, element: &Element, name: &str) -> Option<f64> {
+        let value = self.number(element, name)?;
+        if value <= 0.0 {
+            let message = format!("`{name}` is {value}; a number above 0 was expected");
+            self.desk.fault(element.place(name), &message, "not above 0", "write a number such as 0.1 or 1e-6");
+            return None;
+        }
+        Some(value)
+    }
+
+    /// The unit of a quantity, where it has one.
+    pub(super) fn unit_of(&self, id: &str) -> Option<Unit> {
+        self.known.units.get(id).cloned()
+    }
+
+    /// The quantities of the document and where they are declared.
+    pub(super) fn quantities(&mut self, root: &Element) -> (Vec<Quantity>, Vec<Place>) {
+        let mut equations = self.equations(root);
+        let (mut quantities, mut places) = (Vec::new(), Vec::new());
+        for number in 0..self.known.quantities.len() {
+            let (id, element) = (self.known.quantities[number].id.clone(), self.known.quantities[number].element);
+            let own = self.unit_of(&id);
+            let (role, initial) = match element.kind.name {
+                "parameter" => (Some(Role::Parameter), self.value(element, "value", Use::Fixed, &id)),
+                "input" => (Some(Role::Input), self.value(element, "default", Use::Fixed, &id)),
+                "define" => {
+                    let what = format!("the definition of `{id}`");
+                    let rule = self.expression(&element.text, Use::All, own.as_ref().map(|unit| (unit, what.as_str())));
+                    (rule.map(|rule| Role::Defined { rule }), Some(Expr::Number(0.0)))
+                }
+                "field" => {
+                    let rate = self.reaction(element, &id);
+                    let initial = element
+                        .attribute("initial")
+                        .map(|_| ())
+                        .map_or(Some(Expr::Number(0.0)), |()| self.value(element, "initial", Use::Start, &id));
+                    (rate.map(|rate| Role::Variable { rate }), initial)
+                }
+                _ => {
+                    let rate = self.rate(element, &id, equations.remove(id.as_str()));
+                    (rate.map(|rate| Role::Variable { rate }), self.value(element, "initial", Use::Start, &id))
+                }
+            };
+            // After a fault something stands in its place, so that all the rest can be read.
+            quantities.push(Quantity {
+                name: element.word("name"),
+                role: role.unwrap_or(Role::Input),
+                initial: initial.unwrap_or(Expr::Number(0.0)),
+                unit: element.word("unit"),
+                id,
+            });
+            places.push(self.desk.place(element.place("id"), "declared here"));
+        }
+        if self.known.level == Level::Field {
+            for name in POSITION {
+                let unit = self.known.length_text.clone();
+                let (role, initial) = (Role::Input, Expr::Number(0.0));
+                quantities.push(Quantity {
+                    id: name.to_owned(),
+                    name: format!("position {name}"),
+                    role,
+                    initial,
+                    unit,
+                });
+                places.push(self.desk.place(root.at.clone(), "the position"));
+            }
+        }
+        (quantities, places)
+    }
+
+    fn value(&mut self, element: &Element, attribute: &str, allowed: Use, id: &str) -> Option<Expr> {
+        let own = self.unit_of(id);
+        let what = format!("`{attribute}` of `{id}`");
+        self.attribute(element, attribute, allowed, own.as_ref().map(|unit| (unit, what.as_str())))
+    }
+
+    /// Equations that stand by themselves, by the variable they belong to.
+    fn equations<'e>(&mut self, root: &'e Element) -> HashMap<String, &'e Element> {
+        let mut found: HashMap<String, &Element> = HashMap::new();
+        for element in root.all("equation").filter(|element| element.attribute("of").is_some()) {
+            let id = element.word("of");
+            let sort = self.known.sort(&id);
+            let (message, help) = match sort {
+                Some("variable") if found.contains_key(&id) => {
+                    (format!("`{id}` has two equations"), "remove one, or add the two".to_owned())
+                }
+                Some("variable") => {
+                    found.insert(id, element);
+                    continue;
+                }
+                Some(other) => (
+                    format!("`{id}` is a <{other}>, which has no rate of change"),
+                    format!("declare it with <variable id=\"{id}\" initial=\"…\">"),
+                ),
+                None => {
+                    let variables = self.known.ids().filter(|id| self.known.sort(id) == Some("variable"));
+                    let near = self.desk.meant(&id, variables);
+                    let help = near.map_or(format!("declare <variable id=\"{id}\" initial=\"…\">"), |near| {
+                        format!("did you mean `{near}`?")
+                    });
+                    (format!("there is no variable `{id}`"), help)
+                }
+            };
+            self.desk.fault(element.place("of"), &message, "this equation", &help);
+        }
+        found
+    }
+
+    fn rate(&mut self, element: &Element, id: &str, equation: Option<&Element>) -> Option<Expr> {
+        let text = match (element.attribute("rate"), equation) {
+            (Some(_), Some(equation)) => {
+                let message = format!("`{id}` has a rate and an equation");
+                self.desk.fault(equation.place("of"), &message, "a second equation", "remove one of them");
+                return None;
+            }
+            (Some(rate), None) => rate.clone(),
+            (None, Some(equation)) => equation.text.clone(),
+            (None, None) => {
+                let help =
+                    format!("write <equation of=\"{id}\">…</equation>, or rate=\"0\" for what only events change");
+                self.desk.fault(element.place("id"), &format!("`{id}` has no equation"), "changes how?", &help);
+                return None;
+            }
+        };
+        let unit = self.per_time(id);
+        let what = format!("the rate of `{id}`");
+        self.expression(&text, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())))
+    }
+
+    fn reaction(&mut self, element: &Element, id: &str) -> Option<Expr> {
+        let mut reactions = element.all("reaction");
+        let Some(reaction) = reactions.next() else { return Some(Expr::Number(0.0)) };
+        if let Some(second) = reactions.next() {
+            let message = format!("`{id}` has two reactions");
+            self.desk.fault(second.at.clone(), &message, "a second reaction", "write their sum in one <reaction>");
+        }
+        let unit = self.per_time(id);
+        let what = format!("the reaction of `{id}`");
+        self.expression(&reaction.text, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())))
+    }
+
+    fn per_time(&self, id: &str) -> Option<Unit> {
+        self.unit_of(id).map(|unit| unit.times(&self.known.time.to_the(-1.0)))
+    }
+
+    /// Tells what depends on itself, and initial values that are not finite.
+    pub(super) fn check_values(&mut self, system: &System) {
+        let uses = |number: usize| -> Vec<usize> {
+            let quantity = &system.quantities[number];
+            let expr = match &quantity.role {
+                Role::Defined { rule } => rule,
+                _ => &quantity.initial,
+            };
+            let mut found = Vec::new();
+            expr.each_quantity(&mut |other| found.push(other as usize));
+            found.sort_unstable();
+            found.dedup();
+            found
+        };
+        let found = circles(system.quantities.len(), &uses);
+        for circle in &found {
+            let id = |number: &usize| format!("`{}`", system.quantities[*number].id);
+            let way: Vec<String> = circle.iter().chain([&circle[0]]).map(id).collect();
+            let defined = |number: &usize| matches!(system.quantities[*number].role, Role::Defined { .. });
+            let what = if circle.iter().all(defined) { "definitions" } else { "initial values" };
+            let message = format!("{what} go in a circle: {}", way.join(" → "));
+            let at = self.known.quantities[circle[0]].element.place("id");
+            let help = "let one of them be a number, or a <variable> with an equation";
+            self.desk.fault(at, &message, "in the circle", help);
+        }
+        if found.is_empty() {
+            let lengths = super::start::lengths(system.quantities.len(), &uses);
+            if let Some(number) = lengths.iter().position(|length| *length > LONGEST_CHAIN) {
+                let at = self.known.quantities[number].element.place("id");
+                let message = format!("more than {LONGEST_CHAIN} quantities in a row use each other to be computed");
+                self.desk.fault(at, &message, "too far down", "let expressions do more at once");
+            } else if self.desk.is_clean() {
+                self.check_finite(system);
+            }
+        }
+    }
+
+    fn check_finite(&mut self, system: &System) {
+        let values = super::start::values(system);
+        for (number, value) in values.iter().enumerate() {
+            let Some(declared) = self.known.quantities.get(number) else { continue };
+            let attribute = match declared.element.kind.name {
+                "parameter" => "value",
+                "input" => "default",
+                "variable" => "initial",
+                _ => continue,
+            };
+            if !value.is_finite() {
+                let message = format!("`{attribute}` of `{}` is {value}, which is not finite", declared.id);
+                let at = declared.element.place(attribute);
+                self.desk.fault(at, &message, &value.to_string(), "correct it: a run must start from numbers");
+            }
+        }
+    }
+
+    /// The number of a quantity.
+    pub(super) fn find(&self, id: &str) -> Option<QuantityId> {
+        self.known.scope.quantities.get(id).copied()
+    }
+}
+
+/// Whether an expression is made of bare numbers alone.
+fn is_constant(node: &Node) -> bool {
+    match &node.kind {
+        NodeKind::Name(_) | NodeKind::Number(_, Some(_)) => false,
+        _ => node.children().iter().all(|child| is_constant(child)),
+    }
+}

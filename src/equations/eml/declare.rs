@@ -1,0 +1,279 @@
+//! First reading of a document: what has an identifier, its unit, and the functions.
+
+use super::desk::Desk;
+use super::document::Level;
+use super::xml::{Element, Text};
+use crate::equations::expression::{Function, Scope, Trouble, Unit, is_identifier, is_reserved, parse};
+use crate::equations::tree::{Expr, QuantityId};
+use std::collections::{BTreeMap, HashMap};
+
+/// Elements whose identifier names a quantity.
+const QUANTITIES: [&str; 5] = ["parameter", "variable", "define", "input", "field"];
+/// The position in a field.
+pub(super) const POSITION: [&str; 3] = ["x", "y", "z"];
+
+/// A quantity and the element that declares it.
+pub(super) struct Declared<'a> {
+    pub(super) id: String,
+    pub(super) element: &'a Element,
+}
+
+/// What is known before any expression is looked at.
+pub(super) struct Declarations<'a> {
+    pub(super) quantities: Vec<Declared<'a>>,
+    /// Everything that an expression may use.
+    pub(super) scope: Scope,
+    pub(super) units: HashMap<String, Unit>,
+    pub(super) level: Level,
+    pub(super) time_text: String,
+    pub(super) time: Unit,
+    /// Unit of length of the grid.
+    pub(super) length_text: String,
+    pub(super) length: Unit,
+    /// Whether the document has any unit; in one without, time and position have none either.
+    measured: bool,
+}
+
+impl<'a> Declarations<'a> {
+    /// The quantity with an identifier, as it is declared.
+    pub(super) fn declared(&self, id: &str) -> Option<&Declared<'a>> {
+        self.scope.quantities.get(id).and_then(|number| self.quantities.get(*number as usize))
+    }
+
+    /// The element that declares an identifier: "variable".
+    pub(super) fn sort(&self, id: &str) -> Option<&'static str> {
+        self.declared(id).map(|declared| declared.element.kind.name)
+    }
+
+    /// All identifiers of quantities.
+    pub(super) fn ids(&self) -> impl Iterator<Item = &str> {
+        self.quantities.iter().map(|quantity| quantity.id.as_str())
+    }
+
+    /// The unit of time, if the document has units.
+    pub(super) fn time_in_units(&self) -> Option<&Unit> {
+        self.measured.then_some(&self.time)
+    }
+}
+
+/// Tells a trouble of an expression at its place in the document.
+pub(super) fn tell(desk: &mut Desk, text: &Text, trouble: &Trouble) {
+    desk.fault(text.place(&trouble.at), &trouble.message, &trouble.label, &trouble.help);
+}
+
+/// Reads the unit in an attribute.
+pub(super) fn unit(desk: &mut Desk, element: &Element, attribute: &str) -> Option<Unit> {
+    let text = element.attribute(attribute)?;
+    match Unit::read(&text.text) {
+        Ok(unit) => Some(unit),
+        Err(error) => {
+            desk.fault(text.place(&error.at), &error.message, "this unit", &error.help);
+            None
+        }
+    }
+}
+
+/// Reads all declarations of a document.
+pub(super) fn declare<'a>(desk: &mut Desk, root: &'a Element) -> Declarations<'a> {
+    let level = level(desk, root);
+    let (time_text, time) = base_unit(desk, root, "time_unit", "s", &Unit::read("s").unwrap_or_else(|_| Unit::plain()));
+    let grid = root.all("grid").next();
+    let micrometre = Unit::read("um").unwrap_or_else(|_| Unit::plain());
+    let (length_text, length) = match grid {
+        Some(grid) => base_unit(desk, grid, "unit", "um", &micrometre),
+        None => ("um".to_owned(), micrometre),
+    };
+    let mut found = Declarations {
+        quantities: Vec::new(),
+        scope: Scope::default(),
+        units: HashMap::new(),
+        level,
+        time_text,
+        time,
+        length_text,
+        length,
+        measured: root.attribute("time_unit").is_some()
+            || root.children.iter().any(|child| child.attribute("unit").is_some()),
+    };
+    let mut lines: BTreeMap<String, usize> = BTreeMap::new();
+    for element in root.children.iter().filter(|child| child.attribute("id").is_some()) {
+        let id = element.word("id");
+        let quantity = QUANTITIES.contains(&element.kind.name);
+        let position = level == Level::Field && POSITION.contains(&id.as_str());
+        if !usable(desk, element, &id, position) || !unique(desk, element, &id, &mut lines) || !quantity {
+            continue;
+        }
+        if let Some(unit) = unit(desk, element, "unit") {
+            found.units.insert(id.clone(), unit);
+        }
+        found.scope.quantities.insert(id.clone(), found.quantities.len() as QuantityId);
+        found.quantities.push(Declared { id, element });
+    }
+    if level == Level::Field {
+        for (place, name) in POSITION.iter().enumerate() {
+            found.scope.quantities.insert((*name).to_owned(), (found.quantities.len() + place) as QuantityId);
+            if found.measured {
+                found.units.insert((*name).to_owned(), found.length.clone());
+            }
+        }
+    }
+    functions(desk, root, &mut found.scope);
+    found
+}
+
+fn level(desk: &mut Desk, root: &Element) -> Level {
+    let has_fields = root.all("field").next().is_some();
+    let level = match root.word("level").as_str() {
+        "scene" => Level::Scene,
+        "cell" => Level::Cell,
+        "field" => Level::Field,
+        "" if has_fields => Level::Field,
+        "" => Level::Scene,
+        other => {
+            let message = format!("there is no level \"{other}\"");
+            desk.fault(root.place("level"), &message, "unknown level", "write \"scene\", \"cell\" or \"field\"");
+            return if has_fields { Level::Field } else { Level::Scene };
+        }
+    };
+    // What a document of fields may not hold, and the other way round.
+    let (misplaced, help): (&[&str], &str) = match level {
+        Level::Field => {
+            (&["variable", "event"], "a document of fields has <field>s; one that does not spread has diffusion=\"0\"")
+        }
+        _ => (&["field", "grid"], "write level=\"field\" for a document of fields, and join it by <link>s"),
+    };
+    for element in root.children.iter().filter(|child| misplaced.contains(&child.kind.name)) {
+        let message = format!("<{}> cannot stand in a document of level {}", element.kind.name, name_of(level));
+        desk.fault(element.at.clone(), &message, "not at this level", help);
+    }
+    level
+}
+
+fn name_of(level: Level) -> &'static str {
+    match level {
+        Level::Scene => "scene",
+        Level::Cell => "cell",
+        Level::Field => "field",
+    }
+}
+
+/// A unit that must measure the same as a base unit.
+fn base_unit(desk: &mut Desk, element: &Element, attribute: &str, usual: &str, base: &Unit) -> (String, Unit) {
+    let usual = || (usual.to_owned(), base.clone());
+    let Some(found) = unit(desk, element, attribute) else { return usual() };
+    if found.dimension() == base.dimension() {
+        return (element.word(attribute), found);
+    }
+    let wanted = base.dimension().map_or(String::new(), |dimension| dimension.with_article());
+    let told = found.dimension().map_or(String::new(), |dimension| dimension.with_article());
+    let message = format!("`{attribute}` is {told}; {wanted} was expected");
+    desk.fault(element.place(attribute), &message, &told, &format!("write a unit such as \"{}\"", base.text()));
+    usual()
+}
+
+/// Whether a word can be an identifier here.
+fn usable(desk: &mut Desk, element: &Element, id: &str, position: bool) -> bool {
+    let (message, help) = if !is_identifier(id) {
+        (format!("\"{id}\" is no identifier"), "write letters, digits and _, beginning with a letter")
+    } else if is_reserved(id) {
+        (
+            format!("`{id}` means something in every expression"),
+            "choose another identifier, such as one with a _ at its end",
+        )
+    } else if position {
+        (format!("`{id}` is the position in a field"), "choose another identifier")
+    } else {
+        return true;
+    };
+    desk.fault(element.place("id"), &message, "this identifier", help);
+    false
+}
+
+fn unique(desk: &mut Desk, element: &Element, id: &str, lines: &mut BTreeMap<String, usize>) -> bool {
+    let at = element.place("id");
+    if let Some(line) = lines.get(id) {
+        let label = format!("already declared in line {line}");
+        desk.fault(
+            at,
+            &format!("two things have the identifier `{id}`"),
+            &label,
+            "give one of them another identifier",
+        );
+        return false;
+    }
+    let line = desk.line(at.start);
+    lines.insert(id.to_owned(), line);
+    true
+}
+
+/// Reads the functions and checks their bodies and that none calls itself.
+fn functions(desk: &mut Desk, root: &Element, scope: &mut Scope) {
+    let mut elements: BTreeMap<String, &Element> = BTreeMap::new();
+    for element in root.all("function") {
+        let id = element.word("id");
+        if !is_identifier(&id) || is_reserved(&id) || elements.contains_key(&id) {
+            continue;
+        }
+        let arguments = arguments(desk, element);
+        let (body, troubles) = parse(&element.text.text);
+        troubles.iter().for_each(|trouble| tell(desk, &element.text, trouble));
+        scope.functions.insert(id.clone(), Function { arguments, body });
+        elements.insert(id, element);
+    }
+    for circle in circles(scope) {
+        let element = elements[&circle[0]];
+        let way: Vec<String> = circle.iter().chain([&circle[0]]).map(|id| format!("`{id}`")).collect();
+        let message = format!("functions call each other in a circle: {}", way.join(" → "));
+        desk.fault(
+            element.place("id"),
+            &message,
+            "in the circle",
+            "a function may only call others that do not call it",
+        );
+        for id in &circle {
+            // Calls of it are still known, but nothing is expanded.
+            if let Some(function) = scope.functions.get_mut(id) {
+                function.body = parse("0").0;
+            }
+        }
+    }
+    for (id, element) in elements {
+        let function = scope.functions[&id].clone();
+        let arguments: BTreeMap<String, Expr> =
+            function.arguments.iter().map(|name| (name.clone(), Expr::Number(1.0))).collect();
+        for trouble in scope.resolve_with(&function.body, &arguments).err().unwrap_or_default() {
+            tell(desk, &element.text, &trouble);
+        }
+    }
+}
+
+/// Names of a function's arguments.
+fn arguments(desk: &mut Desk, element: &Element) -> Vec<String> {
+    let Some(text) = element.attribute("args") else { return Vec::new() };
+    let mut names: Vec<String> = Vec::new();
+    let mut start = 0;
+    for part in text.text.split(',') {
+        let name = part.trim();
+        let at = text.place(&(start..start + part.len()));
+        start += part.len() + 1;
+        if !is_identifier(name) || is_reserved(name) || names.iter().any(|known| known == name) {
+            let message = format!("\"{name}\" cannot be the name of an argument");
+            desk.fault(at, &message, "this argument", "write different names between commas, such as args=\"x, K\"");
+        }
+        names.push(name.to_owned());
+    }
+    names
+}
+
+/// Functions that call each other in a circle, each circle once.
+fn circles(scope: &Scope) -> Vec<Vec<String>> {
+    let names: Vec<&String> = scope.functions.keys().collect();
+    let numbers: HashMap<&str, usize> =
+        names.iter().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
+    let uses = |number: usize| -> Vec<usize> {
+        let calls = scope.functions[names[number]].body.calls();
+        calls.iter().filter_map(|(name, _)| numbers.get(name).copied()).collect()
+    };
+    let found = super::circles::circles(names.len(), &uses);
+    found.into_iter().map(|circle| circle.into_iter().map(|number| names[number].clone()).collect()).collect()
+}

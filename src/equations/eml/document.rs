@@ -1,0 +1,224 @@
+//! What an EML document says, checked.
+
+use crate::equations::Range;
+use crate::equations::tree::{Expr, QuantityId, System};
+use crate::error::Place;
+
+/// A document without fault.
+#[derive(Debug, Clone)]
+pub struct Document {
+    /// Its name.
+    pub name: String,
+    /// What has the system: the scene, each cell or each point of a field.
+    pub level: Level,
+    /// The unit of time, as written.
+    pub time_unit: String,
+    /// Seconds in the unit of time.
+    pub seconds: f64,
+    /// The equations. In a document of fields, each field is a variable whose rate is its reaction (diffusion and decay
+    /// are in [`FieldDescription`]) and the position is given by inputs `x`, `y`, `z` where it is used.
+    pub system: System,
+    /// Where each quantity of the system is declared.
+    pub places: Vec<Place>,
+    /// The grid of the fields.
+    pub grid: Option<GridDescription>,
+    /// The fields.
+    pub fields: Vec<FieldDescription>,
+    /// What joins the system to the model.
+    pub links: Vec<LinkDescription>,
+    /// How it asks to be solved.
+    pub solver: SolverChoice,
+}
+
+/// What has the system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// One system for the whole scene.
+    Scene,
+    /// One for each cell of a type.
+    Cell,
+    /// Fields: one at each point.
+    Field,
+}
+
+/// How a document asks to be solved; what it leaves open is decided by the experiment.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SolverChoice {
+    /// The scheme.
+    pub scheme: Option<Scheme>,
+    /// Relative tolerance.
+    pub rtol: Option<f64>,
+    /// Absolute tolerance, in the units of the variables.
+    pub atol: Option<f64>,
+    /// Time between two exchanges with the model, in the unit of time.
+    pub step: Option<f64>,
+    /// Step of a scheme with a fixed step, in the unit of time.
+    pub inner_step: Option<f64>,
+}
+
+/// A scheme.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scheme {
+    /// Explicit Runge–Kutta of order 5 with error control.
+    Rk45,
+    /// Explicit Runge–Kutta of order 6 with error control.
+    Rk65,
+    /// Rosenbrock for stiff systems.
+    Rosenbrock,
+    /// Explicit Runge–Kutta of order 4, fixed step.
+    Rk4,
+    /// Explicit Euler, fixed step.
+    Euler,
+    /// Backward differentiation formulae of variable order.
+    Bdf,
+}
+
+/// The grid of a document's fields.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GridDescription {
+    /// 2 (on the substrate) or 3 (in the medium).
+    pub dimension: usize,
+    /// Distance of neighbouring points, in `unit`.
+    pub spacing: f64,
+    /// Lower corner, in `unit`; the experiment decides where it is open. In 2-D the third number is 0.
+    pub origin: Option<[f64; 3]>,
+    /// Lengths of the sides, in `unit`; as above.
+    pub size: Option<[f64; 3]>,
+    /// The unit of length, as written.
+    pub unit: String,
+    /// µm in the unit of length.
+    pub micrometres: f64,
+    /// Where it is written.
+    pub place: Place,
+}
+
+/// A field.
+#[derive(Debug, Clone)]
+pub struct FieldDescription {
+    /// Its identifier.
+    pub id: String,
+    /// Its variable in the system.
+    pub quantity: QuantityId,
+    /// Diffusion coefficient in length²/time of the document, an expression of parameters.
+    pub diffusion: Expr,
+    /// Rate of decay per time, an expression of parameters.
+    pub decay: Expr,
+    /// How it starts.
+    pub initial: Profile,
+    /// Which values it may take.
+    pub range: Range,
+    /// Walls at x-, x+, y-, y+, z-, z+.
+    pub walls: [Wall; 6],
+    /// Where it is declared.
+    pub place: Place,
+}
+
+/// How a field starts.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Profile {
+    /// An expression of `x`, `y`, `z` (and parameters).
+    Expression(Expr),
+    /// The brightness of an image, 0 black to 1 white, times `scale`.
+    Image {
+        /// The file, as written.
+        file: String,
+        /// The value of white.
+        scale: f64,
+        /// Where it is written.
+        place: Place,
+    },
+    /// A dataset of an HDF5 file, times `scale`.
+    Dataset {
+        /// The file, as written.
+        file: String,
+        /// The dataset in the file, beginning with `/`.
+        dataset: String,
+        /// Factor of the values.
+        scale: f64,
+        /// Where it is written.
+        place: Place,
+    },
+}
+
+/// What holds at a side of the grid.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Wall {
+    /// Nothing passes.
+    NoFlux,
+    /// The field has this value there, an expression of parameters.
+    Fixed(Expr),
+    /// What leaves comes in at the opposite side.
+    Periodic,
+}
+
+/// Names of the sides, in the order of [`FieldDescription::walls`].
+pub const SIDES: [&str; 6] = ["x-", "x+", "y-", "y+", "z-", "z+"];
+
+/// A link between the system and the model.
+#[derive(Debug, Clone)]
+pub struct LinkDescription {
+    /// Its identifier, or empty.
+    pub id: String,
+    /// Where the value comes from.
+    pub from: Endpoint,
+    /// Where it goes.
+    pub to: Endpoint,
+    /// What is done to it: an expression of quantities of the system and of the value, which is
+    /// `Expr::Quantity(LinkDescription::VALUE)`.
+    pub transfer: Expr,
+    /// Factor of what the transfer gives.
+    pub gain: f64,
+    /// Where it is written.
+    pub place: Place,
+}
+
+impl LinkDescription {
+    /// The number that stands for the value in a transfer.
+    pub const VALUE: QuantityId = QuantityId::MAX;
+}
+
+/// One end of a link.
+#[derive(Debug, Clone)]
+pub struct Endpoint {
+    /// What it belongs to.
+    pub root: Root,
+    /// The way from there; empty for the system, whose quantity is in the root.
+    pub path: Vec<Step>,
+    /// As written.
+    pub text: String,
+    /// Where it is written.
+    pub place: Place,
+}
+
+/// What an end of a link belongs to.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Root {
+    /// A quantity of this document.
+    System(QuantityId),
+    /// The whole scene.
+    Scene,
+    /// The cell that has the system, or the one with this number or name.
+    Cell(Option<Index>),
+    /// All cells of a type.
+    Type(Index),
+    /// A field.
+    Field(Index),
+}
+
+/// A step of a path: `atom[4]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// The word.
+    pub name: String,
+    /// What stands in its brackets.
+    pub index: Option<Index>,
+}
+
+/// What stands in brackets.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Index {
+    /// A number, from 0.
+    Number(usize),
+    /// A name.
+    Name(String),
+}

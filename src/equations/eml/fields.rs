@@ -1,0 +1,219 @@
+//! Fields, their grid and their walls.
+
+use super::build::{Builder, Use};
+use super::document::{FieldDescription, GridDescription, Profile, SIDES, Wall};
+use super::xml::Element;
+use crate::equations::Range;
+use crate::equations::tree::{Expr, System};
+
+impl Builder<'_, '_> {
+    /// The grid of the fields.
+    pub(super) fn grid(&mut self, root: &Element) -> Option<GridDescription> {
+        let mut elements = root.all("grid");
+        let Some(element) = elements.next() else {
+            if let Some(field) = root.all("field").next() {
+                let help = "write <grid dimension=\"2\" spacing=\"1\"/>";
+                self.desk.fault(field.at.clone(), "the fields have no grid", "which grid?", help);
+            }
+            return None;
+        };
+        if let Some(second) = elements.next() {
+            let help = "the fields of a document share one grid; use a second document for another";
+            self.desk.fault(second.at.clone(), "there are two grids", "a second one", help);
+        }
+        let dimension = 2 + self.choice(element, "dimension", &["2", "3"]);
+        let spacing = self.positive(element, "spacing");
+        let origin = self.numbers(element, "origin", dimension);
+        let size = self.numbers(element, "size", dimension);
+        if let Some(size) = size
+            && size[..dimension].iter().any(|side| *side < spacing.unwrap_or(0.0).max(f64::MIN_POSITIVE))
+        {
+            let help = "write lengths that hold several points";
+            self.desk.fault(element.place("size"), "a side is shorter than the spacing", "too short", help);
+        }
+        Some(GridDescription {
+            dimension,
+            spacing: spacing.unwrap_or(1.0),
+            origin,
+            size,
+            unit: self.known.length_text.clone(),
+            micrometres: self.known.length.size(),
+            place: self.desk.place(element.at.clone(), "the grid"),
+        })
+    }
+
+    /// As many numbers as there are dimensions.
+    fn numbers(&mut self, element: &Element, name: &str, dimension: usize) -> Option<[f64; 3]> {
+        let text = element.attribute(name)?;
+        let words: Vec<&str> = text.text.split_whitespace().collect();
+        let read: Option<Vec<f64>> =
+            words.iter().map(|word| word.parse().ok().filter(|value: &f64| value.is_finite())).collect();
+        match read {
+            Some(read) if read.len() == dimension => {
+                let mut found = [0.0; 3];
+                found[..dimension].copy_from_slice(&read);
+                Some(found)
+            }
+            _ => {
+                let message = format!("`{name}` is \"{}\"; {dimension} numbers were expected", text.text.trim());
+                let example = if dimension == 2 { "100 100" } else { "100 100 50" };
+                self.desk.fault(
+                    text.whole(),
+                    &message,
+                    "here",
+                    &format!("write them with blanks between: \"{example}\""),
+                );
+                None
+            }
+        }
+    }
+
+    /// The fields, in the order of the text.
+    pub(super) fn fields(&mut self, root: &Element, dimension: usize) -> Vec<FieldDescription> {
+        let named = root.all("field").filter(|field| field.attribute("id").is_some());
+        named.filter_map(|element| self.field(element, dimension)).collect()
+    }
+
+    fn field(&mut self, element: &Element, dimension: usize) -> Option<FieldDescription> {
+        let id = element.word("id");
+        let (time, length) = (self.known.time.clone(), self.known.length.clone());
+        let spreads = length.to_the(2.0).times(&time.to_the(-1.0));
+        let fades = time.to_the(-1.0);
+        let none = |expr: Option<Expr>| expr.unwrap_or(Expr::Number(0.0));
+        let diffusion =
+            none(self.attribute(element, "diffusion", Use::Fixed, Some((&spreads, "the diffusion coefficient"))));
+        let decay = none(self.attribute(element, "decay", Use::Fixed, Some((&fades, "the decay"))));
+        let initial = self.profile(element);
+        let range = match self.choice(element, "range", &["non_negative", "free"]) {
+            0 => Range::NonNegative,
+            _ => Range::Free,
+        };
+        let walls = self.walls(element, &id, dimension);
+        Some(FieldDescription {
+            quantity: self.find(&id)?,
+            diffusion,
+            decay,
+            initial: initial?,
+            range,
+            walls,
+            place: self.desk.place(element.place("id"), "the field"),
+            id,
+        })
+    }
+
+    fn profile(&mut self, element: &Element) -> Option<Profile> {
+        let ways = ["initial", "image", "dataset"];
+        let given: Vec<&str> = ways.into_iter().filter(|name| element.attribute(name).is_some()).collect();
+        match given[..] {
+            [] => {
+                let message = format!("the field `{}` has no initial value", element.word("id"));
+                let help =
+                    "write initial=\"0\" or an expression of x, y, z, or image=\"…\" or dataset=\"FILE:/DATASET\"";
+                self.desk.fault(element.place("id"), &message, "starts how?", help);
+                return None;
+            }
+            [_, second, ..] => {
+                let message = format!("the field `{}` starts in {} ways", element.word("id"), given.len());
+                self.desk.fault(
+                    element.place(second),
+                    &message,
+                    "a second way",
+                    "keep one of `initial`, `image`, `dataset`",
+                );
+            }
+            _ => {}
+        }
+        let scale = self.number(element, "scale").unwrap_or(1.0);
+        let place = self.desk.place(element.place(given[0]), "the start");
+        Some(match given[0] {
+            // The system has the expression, and has been told of its faults.
+            "initial" => Profile::Expression(Expr::Number(0.0)),
+            "image" => Profile::Image { file: element.word("image"), scale, place },
+            _ => {
+                let text = element.word("dataset");
+                let Some((file, dataset)) = text.rsplit_once(":/") else {
+                    let help = "write dataset=\"FILE:/DATASET\", such as \"start.h5:/fields/U\"";
+                    self.desk.fault(
+                        element.place("dataset"),
+                        "the dataset of the file is not named",
+                        "which dataset?",
+                        help,
+                    );
+                    return None;
+                };
+                Profile::Dataset { file: file.to_owned(), dataset: format!("/{dataset}"), scale, place }
+            }
+        })
+    }
+
+    fn walls(&mut self, element: &Element, id: &str, dimension: usize) -> [Wall; 6] {
+        let mut walls: [Option<Wall>; 6] = [const { None }; 6];
+        let own = self.unit_of(id);
+        for wall in element.all("wall").filter(|wall| wall.attribute("side").is_some()) {
+            let kind = self.choice(wall, "kind", &["no_flux", "fixed", "periodic"]);
+            let what = format!("the value of `{id}` at the wall");
+            let value = self.attribute(wall, "value", Use::Fixed, own.as_ref().map(|unit| (unit, what.as_str())));
+            if (kind == 1) != wall.attribute("value").is_some() && wall.attribute("kind").is_some() {
+                let (message, help) = match kind {
+                    1 => ("a fixed wall has no value", "write value=\"…\""),
+                    _ => ("only a fixed wall has a value", "write kind=\"fixed\", or remove `value`"),
+                };
+                self.desk.fault(wall.place("kind"), message, "this kind", help);
+            }
+            let side = wall.word("side");
+            let Some(place) = SIDES[..2 * dimension].iter().position(|known| *known == side) else {
+                let sides = SIDES[..2 * dimension].join(", ");
+                let message = format!("a grid of {dimension} dimensions has no side \"{side}\"");
+                self.desk.fault(wall.place("side"), &message, "unknown side", &format!("its sides are {sides}"));
+                continue;
+            };
+            if walls[place].is_some() {
+                let message = format!("`{id}` has two walls at {side}");
+                self.desk.fault(wall.place("side"), &message, "a second one", "remove one of them");
+            }
+            walls[place] = Some(match kind {
+                0 => Wall::NoFlux,
+                1 => Wall::Fixed(value.unwrap_or(Expr::Number(0.0))),
+                _ => Wall::Periodic,
+            });
+        }
+        let walls = walls.map(|wall| wall.unwrap_or(Wall::NoFlux));
+        for axis in 0..3 {
+            let periodic = [0, 1].map(|side| walls[2 * axis + side] == Wall::Periodic);
+            if periodic[0] != periodic[1] {
+                let alone = SIDES[2 * axis + usize::from(periodic[1])];
+                let wall = element.all("wall").find(|wall| wall.word("side") == alone).unwrap_or(element);
+                let other = SIDES[2 * axis + usize::from(periodic[0])];
+                let message = format!("`{id}` is periodic at {alone} and not at {other}");
+                let help = format!("write <wall side=\"{other}\" kind=\"periodic\"/> too");
+                self.desk.fault(wall.place("side"), &message, "what leaves here comes in where?", &help);
+            }
+        }
+        walls
+    }
+
+    /// Puts the starting expressions in, and tells coefficients that are below 0 or not finite.
+    pub(super) fn finish_fields(&mut self, fields: &mut [FieldDescription], system: &System) {
+        for field in fields.iter_mut().filter(|field| matches!(field.initial, Profile::Expression(_))) {
+            field.initial = Profile::Expression(system.quantities[field.quantity as usize].initial.clone());
+        }
+        if !self.desk.is_clean() {
+            return;
+        }
+        let values = super::start::values(system);
+        for field in fields {
+            let element = self.known.quantities[field.quantity as usize].element;
+            for (name, expr) in [("diffusion", &field.diffusion), ("decay", &field.decay)] {
+                let value = expr.evaluate(0.0, &|number| values[number as usize]);
+                if !(value.is_finite() && value >= 0.0) {
+                    let message = format!("`{name}` of `{}` is {value}; 0 or more was expected", field.id);
+                    let help = match name {
+                        "decay" => "what grows belongs into <reaction>",
+                        _ => "a field that gathers by itself has no solution; attraction belongs into <reaction>",
+                    };
+                    self.desk.fault(element.place(name), &message, "not 0 or more", help);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! Which quantities of a system can be parameters of a document.
+
+use super::super::Document;
+use crate::equations::tree::{Expr, Role};
+
+/// Which quantities EML can have as parameters: not set by events, and given by numbers and other such parameters.
+pub(super) fn fixed(document: &Document) -> Vec<bool> {
+    let system = &document.system;
+    let mut fixed: Vec<bool> = system.quantities.iter().map(|q| matches!(q.role, Role::Parameter)).collect();
+    for (target, _) in system.events.iter().flat_map(|event| &event.assignments) {
+        fixed[*target as usize] = false;
+    }
+    for (number, quantity) in system.quantities.iter().enumerate() {
+        fixed[number] &= !uses_time(&quantity.initial);
+    }
+    loop {
+        let found = (0..fixed.len())
+            .filter(|&number| fixed[number] && uses(&system.quantities[number].initial, &|other| !fixed[other]));
+        let found: Vec<usize> = found.collect();
+        if found.is_empty() {
+            return fixed;
+        }
+        found.into_iter().for_each(|number| fixed[number] = false);
+    }
+}
+
+/// Whether an expression uses a quantity that is such.
+pub(super) fn uses(expr: &Expr, is: &impl Fn(usize) -> bool) -> bool {
+    let mut found = false;
+    expr.each_quantity(&mut |number| found |= is(number as usize));
+    found
+}
+
+/// Whether an expression uses the time.
+pub(super) fn uses_time(expr: &Expr) -> bool {
+    match expr {
+        Expr::Time => true,
+        Expr::Number(_) | Expr::Quantity(_) => false,
+        Expr::Unary(_, a) => uses_time(a),
+        Expr::Binary(_, a, b) => uses_time(a) || uses_time(b),
+        Expr::Piecewise { branches, otherwise } => {
+            branches.iter().any(|(a, b)| uses_time(a) || uses_time(b)) || uses_time(otherwise)
+        }
+    }
+}

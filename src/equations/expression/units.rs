@@ -1,0 +1,389 @@
+//! Checks the units of an expression where its quantities have them. Numbers stay as the document writes them, so not
+//! only kinds must agree (a speed is no length) but sizes too (µM/min is not µM/s): nothing is converted silently.
+
+use super::Trouble;
+use super::functions::{CONSTANTS, TIME, UnitRule, known};
+use super::resolve::Scope;
+use super::syntax::{Node, NodeKind};
+use crate::equations::tree::Binary;
+use crate::units::{Dimension, UnitError, parse_unit};
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+
+/// A unit: how many base units, the powers of these, and how it is written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unit {
+    size: f64,
+    /// Powers of length, time, force, angle and amount; roots make them fractions.
+    powers: [f64; 5],
+    /// What it was put together from, with powers.
+    written: Vec<(String, f64)>,
+}
+
+/// What is known of an expression's unit.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Measure {
+    /// Something without a unit takes part: nothing is checked.
+    Unknown,
+    /// A plain 0 or infinity, which fits everywhere.
+    Fitting,
+    /// This unit.
+    Known(Unit),
+}
+
+impl Unit {
+    /// A plain number.
+    pub fn plain() -> Self {
+        Self { size: 1.0, powers: [0.0; 5], written: Vec::new() }
+    }
+
+    /// Reads a unit, "uM/min"; "1" is a plain number.
+    ///
+    /// # Errors
+    /// Says what is wrong with the text.
+    pub fn read(text: &str) -> Result<Self, UnitError> {
+        let found = parse_unit(text)?;
+        let d = found.dimension;
+        let powers = [d.length, d.time, d.force, d.angle, d.amount].map(f64::from);
+        let mut unit = Self { size: found.value, powers, written: Vec::new() };
+        unit.written = factors(text.trim());
+        Ok(unit)
+    }
+
+    /// The dimension, where its powers are whole.
+    pub fn dimension(&self) -> Option<Dimension> {
+        let whole = self.powers.iter().all(|power| power.fract() == 0.0 && power.abs() <= 100.0);
+        let [length, time, force, angle, amount] = self.powers.map(|power| power as i8);
+        whole.then_some(Dimension { length, time, force, angle, amount })
+    }
+
+    /// How many base units (µm, s, pN, rad, zmol and their products) the unit holds.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The unit to a power.
+    pub fn to_the(&self, power: f64) -> Self {
+        let written = self.written.iter().map(|(name, own)| (name.clone(), own * power));
+        Self { size: self.size.powf(power), powers: self.powers.map(|own| own * power), written: written.collect() }
+    }
+
+    /// The product of two units.
+    pub fn times(&self, other: &Self) -> Self {
+        let mut powers = self.powers;
+        for (power, other) in powers.iter_mut().zip(other.powers) {
+            *power += other;
+        }
+        let mut written = self.written.clone();
+        for (name, power) in &other.written {
+            match written.iter_mut().find(|(known, _)| known == name) {
+                Some((_, own)) => *own += power,
+                None => written.push((name.clone(), *power)),
+            }
+        }
+        written.retain(|(_, power)| *power != 0.0);
+        Self { size: self.size * other.size, powers, written }
+    }
+
+    /// Whether two units are of the same kind, whatever their sizes.
+    fn alike(&self, other: &Self) -> bool {
+        self.powers.iter().zip(other.powers).all(|(a, b)| (a - b).abs() < 1e-9)
+    }
+
+    /// Whether two units are the same; sizes may differ by round-off.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.alike(other) && (self.size / other.size - 1.0).abs() < 1e-9
+    }
+
+    /// The unit for people: "uM/min"; "1" for a plain number.
+    pub fn text(&self) -> String {
+        let power = |power: f64| if power == 1.0 { String::new() } else { format!("^{power}") };
+        let part = |wanted: bool| -> Vec<String> {
+            let chosen = self.written.iter().filter(|(_, own)| (*own > 0.0) == wanted);
+            chosen.map(|(name, own)| format!("{name}{}", power(own.abs()))).collect()
+        };
+        let (above, below) = (part(true), part(false));
+        let above = if above.is_empty() { "1".to_owned() } else { above.join(" ") };
+        match below.len() {
+            0 => above,
+            1 => format!("{above}/{}", below[0]),
+            _ => format!("{above}/({})", below.join(" ")),
+        }
+    }
+
+    /// "in uM" or "a plain number".
+    fn told(&self) -> String {
+        if self.written.is_empty() { "a plain number".to_owned() } else { format!("in {}", self.text()) }
+    }
+
+    /// "uM" or "a plain number".
+    fn wanted(&self) -> String {
+        if self.written.is_empty() { "a plain number".to_owned() } else { self.text() }
+    }
+
+    /// What another unit would have to be multiplied by to be this one.
+    fn advice(&self, found: &Self) -> String {
+        if self.alike(found) {
+            let factor = found.size / self.size;
+            return format!(
+                "both measure the same; multiply by `{factor} [{}]`",
+                self.times(&found.to_the(-1.0)).text()
+            );
+        }
+        format!("make it a quantity in {}, or correct the units of its parts", self.text())
+    }
+}
+
+/// The factors of a unit's text, with their powers; a text with brackets counts as one.
+fn factors(text: &str) -> Vec<(String, f64)> {
+    if text.contains('(') || text.is_empty() {
+        return vec![(format!("({text})"), 1.0)];
+    }
+    let mut unit = Unit::plain();
+    for (place, part) in text.split('/').enumerate() {
+        for word in part.split([' ', '*', '·', '×']).filter(|word| !word.is_empty() && *word != "1") {
+            let (name, power) = match word.split_once('^') {
+                Some((name, power)) => (name.to_owned(), power.parse().unwrap_or(1.0)),
+                None => (word.to_owned(), 1.0),
+            };
+            let sign = if place == 0 { 1.0 } else { -1.0 };
+            let factor = Unit { written: vec![(name, sign * power)], ..Unit::plain() };
+            unit = unit.times(&factor);
+        }
+    }
+    unit.written
+}
+
+/// What is needed to check units.
+#[derive(Debug, Clone)]
+pub struct UnitScope<'a> {
+    /// Units of the quantities; those without a unit are absent.
+    pub units: &'a HashMap<String, Unit>,
+    /// The document's functions.
+    pub scope: &'a Scope,
+    /// The unit of time, where there is one.
+    pub time: Option<&'a Unit>,
+}
+
+impl UnitScope<'_> {
+    /// Checks an expression and tells its unit. The names must have been resolved without fault.
+    pub fn measure(&self, node: &Node, troubles: &mut Vec<Trouble>) -> Measure {
+        Check { scope: self, troubles }.measure(node, &BTreeMap::new())
+    }
+
+    /// As [`UnitScope::measure`], with names of known units besides.
+    pub fn measure_with(&self, node: &Node, names: &BTreeMap<String, Measure>, troubles: &mut Vec<Trouble>) -> Measure {
+        Check { scope: self, troubles }.measure(node, names)
+    }
+
+    /// Checks an expression that must have a unit; `what` it is for stands in the message.
+    pub fn expect(&self, node: &Node, expected: &Unit, what: &str, troubles: &mut Vec<Trouble>) {
+        if let Measure::Known(found) = self.measure(node, troubles)
+            && !found.is_same(expected)
+        {
+            troubles.push(mismatch(&found, expected, what, node.at.clone()));
+        }
+    }
+}
+
+/// A unit that was found where another was expected.
+pub(super) fn mismatch(found: &Unit, expected: &Unit, what: &str, at: Range<usize>) -> Trouble {
+    Trouble::new(format!("{what} is {}; {} was expected", found.told(), expected.wanted()), at)
+        .label(found.told())
+        .help(expected.advice(found))
+}
+
+struct Check<'a, 'b> {
+    scope: &'a UnitScope<'a>,
+    troubles: &'b mut Vec<Trouble>,
+}
+
+type Names = BTreeMap<String, Measure>;
+
+impl Check<'_, '_> {
+    fn measure(&mut self, node: &Node, names: &Names) -> Measure {
+        match &node.kind {
+            NodeKind::Unread => Measure::Unknown,
+            NodeKind::Number(value, None) if *value == 0.0 => Measure::Fitting,
+            NodeKind::Number(_, None) => Measure::Known(Unit::plain()),
+            NodeKind::Number(_, Some(unit)) => self.literal(unit, &node.at),
+            NodeKind::Name(name) => self.name(name, names),
+            NodeKind::Minus(a) => self.measure(a, names),
+            NodeKind::Not(a) => {
+                self.measure(a, names);
+                Measure::Known(Unit::plain())
+            }
+            NodeKind::Binary(operator, a, b) => self.binary(*operator, a, b, names),
+            NodeKind::Call(name, _, arguments) => self.call(name, arguments, &node.at, names),
+        }
+    }
+
+    fn literal(&mut self, unit: &str, at: &Range<usize>) -> Measure {
+        match Unit::read(unit) {
+            Ok(unit) => Measure::Known(unit),
+            Err(error) => {
+                self.troubles.push(Trouble::new(error.message, at.clone()).label("this unit").help(error.help));
+                Measure::Unknown
+            }
+        }
+    }
+
+    fn name(&mut self, name: &str, names: &Names) -> Measure {
+        if let Some(measure) = names.get(name) {
+            return measure.clone();
+        }
+        if self.scope.scope.quantities.contains_key(name) {
+            return self.scope.units.get(name).map_or(Measure::Unknown, |unit| Measure::Known(unit.clone()));
+        }
+        if name == TIME {
+            return self.scope.time.map_or(Measure::Unknown, |unit| Measure::Known(unit.clone()));
+        }
+        match CONSTANTS.iter().find(|(constant, _)| *constant == name) {
+            Some((_, value)) if value.is_infinite() => Measure::Fitting,
+            _ => Measure::Known(Unit::plain()),
+        }
+    }
+
+    fn binary(&mut self, operator: Binary, a: &Node, b: &Node, names: &Names) -> Measure {
+        match operator {
+            Binary::Mul | Binary::Div => {
+                let (left, right) = (self.measure(a, names), self.measure(b, names));
+                let power = if operator == Binary::Mul { 1.0 } else { -1.0 };
+                match (left, right) {
+                    (Measure::Known(left), Measure::Known(right)) => Measure::Known(left.times(&right.to_the(power))),
+                    (Measure::Unknown, _) | (_, Measure::Unknown) => Measure::Unknown,
+                    _ => Measure::Fitting,
+                }
+            }
+            Binary::Pow => self.power(a, b, names),
+            Binary::And | Binary::Or | Binary::Xor => {
+                self.measure(a, names);
+                self.measure(b, names);
+                Measure::Known(Unit::plain())
+            }
+            Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne => {
+                self.shared(&[a, b], names);
+                Measure::Known(Unit::plain())
+            }
+            Binary::Quotient => {
+                self.shared(&[a, b], names);
+                Measure::Known(Unit::plain())
+            }
+            Binary::Add | Binary::Sub | Binary::Min | Binary::Max | Binary::Rem => self.shared(&[a, b], names),
+        }
+    }
+
+    /// The unit that parts share; a part in another unit than the first known one is told.
+    fn shared(&mut self, parts: &[&Node], names: &Names) -> Measure {
+        let mut common: Option<Unit> = None;
+        let mut unknown = false;
+        for part in parts {
+            match (self.measure(part, names), &common) {
+                (Measure::Unknown, _) => unknown = true,
+                (Measure::Fitting, _) => {}
+                (Measure::Known(unit), None) => common = Some(unit),
+                (Measure::Known(unit), Some(first)) if !unit.is_same(first) => {
+                    self.troubles.push(mismatch(&unit, first, "this part", part.at.clone()));
+                    return Measure::Unknown;
+                }
+                (Measure::Known(_), Some(_)) => {}
+            }
+        }
+        match common {
+            _ if unknown => Measure::Unknown,
+            Some(unit) => Measure::Known(unit),
+            None => Measure::Fitting,
+        }
+    }
+
+    /// A part that must be a plain number, or an angle where `angle` says so.
+    fn plain(&mut self, node: &Node, names: &Names, angle: Option<&Unit>, what: &str) {
+        if let Measure::Known(unit) = self.measure(node, names)
+            && !unit.is_same(&Unit::plain())
+            && angle.is_none_or(|angle| !unit.is_same(angle))
+        {
+            let trouble = mismatch(&unit, &Unit::plain(), what, node.at.clone());
+            self.troubles.push(trouble.help("divide it by a quantity in the same unit"));
+        }
+    }
+
+    fn power(&mut self, base: &Node, exponent: &Node, names: &Names) -> Measure {
+        let unit = self.measure(base, names);
+        let told = self.troubles.len();
+        self.plain(exponent, names, None, "the exponent");
+        if self.troubles.len() > told {
+            return Measure::Unknown;
+        }
+        match (unit, &exponent.kind) {
+            (Measure::Known(unit), NodeKind::Number(power, None)) => Measure::Known(unit.to_the(*power)),
+            (Measure::Known(unit), _) if !unit.is_same(&Unit::plain()) => {
+                self.troubles.push(
+                    Trouble::new(
+                        format!("what is {} is raised to a power that is not a number", unit.told()),
+                        base.at.clone(),
+                    )
+                    .label(unit.told())
+                    .help("divide it by a quantity in the same unit first, as in `(x/K)^n`, or use `hill(x, K, n)`"),
+                );
+                Measure::Unknown
+            }
+            (unit, _) => unit,
+        }
+    }
+
+    fn call(&mut self, name: &str, given: &[Node], at: &Range<usize>, names: &Names) -> Measure {
+        if let Some(function) = self.scope.scope.functions.get(name) {
+            let inner = function.arguments.iter().cloned();
+            let inner: Names =
+                inner.zip(given.iter().map(|node| self.measure(node, names)).collect::<Vec<_>>()).collect();
+            // A trouble inside the function is told where it is called, since it depends on the arguments.
+            let told = self.troubles.len();
+            let value = self.measure(&function.body, &inner);
+            let inside = self.troubles.split_off(told);
+            if let Some(trouble) = inside.into_iter().next() {
+                let message = format!("in `{name}`, called here, {}", trouble.message);
+                self.troubles.push(Trouble { message, at: at.clone(), ..trouble });
+            }
+            return value;
+        }
+        let Some(function) = known(name) else { return Measure::Unknown };
+        let plain = || Measure::Known(Unit::plain());
+        let parts: Vec<&Node> = given.iter().collect();
+        let what = format!("the argument of `{name}`");
+        match function.units {
+            UnitRule::Plain => {
+                parts.iter().for_each(|part| self.plain(part, names, None, &what));
+                plain()
+            }
+            UnitRule::OfAngle => {
+                let radian = Unit::read("rad").ok();
+                parts.iter().for_each(|part| self.plain(part, names, radian.as_ref(), &what));
+                plain()
+            }
+            UnitRule::Any => {
+                parts.iter().for_each(|part| drop(self.measure(part, names)));
+                plain()
+            }
+            UnitRule::Same => self.shared(&parts, names),
+            UnitRule::Root => match self.measure(parts[0], names) {
+                Measure::Known(unit) => Measure::Known(unit.to_the(0.5)),
+                other => other,
+            },
+            UnitRule::Power => self.power(parts[0], parts[1], names),
+            UnitRule::Quotient => {
+                self.shared(&parts, names);
+                plain()
+            }
+            UnitRule::Hill => {
+                self.shared(&parts[..2], names);
+                self.plain(parts[2], names, None, "the exponent of `hill`");
+                plain()
+            }
+            UnitRule::Piecewise => {
+                let values: Vec<&Node> = parts.iter().step_by(2).copied().collect();
+                parts.iter().skip(1).step_by(2).for_each(|condition| drop(self.measure(condition, names)));
+                self.shared(&values, names)
+            }
+        }
+    }
+}

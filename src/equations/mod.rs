@@ -1,0 +1,14 @@
+//! Equations: systems of differential equations, described in EML or SBML, checked and compiled.
+//!
+//! A text becomes a [`tree::System`] (checked, with its units and places), and the tree becomes a [`program`] over lanes of
+//! cells. Nothing here knows time steps: the engine advances programs for cells, fields advance them in space.
+
+pub mod eml;
+pub mod expression;
+pub mod program;
+mod range;
+mod read;
+pub mod sbml;
+pub mod tree;
+pub use range::Range;
+pub use read::{Read, read};

@@ -1,0 +1,126 @@
+//! The equations as a graph in which equal subexpressions are one node and constants are worked out.
+
+use std::collections::HashMap;
+
+use crate::equations::tree::{Binary, Expr, Unary};
+
+/// Number of a node; a node uses only nodes with smaller numbers.
+pub type NodeId = u32;
+
+/// A node of the graph.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Node {
+    /// A constant, by its bits.
+    Constant(u64),
+    /// Something given at run time: slot 0 is the time, then the variables, then the open quantities.
+    Slot(u32),
+    /// A function of one argument.
+    Unary(Unary, NodeId),
+    /// A function of two arguments.
+    Binary(Binary, NodeId, NodeId),
+    /// The second where the first is true, and else the third.
+    Select(NodeId, NodeId, NodeId),
+}
+
+/// Nodes, each once; made by the functions of `simplify`.
+#[derive(Debug, Clone, Default)]
+pub struct Graph {
+    pub(super) nodes: Vec<Node>,
+    known: HashMap<Node, NodeId>,
+    pub(super) derivatives: HashMap<(NodeId, u32), NodeId>,
+}
+
+impl Graph {
+    /// The node behind a number.
+    pub fn node(&self, id: NodeId) -> Node {
+        self.nodes[id as usize]
+    }
+
+    /// How many nodes there are.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there is no node yet.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    pub(super) fn intern(&mut self, node: Node) -> NodeId {
+        let Self { nodes, known, .. } = self;
+        *known.entry(node).or_insert_with(|| {
+            nodes.push(node);
+            nodes.len() as NodeId - 1
+        })
+    }
+
+    /// A constant.
+    pub fn constant(&mut self, value: f64) -> NodeId {
+        self.intern(Node::Constant(value.to_bits()))
+    }
+
+    /// Something given at run time.
+    pub fn slot(&mut self, slot: u32) -> NodeId {
+        self.intern(Node::Slot(slot))
+    }
+
+    /// The value of a node that is a constant.
+    pub fn value(&self, id: NodeId) -> Option<f64> {
+        match self.node(id) {
+            Node::Constant(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    /// The node of an expression; `quantities` has the node of every quantity that it uses.
+    pub fn expression(&mut self, expression: &Expr, quantities: &[NodeId]) -> NodeId {
+        match expression {
+            Expr::Number(number) => self.constant(*number),
+            Expr::Time => self.slot(0),
+            Expr::Quantity(number) => quantities[*number as usize],
+            Expr::Unary(function, a) => {
+                let a = self.expression(a, quantities);
+                self.unary(*function, a)
+            }
+            Expr::Binary(function, a, b) => {
+                let a = self.expression(a, quantities);
+                let b = self.expression(b, quantities);
+                self.binary(*function, a, b)
+            }
+            Expr::Piecewise { branches, otherwise } => {
+                let mut value = self.expression(otherwise, quantities);
+                for (condition, branch) in branches.iter().rev() {
+                    let condition = self.expression(condition, quantities);
+                    let branch = self.expression(branch, quantities);
+                    value = self.select(condition, branch, value);
+                }
+                value
+            }
+        }
+    }
+
+    /// The nodes that a node uses.
+    pub fn operands(&self, id: NodeId) -> impl Iterator<Item = NodeId> + use<> {
+        let operands = match self.node(id) {
+            Node::Constant(_) | Node::Slot(_) => [None; 3],
+            Node::Unary(_, a) => [Some(a), None, None],
+            Node::Binary(_, a, b) => [Some(a), Some(b), None],
+            Node::Select(a, b, c) => [Some(a), Some(b), Some(c)],
+        };
+        operands.into_iter().flatten()
+    }
+
+    /// Which nodes some others need, themselves included.
+    pub fn needed(&self, roots: &[NodeId]) -> Vec<bool> {
+        let mut needed = vec![false; self.nodes.len()];
+        for &root in roots {
+            needed[root as usize] = true;
+        }
+        for id in (0..self.nodes.len()).rev() {
+            if needed[id] {
+                self.operands(id as NodeId).for_each(|operand| needed[operand as usize] = true);
+            }
+        }
+        needed
+    }
+}

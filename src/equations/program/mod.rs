@@ -1,0 +1,264 @@
+//! Equations compiled once: from the tree to a graph without repeats, from the graph to code over lanes of cells.
+//!
+//! A program reads a file of registers. The first are its *slots*: the time, the variables in the order of
+//! [`System::variables`], then the *open* quantities, which the caller may set for each cell: the inputs of the system
+//! and those parameters named when compiling. All other parameters are folded in as constants.
+
+pub mod code;
+mod derivative;
+pub mod graph;
+mod initial;
+mod machine;
+pub mod math;
+mod run;
+mod simplify;
+
+pub use initial::initial_values;
+pub use machine::{LEFT, RosenbrockTableau, StepCode, Tableau, Way};
+pub use run::{Lanes, run};
+
+use std::hash::{Hash, Hasher};
+use std::sync::Arc;
+
+use crate::equations::tree::{Binary, Expr, QuantityId, Role, System};
+use code::{Code, Constants};
+use graph::{Graph, NodeId};
+use machine::Machine;
+
+/// Cells side by side in a block of a population.
+pub const LANES: usize = 16;
+
+/// A system of equations ready to run.
+#[derive(Debug, Clone)]
+pub struct Program {
+    /// Name of the system, for messages.
+    pub name: String,
+    /// The variables.
+    pub variables: Vec<QuantityId>,
+    /// The quantities set from outside.
+    pub open: Vec<QuantityId>,
+    /// Identifiers of all quantities, for messages.
+    pub names: Vec<String>,
+    /// Values of all quantities at the start.
+    pub initial: Vec<f64>,
+    /// Of each variable, the size that its absolute tolerance is meant for; see [`Self::with`].
+    pub sizes: Vec<f64>,
+    /// The rates of change of the variables.
+    pub rates: Code,
+    /// Rates, then their derivatives by time, then the entries of [`Self::pattern`].
+    pub linear: Code,
+    /// Whether the rates do not depend on time.
+    pub timeless: bool,
+    /// Whether the rates never read the clock, not even for a switch: at the same state and open values they are the same.
+    pub rates_stand_still: bool,
+    /// A number that programs with other rates or registers do not share.
+    pub mark: u64,
+    /// Row and column of the Jacobian's entries that are not always zero, row after row.
+    pub pattern: Vec<(u32, u32)>,
+    /// All quantities.
+    pub observe: Code,
+    /// One code for each further group of expressions.
+    pub further: Vec<Code>,
+    /// The constants behind the slots.
+    constants: Vec<f64>,
+    /// Registers that every code of the program fits in.
+    registers: usize,
+    /// Machine code, once it is of use.
+    machine: Arc<Machine>,
+}
+
+impl Program {
+    /// Compiles a system for populations: it starts at time 0 and only its inputs are open.
+    ///
+    /// # Errors
+    /// As [`Self::with`].
+    pub fn new(system: &System) -> Result<Self, Vec<String>> {
+        Self::with(system, 0.0, &[], &[])
+    }
+
+    /// Compiles a system that starts at a time, with some parameters open and further groups of expressions beside its
+    /// rates. A variable that a defined quantity divides by the size of a compartment (an amount by a volume) has that
+    /// size, when it is below 1, and all others 1: so the absolute tolerance holds for concentrations.
+    ///
+    /// # Errors
+    /// The identifiers along a circle of definitions or initial values.
+    pub fn with(system: &System, start: f64, open: &[QuantityId], further: &[Vec<Expr>]) -> Result<Self, Vec<String>> {
+        let initial = initial_values(system, start)?;
+        let variables = system.variables();
+        let is_open = |number: &QuantityId| match system.quantities[*number as usize].role {
+            Role::Input => true,
+            Role::Parameter => open.contains(number),
+            _ => false,
+        };
+        let open: Vec<QuantityId> = (0..system.quantities.len() as QuantityId).filter(is_open).collect();
+        let mut graph = Graph::default();
+        let nodes = quantity_nodes(system, &mut graph, &variables, &open, &initial)?;
+        let rates = rate_nodes(system, &mut graph, &variables, &nodes);
+        let (linear, pattern) = linear_nodes(&mut graph, &rates);
+        let drifts = &linear[rates.len()..2 * rates.len()];
+        let timeless = drifts.iter().all(|&drift| graph.value(drift) == Some(0.0));
+        let further: Vec<Vec<NodeId>> = further
+            .iter()
+            .map(|group| group.iter().map(|expression| graph.expression(expression, &nodes)).collect())
+            .collect();
+        let mut constants = Constants::default();
+        let slots = 1 + variables.len() + open.len();
+        let (rates, linear) = (graph.with_shared_divisors(&rates), graph.with_shared_divisors(&linear));
+        for (graph, group) in [&rates, &linear] {
+            constants.collect(graph, group);
+        }
+        for group in [&nodes].into_iter().chain(&further) {
+            constants.collect(&graph, group);
+        }
+        let code = |graph: &Graph, roots: &[NodeId]| Code::of(graph, roots, slots, &constants);
+        let (rates, linear, observe) = (code(&rates.0, &rates.1), code(&linear.0, &linear.1), code(&graph, &nodes));
+        let further: Vec<Code> = further.iter().map(|group| code(&graph, group)).collect();
+        let registers =
+            [&rates, &linear, &observe].into_iter().chain(&further).map(|code| code.registers).max().unwrap_or(0);
+        Ok(Self {
+            name: system.name.clone(),
+            variables,
+            open,
+            names: system.quantities.iter().map(|quantity| quantity.id.clone()).collect(),
+            sizes: sizes(system, &initial),
+            initial,
+            rates_stand_still: !rates.reads(0),
+            mark: mark(&rates, &constants.values, registers),
+            rates,
+            linear,
+            timeless,
+            pattern,
+            observe,
+            further,
+            registers,
+            constants: constants.values,
+            machine: Arc::default(),
+        })
+    }
+
+    /// How many variables there are.
+    pub fn size(&self) -> usize {
+        self.variables.len()
+    }
+
+    /// The register of the first open quantity.
+    pub fn first_open(&self) -> usize {
+        1 + self.variables.len()
+    }
+
+    /// The place of an open quantity among the open ones.
+    pub fn open_place(&self, quantity: QuantityId) -> Option<usize> {
+        self.open.iter().position(|&open| open == quantity)
+    }
+
+    /// The place of a variable in the state.
+    pub fn variable_place(&self, quantity: QuantityId) -> Option<usize> {
+        self.variables.iter().position(|&variable| variable == quantity)
+    }
+
+    /// Sets the registers of the constants.
+    #[inline(always)]
+    pub fn set_constants<const L: usize>(&self, file: &mut [Lanes<L>]) {
+        let first = self.first_open() + self.open.len();
+        for (register, &value) in file[first..].iter_mut().zip(&self.constants) {
+            *register = [value; L];
+        }
+    }
+
+    /// A file of registers with the constants set and the slots at their initial values.
+    pub fn file<const L: usize>(&self) -> Vec<Lanes<L>> {
+        let mut file =
+            vec![[0.0; L]; self.registers.max(1 + self.variables.len() + self.open.len() + self.constants.len())];
+        let slots = self.variables.iter().chain(&self.open).map(|&quantity| self.initial[quantity as usize]);
+        for (register, value) in file[1..].iter_mut().zip(slots.chain(self.constants.iter().copied())) {
+            *register = [value; L];
+        }
+        file
+    }
+}
+
+/// A number made of the rates' operations, the constants and the number of registers.
+fn mark(rates: &Code, constants: &[f64], registers: usize) -> u64 {
+    let mut hasher = std::hash::DefaultHasher::new();
+    (rates, registers).hash(&mut hasher);
+    constants.iter().for_each(|constant| constant.to_bits().hash(&mut hasher));
+    hasher.finish()
+}
+
+/// The sizes of all variables, in order.
+fn sizes(system: &System, initial: &[f64]) -> Vec<f64> {
+    let mut sizes = vec![1.0_f64; initial.len()];
+    for quantity in &system.quantities {
+        let Role::Defined { rule: Expr::Binary(Binary::Div, amount, volume) } = &quantity.role else { continue };
+        if let (Expr::Quantity(amount), Expr::Quantity(volume)) = (amount.as_ref(), volume.as_ref()) {
+            let volume = initial[*volume as usize];
+            if volume > 0.0 && volume < sizes[*amount as usize] {
+                sizes[*amount as usize] = volume;
+            }
+        }
+    }
+    system.variables().into_iter().map(|variable| sizes[variable as usize]).collect()
+}
+
+fn quantity_nodes(
+    system: &System,
+    graph: &mut Graph,
+    variables: &[QuantityId],
+    open: &[QuantityId],
+    initial: &[f64],
+) -> Result<Vec<NodeId>, Vec<String>> {
+    // Slots first, so that their nodes have the smallest numbers.
+    graph.slot(0);
+    let mut nodes = vec![NodeId::MAX; system.quantities.len()];
+    for (place, &quantity) in variables.iter().chain(open).enumerate() {
+        nodes[quantity as usize] = graph.slot(1 + place as u32);
+    }
+    for (number, quantity) in system.quantities.iter().enumerate() {
+        if matches!(quantity.role, Role::Parameter) && nodes[number] == NodeId::MAX {
+            nodes[number] = graph.constant(initial[number]);
+        }
+    }
+    for number in system.definition_order()? {
+        if let Role::Defined { rule } = &system.quantities[number as usize].role {
+            nodes[number as usize] = graph.expression(rule, &nodes);
+        }
+    }
+    Ok(nodes)
+}
+
+fn rate_nodes(system: &System, graph: &mut Graph, variables: &[QuantityId], nodes: &[NodeId]) -> Vec<NodeId> {
+    let rate = |&quantity: &QuantityId| match &system.quantities[quantity as usize].role {
+        Role::Variable { rate } => graph.expression(rate, nodes),
+        _ => unreachable!("only variables are in the state"),
+    };
+    variables.iter().map(rate).collect()
+}
+
+/// Rates, derivatives by time, and the Jacobian's entries with their places.
+fn linear_nodes(graph: &mut Graph, rates: &[NodeId]) -> (Vec<NodeId>, Vec<(u32, u32)>) {
+    let mut nodes = rates.to_vec();
+    nodes.extend(rates.iter().map(|&rate| graph.derivative(rate, 0)).collect::<Vec<_>>());
+    let mut pattern = Vec::new();
+    for (row, &rate) in rates.iter().enumerate() {
+        for column in slots_used(graph, rate).into_iter().filter(|slot| (1..=rates.len() as u32).contains(slot)) {
+            let entry = graph.derivative(rate, column);
+            if graph.value(entry) != Some(0.0) {
+                pattern.push((row as u32, column - 1));
+                nodes.push(entry);
+            }
+        }
+    }
+    (nodes, pattern)
+}
+
+/// The slots that a node depends on, in order.
+fn slots_used(graph: &Graph, root: NodeId) -> Vec<u32> {
+    let needed = graph.needed(&[root]);
+    let slot = |id: usize| match graph.node(id as NodeId) {
+        graph::Node::Slot(slot) if needed[id] => Some(slot),
+        _ => None,
+    };
+    let mut slots: Vec<u32> = (0..graph.len()).filter_map(slot).collect();
+    slots.sort_unstable();
+    slots
+}

@@ -1,0 +1,104 @@
+//! Runs register code over lanes of cells.
+
+use super::code::{Action, Code};
+use super::math;
+use crate::equations::tree::{Binary, Unary, larger, smaller};
+
+/// One number for each of `L` cells.
+pub type Lanes<const L: usize> = [f64; L];
+
+#[inline(always)]
+fn map<const L: usize>(a: &Lanes<L>, function: impl Fn(f64) -> f64) -> Lanes<L> {
+    let mut result = [0.0; L];
+    for l in 0..L {
+        result[l] = function(a[l]);
+    }
+    result
+}
+
+#[inline(always)]
+fn zip<const L: usize>(a: &Lanes<L>, b: &Lanes<L>, function: impl Fn(f64, f64) -> f64) -> Lanes<L> {
+    let mut result = [0.0; L];
+    for l in 0..L {
+        result[l] = function(a[l], b[l]);
+    }
+    result
+}
+
+#[inline(always)]
+fn zip3<const L: usize>(a: &Lanes<L>, b: &Lanes<L>, c: &Lanes<L>, function: impl Fn(f64, f64, f64) -> f64) -> Lanes<L> {
+    let mut result = [0.0; L];
+    for l in 0..L {
+        result[l] = function(a[l], b[l], c[l]);
+    }
+    result
+}
+
+#[inline(always)]
+fn truth(holds: bool) -> f64 {
+    if holds { 1.0 } else { 0.0 }
+}
+
+/// Functions without an own version for lanes, one lane after the other.
+#[inline(never)]
+fn one_by_one(function: impl Fn(f64) -> f64, values: &mut [f64]) {
+    values.iter_mut().for_each(|value| *value = function(*value));
+}
+
+#[inline(never)]
+fn pairs(function: Binary, a: &mut [f64], b: &[f64]) {
+    a.iter_mut().zip(b).for_each(|(a, b)| *a = function.apply(*a, *b));
+}
+
+/// Runs code on a register file whose slots and constants are set.
+#[inline(always)]
+pub fn run<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
+    for op in &code.ops {
+        // Operands stay where they are: copied, they would go through the stack.
+        let (a, b) = (&file[op.a as usize], &file[op.b as usize]);
+        let value = match op.action {
+            Action::Binary(function) => match function {
+                Binary::Add => zip(a, b, |a, b| a + b),
+                Binary::Sub => zip(a, b, |a, b| a - b),
+                Binary::Mul => zip(a, b, |a, b| a * b),
+                Binary::Div => zip(a, b, |a, b| a / b),
+                Binary::Min => zip(a, b, smaller),
+                Binary::Max => zip(a, b, larger),
+                Binary::Lt => zip(a, b, |a, b| truth(a < b)),
+                Binary::Le => zip(a, b, |a, b| truth(a <= b)),
+                Binary::Gt => zip(a, b, |a, b| truth(a > b)),
+                Binary::Ge => zip(a, b, |a, b| truth(a >= b)),
+                Binary::Eq => zip(a, b, |a, b| truth(a == b)),
+                Binary::Ne => zip(a, b, |a, b| truth(a != b)),
+                Binary::And => zip(a, b, |a, b| truth((a != 0.0) & (b != 0.0))),
+                Binary::Or => zip(a, b, |a, b| truth((a != 0.0) | (b != 0.0))),
+                Binary::Xor => zip(a, b, |a, b| truth((a != 0.0) != (b != 0.0))),
+                Binary::Pow | Binary::Rem | Binary::Quotient => {
+                    let mut result = *a;
+                    pairs(function, &mut result, b);
+                    result
+                }
+            },
+            Action::Unary(function) => match function {
+                Unary::Neg => map(a, |a| -a),
+                Unary::Not => map(a, |a| truth(a == 0.0)),
+                Unary::Abs => map(a, f64::abs),
+                Unary::Sign => map(a, |a| truth(a > 0.0) - truth(a < 0.0)),
+                Unary::Sqrt => map(a, f64::sqrt),
+                Unary::Heaviside => map(a, |a| truth(a >= 0.0)),
+                Unary::Exp => map(a, math::exp),
+                Unary::Ln => map(a, math::ln),
+                _ => {
+                    let mut result = *a;
+                    one_by_one(|value| function.apply(value), &mut result);
+                    result
+                }
+            },
+            Action::MulAdd => zip3(a, b, &file[op.c as usize], |a, b, c| a * b + c),
+            Action::MulSub => zip3(a, b, &file[op.c as usize], |a, b, c| a * b - c),
+            Action::SubMul => zip3(a, b, &file[op.c as usize], |a, b, c| c - a * b),
+            Action::Select => zip3(a, b, &file[op.c as usize], |a, b, c| if a != 0.0 { b } else { c }),
+        };
+        file[op.to as usize] = value;
+    }
+}

@@ -1,0 +1,278 @@
+//! The names of a model: which quantity each stands for, and what is said about each.
+
+use super::document::{Document, RuleKind};
+use super::math::{Function, Reader};
+use super::xml::{Node, Page};
+use crate::equations::tree::{Expr, Quantity, QuantityId, Role};
+use std::collections::{HashMap, HashSet};
+
+/// What a symbol is.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Kind {
+    Compartment(usize),
+    Species(usize),
+    Parameter(usize),
+    Reaction(usize),
+    /// A species reference: reaction, participant.
+    Reference(usize, usize),
+    Function,
+    Event,
+}
+
+/// How the size of a compartment changes.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Change {
+    Never,
+    /// By events only.
+    Jumps,
+    /// By a rate rule, and perhaps by events.
+    Flows,
+    /// By an assignment rule.
+    Defined,
+}
+
+/// A model on its way from the document to the system.
+pub struct Plan<'p, 'a> {
+    pub page: &'p Page<'a>,
+    pub document: &'p Document<'a>,
+    pub reader: Reader<'p, 'a>,
+    pub quantities: Vec<Quantity>,
+    /// The element that declares each quantity.
+    pub places: Vec<Node<'a>>,
+    pub kinds: HashMap<&'a str, Kind>,
+    /// Rules that have a formula, by the symbol they are for.
+    pub rules: HashMap<&'a str, (RuleKind, Node<'a>)>,
+    /// Initial assignments that have a formula.
+    pub initial: HashMap<&'a str, Node<'a>>,
+    /// What events set.
+    pub set_by_events: HashSet<&'a str>,
+    /// The amount of each species; its concentration is the quantity after it.
+    pub amounts: Vec<QuantityId>,
+    /// Local parameters by their elements.
+    pub locals: HashMap<roxmltree::NodeId, QuantityId>,
+    /// Quantities without a value of their own.
+    pub unset: Vec<QuantityId>,
+}
+
+impl<'p, 'a> Plan<'p, 'a> {
+    /// Gives every symbol its quantity and notes what is said about it.
+    pub fn new(page: &'p Page<'a>, document: &'p Document<'a>) -> Self {
+        let mut plan = Self {
+            page,
+            document,
+            reader: Reader::new(page),
+            quantities: Vec::new(),
+            places: Vec::new(),
+            kinds: HashMap::new(),
+            rules: HashMap::new(),
+            initial: HashMap::new(),
+            set_by_events: HashSet::new(),
+            amounts: Vec::new(),
+            locals: HashMap::new(),
+            unset: Vec::new(),
+        };
+        plan.declare();
+        plan.statements();
+        plan.declare_helpers();
+        plan.reader.first_rate = plan.quantities.len() as QuantityId;
+        plan
+    }
+
+    /// A new quantity that is a parameter without a value for now.
+    pub fn quantity(&mut self, id: String, node: Node<'a>) -> QuantityId {
+        let name = node.attribute("name").unwrap_or_default().to_owned();
+        let (role, initial) = (Role::Parameter, Expr::Number(f64::NAN));
+        self.quantities.push(Quantity { id, name, role, initial, unit: String::new() });
+        self.places.push(node);
+        self.quantities.len() as QuantityId - 1
+    }
+
+    /// Whether a symbol is new; it is noted as taken.
+    fn take(&mut self, id: &'a str, node: Node<'a>, kind: Kind) -> bool {
+        if id.is_empty() {
+            return false;
+        }
+        let fresh = self.kinds.insert(id, kind).is_none();
+        if !fresh {
+            let help = "identifiers are unique in the whole model: rename one of the two";
+            self.page.fault_in(node, "id", format!("`{id}` is declared twice"), help);
+        }
+        fresh
+    }
+
+    fn symbol(&mut self, id: &'a str, node: Node<'a>, kind: Kind) {
+        if self.take(id, node, kind) {
+            let quantity = self.quantity(id.to_owned(), node);
+            self.reader.symbols.insert(id, quantity);
+        }
+    }
+
+    fn declare(&mut self) {
+        let document = self.document;
+        for function in &document.functions {
+            if self.take(function.id, function.node, Kind::Function) {
+                let read = self.function(function.lambda);
+                self.reader.functions.insert(function.id, read);
+            }
+        }
+        for (number, compartment) in document.compartments.iter().enumerate() {
+            self.symbol(compartment.id, compartment.node, Kind::Compartment(number));
+        }
+        for (number, species) in document.species.iter().enumerate() {
+            self.take(species.id, species.node, Kind::Species(number));
+            let amount = self.quantity(species.id.to_owned(), species.node);
+            let concentration = self.quantity(format!("[{}]", species.id), species.node);
+            self.reader.symbols.insert(species.id, if species.only_amount { amount } else { concentration });
+            self.amounts.push(amount);
+        }
+        for (number, parameter) in document.parameters.iter().enumerate() {
+            self.symbol(parameter.id, parameter.node, Kind::Parameter(number));
+        }
+        for (number, reaction) in document.reactions.iter().enumerate() {
+            self.symbol(reaction.id, reaction.node, Kind::Reaction(number));
+            for (place, participant) in reaction.participants.iter().enumerate() {
+                if let Some(id) = participant.id {
+                    self.symbol(id, participant.node, Kind::Reference(number, place));
+                }
+            }
+            for local in reaction.law.iter().flat_map(|law| &law.locals) {
+                let quantity = self.quantity(format!("{}.{}", reaction.id, local.id), local.node);
+                self.locals.insert(local.node.id(), quantity);
+            }
+        }
+        for event in &document.events {
+            if let Some(id) = event.id {
+                self.take(id, event.node, Kind::Event);
+            }
+        }
+    }
+
+    /// Arguments and formula of a function.
+    fn function(&self, lambda: Option<Node<'a>>) -> Function<'a> {
+        let mut read = Function { arguments: Vec::new(), body: None };
+        let Some(mut node) = lambda else { return read };
+        if node.tag_name().name() == "semantics" {
+            node = node.first_element_child().unwrap_or(node);
+        }
+        if node.tag_name().name() != "lambda" {
+            let found = format!("a function is a <lambda>, not <{}>", node.tag_name().name());
+            self.page.fault(node, found, "put <lambda> around the arguments (each in a <bvar>) and the formula");
+            return read;
+        }
+        for child in node.children().filter(|child| child.is_element()) {
+            if child.tag_name().name() == "bvar" {
+                let name = child.first_element_child().map(super::math::name).unwrap_or_default();
+                if name.is_empty() || read.arguments.contains(&name) {
+                    let help = "each <bvar> holds one <ci> with a name of its own";
+                    self.page.fault(child, "an argument has no name, or one that is taken", help);
+                }
+                read.arguments.push(name);
+            } else {
+                read.body = Some(child);
+            }
+        }
+        read
+    }
+
+    /// Rules, initial assignments and event assignments by their symbols.
+    fn statements(&mut self) {
+        let document = self.document;
+        for (kind, rule) in &document.rules {
+            if !self.may_change(rule.node, "variable", rule.symbol) {
+                continue;
+            }
+            let Some(math) = rule.math else {
+                self.page.notice(format!("the rule for `{}` has no formula and says nothing", rule.symbol));
+                continue;
+            };
+            if self.rules.insert(rule.symbol, (*kind, math)).is_some() {
+                let found = format!("there are two rules for `{}`", rule.symbol);
+                self.page.fault_in(rule.node, "variable", found, "keep one of them");
+            }
+        }
+        for assignment in &document.initial {
+            let symbol = assignment.symbol;
+            if !self.is_settable(assignment.node, "symbol", symbol) {
+                continue;
+            }
+            let Some(math) = assignment.math else {
+                self.page.notice(format!("the initial assignment to `{symbol}` has no formula and assigns nothing"));
+                continue;
+            };
+            if self.initial.insert(symbol, math).is_some() {
+                let found = format!("there are two initial assignments to `{symbol}`");
+                self.page.fault_in(assignment.node, "symbol", found, "keep one of them");
+            }
+            if self.is_defined(symbol) {
+                let found = format!("`{symbol}` has both an assignment rule and an initial assignment");
+                self.page.fault_in(assignment.node, "symbol", found, "the rule holds at the start too: delete this");
+            }
+        }
+        for assignment in document.events.iter().flat_map(|event| &event.assignments) {
+            let symbol = assignment.symbol;
+            if !self.may_change(assignment.node, "variable", symbol) {
+                continue;
+            }
+            if self.is_defined(symbol) {
+                let found = format!("an event sets `{symbol}`, which has an assignment rule");
+                self.page.fault_in(assignment.node, "variable", found, "the rule holds always: delete one of the two");
+            }
+            if assignment.math.is_some() {
+                self.set_by_events.insert(symbol);
+            } else {
+                self.page.notice(format!("an event assignment to `{symbol}` has no formula and assigns nothing"));
+            }
+        }
+    }
+
+    /// Whether a symbol has a value that can be set.
+    fn is_settable(&self, node: Node<'a>, attribute: &str, symbol: &str) -> bool {
+        let kind = self.kinds.get(symbol);
+        let settable =
+            matches!(kind, Some(Kind::Compartment(_) | Kind::Species(_) | Kind::Parameter(_) | Kind::Reference(..)));
+        if !settable && !symbol.is_empty() {
+            let found = match kind {
+                None => format!("`{symbol}` is not known"),
+                Some(_) => format!("`{symbol}` has no value that can be set"),
+            };
+            let help = "name a compartment, a species, a parameter or a species reference";
+            self.page.fault_in(node, attribute, found, help);
+        }
+        settable
+    }
+
+    /// Whether a symbol may change during a run.
+    fn may_change(&self, node: Node<'a>, attribute: &str, symbol: &'a str) -> bool {
+        if !self.is_settable(node, attribute, symbol) {
+            return false;
+        }
+        let document = self.document;
+        let constant = match self.kinds[symbol] {
+            Kind::Compartment(number) => document.compartments[number].constant,
+            Kind::Species(number) => document.species[number].constant,
+            Kind::Parameter(number) => document.parameters[number].constant,
+            Kind::Reference(reaction, place) => document.reactions[reaction].participants[place].constant,
+            Kind::Reaction(_) | Kind::Function | Kind::Event => true,
+        };
+        if constant {
+            let found = format!("`{symbol}` is constant and cannot be changed here");
+            self.page.fault_in(node, attribute, found, format!("declare `{symbol}` with `constant=\"false\"`"));
+        }
+        !constant
+    }
+
+    /// Whether an assignment rule says what a symbol is.
+    pub fn is_defined(&self, symbol: &str) -> bool {
+        matches!(self.rules.get(symbol), Some((RuleKind::Assignment, _)))
+    }
+
+    /// How a compartment's size changes.
+    pub fn change(&self, compartment: &str) -> Change {
+        match self.rules.get(compartment) {
+            Some((RuleKind::Assignment, _)) => Change::Defined,
+            Some((RuleKind::Rate, _)) => Change::Flows,
+            None if self.set_by_events.contains(compartment) => Change::Jumps,
+            None => Change::Never,
+        }
+    }
+}

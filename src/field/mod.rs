@@ -1,0 +1,42 @@
+//! Fields: substances that diffuse, decay and react on the substrate or in the medium, that cells release and sense.
+//!
+//! [`Fields`] holds the values of all species on one [`Grid`]. [`Fields::advance`] moves them in time, second order in
+//! time and space; [`Fields::deposit`] and [`Fields::sense`] are what cells do to them.
+
+mod axis;
+mod broken;
+mod bundle;
+mod factors;
+pub mod grid;
+mod layout;
+mod limit;
+mod lines;
+mod positions;
+mod profiles;
+mod react;
+mod reactor;
+mod release;
+mod rows;
+mod sense;
+mod shared;
+mod species;
+mod state;
+mod steady;
+mod stencil;
+mod step;
+mod sweep;
+mod sweeps;
+mod system;
+mod touch;
+mod transpose;
+mod turn;
+
+pub use crate::equations::Range;
+pub use grid::{Grid, Wall, Walls};
+pub use layout::Placing;
+pub use react::{Chunk, POINTS, React};
+pub use species::Species;
+pub use state::Fields;
+pub use step::{Report, Stepping};
+pub use system::{FieldSystem, LoadProfile};
+pub use touch::Sensed;

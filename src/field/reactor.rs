@@ -1,0 +1,250 @@
+//! The reactions of a document at all boxes of a grid: its compiled equations over lanes of boxes.
+//!
+//! A step of reactions is one explicit midpoint step, second order like the splitting, or what the document's scheme
+//! asks for: the engine's methods with error control, Rosenbrock's for stiff reactions, within each step of the splitting.
+
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+
+use pulp::Arch;
+
+use super::broken::{Broken, Course};
+use super::grid::Grid;
+use super::positions::{Positions, positions, set_positions};
+use super::react::{Chunk, POINTS};
+use super::rows::{ROW, Rows};
+use super::sweeps::PARTS;
+use super::system::{POSITION, Scales};
+use crate::equations::eml::{Document, Scheme};
+use crate::equations::program::{Lanes, Program};
+use crate::equations::tree::{Expr, Role};
+use crate::error::{Error, Fault, Result};
+use crate::ode::block;
+use crate::ode::cells::Cells;
+use crate::ode::scratch::Scratch;
+use crate::ode::{Method, Tolerances};
+
+/// Boxes side by side.
+pub const WIDTH: usize = ROW;
+
+/// The compiled reactions.
+#[derive(Debug)]
+pub struct Reactor {
+    program: Program,
+    rows: Rows,
+    /// None for the explicit midpoint step.
+    method: Option<Method>,
+    tolerances: Tolerances,
+    scales: Scales,
+    /// Where the position and the inputs stand among the registers.
+    place: Positions,
+    inputs: Vec<usize>,
+    rooms: Vec<Mutex<Option<Room>>>,
+}
+
+/// What one thread works in.
+#[derive(Debug)]
+struct Room {
+    scratch: Scratch<WIDTH>,
+    /// States now and before, and open quantities, of a row of boxes, for the engine's methods.
+    states: Vec<Lanes<WIDTH>>,
+    before: Vec<Lanes<WIDTH>>,
+    given: Vec<Lanes<WIDTH>>,
+}
+
+fn empty_rooms() -> Vec<Mutex<Option<Room>>> {
+    (0..PARTS).map(|_| Mutex::new(None)).collect()
+}
+
+impl Clone for Reactor {
+    fn clone(&self) -> Self {
+        Self {
+            program: self.program.clone(),
+            rows: self.rows.clone(),
+            rooms: empty_rooms(),
+            inputs: self.inputs.clone(),
+            ..*self
+        }
+    }
+}
+
+impl Reactor {
+    /// The reactions of a document, or nothing where nothing reacts.
+    ///
+    /// # Errors
+    /// A scheme that is not for fields.
+    pub fn new(document: &Document, scales: Scales) -> Result<Option<Self>> {
+        let method = method(document)?;
+        let still = |role: &Role| !matches!(role, Role::Variable { rate } if *rate != Expr::Number(0.0));
+        if document.system.quantities.iter().all(|quantity| still(&quantity.role)) {
+            return Ok(None);
+        }
+        let program = super::system::compile(document)?;
+        debug_assert!(document.fields.iter().map(|field| field.quantity).eq(program.variables.iter().copied()));
+        let usual = Tolerances::default();
+        let tolerances = Tolerances {
+            relative: document.solver.rtol.unwrap_or(usual.relative),
+            absolute: document.solver.atol.unwrap_or(usual.absolute),
+            ..usual
+        };
+        let (place, rows) = (positions(&program, &program.rates), Rows::new(&program));
+        let ours = |number: &usize| !POSITION.contains(&program.names[program.open[*number] as usize].as_str());
+        let inputs = (0..program.open.len()).filter(ours).map(|number| program.first_open() + number).collect();
+        Ok(Some(Self { program, rows, method, tolerances, scales, place, inputs, rooms: empty_rooms() }))
+    }
+
+    /// A window with these inputs.
+    pub fn course<'a>(&'a self, grid: &'a Grid, inputs: &'a [f64], adaptive: bool) -> Course<'a> {
+        Course { reactor: self, grid, inputs, adaptive, broken: Mutex::new(None) }
+    }
+
+    /// A room that no other thread is in.
+    fn room(&self, hint: usize) -> MutexGuard<'_, Option<Room>> {
+        for at in 0..self.rooms.len() {
+            match self.rooms[(hint + at) % self.rooms.len()].try_lock() {
+                Ok(room) => return room,
+                Err(TryLockError::Poisoned(room)) => return room.into_inner(),
+                Err(TryLockError::WouldBlock) => {}
+            }
+        }
+        self.rooms[hint % self.rooms.len()].lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lets the boxes of a chunk react; of those whose values are finite before and
+    /// not after the one with the largest before.
+    pub fn react(&self, grid: &Grid, inputs: &[f64], chunk: &mut Chunk) -> Option<Broken> {
+        let mut room = self.room(chunk.first / POINTS);
+        let room = room.get_or_insert_with(|| Room {
+            scratch: Scratch::new(&self.program, self.method == Some(Method::Rosenbrock)),
+            states: vec![[0.0; WIDTH]; self.program.size()],
+            before: vec![[0.0; WIDTH]; self.program.size()],
+            given: vec![[0.0; WIDTH]; self.program.open.len()],
+        });
+        for (register, value) in self.inputs.iter().zip(inputs) {
+            room.scratch.file[*register] = [*value; WIDTH];
+        }
+        Arch::new().dispatch(Job { reactor: self, grid, room, chunk })
+    }
+
+    #[inline(always)]
+    fn blocks<S: pulp::Simd>(&self, simd: S, grid: &Grid, room: &mut Room, chunk: &mut Chunk) -> Option<Broken> {
+        let (from, dt) = (chunk.time / self.scales.seconds, chunk.dt / self.scales.seconds);
+        let mut broken = None;
+        for first in (0..chunk.points).step_by(WIDTH) {
+            let scratch = &mut room.scratch;
+            for (s, state) in scratch.state.iter_mut().enumerate() {
+                state.copy_from_slice(&chunk.values[s * POINTS + first..][..WIDTH]);
+            }
+            set_positions(grid, self.scales, &self.place, chunk.first + first, &mut scratch.file);
+            match self.method {
+                None => midpoint(&self.rows, scratch, from, dt),
+                Some(method) => self.with_method(simd, method, room, (from, from + dt)),
+            }
+            let scratch = &mut room.scratch;
+            let mut fine = true;
+            for (s, proposal) in scratch.proposal.iter().enumerate() {
+                chunk.values[s * POINTS + first..][..WIDTH].copy_from_slice(proposal);
+                for value in proposal {
+                    fine &= value.abs() < f64::INFINITY;
+                }
+            }
+            if !fine {
+                let found = broken_box(scratch, chunk, first);
+                let larger = |known: Broken| found.is_some_and(|found| found.before > known.before);
+                broken = if broken.is_none_or(larger) { found } else { broken };
+            }
+        }
+        broken
+    }
+
+    /// A step of reactions by one of the engine's methods; a box in trouble gets values that are no numbers.
+    #[inline(always)]
+    fn with_method<S: pulp::Simd>(&self, simd: S, method: Method, room: &mut Room, window: (f64, f64)) {
+        let Room { scratch, states, before, given } = room;
+        states.copy_from_slice(&scratch.state);
+        let open = self.program.first_open();
+        let many = given.len();
+        given.copy_from_slice(&scratch.file[open..open + many]);
+        // The splitting has chosen its step for these reactions: it is tried in one piece.
+        let (mut steps, mut errors) = ([[window.1 - window.0; WIDTH]], [[1.0; WIDTH]]);
+        let mut cells = Cells { count: WIDTH, states, given, steps: &mut steps, errors: &mut errors, kept: None };
+        before.copy_from_slice(&scratch.state);
+        let result = block::advance(simd, &self.program, method, scratch, &mut cells, window, &self.tolerances);
+        scratch.proposal.copy_from_slice(states);
+        scratch.state.copy_from_slice(before);
+        if let Err(trouble) = result {
+            scratch.proposal[trouble.variable.unwrap_or(0)][trouble.cell] = f64::NAN;
+        }
+    }
+}
+
+/// The reactions of a chunk, so that they are compiled for the processor's lanes.
+struct Job<'a, 'c> {
+    reactor: &'a Reactor,
+    grid: &'a Grid,
+    room: &'a mut Room,
+    chunk: &'a mut Chunk<'c>,
+}
+
+impl pulp::WithSimd for Job<'_, '_> {
+    type Output = Option<Broken>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Broken> {
+        self.reactor.blocks(simd, self.grid, self.room, self.chunk)
+    }
+}
+
+/// The box of a block that is finite before and not after; of several the one with the largest value before.
+#[inline(never)]
+fn broken_box(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<Broken> {
+    let before = |lane: usize| scratch.state.iter().map(|state| state[lane].abs()).fold(0.0, f64::max);
+    let was_fine = |lane: &usize| scratch.state.iter().all(|state| state[*lane].is_finite());
+    let bad = |lane: usize| {
+        let species = scratch.proposal.iter().position(|values| !values[lane].is_finite())?;
+        let (value, at) = (scratch.proposal[species][lane], chunk.first + first + lane);
+        Some(Broken { species, value, before: before(lane), at, time: chunk.time, dt: chunk.dt })
+    };
+    let found = (0..WIDTH.min(chunk.points - first)).filter(was_fine).filter_map(bad);
+    found.rev().max_by(|a, b| a.before.total_cmp(&b.before))
+}
+
+/// Leaves the proposal of an explicit midpoint step, eq. (field.12).
+#[inline(always)]
+fn midpoint(rows: &Rows, s: &mut Scratch<WIDTH>, time: f64, dt: f64) {
+    let n = s.state.len();
+    s.file[0] = [time; WIDTH];
+    s.file[1..=n].copy_from_slice(&s.state);
+    for half in [true, false] {
+        rows.run(&mut s.file);
+        let share = if half { 0.5 * dt } else { dt };
+        for ((to, from), register) in s.proposal.iter_mut().zip(&s.state).zip(&rows.outputs) {
+            let rate = &s.file[*register];
+            for l in 0..WIDTH {
+                to[l] = from[l] + share * rate[l];
+            }
+        }
+        if half {
+            s.file[0] = [time + 0.5 * dt; WIDTH];
+            s.file[1..=n].copy_from_slice(&s.proposal);
+        }
+    }
+}
+
+/// The method that a document asks for.
+fn method(document: &Document) -> Result<Option<Method>> {
+    let inner = document.solver.inner_step.unwrap_or(f64::INFINITY);
+    match document.solver.scheme {
+        None => Ok(None),
+        Some(Scheme::Rk45) => Ok(Some(Method::Rk45)),
+        Some(Scheme::Rk65) => Ok(Some(Method::Rk65)),
+        Some(Scheme::Rosenbrock) => Ok(Some(Method::Rosenbrock)),
+        Some(Scheme::Rk4) => Ok(Some(Method::Rk4 { step: inner })),
+        Some(other @ (Scheme::Euler | Scheme::Bdf)) => {
+            let name = if other == Scheme::Bdf { "bdf" } else { "euler" };
+            let message = format!("the reactions of the fields of '{}' cannot be taken with {name}", document.name);
+            let help =
+                "write scheme=\"rk4\", \"rk45\", \"rk65\" or, for stiff reactions, \"rosenbrock\", or leave it out";
+            Err(Error::input(Fault::new(message).help(help)))
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! The fields of an EML document on a grid: how they start, spread and react.
+//!
+//! A document keeps its own units of time and length; the fields are moved in µm and s, and their values are
+//! concentrations in the unit that the document gives them.
+
+use super::grid::Grid;
+use super::layout::{Placing, describe, layout, unit};
+use super::lines;
+use super::profiles::profiles;
+use super::reactor::Reactor;
+use super::species::Species;
+use super::state::Fields;
+use super::step::{Report, Stepping};
+use crate::equations::eml;
+use crate::equations::program::{Program, initial_values};
+use crate::equations::tree::{QuantityId, Role, System};
+use crate::error::{Error, Fault, Place, Result};
+
+/// Gives the values of a profile that lies in a file, its `scale` included: one for each box of the grid, x fastest.
+pub type LoadProfile<'a> = dyn Fn(&eml::Profile, &Grid) -> Result<Vec<f64>> + 'a;
+
+/// The fields of one document on one grid. It never changes; what does is in [`Fields`].
+#[derive(Debug, Clone)]
+pub struct FieldSystem {
+    name: String,
+    /// The equations, in the document's own units.
+    system: System,
+    grid: Grid,
+    species: Vec<Species>,
+    units: Vec<String>,
+    starts: Vec<Start>,
+    inputs: Vec<(String, f64)>,
+    /// None where nothing reacts.
+    reactor: Option<Reactor>,
+    scales: Scales,
+}
+
+/// How a field starts.
+#[derive(Debug, Clone)]
+struct Start {
+    quantity: QuantityId,
+    profile: eml::Profile,
+    place: Place,
+}
+
+impl Start {
+    fn of(field: &eml::FieldDescription) -> Self {
+        Self { quantity: field.quantity, profile: field.initial.clone(), place: field.place.clone() }
+    }
+}
+
+/// The document's units, eq. (field.11).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Scales {
+    /// Seconds in its unit of time.
+    pub seconds: f64,
+    /// Micrometres in its unit of length.
+    pub micrometres: f64,
+}
+
+/// The position in expressions of a document of fields.
+pub(super) const POSITION: [&str; 3] = ["x", "y", "z"];
+
+impl FieldSystem {
+    /// Puts the fields of a document on its grid. What the document leaves open is taken from `placing`. A side that is
+    /// no multiple of the spacing is lengthened at its upper end, so that the spacing is kept.
+    ///
+    /// # Errors
+    /// All faults with their places: a grid that nothing places, with fewer than 4 boxes along an axis or more than
+    /// memory holds; coefficients and walls without meaning; a scheme that reactions cannot be taken with.
+    pub fn new(document: &eml::Document, placing: Option<&Placing>) -> Result<Self> {
+        let grid = layout(document, placing)?;
+        let mut faults = Vec::new();
+        let system = &document.system;
+        let constants = initial_values(system, 0.0).map_err(|circle| in_circle(document, &circle))?;
+        let scales = Scales {
+            seconds: document.seconds,
+            micrometres: document.grid.as_ref().map_or(1.0, |grid| grid.micrometres),
+        };
+        let mut species = Vec::new();
+        for field in &document.fields {
+            let one = describe(field, &constants, scales);
+            match one.check(&grid) {
+                Err(Error::Input(more)) => faults.extend(more.into_iter().map(|fault| fault.at(field.place.clone()))),
+                Err(other) => return Err(other),
+                Ok(()) => {}
+            }
+            species.push(one);
+        }
+        let reactor = Reactor::new(document, scales).map_err(|error| match error {
+            Error::Input(more) => faults.extend(more),
+            _ => unreachable!("a reactor only finds faults"),
+        });
+        let (true, Ok(reactor)) = (faults.is_empty(), reactor) else { return Err(Error::Input(faults)) };
+        let given = |quantity: &&crate::equations::tree::Quantity| {
+            quantity.role == Role::Input && !POSITION.contains(&quantity.id.as_str())
+        };
+        let default = |id: &String| system.find(id).map_or(0.0, |number: QuantityId| constants[number as usize]);
+        let inputs = system.quantities.iter().filter(given).map(|input| (input.id.clone(), default(&input.id)));
+        Ok(Self {
+            name: document.name.clone(),
+            inputs: inputs.collect(),
+            units: document.fields.iter().map(|field| unit(system, field)).collect(),
+            starts: document.fields.iter().map(Start::of).collect(),
+            system: system.clone(),
+            grid,
+            species,
+            reactor,
+            scales,
+        })
+    }
+
+    /// The grid, in µm.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The document's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The fields in the order of the document, their coefficients in µm and s.
+    pub fn species(&self) -> &[Species] {
+        &self.species
+    }
+
+    /// The unit of each field's values, as the document writes it; empty where it has none.
+    pub fn units(&self) -> &[String] {
+        &self.units
+    }
+
+    /// The place of a field among the species.
+    pub fn species_number(&self, id: &str) -> Option<usize> {
+        self.species.iter().position(|species| species.name == id)
+    }
+
+    /// Inputs of the document with their defaults, in the order in which [`Self::advance`] takes them.
+    pub fn inputs(&self) -> &[(String, f64)] {
+        &self.inputs
+    }
+
+    /// The number of a quantity of the document.
+    pub fn quantity(&self, id: &str) -> Option<QuantityId> {
+        self.system.find(id)
+    }
+
+    /// Fields without any substance in them, for the values of others.
+    ///
+    /// # Panics
+    /// Never: grid and species have been checked.
+    pub fn empty(&self) -> Fields {
+        Fields::new(self.grid.clone(), self.species.clone()).expect("grid and species were checked")
+    }
+
+    /// The fields at time 0, as their profiles have them.
+    ///
+    /// # Errors
+    /// Values that are not finite or, of a concentration, negative, with the field's place in the document; what `load`
+    /// finds.
+    pub fn start(&self, load: &LoadProfile) -> Result<Fields> {
+        let mut fields = Fields::new(self.grid.clone(), self.species.clone())?;
+        let mut faults = Vec::new();
+        let mut take = |fields: &mut Fields, number: usize, values: Result<Vec<f64>>| -> Result<()> {
+            match values.and_then(|values| fields.set_values(number, &values)) {
+                Err(Error::Input(more)) => {
+                    let place = &self.starts[number].place;
+                    let placed = |fault: Fault| if fault.place.is_none() { fault.at(place.clone()) } else { fault };
+                    faults.extend(more.into_iter().map(placed));
+                    Ok(())
+                }
+                other => other,
+            }
+        };
+        let mut starts = Vec::new();
+        for (number, start) in self.starts.iter().enumerate() {
+            let from_file = !matches!(start.profile, eml::Profile::Expression(_));
+            if from_file {
+                take(&mut fields, number, load(&start.profile, &self.grid))?;
+            }
+            starts.push((start.quantity, from_file.then(|| fields.values(number).to_vec())));
+        }
+        let computed = profiles(&self.system, &self.grid, self.scales, starts)
+            .map_err(|circle| Error::input(Fault::new(format!("a circle of {}", circle.join(", ")))))?;
+        for (number, values) in computed.into_iter().enumerate() {
+            take(&mut fields, number, Ok(values))?;
+        }
+        if faults.is_empty() { Ok(fields) } else { Err(Error::Input(faults)) }
+    }
+
+    /// Moves the fields by a window of time, s. The inputs stand still within it; there is one for each of
+    /// [`Self::inputs`].
+    ///
+    /// # Errors
+    /// Numbers that fail: the message names document, field, time and place, and the fields are as they were before.
+    ///
+    /// # Panics
+    /// When the fields are not this system's, or there is not one input for each.
+    pub fn advance(&self, fields: &mut Fields, window: f64, inputs: &[f64], stepping: Stepping) -> Result<Report> {
+        assert_eq!(inputs.len(), self.inputs.len(), "one number for each input of '{}'", self.name);
+        assert_eq!(fields.species().len(), self.species.len(), "the fields of '{}'", self.name);
+        let Some(reactor) = &self.reactor else {
+            return fields.advance(window, stepping, None).map_err(|error| self.named(error));
+        };
+        let course = reactor.course(&self.grid, inputs, matches!(stepping, Stepping::Adaptive { .. }));
+        let react = |chunk: &mut super::react::Chunk| course.react(chunk);
+        fields.advance(window, stepping, Some(&react)).map_err(|error| {
+            let broken = course.broken().map(|broken| broken.error(&self.name, &self.species, &self.grid));
+            broken.unwrap_or_else(|| self.named(error))
+        })
+    }
+
+    /// The same by the method of lines: the differential equations of all boxes at once, handed to the engine's
+    /// explicit method of order 5. For small grids, as the measure of [`Self::advance`].
+    ///
+    /// # Errors
+    /// More than 4 000 values, and what the engine meets.
+    ///
+    /// # Panics
+    /// As [`Self::advance`].
+    pub fn reference(&self, fields: &Fields, window: f64, inputs: &[f64], rtol: f64, atol: f64) -> Result<Fields> {
+        assert_eq!(inputs.len(), self.inputs.len(), "one number for each input of '{}'", self.name);
+        let inputs: Vec<(&str, f64)> =
+            self.inputs.iter().zip(inputs).map(|((id, _), value)| (id.as_str(), *value)).collect();
+        lines::solve_lines(&self.system, self.scales, fields, window, &inputs, [rtol, atol])
+    }
+
+    /// An error of the fields with the document's name.
+    fn named(&self, error: Error) -> Error {
+        match error {
+            Error::Numbers { message, help, kept } => {
+                Error::Numbers { message: format!("document '{}': {message}", self.name), help, kept }
+            }
+            other => other,
+        }
+    }
+}
+
+fn in_circle(document: &eml::Document, circle: &[String]) -> Error {
+    let first = circle.first().and_then(|id| document.system.find(id));
+    let fault = Fault::new(format!("a circle of {}", circle.join(", "))).help("let one of them be a number");
+    let place = first.and_then(|number| document.places.get(number as usize));
+    Error::input(match place {
+        Some(place) => fault.at(place.clone()),
+        None => fault,
+    })
+}
+
+/// The program of a system whose circles were refused before.
+pub(super) fn compile(document: &eml::Document) -> Result<Program> {
+    Program::new(&document.system).map_err(|circle| in_circle(document, &circle))
+}

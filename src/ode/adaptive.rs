@@ -1,0 +1,92 @@
+//! Methods that choose their steps by their error.
+
+use pulp::Simd;
+
+use super::control::{Controller, EXPLICIT, SIXTH, STIFF};
+use super::scratch::Scratch;
+use super::tableau::{rodas, tsitouras, verner};
+use super::{explicit, rosenbrock};
+use crate::equations::program::{LANES, Lanes, Program, StepCode};
+
+/// What the loops over steps need to know of a method.
+pub trait Adaptive {
+    /// How it chooses the next step.
+    const CONTROLLER: Controller;
+    /// Evaluations of the rates in a step, without the first stage where that is the last of the step before.
+    const RATES: u64;
+    /// Factored Jacobians in a step.
+    const JACOBIANS: u64;
+    /// The stage that is the first of the next step, if there is one.
+    const LAST: Option<usize>;
+    /// So many cells at most are sooner done one by one in machine code than side by side in lanes.
+    const FEW: usize;
+
+    /// Machine code of a step, where there is some.
+    fn code(program: &Program) -> Option<&StepCode<LANES>>;
+
+    /// One step from (time, state). Leaves proposal, error and stages; see the methods themselves.
+    fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>);
+}
+
+/// The explicit pair of order 5(4).
+pub struct Tsitouras;
+
+impl Adaptive for Tsitouras {
+    const CONTROLLER: Controller = EXPLICIT;
+    const RATES: u64 = 6;
+    const JACOBIANS: u64 = 0;
+    const LAST: Option<usize> = Some(6);
+    const FEW: usize = 8;
+
+    #[inline(always)]
+    fn code(program: &Program) -> Option<&StepCode<LANES>> {
+        program.pair_step(&tsitouras::TABLEAU)
+    }
+
+    #[inline(always)]
+    fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
+        explicit::tsitouras(simd, program, s, time, step);
+    }
+}
+
+/// The explicit pair of order 6(5).
+pub struct Verner;
+
+impl Adaptive for Verner {
+    const CONTROLLER: Controller = SIXTH;
+    const RATES: u64 = 8;
+    const JACOBIANS: u64 = 0;
+    const LAST: Option<usize> = Some(8);
+    const FEW: usize = 8;
+
+    #[inline(always)]
+    fn code(program: &Program) -> Option<&StepCode<LANES>> {
+        program.pair_step(&verner::TABLEAU)
+    }
+
+    #[inline(always)]
+    fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
+        explicit::verner(simd, program, s, time, step);
+    }
+}
+
+/// The Rosenbrock method of order 4(3).
+pub struct Rodas;
+
+impl Adaptive for Rodas {
+    const CONTROLLER: Controller = STIFF;
+    const RATES: u64 = 6;
+    const JACOBIANS: u64 = 1;
+    const LAST: Option<usize> = None;
+    const FEW: usize = 6;
+
+    #[inline(always)]
+    fn code(program: &Program) -> Option<&StepCode<LANES>> {
+        program.rosenbrock_step(&rodas::TABLEAU)
+    }
+
+    #[inline(always)]
+    fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
+        rosenbrock::step(simd, program, s, time, step);
+    }
+}

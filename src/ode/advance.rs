@@ -1,0 +1,175 @@
+//! A population through a window: side by side in tasks of blocks, or a few cells one by one.
+
+use std::sync::{Mutex, PoisonError};
+
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
+use super::alone::Alone;
+use super::block::{self, CellTrouble};
+use super::cells::{Cells, Kept};
+use super::narrow::Narrow;
+use super::population::{LANES, Population};
+use super::scratch::Scratch;
+use super::{Method, OdeTrouble, Tolerances, Work};
+use crate::equations::program::{Lanes, Program};
+
+impl Population {
+    /// Advances all cells through a window. Each cell has an error and a step of its own; its result does not depend on
+    /// how many cells there are nor on the number of threads. Open quantities stand still within the window. Nothing is
+    /// allocated after the first window.
+    ///
+    /// # Errors
+    /// The cell of the smallest number that could not be advanced. Cells in trouble keep their last good state; all
+    /// others have reached the end.
+    ///
+    /// # Panics
+    /// When the program is not that of the population in the number of variables and open quantities, or the window
+    /// is empty.
+    pub fn advance(
+        &mut self,
+        program: &Program,
+        from: f64,
+        until: f64,
+        tolerances: &Tolerances,
+    ) -> Result<Work, OdeTrouble> {
+        assert_eq!((self.variables, self.open), (program.size(), program.open.len()), "the population's own program");
+        assert!(until > from, "a window from {from} until {until}");
+        if self.variables == 0 || self.cells == 0 {
+            return Ok(Work::default());
+        }
+        self.keep_rates(program);
+        let in_code = match self.method {
+            Method::Rk45 => self.advance_in_code::<Tsitouras>(program, (from, until), tolerances),
+            Method::Rk65 => self.advance_in_code::<Verner>(program, (from, until), tolerances),
+            Method::Rosenbrock => self.advance_in_code::<Rodas>(program, (from, until), tolerances),
+            Method::Rk4 { .. } | Method::Euler { .. } => None,
+        };
+        let result = match in_code {
+            Some(result) => result,
+            None if self.cells <= FEW => self.advance_one_by_one(program, (from, until), tolerances),
+            None => self.advance_side_by_side(program, (from, until), tolerances),
+        };
+        match result {
+            Ok(work) => Ok(work),
+            Err(trouble) => Err(trouble.of(program)),
+        }
+    }
+
+    /// A few cells one by one in machine code, where there is some.
+    fn advance_in_code<M: Adaptive>(
+        &mut self,
+        program: &Program,
+        window: (f64, f64),
+        tolerances: &Tolerances,
+    ) -> Option<TaskResult> {
+        let code = if self.cells <= M::FEW { M::code(program)? } else { return None };
+        let Self { states, steps, errors, given, rates, known, narrow, .. } = self;
+        let room = narrow.get_or_insert_with(|| Box::new(Narrow::new(program, self.method))).room();
+        let (steps, errors) = (&mut steps[0], &mut errors[0]);
+        let mut cells = Alone { program, code, room, states, given, rates, known, steps, errors };
+        let first = cells.advance::<M>(0, window, tolerances);
+        Some((1..self.cells).fold(first, |result, l| first_trouble(result, cells.advance::<M>(l, window, tolerances))))
+    }
+
+    fn advance_one_by_one(&mut self, program: &Program, window: (f64, f64), tolerances: &Tolerances) -> TaskResult {
+        let Self { states, steps, errors, given, rates, known, narrow, .. } = self;
+        let kept = (!known.is_empty()).then_some(Kept { rates, known });
+        let mut cells = Cells { count: self.cells, states, given, steps, errors, kept };
+        let narrow = narrow.get_or_insert_with(|| Box::new(Narrow::new(program, self.method)));
+        narrow.advance(program, self.method, &mut cells, window, tolerances)
+    }
+
+    fn advance_side_by_side(&mut self, program: &Program, window: (f64, f64), tolerances: &Tolerances) -> TaskResult {
+        let n = self.variables;
+        let threads = rayon::current_num_threads();
+        while self.rooms.len() < threads {
+            self.rooms.push(Mutex::new(None));
+        }
+        let Self { states, steps, errors, given, rates, known, rooms, .. } = self;
+        let (method, cells, open) = (self.method, self.cells, self.open);
+        let blocks = blocks_a_task(steps.len(), threads);
+        let one = |(task, (((states, steps), errors), kept)): (usize, Part)| {
+            let room = &rooms[rayon::current_thread_index().unwrap_or(0)];
+            let mut room = room.lock().unwrap_or_else(PoisonError::into_inner);
+            let scratch = room.get_or_insert_with(|| Box::new(Scratch::new(program, method == Method::Rosenbrock)));
+            program.set_constants(&mut scratch.file);
+            let first = task * blocks;
+            let given = &given[first * open..(first + steps.len()) * open];
+            let count = (cells - first * LANES).min(steps.len() * LANES);
+            let cells = Cells { count, states, given, steps, errors, kept };
+            let result = Arch::new().dispatch(Task { program, method, scratch, cells, window, tolerances });
+            result.map_err(|trouble| CellTrouble { cell: first * LANES + trouble.cell, ..trouble })
+        };
+        let tasks = states.par_chunks_mut(n * blocks).zip(steps.par_chunks_mut(blocks));
+        let kept = rates.par_chunks_mut(n * blocks).zip(known.par_chunks_mut(blocks));
+        let kept = kept.map(|(rates, known)| Some(Kept { rates, known }));
+        let unkept = if kept.len() > 0 { 0 } else { tasks.len() };
+        let kept = kept.chain((0..unkept).into_par_iter().map(|_| None));
+        let result = tasks.zip(errors.par_chunks_mut(blocks)).zip(kept).enumerate().map(one);
+        result.reduce(|| Ok(Work::default()), first_trouble)
+    }
+}
+
+/// What a task changes: states, steps, errors and kept rates.
+type Part<'a> = (((&'a mut [Lanes<LANES>], &'a mut [Lanes<LANES>]), &'a mut [Lanes<LANES>]), Option<Kept<'a, LANES>>);
+
+/// So few cells are sooner done one by one than side by side in lanes of which most are empty.
+const FEW: usize = 2;
+
+/// Tasks of so many blocks have enough cells to fill lanes that are done early.
+const MOST_BLOCKS: usize = 256;
+
+/// How many blocks a task takes: several tasks a thread, so that the threads end together.
+fn blocks_a_task(blocks: usize, threads: usize) -> usize {
+    let tasks = if threads == 1 { 1 } else { 4 * threads };
+    blocks.div_ceil(tasks).clamp(1, MOST_BLOCKS)
+}
+
+/// What one task needs, as an object with a method of its own: only so is all of it compiled for the wide registers.
+struct Task<'a> {
+    program: &'a Program,
+    method: Method,
+    scratch: &'a mut Scratch<LANES>,
+    cells: Cells<'a, LANES>,
+    window: (f64, f64),
+    tolerances: &'a Tolerances,
+}
+
+impl WithSimd for Task<'_> {
+    type Output = TaskResult;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> TaskResult {
+        let Self { program, method, scratch, mut cells, window, tolerances } = self;
+        block::advance(simd, program, method, scratch, &mut cells, window, tolerances)
+    }
+}
+
+impl CellTrouble {
+    #[cold]
+    fn of(self, program: &Program) -> OdeTrouble {
+        OdeTrouble {
+            system: program.name.clone(),
+            cell: Some(self.cell),
+            time: self.time,
+            variable: self.variable.map(|v| program.names[program.variables[v] as usize].clone()),
+            reason: self.reason,
+            detail: String::new(),
+        }
+    }
+}
+
+type TaskResult = Result<Work, CellTrouble>;
+
+/// The sum of the work, or the trouble of the smaller cell.
+fn first_trouble(a: TaskResult, b: TaskResult) -> TaskResult {
+    match (a, b) {
+        (Ok(mut a), Ok(b)) => {
+            a.add(b);
+            Ok(a)
+        }
+        (Err(a), Err(b)) => Err(if b.cell < a.cell { b } else { a }),
+        (Err(trouble), Ok(_)) | (Ok(_), Err(trouble)) => Err(trouble),
+    }
+}

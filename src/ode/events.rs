@@ -1,0 +1,284 @@
+//! Events as SBML means them: triggers, delays, priorities, and what is still to be executed.
+
+use serde::{Deserialize, Serialize};
+
+use super::stepper::Stepper;
+use super::{OdeTrouble, Reason};
+use crate::equations::program::Program;
+use crate::equations::tree::{Binary, Event, Expr, QuantityId, Role, System};
+
+/// Executions at one time after which events count as endless.
+const MOST_AT_ONCE: usize = 10_000;
+
+/// Group of the triggers among [`Program::further`].
+pub const TRIGGERS: usize = 0;
+const PRIORITIES: usize = 1;
+/// Group of the differences whose roots in time are met exactly.
+pub const STOPS: usize = 2;
+const FIRST_EVENT: usize = 3;
+
+/// An event that has fired and waits.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Pending {
+    event: usize,
+    time: f64,
+    /// New values, when they are those of the firing.
+    values: Option<Vec<f64>>,
+}
+
+/// What a system knows of its events at a time: which triggers hold, and what has fired and waits.
+#[derive(Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct EventMemory {
+    holds: Vec<bool>,
+    pending: Vec<Pending>,
+}
+
+impl Clone for EventMemory {
+    fn clone(&self) -> Self {
+        Self { holds: self.holds.clone(), pending: self.pending.clone() }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.holds.clone_from(&other.holds);
+        self.pending.clone_from(&other.pending);
+    }
+}
+
+impl EventMemory {
+    /// Whether another is of as many events.
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        let count = self.holds.len();
+        let known = |memory: &Self| memory.pending.iter().all(|pending| pending.event < count);
+        count == other.holds.len() && known(self) && known(other)
+    }
+}
+
+/// The events of a system beside its program.
+#[derive(Debug, Clone, Default)]
+pub struct EventPlan {
+    events: Vec<Event>,
+    /// Slot of each assigned quantity, event by event.
+    slots: Vec<Vec<usize>>,
+}
+
+impl EventPlan {
+    /// Compiles a system and its events for a start at a time. The parameters that events set are open in the program,
+    /// and what events need stands behind its rates.
+    ///
+    /// # Errors
+    /// As [`Program::with`].
+    pub fn compile(system: &System, start: f64) -> Result<(Program, Self), Vec<String>> {
+        let program = Program::with(system, start, &assigned_parameters(system), &groups(system))?;
+        let slot = |quantity: QuantityId| {
+            let variable = program.variable_place(quantity);
+            variable.or_else(|| program.open_place(quantity).map(|place| program.size() + place)).unwrap_or(usize::MAX)
+        };
+        let slots = |event: &Event| event.assignments.iter().map(|&(quantity, _)| slot(quantity)).collect();
+        let plan = Self { events: system.events.clone(), slots: system.events.iter().map(slots).collect() };
+        Ok((program, plan))
+    }
+
+    /// Whether there are no events.
+    pub fn is_empty(&self) -> bool {
+        self.events.is_empty()
+    }
+
+    /// What is known of the events before the start.
+    pub fn before_start(&self) -> EventMemory {
+        EventMemory { holds: self.events.iter().map(|event| event.true_before_start).collect(), pending: Vec::new() }
+    }
+}
+
+/// The events of a system on its way.
+pub struct Events<'a> {
+    plan: &'a EventPlan,
+    memory: EventMemory,
+}
+
+/// Parameters that events set; they must stay open in the program.
+pub fn assigned_parameters(system: &System) -> Vec<QuantityId> {
+    let assigned = system.events.iter().flat_map(|event| event.assignments.iter().map(|(quantity, _)| *quantity));
+    assigned.filter(|&quantity| matches!(system.quantities[quantity as usize].role, Role::Parameter)).collect()
+}
+
+/// The groups of expressions that events need in the program.
+fn groups(system: &System) -> Vec<Vec<Expr>> {
+    let number = Expr::Number;
+    let triggers = system.events.iter().map(|event| event.trigger.clone()).collect();
+    let priority = |event: &Event| event.priority.clone().unwrap_or(number(f64::NEG_INFINITY));
+    let mut groups = vec![triggers, system.events.iter().map(priority).collect(), stops(system)];
+    for event in &system.events {
+        let mut group = vec![event.delay.clone().unwrap_or(number(0.0))];
+        group.extend(event.assignments.iter().map(|(_, value)| value.clone()));
+        groups.push(group);
+    }
+    groups
+}
+
+/// Differences of the sides of every comparison that depends on time but on no variable.
+fn stops(system: &System) -> Vec<Expr> {
+    let mut found = Vec::new();
+    let mut steady = vec![None; system.quantities.len()];
+    for quantity in &system.quantities {
+        match &quantity.role {
+            Role::Variable { rate } => comparisons(system, rate, &mut steady, &mut found),
+            Role::Defined { rule } => comparisons(system, rule, &mut steady, &mut found),
+            _ => {}
+        }
+    }
+    for event in &system.events {
+        comparisons(system, &event.trigger, &mut steady, &mut found);
+    }
+    found
+}
+
+fn comparisons(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>, found: &mut Vec<Expr>) {
+    match expression {
+        Expr::Number(_) | Expr::Time | Expr::Quantity(_) => {}
+        Expr::Unary(_, a) => comparisons(system, a, steady, found),
+        Expr::Binary(function, a, b) => {
+            let compares =
+                matches!(function, Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne);
+            if compares && is_steady(system, a, steady) && is_steady(system, b, steady) {
+                let difference = Expr::Binary(Binary::Sub, a.clone(), b.clone());
+                if !found.contains(&difference) {
+                    found.push(difference);
+                }
+            }
+            comparisons(system, a, steady, found);
+            comparisons(system, b, steady, found);
+        }
+        Expr::Piecewise { branches, otherwise } => {
+            for (condition, value) in branches {
+                comparisons(system, condition, steady, found);
+                comparisons(system, value, steady, found);
+            }
+            comparisons(system, otherwise, steady, found);
+        }
+    }
+}
+
+/// Whether an expression depends on no variable.
+fn is_steady(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>) -> bool {
+    let mut used = Vec::new();
+    expression.each_quantity(&mut |quantity| used.push(quantity));
+    used.into_iter().all(|quantity| match &system.quantities[quantity as usize].role {
+        Role::Variable { .. } => false,
+        Role::Parameter | Role::Input => true,
+        Role::Defined { rule } => steady[quantity as usize].unwrap_or_else(|| {
+            let answer = is_steady(system, rule, steady);
+            steady[quantity as usize] = Some(answer);
+            answer
+        }),
+    })
+}
+
+impl<'a> Events<'a> {
+    /// The events of a system with what is known of them.
+    pub fn new(plan: &'a EventPlan, memory: EventMemory) -> Self {
+        Self { plan, memory }
+    }
+
+    /// What is known of the events now.
+    pub fn into_memory(self) -> EventMemory {
+        self.memory
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.plan.is_empty()
+    }
+
+    /// Whether a trigger that does not hold turns true by these values of all triggers.
+    pub fn turns_true(&self, now: &[f64]) -> bool {
+        now.iter().zip(&self.memory.holds).any(|(now, held)| *now != 0.0 && !held)
+    }
+
+    /// When the next waiting event is due.
+    pub fn next(&self) -> f64 {
+        self.memory.pending.iter().map(|pending| pending.time).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Takes note of the triggers now: fires those that turned true, drops what no longer persists.
+    pub fn update(&mut self, stepper: &mut Stepper) {
+        let (state, mut now) = (present(stepper), Vec::new());
+        let program = stepper.program;
+        stepper.evaluate(&program.further[TRIGGERS], stepper.time, &state, &mut now);
+        self.note(stepper, &now, &state);
+    }
+
+    fn note(&mut self, stepper: &mut Stepper, now: &[f64], state: &[f64]) {
+        for event in 0..self.plan.events.len() {
+            let (held, holds) = (self.memory.holds[event], now[event] != 0.0);
+            self.memory.holds[event] = holds;
+            if !held && holds {
+                let mut values = Vec::new();
+                let program = stepper.program;
+                stepper.evaluate(&program.further[FIRST_EVENT + event], stepper.time, state, &mut values);
+                let delay = values.remove(0).max(0.0);
+                let values = self.plan.events[event].values_from_firing.then_some(values);
+                self.memory.pending.push(Pending { event, time: stepper.time + delay, values });
+            } else if held && !holds && !self.plan.events[event].persistent {
+                self.memory.pending.retain(|pending| pending.event != event);
+            }
+        }
+    }
+
+    /// Takes note of triggers that no longer hold, within a step in which none turns true.
+    pub fn note_falling(&mut self, now: &[f64]) {
+        for (event, _) in now.iter().enumerate().filter(|(_, now)| **now == 0.0) {
+            if self.memory.holds[event] && !self.plan.events[event].persistent {
+                self.memory.pending.retain(|pending| pending.event != event);
+            }
+            self.memory.holds[event] = false;
+        }
+    }
+
+    /// Executes all that is due, in the order of priorities worked out anew each time; events without one come last,
+    /// and equals in the order of their firing. Returns whether anything was executed.
+    pub fn execute(&mut self, stepper: &mut Stepper) -> Result<bool, OdeTrouble> {
+        let mut count = 0;
+        let (mut priorities, mut values) = (Vec::new(), Vec::new());
+        while self.next() <= stepper.time {
+            let (state, program) = (present(stepper), stepper.program);
+            stepper.evaluate(&program.further[PRIORITIES], stepper.time, &state, &mut priorities);
+            let due = self.memory.pending.iter().enumerate().filter(|(_, pending)| pending.time <= stepper.time);
+            // The first of equals: the later one must be strictly larger.
+            let first = due
+                .reduce(|best, other| if priorities[other.1.event] > priorities[best.1.event] { other } else { best });
+            let Some((place, _)) = first else { break };
+            let pending = self.memory.pending.remove(place);
+            match pending.values {
+                Some(known) => values = known,
+                None => {
+                    stepper.evaluate(&program.further[FIRST_EVENT + pending.event], stepper.time, &state, &mut values);
+                    values.remove(0);
+                }
+            }
+            for (&slot, &value) in self.plan.slots[pending.event].iter().zip(&values) {
+                let n = program.size();
+                if slot < n {
+                    stepper.set_state(slot, value);
+                } else if let Some(open) = slot.checked_sub(n).and_then(|place| stepper.open.get_mut(place)) {
+                    *open = value;
+                }
+            }
+            stepper.work.events += 1;
+            self.update(stepper);
+            count += 1;
+            if count > MOST_AT_ONCE {
+                let detail = format!("event '{}'", self.plan.events[pending.event].id);
+                return Err(OdeTrouble { detail, variable: None, ..stepper.trouble(Reason::EndlessEvents) });
+            }
+        }
+        if count > 0 {
+            stepper.restart();
+        }
+        Ok(count > 0)
+    }
+}
+
+/// The present state.
+fn present(stepper: &Stepper) -> Vec<f64> {
+    (0..stepper.program.size()).map(|v| stepper.state(v)).collect()
+}

@@ -1,0 +1,92 @@
+//! A few cells one after the other: side by side they would leave most lanes of their block empty.
+
+use pulp::Scalar;
+
+use super::block::{self, CellTrouble};
+use super::cells::{Cells, Kept};
+use super::mask::Mask;
+use super::scratch::Scratch;
+use super::{Method, Tolerances, Work};
+use crate::equations::program::{Lanes, Program};
+
+/// Room for one cell at a time.
+#[derive(Debug)]
+pub struct Narrow {
+    scratch: Scratch<1>,
+    state: Vec<Lanes<1>>,
+    given: Vec<Lanes<1>>,
+    rates: Vec<Lanes<1>>,
+}
+
+impl Narrow {
+    /// Room for a cell of a program.
+    pub fn new(program: &Program, method: Method) -> Self {
+        let empty = |count| vec![[0.0]; count];
+        let n = program.size();
+        let scratch = Scratch::new(program, method == Method::Rosenbrock);
+        Self { scratch, state: empty(n), given: empty(program.open.len()), rates: empty(n) }
+    }
+
+    /// The room itself.
+    pub fn room(&mut self) -> &mut Scratch<1> {
+        &mut self.scratch
+    }
+
+    /// Advances the cells of one block, each by itself: the same bits as side by side.
+    ///
+    /// # Errors
+    /// The trouble of the first cell that failed; all others have reached the end.
+    pub fn advance<const L: usize>(
+        &mut self,
+        program: &Program,
+        method: Method,
+        cells: &mut Cells<L>,
+        window: (f64, f64),
+        tolerances: &Tolerances,
+    ) -> Result<Work, CellTrouble> {
+        let mut result = Ok(Work::default());
+        for l in 0..cells.count {
+            match (self.advance_one(program, method, cells, l, window, tolerances), &mut result) {
+                (Ok(done), Ok(work)) => work.add(done),
+                (Err(trouble), Ok(_)) => result = Err(CellTrouble { cell: l, ..trouble }),
+                (_, Err(_)) => {}
+            }
+        }
+        result
+    }
+
+    fn advance_one<const L: usize>(
+        &mut self,
+        program: &Program,
+        method: Method,
+        cells: &mut Cells<L>,
+        l: usize,
+        window: (f64, f64),
+        tolerances: &Tolerances,
+    ) -> Result<Work, CellTrouble> {
+        copy(&mut self.state, 0, cells.states, l);
+        copy(&mut self.given, 0, cells.given, l);
+        let (mut step, mut error) = ([[cells.steps[0][l]]], [[cells.errors[0][l]]]);
+        let mut known: [Mask<1>; 1] = [[0]];
+        if let Some(kept) = &cells.kept {
+            copy(&mut self.rates, 0, kept.rates, l);
+            known = [[kept.known[0][l]]];
+        }
+        let kept = cells.kept.is_some().then_some(Kept { rates: &mut self.rates, known: &mut known });
+        let (steps, errors) = (&mut step[..], &mut error[..]);
+        let mut one = Cells { count: 1, states: &mut self.state, given: &self.given, steps, errors, kept };
+        let result = block::advance(Scalar, program, method, &mut self.scratch, &mut one, window, tolerances);
+        copy(cells.states, l, &self.state, 0);
+        if let Some(kept) = &mut cells.kept {
+            copy(kept.rates, l, &self.rates, 0);
+            kept.known[0][l] = known[0][0];
+        }
+        (cells.steps[0][l], cells.errors[0][l]) = (step[0][0], error[0][0]);
+        result
+    }
+}
+
+/// Copies one lane of numbers to a lane of others.
+fn copy<const A: usize, const B: usize>(to: &mut [Lanes<A>], a: usize, from: &[Lanes<B>], b: usize) {
+    to.iter_mut().zip(from).for_each(|(to, from)| to[a] = from[b]);
+}

@@ -1,0 +1,134 @@
+//! The step for stiff systems, eq. (ode.2).
+
+use pulp::Simd;
+
+use super::lu;
+use super::scratch::Scratch;
+use super::tableau::rodas::{A1, A2, A3, A4, A5, C, D2, D3, G, GAMMA, K1, K2, K3, K4, K5, STAGES};
+use super::wide::{combine, negated_where_finite, take_away};
+use crate::equations::program::{Lanes, Program, run};
+
+/// One step from (time, state). Leaves proposal, error and the stages. Derivatives that are not finite (a root at 0,
+/// say) count as 0: the error estimate then decides about the step.
+#[inline(always)]
+pub fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
+    let n = s.state.len();
+    let mut inverse = *step;
+    for l in 0..L {
+        inverse[l] = 1.0 / step[l];
+    }
+    prepare(simd, program, s, time, &inverse);
+    let clock = Clock { time, step, inverse: &inverse };
+    solve_stage(simd, s, program.timeless, 0, &clock);
+    stage(simd, program, s, &A1, &K1, &clock);
+    stage(simd, program, s, &A2, &K2, &clock);
+    stage(simd, program, s, &A3, &K3, &clock);
+    stage(simd, program, s, &A4, &K4, &clock);
+    stage(simd, program, s, &A5, &K5, &clock);
+    for v in 0..n {
+        let last = s.stages[(STAGES - 1) * n + v];
+        s.error[v] = last;
+        let proposal = &mut s.proposal[v];
+        for l in 0..L {
+            proposal[l] += last[l];
+        }
+    }
+}
+
+/// When the step begins, its length and one over it.
+struct Clock<'a, const L: usize> {
+    time: &'a Lanes<L>,
+    step: &'a Lanes<L>,
+    inverse: &'a Lanes<L>,
+}
+
+/// The stage after the first `W`: its argument, its rates, its right side and its linear system.
+#[inline(always)]
+fn stage<S: Simd, const W: usize, const L: usize>(
+    simd: S,
+    program: &Program,
+    s: &mut Scratch<L>,
+    argument: &[f64; W],
+    right: &[f64; W],
+    clock: &Clock<L>,
+) {
+    let n = s.state.len();
+    for v in 0..n {
+        combine(simd, argument, &s.stages, (n, v), s.state[v], &[1.0; L], &mut s.file[1 + v]);
+    }
+    let now = &mut s.file[0];
+    for l in 0..L {
+        now[l] = clock.time[l] + C[W] * clock.step[l];
+    }
+    s.proposal.copy_from_slice(&s.file[1..=n]);
+    s.rates_into(program, W);
+    let (earlier, present) = s.stages.split_at_mut(W * n);
+    for (v, rate) in present[..n].iter_mut().enumerate() {
+        combine(simd, right, earlier, (n, v), *rate, clock.inverse, rate);
+    }
+    solve_stage(simd, s, program.timeless, W, clock);
+}
+
+/// The linear system of a stage whose right side lacks only the derivative by time.
+#[inline(always)]
+fn solve_stage<S: Simd, const L: usize>(simd: S, s: &mut Scratch<L>, timeless: bool, stage: usize, clock: &Clock<L>) {
+    let n = s.state.len();
+    let present = &mut s.stages[stage * n..(stage + 1) * n];
+    if G[stage] != 0.0 && !timeless {
+        let mut weight = *clock.step;
+        for l in 0..L {
+            weight[l] *= G[stage];
+        }
+        for (rate, negated) in present.iter_mut().zip(&s.drift) {
+            take_away(simd, rate, &weight, negated);
+        }
+    }
+    lu::solve(&s.matrix, n, &s.swaps, present);
+}
+
+/// Rates, derivatives and the factored matrix 1/(γ·step) − J at (time, state).
+#[inline(always)]
+fn prepare<S: Simd, const L: usize>(
+    simd: S,
+    program: &Program,
+    s: &mut Scratch<L>,
+    time: &Lanes<L>,
+    inverse: &Lanes<L>,
+) {
+    let n = s.state.len();
+    s.file[0] = *time;
+    s.file[1..=n].copy_from_slice(&s.state);
+    run(&program.linear, &mut s.file);
+    for v in 0..n {
+        s.stages[v] = s.file[program.linear.outputs[v] as usize];
+        if !program.timeless {
+            // Kept with the other sign, as the matrix is.
+            negated_where_finite(simd, &s.file[program.linear.outputs[n + v] as usize], &mut s.drift[v]);
+        }
+    }
+    s.matrix.fill([0.0; L]);
+    for (&(row, column), &register) in program.pattern.iter().zip(&program.linear.outputs[2 * n..]) {
+        let to = &mut s.matrix[row as usize * n + column as usize];
+        negated_where_finite(simd, &s.file[register as usize], to);
+    }
+    for v in 0..n {
+        let diagonal = &mut s.matrix[v * n + v];
+        for l in 0..L {
+            diagonal[l] += inverse[l] * (1.0 / GAMMA);
+        }
+    }
+    lu::factor(simd, &mut s.matrix, n, &mut s.swaps);
+}
+
+/// The state at a share of the last step, after a step that was accepted.
+pub fn between(s: &Scratch<1>, share: f64, state: &mut [f64]) {
+    let n = state.len();
+    for (v, value) in state.iter_mut().enumerate() {
+        let weighted = |weights: &[f64; 5]| -> f64 {
+            weights.iter().enumerate().map(|(stage, weight)| weight * s.stages[stage * n + v][0]).sum()
+        };
+        let rest = 1.0 - share;
+        let bend = weighted(&D2) + share * weighted(&D3);
+        *value = rest * s.state[v][0] + share * (s.proposal[v][0] + rest * bend);
+    }
+}

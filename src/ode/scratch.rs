@@ -1,0 +1,78 @@
+//! Room to work in, kept from window to window so that nothing is allocated on the way.
+
+use super::lu::Swap;
+use crate::equations::program::{Lanes, Program, run};
+
+/// Stages of the method that has most, with the one in the middle of its step.
+const MOST_STAGES: usize = 10;
+
+/// Registers, stages and matrices of one block of cells.
+#[derive(Debug, Clone)]
+pub struct Scratch<const L: usize> {
+    /// The program's registers.
+    pub file: Vec<Lanes<L>>,
+    /// State at the begin of the step.
+    pub state: Vec<Lanes<L>>,
+    /// State at its end, if it is accepted.
+    pub proposal: Vec<Lanes<L>>,
+    /// Estimated error of the proposal.
+    pub error: Vec<Lanes<L>>,
+    /// Stage after stage, one number a variable.
+    pub stages: Vec<Lanes<L>>,
+    /// Derivatives of the rates by time, negated.
+    pub drift: Vec<Lanes<L>>,
+    /// Matrix of the linear systems.
+    pub matrix: Vec<Lanes<L>>,
+    /// Its row exchanges.
+    pub swaps: Vec<Swap<L>>,
+}
+
+impl<const L: usize> Scratch<L> {
+    /// Room for a program; `stiff` methods need matrices.
+    pub fn new(program: &Program, stiff: bool) -> Self {
+        let n = program.size();
+        let empty = || vec![[0.0; L]; n];
+        let squares = if stiff { n * n } else { 0 };
+        Self {
+            file: program.file(),
+            state: empty(),
+            proposal: empty(),
+            error: empty(),
+            stages: vec![[0.0; L]; MOST_STAGES * n],
+            drift: empty(),
+            matrix: vec![[0.0; L]; squares],
+            swaps: Vec::with_capacity(squares / 2),
+        }
+    }
+
+    /// Rates at the state of the step's begin, as stage 0.
+    #[inline(always)]
+    pub fn rates_at_state(&mut self, program: &Program, time: Lanes<L>) {
+        let n = self.state.len();
+        self.file[0] = time;
+        self.file[1..=n].copy_from_slice(&self.state);
+        self.rates_into(program, 0);
+    }
+
+    /// Rates at the time and state that stand in the registers, as a stage.
+    #[inline(always)]
+    pub fn rates_into(&mut self, program: &Program, stage: usize) {
+        run(&program.rates, &mut self.file);
+        let n = self.state.len();
+        for (to, &from) in self.stages[stage * n..(stage + 1) * n].iter_mut().zip(&program.rates.outputs) {
+            *to = self.file[from as usize];
+        }
+    }
+
+    /// The variable that is to blame for trouble in a lane: the first whose value or rate is not finite, or else the one
+    /// that changes fastest for its size. Also returns whether all are finite.
+    #[inline(never)]
+    pub fn worst_variable(&mut self, program: &Program, time: Lanes<L>, l: usize) -> (Option<usize>, bool) {
+        self.rates_at_state(program, time);
+        let (state, rates) = (&self.state, &self.stages);
+        let broken = (0..state.len()).find(|&v| !(state[v][l].is_finite() && rates[v][l].is_finite()));
+        let speed = |v: usize| rates[v][l].abs() / (state[v][l].abs() + f64::MIN_POSITIVE);
+        let fastest = || (0..state.len()).max_by(|&a, &b| speed(a).total_cmp(&speed(b)));
+        (broken.or_else(fastest), broken.is_none())
+    }
+}

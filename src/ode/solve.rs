@@ -1,0 +1,163 @@
+//! A single system from one time to another, with events and values wherever they are asked for.
+
+use serde::{Deserialize, Serialize};
+
+use super::control::Tolerances;
+use super::course::{Course, LONGEST_SHARE};
+use super::events::{EventPlan, Events};
+use super::multistep;
+use super::stepper::Stepper;
+use super::{Method, OdeTrouble, Reason, Work};
+use crate::equations::tree::System;
+
+/// How a single system is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Scheme {
+    /// One of our one-step methods.
+    OneStep(Method),
+    /// Backward differentiation of variable order, by diffsol; for systems without events.
+    Bdf,
+    /// A singly diagonally implicit Runge–Kutta method of order 4(3), by diffsol; for systems without events.
+    Esdirk34,
+    /// The pair of trapezoidal rule and BDF2, by diffsol; for systems without events.
+    TrBdf2,
+    /// The explicit pair of Tsitouras, by diffsol; for systems without events.
+    Tsit45,
+}
+
+impl Scheme {
+    /// Whether matrices are factored on the way.
+    pub fn is_implicit(self) -> bool {
+        match self {
+            Self::OneStep(method) => method.is_implicit(),
+            Self::Bdf | Self::Esdirk34 | Self::TrBdf2 => true,
+            Self::Tsit45 => false,
+        }
+    }
+
+    /// The scheme of a name: `rk45`, `rk65`, `rosenbrock`, `bdf`, `esdirk34`, `tr-bdf2`, `tsit45`, and with an inner step
+    /// `rk4` and `euler`.
+    pub fn named(name: &str, inner_step: Option<f64>) -> Option<Self> {
+        let positive = inner_step.filter(|step| *step > 0.0);
+        match name {
+            "rk45" => Some(Self::OneStep(Method::Rk45)),
+            "rk65" => Some(Self::OneStep(Method::Rk65)),
+            "rosenbrock" => Some(Self::OneStep(Method::Rosenbrock)),
+            "rk4" => positive.map(|step| Self::OneStep(Method::Rk4 { step })),
+            "euler" => positive.map(|step| Self::OneStep(Method::Euler { step })),
+            "bdf" => Some(Self::Bdf),
+            "esdirk34" => Some(Self::Esdirk34),
+            "tr-bdf2" => Some(Self::TrBdf2),
+            "tsit45" => Some(Self::Tsit45),
+            _ => None,
+        }
+    }
+}
+
+/// Scheme and tolerances.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SolveOptions {
+    /// How to solve.
+    pub scheme: Scheme,
+    /// Error of a step relative to the size of each variable.
+    pub relative: f64,
+    /// Error of a step in the unit of each variable.
+    pub absolute: f64,
+    /// Most steps in all.
+    pub max_steps: u32,
+}
+
+impl Default for SolveOptions {
+    /// The Rosenbrock method, which takes stiff and other systems, with and without events.
+    fn default() -> Self {
+        let scheme = Scheme::OneStep(Method::Rosenbrock);
+        Self { scheme, relative: 1e-7, absolute: 1e-14, max_steps: 2_000_000 }
+    }
+}
+
+/// Values at the times asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// The times, as asked.
+    pub times: Vec<f64>,
+    /// Of each time the values of all quantities, defined ones included.
+    pub values: Vec<Vec<f64>>,
+    /// Work done.
+    pub work: Work,
+}
+
+/// Solves a system from its initial values at `from`, until `until`, with values at `points` (ascending, within that
+/// time). Comparisons of time with what does not vary are met exactly, so that what is switched by the clock costs no
+/// accuracy. Where an event is executed at a point the values are those after it.
+///
+/// # Errors
+/// When the numbers fail, or the system has circles or events that the scheme cannot take.
+///
+/// # Panics
+/// When the points do not ascend within the time.
+pub fn solve(
+    system: &System,
+    from: f64,
+    until: f64,
+    points: &[f64],
+    options: &SolveOptions,
+) -> Result<Solution, OdeTrouble> {
+    let mut solution = Solution { times: Vec::new(), values: Vec::new(), work: Work::default() };
+    let (times, rows) = (&mut solution.times, &mut solution.values);
+    solution.work = solve_each(system, from, until, points, options, &mut |time, values| {
+        times.push(time);
+        rows.push(values.to_vec());
+    })?;
+    Ok(solution)
+}
+
+/// As [`solve()`]; hands the values of all quantities over, point by point, as soon as they are known. When the numbers
+/// fail, those of all points before have been handed over.
+///
+/// # Errors
+/// As [`solve()`].
+///
+/// # Panics
+/// As [`solve()`].
+pub fn solve_each(
+    system: &System,
+    from: f64,
+    until: f64,
+    points: &[f64],
+    options: &SolveOptions,
+    each: &mut dyn FnMut(f64, &[f64]),
+) -> Result<Work, OdeTrouble> {
+    assert!(points.is_sorted(), "points ascend");
+    assert!(points.iter().all(|point| (from..=until).contains(point)), "points from {from} until {until}");
+    let trouble = |detail: String| OdeTrouble {
+        system: system.name.clone(),
+        cell: None,
+        time: from,
+        variable: None,
+        reason: Reason::Solver,
+        detail,
+    };
+    let compiled = EventPlan::compile(system, from);
+    let (program, plan) = compiled.map_err(|circle| trouble(format!("a circle of {}", circle.join(", "))))?;
+    let tolerances =
+        Tolerances { relative: options.relative, absolute: options.absolute, max_steps: options.max_steps };
+    match options.scheme {
+        Scheme::OneStep(method) => {
+            let mut stepper = Stepper::new(&program, method, tolerances, from);
+            let mut events = Events::new(&plan, plan.before_start());
+            if !plan.is_empty() {
+                stepper.longest = LONGEST_SHARE * (until - from);
+            }
+            Course::new(&mut stepper, &mut events, until, points, each).run()?;
+            Ok(stepper.work)
+        }
+        _ if program.size() == 0 => {
+            let options = SolveOptions { scheme: SolveOptions::default().scheme, ..*options };
+            solve_each(system, from, until, points, &options, each)
+        }
+        _ if !system.events.is_empty() => {
+            Err(trouble("this scheme takes no events: use rosenbrock, rk45, rk65, rk4 or euler".into()))
+        }
+        scheme => multistep::solve(&program, scheme, from, until, points, &tolerances, each),
+    }
+}

@@ -1,0 +1,277 @@
+//! One system, step by step, with its state at any time within the last step.
+
+use pulp::Scalar;
+
+use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
+use super::control::{self, NEAR, Tolerances};
+use super::scratch::Scratch;
+use super::{Method, OdeTrouble, Reason, Work, explicit, rosenbrock};
+use crate::equations::program::code::Code;
+use crate::equations::program::{Program, run};
+
+/// A system on its way.
+pub struct Stepper<'a> {
+    /// Its program.
+    pub program: &'a Program,
+    method: Method,
+    tolerances: Tolerances,
+    s: Scratch<1>,
+    /// Values of the open quantities.
+    pub open: Vec<f64>,
+    /// Present time: the end of the last step that was committed.
+    pub time: f64,
+    step: f64,
+    error: f64,
+    fresh: bool,
+    taken: f64,
+    /// The state in the middle of the last step, for methods that need it for values between and once it was asked for.
+    middle: Vec<f64>,
+    /// Work so far.
+    pub work: Work,
+    /// Longest step allowed.
+    pub longest: f64,
+}
+
+impl<'a> Stepper<'a> {
+    /// A system at its initial values.
+    pub fn new(program: &'a Program, method: Method, tolerances: Tolerances, time: f64) -> Self {
+        let mut s = Scratch::new(program, method == Method::Rosenbrock);
+        let at = |quantity: u32| program.initial[quantity as usize];
+        for (value, &quantity) in s.state.iter_mut().zip(&program.variables) {
+            *value = [at(quantity)];
+        }
+        let open = program.open.iter().map(|&quantity| at(quantity)).collect();
+        let (work, longest) = (Work::default(), f64::INFINITY);
+        Self {
+            program,
+            method,
+            tolerances,
+            s,
+            open,
+            time,
+            step: 0.0,
+            error: 1.0,
+            fresh: true,
+            taken: 0.0,
+            middle: Vec::new(),
+            work,
+            longest,
+        }
+    }
+
+    /// Goes on from a time with a state, values of the open quantities, and the next step with the error of the last.
+    pub fn resume(
+        &mut self,
+        time: f64,
+        state: impl Iterator<Item = f64>,
+        open: impl Iterator<Item = f64>,
+        pace: (f64, f64),
+    ) {
+        self.s.state.iter_mut().zip(state).for_each(|(to, from)| *to = [from]);
+        self.open.iter_mut().zip(open).for_each(|(to, from)| *to = from);
+        (self.step, self.error) = pace;
+        (self.time, self.taken, self.fresh, self.work) = (time, 0.0, true, Work::default());
+    }
+
+    /// The next step to try and the error of the last.
+    pub fn pace(&self) -> (f64, f64) {
+        (self.step, self.error)
+    }
+
+    /// Whether steps are all of a length that is given.
+    pub fn has_fixed_steps(&self) -> bool {
+        matches!(self.method, Method::Rk4 { .. } | Method::Euler { .. })
+    }
+
+    /// The variable at a place of the state.
+    pub fn state(&self, variable: usize) -> f64 {
+        self.s.state[variable][0]
+    }
+
+    /// Sets a variable; [`Self::restart`] must follow.
+    pub fn set_state(&mut self, variable: usize, value: f64) {
+        self.s.state[variable] = [value];
+    }
+
+    /// Forgets what was known of the solution's course, after it jumped.
+    pub fn restart(&mut self) {
+        (self.step, self.error, self.fresh) = (0.0, 1.0, true);
+    }
+
+    /// Forgets the rates at the present, after the clock switched something.
+    pub fn forget_rates(&mut self) {
+        self.fresh = true;
+    }
+
+    /// Results of code at a time and state.
+    pub fn evaluate(&mut self, code: &Code, time: f64, state: &[f64], results: &mut Vec<f64>) {
+        self.load(time);
+        for (register, &value) in self.s.file[1..].iter_mut().zip(state) {
+            *register = [value];
+        }
+        run(code, &mut self.s.file);
+        results.clear();
+        results.extend(code.outputs.iter().map(|&register| self.s.file[register as usize][0]));
+    }
+
+    fn load(&mut self, time: f64) {
+        self.s.file[0] = [time];
+        let first = self.program.first_open();
+        for (register, &value) in self.s.file[first..].iter_mut().zip(&self.open) {
+            *register = [value];
+        }
+    }
+
+    /// Takes one step that ends at `limit` at the latest, without committing it. Returns its length.
+    ///
+    /// # Errors
+    /// When no step is short enough, or too many were taken.
+    pub fn step(&mut self, limit: f64) -> Result<f64, OdeTrouble> {
+        self.load(self.time);
+        self.taken = match self.method {
+            Method::Rk45 => self.adaptive_step::<Tsitouras>(limit)?,
+            Method::Rk65 => self.adaptive_step::<Verner>(limit)?,
+            Method::Rosenbrock => self.adaptive_step::<Rodas>(limit)?,
+            Method::Rk4 { step } | Method::Euler { step } => self.fixed_step(limit, step)?,
+        };
+        self.work.steps += 1;
+        if self.work.steps >= u64::from(self.tolerances.max_steps) {
+            return Err(self.trouble(Reason::TooManySteps));
+        }
+        Ok(self.taken)
+    }
+
+    fn fixed_step(&mut self, limit: f64, longest: f64) -> Result<f64, OdeTrouble> {
+        let step = (limit - self.time) / ((limit - self.time) / longest - 1e-9).ceil().max(1.0);
+        if let Method::Euler { .. } = self.method {
+            explicit::euler(self.program, &mut self.s, [self.time], [step]);
+            self.work.rates += 1;
+        } else {
+            explicit::classical(self.program, &mut self.s, [self.time], [step]);
+            // The rates at the end, for the values between.
+            let n = self.s.state.len();
+            self.s.file[1..=n].copy_from_slice(&self.s.proposal);
+            self.s.rates_into(self.program, 6);
+            self.work.rates += 5;
+        }
+        let good = self.s.proposal.iter().all(|value| value[0].is_finite());
+        if good { Ok(step) } else { Err(self.trouble(Reason::NotFinite)) }
+    }
+
+    fn adaptive_step<M: Adaptive>(&mut self, limit: f64) -> Result<f64, OdeTrouble> {
+        let n = self.s.state.len();
+        self.middle.clear();
+        if self.fresh {
+            self.s.rates_at_state(self.program, [self.time]);
+            self.work.rates += 1;
+            self.fresh = false;
+        }
+        if self.step <= 0.0 {
+            let window = limit - self.time;
+            self.step =
+                control::first_step(&self.s.state, &self.s.stages[..n], &self.program.sizes, window, &self.tolerances)
+                    [0];
+        }
+        let shortest = control::shortest(self.time, 1e-3 * limit);
+        let mut most = M::CONTROLLER.most;
+        loop {
+            let rest = limit - self.time;
+            let wanted = self.step.min(self.longest);
+            let last = wanted >= rest * NEAR;
+            let cut = wanted > 0.5 * rest;
+            let step = match (last, cut) {
+                (true, _) => rest,
+                (false, true) => 0.5 * rest,
+                (false, false) => wanted,
+            };
+            M::step(Scalar, self.program, &mut self.s, &[self.time], &[step]);
+            self.work.jacobians += M::JACOBIANS;
+            self.work.rates += M::RATES;
+            let error =
+                control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.program.sizes, &self.tolerances)[0];
+            let factor = M::CONTROLLER.factor(error, self.error);
+            if error <= 1.0 {
+                self.step = control::after_good(step, (self.step, cut), factor, most);
+                self.error = error;
+                return Ok(step);
+            }
+            self.work.rejected += 1;
+            self.step = control::after_refused(step, error, factor);
+            most = 1.0;
+            if self.step <= shortest {
+                return Err(self.trouble(if error.is_finite() { Reason::StepUnderflow } else { Reason::NotFinite }));
+            }
+        }
+    }
+
+    /// The state at a share of the step that is not yet committed.
+    pub fn between(&mut self, share: f64, state: &mut [f64]) {
+        let n = state.len();
+        if share >= 1.0 {
+            state.iter_mut().zip(&self.s.proposal).for_each(|(value, end)| *value = end[0]);
+            return;
+        }
+        match self.method {
+            Method::Rk45 => explicit::tsitouras_between(&self.s, self.taken, share, state),
+            Method::Rk65 => {
+                if self.middle.is_empty() {
+                    explicit::verner_middle(self.program, &mut self.s, self.time, self.taken, &mut self.middle);
+                    self.work.rates += 1;
+                }
+                explicit::verner_between(&self.s, self.taken, share, &self.middle, state);
+            }
+            Method::Rosenbrock => rosenbrock::between(&self.s, share, state),
+            Method::Euler { .. } => {
+                for (v, value) in state.iter_mut().enumerate() {
+                    *value = self.s.state[v][0] + share * (self.s.proposal[v][0] - self.s.state[v][0]);
+                }
+            }
+            Method::Rk4 { .. } => {
+                for (v, value) in state.iter_mut().enumerate() {
+                    let (begin, change) = (self.s.state[v][0], self.s.proposal[v][0] - self.s.state[v][0]);
+                    let first = self.taken * self.s.stages[v][0] - change;
+                    let last = self.taken * self.s.stages[6 * n + v][0] - change;
+                    let rest = 1.0 - share;
+                    *value = begin + share * (change + rest * (rest * first - share * last));
+                }
+            }
+        }
+    }
+
+    /// Makes the end of the step the present.
+    pub fn commit(&mut self, time: f64) {
+        self.time = time;
+        self.s.state.copy_from_slice(&self.s.proposal);
+        let last = match self.method {
+            Method::Rk45 => Tsitouras::LAST,
+            Method::Rk65 => Verner::LAST,
+            _ => None,
+        };
+        if let Some(last) = last {
+            let n = self.s.state.len();
+            self.s.stages.copy_within(last * n..(last + 1) * n, 0);
+        }
+    }
+
+    /// Makes a state within the step the present.
+    pub fn commit_between(&mut self, time: f64, state: &[f64]) {
+        self.time = time;
+        self.s.state.iter_mut().zip(state).for_each(|(to, &from)| *to = [from]);
+        self.fresh = true;
+    }
+
+    /// What went wrong here and now.
+    pub fn trouble(&mut self, reason: Reason) -> OdeTrouble {
+        self.load(self.time);
+        let (worst, finite) = self.s.worst_variable(self.program, [self.time], 0);
+        self.fresh = true;
+        OdeTrouble {
+            system: self.program.name.clone(),
+            cell: None,
+            time: self.time,
+            variable: worst.map(|v| self.program.names[self.program.variables[v] as usize].clone()),
+            reason: if reason == Reason::StepUnderflow && !finite { Reason::NotFinite } else { reason },
+            detail: String::new(),
+        }
+    }
+}
