@@ -4,9 +4,8 @@ use pulp::Simd;
 
 use super::control::{Controller, EXPLICIT, SIXTH, STIFF};
 use super::scratch::Scratch;
-use super::tableau::{rodas, tsitouras, verner};
 use super::{explicit, rosenbrock};
-use crate::equations::program::{LANES, Lanes, Program, StepCode};
+use crate::equations::program::{Lanes, Program};
 
 /// What the loops over steps need to know of a method.
 pub trait Adaptive {
@@ -18,11 +17,6 @@ pub trait Adaptive {
     const JACOBIANS: u64;
     /// The stage that is the first of the next step, if there is one.
     const LAST: Option<usize>;
-    /// So many cells at most are sooner done one by one in machine code than side by side in lanes.
-    const FEW: usize;
-
-    /// Machine code of a step, where there is some.
-    fn code(program: &Program) -> Option<&StepCode<LANES>>;
 
     /// One step from (time, state). Leaves proposal, error and stages; see the methods themselves.
     fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>);
@@ -36,12 +30,6 @@ impl Adaptive for Tsitouras {
     const RATES: u64 = 6;
     const JACOBIANS: u64 = 0;
     const LAST: Option<usize> = Some(6);
-    const FEW: usize = 8;
-
-    #[inline(always)]
-    fn code(program: &Program) -> Option<&StepCode<LANES>> {
-        program.pair_step(&tsitouras::TABLEAU)
-    }
 
     #[inline(always)]
     fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
@@ -57,12 +45,6 @@ impl Adaptive for Verner {
     const RATES: u64 = 8;
     const JACOBIANS: u64 = 0;
     const LAST: Option<usize> = Some(8);
-    const FEW: usize = 8;
-
-    #[inline(always)]
-    fn code(program: &Program) -> Option<&StepCode<LANES>> {
-        program.pair_step(&verner::TABLEAU)
-    }
 
     #[inline(always)]
     fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
@@ -78,12 +60,6 @@ impl Adaptive for Rodas {
     const RATES: u64 = 6;
     const JACOBIANS: u64 = 1;
     const LAST: Option<usize> = None;
-    const FEW: usize = 6;
-
-    #[inline(always)]
-    fn code(program: &Program) -> Option<&StepCode<LANES>> {
-        program.rosenbrock_step(&rodas::TABLEAU)
-    }
 
     #[inline(always)]
     fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {

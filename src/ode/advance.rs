@@ -5,8 +5,6 @@ use std::sync::{Mutex, PoisonError};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
-use super::alone::Alone;
 use super::block::{self, CellTrouble};
 use super::cells::{Cells, Kept};
 use super::narrow::Narrow;
@@ -40,37 +38,12 @@ impl Population {
             return Ok(Work::default());
         }
         self.keep_rates(program);
-        let in_code = match self.method {
-            Method::Rk45 => self.advance_in_code::<Tsitouras>(program, (from, until), tolerances),
-            Method::Rk65 => self.advance_in_code::<Verner>(program, (from, until), tolerances),
-            Method::Rosenbrock => self.advance_in_code::<Rodas>(program, (from, until), tolerances),
-            Method::Rk4 { .. } | Method::Euler { .. } => None,
+        let result = if self.cells <= FEW {
+            self.advance_one_by_one(program, (from, until), tolerances)
+        } else {
+            self.advance_side_by_side(program, (from, until), tolerances)
         };
-        let result = match in_code {
-            Some(result) => result,
-            None if self.cells <= FEW => self.advance_one_by_one(program, (from, until), tolerances),
-            None => self.advance_side_by_side(program, (from, until), tolerances),
-        };
-        match result {
-            Ok(work) => Ok(work),
-            Err(trouble) => Err(trouble.of(program)),
-        }
-    }
-
-    /// A few cells one by one in machine code, where there is some.
-    fn advance_in_code<M: Adaptive>(
-        &mut self,
-        program: &Program,
-        window: (f64, f64),
-        tolerances: &Tolerances,
-    ) -> Option<TaskResult> {
-        let code = if self.cells <= M::FEW { M::code(program)? } else { return None };
-        let Self { states, steps, errors, given, rates, known, narrow, .. } = self;
-        let room = narrow.get_or_insert_with(|| Box::new(Narrow::new(program, self.method))).room();
-        let (steps, errors) = (&mut steps[0], &mut errors[0]);
-        let mut cells = Alone { program, code, room, states, given, rates, known, steps, errors };
-        let first = cells.advance::<M>(0, window, tolerances);
-        Some((1..self.cells).fold(first, |result, l| first_trouble(result, cells.advance::<M>(l, window, tolerances))))
+        result.map_err(|trouble| trouble.of(program))
     }
 
     fn advance_one_by_one(&mut self, program: &Program, window: (f64, f64), tolerances: &Tolerances) -> TaskResult {

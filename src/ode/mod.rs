@@ -3,7 +3,6 @@
 
 mod adaptive;
 mod advance;
-mod alone;
 pub(crate) mod block;
 pub(crate) mod cells;
 mod control;

@@ -27,11 +27,6 @@ impl Narrow {
         Self { scratch, state: empty(n), given: empty(program.open.len()), rates: empty(n) }
     }
 
-    /// The room itself.
-    pub fn room(&mut self) -> &mut Scratch<1> {
-        &mut self.scratch
-    }
-
     /// Advances the cells of one block, each by itself: the same bits as side by side.
     ///
     /// # Errors

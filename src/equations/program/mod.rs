@@ -8,22 +8,18 @@ pub mod code;
 mod derivative;
 pub mod graph;
 mod initial;
-mod machine;
 pub mod math;
 mod run;
 mod simplify;
 
 pub use initial::initial_values;
-pub use machine::{LEFT, RosenbrockTableau, StepCode, Tableau, Way};
 pub use run::{Lanes, run};
 
 use std::hash::{Hash, Hasher};
-use std::sync::Arc;
 
 use crate::equations::tree::{Binary, Expr, QuantityId, Role, System};
 use code::{Code, Constants};
 use graph::{Graph, NodeId};
-use machine::Machine;
 
 /// Cells side by side in a block of a population.
 pub const LANES: usize = 16;
@@ -63,8 +59,6 @@ pub struct Program {
     constants: Vec<f64>,
     /// Registers that every code of the program fits in.
     registers: usize,
-    /// Machine code, once it is of use.
-    machine: Arc<Machine>,
 }
 
 impl Program {
@@ -132,7 +126,6 @@ impl Program {
             further,
             registers,
             constants: constants.values,
-            machine: Arc::default(),
         })
     }
 

@@ -1,10 +1,6 @@
 //! RODAS, the L-stable, stiffly accurate Rosenbrock method of order 4(3) with 6 stages of Hairer and Wanner, *Solving
 //! Ordinary Differential Equations II*, IV.7 and IV.10 (set 1 of coefficients), with its continuous extension of order 3.
 
-use crate::equations::program::RosenbrockTableau;
-use crate::ode::control::NEAR;
-use crate::ode::lu::EXCHANGE;
-
 /// Stages.
 pub const STAGES: usize = 6;
 /// The diagonal.
@@ -55,39 +51,3 @@ pub const D3: [f64; 5] = [
     24.767_225_114_183_86,
     -6.594_389_125_716_872,
 ];
-
-/// The weights of a stage's argument.
-fn arguments(stage: usize) -> &'static [f64] {
-    match stage {
-        0 => &[],
-        1 => &A1,
-        2 => &A2,
-        3 => &A3,
-        4 => &A4,
-        _ => &A5,
-    }
-}
-
-/// The weights, over the step, of a stage's right side.
-fn rights(stage: usize) -> &'static [f64] {
-    match stage {
-        0 => &[],
-        1 => &K1,
-        2 => &K2,
-        3 => &K3,
-        4 => &K4,
-        _ => &K5,
-    }
-}
-
-/// All of it, for machine code.
-pub const TABLEAU: RosenbrockTableau = RosenbrockTableau {
-    number: 2,
-    gamma: GAMMA,
-    times: &C,
-    drift: &G,
-    arguments,
-    rights,
-    exchange: EXCHANGE,
-    near: NEAR,
-};

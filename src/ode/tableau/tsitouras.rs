@@ -1,9 +1,6 @@
 //! The explicit pair of order 5(4) of Tsitouras (Computers & Mathematics with Applications 62, 2011, 770–775) with its
 //! continuous extension of order 4. The last stage is the first of the next step.
 
-use crate::equations::program::Tableau;
-use crate::ode::control::NEAR;
-
 /// Times of the stages.
 pub const C: [f64; 7] = [0.0, 0.161, 0.327, 0.9, 0.980_025_540_904_509_7, 1.0, 1.0];
 /// Weights of earlier stages.
@@ -65,6 +62,3 @@ pub fn row(stage: usize) -> &'static [f64] {
         _ => &B,
     }
 }
-
-/// All of it, for machine code.
-pub const TABLEAU: Tableau = Tableau { number: 0, times: &C, weights: row, error: &E, near: NEAR };

@@ -5,9 +5,6 @@
 //! `A7` and `A8`, three of `B` and the first of `E` differ from the published ones by up to 2·10⁻¹¹ of their size: the sums of the rows
 //! are the times of the stages and those of `B` meet the conditions of quadrature to order 3 within 10⁻¹⁵.
 
-use crate::equations::program::Tableau;
-use crate::ode::control::NEAR;
-
 /// Times of the stages.
 pub const C: [f64; 9] = [0.0, 0.06, 0.095_933_333_333_333_33, 0.143_9, 0.497_3, 0.972_5, 0.999_5, 1.0, 1.0];
 /// Weights of earlier stages.
@@ -90,6 +87,3 @@ pub fn row(stage: usize) -> &'static [f64] {
         _ => &B,
     }
 }
-
-/// All of it, for machine code.
-pub const TABLEAU: Tableau = Tableau { number: 1, times: &C, weights: row, error: &E, near: NEAR };
