@@ -23,8 +23,25 @@ const TABLE: &[(&str, &[&str])] = &[
     // Numbers and plots come from a finished file; the kinds of measures are words of the document.
     ("analysis", &["output", "experiment", "cell", "contact", "geometry"]),
     ("picture", &["output", "experiment", "analysis", "cell", "geometry", "run"]),
-    ("run", &["experiment", "sim", "output", "analysis", "cell", "mechanics", "contact", "geometry"]),
-    ("cli", &["run", "experiment", "equations", "ode", "field", "sim", "output", "analysis", "picture", "geometry"]),
+    // The door for programs: it records frames, and writes none.
+    ("simulation", &["experiment", "sim", "output", "cell", "equations", "contact", "geometry"]),
+    ("run", &["simulation", "experiment", "sim", "output", "analysis"]),
+    (
+        "cli",
+        &[
+            "run",
+            "simulation",
+            "experiment",
+            "equations",
+            "ode",
+            "field",
+            "sim",
+            "output",
+            "analysis",
+            "picture",
+            "geometry",
+        ],
+    ),
 ];
 
 /// What every room may use.

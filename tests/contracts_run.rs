@@ -1,7 +1,8 @@
 //! What a run promises: resume is exact, threads and output do not matter, exit codes.
 
+use pseudopod::CancelToken;
 use pseudopod::experiment::Document;
-use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, RunOptions, resume, run};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -41,7 +42,7 @@ fn document(sets: &[&str]) -> Document {
 
 fn run_to(folder: &Path, name: &str, threads: usize, sets: &[&str]) -> PathBuf {
     let result = folder.join(name);
-    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(threads) };
+    let options = RunOptions { threads: Some(threads), ..RunOptions::new(&result) };
     run(&document(sets), &options, &mut Quiet).unwrap();
     result
 }
@@ -115,7 +116,7 @@ fn a_killed_run_resumes_to_the_same_bits() {
     child.wait().unwrap();
     assert!(killed, "the run ended before it could be killed");
     if !ResultFile::open(&result).unwrap().ending().finished {
-        resume(&result, Some(1), &mut Quiet).unwrap();
+        resume(&result, Some(1), &CancelToken::new(), &mut Quiet).unwrap();
     }
     assert_eq!(contents(&whole), contents(&result));
 }

@@ -165,7 +165,7 @@ fn aggregates_are_what_links_join_and_pairs_are_what_touches() {
         let text = ROW.replace("strength = \"1 Pa\"", &model).replace("\"contact.count\"", "\"contact.links\"");
         let document = Document::parse("row.toml", &text, Path::new("."), &[]).expect("a good document");
         let result = folder.path().join("row.vtkhdf");
-        let options = RunOptions { result: result.clone(), overwrite: Overwrite::Replace, threads: Some(1) };
+        let options = RunOptions { overwrite: Overwrite::Replace, threads: Some(1), ..RunOptions::new(&result) };
         run(&document, &options, &mut Quiet).expect("a run");
         let file = ResultFile::open(&result).expect("a result");
         let aggregate = file.cell_series("aggregate").expect("a series");
@@ -203,7 +203,7 @@ loads = [{{ name = "{name}_pull", all = true, direction = [{direction}, 0, 0], f
     let document = Document::parse("pairs.toml", &text, Path::new("."), &[]).expect("a good document");
     let folder = tempfile::tempdir().expect("a folder");
     let result = folder.path().join("pairs.vtkhdf");
-    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+    let options = RunOptions { threads: Some(1), ..RunOptions::new(&result) };
     run(&document, &options, &mut Quiet).expect("a run");
     let file = ResultFile::open(&result).expect("a result");
     let events = changes(file.cell_series("aggregate").expect("a series").view());
@@ -222,7 +222,7 @@ fn adhesives_and_the_atoms_of_the_largest_are_recorded() {
         let text = text.replacen("[run]\n", "[run]\nintegrator = { step = \"0.05 s\" }\n", 1);
         let document = Document::parse("row.toml", &text, Path::new("."), &[]).expect("a good document");
         let result = folder.path().join("row.vtkhdf");
-        let options = RunOptions { result: result.clone(), overwrite: Overwrite::Replace, threads: Some(1) };
+        let options = RunOptions { overwrite: Overwrite::Replace, threads: Some(1), ..RunOptions::new(&result) };
         run(&document, &options, &mut Quiet).expect("a run");
         let file = ResultFile::open(&result).expect("a result");
         let last = |name: &str| *file.scene_series(name).expect("a series").last().expect("a frame");
@@ -238,7 +238,7 @@ fn aggregates_and_shares_of_contact_are_recorded() {
     let document = Document::parse("row.toml", ROW, Path::new("."), &[]).unwrap_or_else(|error| {
         panic!("{}", pseudopod::error::render(&error, pseudopod::error::Paint::Plain));
     });
-    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+    let options = RunOptions { threads: Some(1), ..RunOptions::new(&result) };
     run(&document, &options, &mut Quiet).expect("a run");
     let file = ResultFile::open(&result).expect("a result");
     let frames = file.frames();
@@ -319,7 +319,7 @@ fn sheets_that_lie_on_each_other_touch_with_all_their_area() {
     let document = Document::parse("stack.toml", STACK, Path::new("."), &[]).unwrap_or_else(|error| {
         panic!("{}", pseudopod::error::render(&error, pseudopod::error::Paint::Plain));
     });
-    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+    let options = RunOptions { threads: Some(1), ..RunOptions::new(&result) };
     run(&document, &options, &mut Quiet).expect("a run");
     let file = ResultFile::open(&result).expect("a result");
     let area = |name: &str| file.scene_series(&format!("contact.area.{name}")).expect("a series")[0];
@@ -352,7 +352,7 @@ fn a_run_without_contacts_records_cells_alone() {
         format!("{before}{}", rest.split_once("[output]").map(|(_, rest)| format!("[output]{rest}")).expect("output"));
     let text = text.split_once("[measure.together]").expect("measures").0;
     let document = Document::parse("row.toml", text, Path::new("."), &[]).expect("a good document");
-    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+    let options = RunOptions { threads: Some(1), ..RunOptions::new(&result) };
     run(&document, &options, &mut Quiet).expect("a run");
     let file = ResultFile::open(&result).expect("a result");
     let aggregate = file.cell_series("aggregate").expect("a series");
@@ -419,7 +419,7 @@ fn recorded_forces_have_those_of_contacts_among_them() {
     let folder = tempfile::tempdir().expect("a folder");
     let result = folder.path().join("pressed.vtkhdf");
     let document = Document::parse("pressed.toml", PRESSED, Path::new("."), &[]).expect("a good document");
-    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+    let options = RunOptions { threads: Some(1), ..RunOptions::new(&result) };
     run(&document, &options, &mut Quiet).expect("a run");
     let file = ResultFile::open(&result).expect("a result");
     let on_left = |frame: usize| {

@@ -5,7 +5,7 @@ use pseudopod::contact::find_overlaps;
 use pseudopod::error::{Paint, render};
 use pseudopod::experiment::{Compiled, Document, PushedApart, compile, settle_start};
 use pseudopod::geometry::volume;
-use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, RunOptions, run};
 use pseudopod::sim::contact::check_passed;
 use pseudopod::sim::{Workspace, step};
@@ -196,7 +196,7 @@ fn the_first_frame_shows_cells_where_they_were_pushed_whatever_the_threads() {
     let last: Vec<_> = [1, 2]
         .map(|threads| {
             let result = folder.path().join(format!("{threads}.vtkhdf"));
-            let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(threads) };
+            let options = RunOptions { threads: Some(threads), ..RunOptions::new(&result) };
             let outcome = run(&document(&text), &options, &mut Quiet).expect("a run");
             assert_eq!(outcome.pushed, pushed);
             let file = ResultFile::open(&result).expect("a result");

@@ -2,7 +2,7 @@
 
 use pseudopod::analysis::claims;
 use pseudopod::experiment::Document;
-use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, RunOptions, run};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -13,7 +13,7 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
     let document = Document::read(&folder.join(document), &[]).unwrap();
     let scratch = tempfile::tempdir().unwrap();
     let result = scratch.path().join("result.h5");
-    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: None };
+    let options = RunOptions::new(&result);
     run(&document, &options, &mut Quiet).unwrap();
     let measures: BTreeMap<String, f64> = ResultFile::open(&result)
         .unwrap()

@@ -1,7 +1,7 @@
 //! Claims about walks, through the whole program: a document in, a result file, measures out.
 
 use pseudopod::experiment::Document;
-use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, RunOptions, run};
 use std::path::Path;
 
@@ -43,7 +43,7 @@ fn walkers_agree_with_fuerth_and_their_runs_are_exponential() {
         let folder = tempfile::tempdir().unwrap();
         let document = Document::parse("walk.toml", &document(space), Path::new("."), &[]).unwrap();
         let result = folder.path().join("walk.h5");
-        let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: None };
+        let options = RunOptions::new(&result);
         run(&document, &options, &mut Quiet).unwrap();
         let summary = ResultFile::open(&result).unwrap().summary().unwrap();
         let value = |name: &str| summary.iter().find(|measure| measure.name == name).unwrap().value;

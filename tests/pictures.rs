@@ -32,8 +32,7 @@ fn result(folder: &Path, extra: &str) -> (ResultFile, Document) {
     let text = TEXT.replace("every = \"1 s\"", &format!("every = \"1 s\"\n{extra}"));
     let document = Document::parse("pulled.toml", &text, folder, &[]).unwrap_or_else(|error| panic!("{error}"));
     let path = folder.join("result.vtkhdf");
-    run(&document, &RunOptions { result: path.clone(), overwrite: Overwrite::Replace, threads: None }, &mut Quiet)
-        .unwrap();
+    run(&document, &RunOptions { overwrite: Overwrite::Replace, ..RunOptions::new(&path) }, &mut Quiet).unwrap();
     (ResultFile::open(&path).unwrap(), document)
 }
 

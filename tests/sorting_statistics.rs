@@ -2,7 +2,7 @@
 //! the same contacts, and types that stick alike are not.
 
 use pseudopod::experiment::Document;
-use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, RunOptions, run};
 use std::path::Path;
 
@@ -18,7 +18,7 @@ fn segregation(seed: u32, sets: &[&str]) -> [f64; 2] {
     let document = Document::read(&path, &sets).expect("a good document");
     let scratch = tempfile::tempdir().expect("a folder");
     let result = scratch.path().join("result.h5");
-    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: None };
+    let options = RunOptions::new(&result);
     run(&document, &options, &mut Quiet).expect("a run");
     let measures = ResultFile::open(&result).expect("a result").summary().expect("measures");
     let value = |name: &str| measures.iter().find(|measure| measure.name == name).expect("a measure").value;

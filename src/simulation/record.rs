@@ -1,7 +1,7 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
 use super::touch::Touch;
-use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES, Schedule};
+use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES};
 use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
 use crate::sim::chemistry::Members;
 use crate::sim::contact::{Law, find_contacts};
@@ -11,6 +11,17 @@ use crate::sim::{Model, State, Workspace, forces};
 
 /// Names, cells, facets and planes of a model, as the result file lists them.
 pub fn layout_of(model: &Model) -> Layout {
+    let mut layout = outline_of(model);
+    for cell in &layout.cells {
+        let kind = &model.kinds[cell.kind as usize];
+        layout.facets.extend(kind.rest.facets.iter().map(|facet| facet.map(|atom| atom + cell.first_atom)));
+        layout.links.extend(kind.drawn_links.iter().map(|pair| pair.map(|atom| atom + cell.first_atom)));
+    }
+    layout
+}
+
+/// The same without facets and links, which take most of the memory: enough to know the series of a frame.
+pub fn outline_of(model: &Model) -> Layout {
     let mut layout = Layout::default();
     let (mut first_atom, mut first_facet) = (0u32, 0u32);
     for (number, kind) in model.kinds.iter().enumerate() {
@@ -18,10 +29,6 @@ pub fn layout_of(model: &Model) -> Layout {
         for _ in 0..kind.cells {
             let (atoms, facets) = (kind.atoms() as u32, kind.rest.facets.len() as u32);
             layout.cells.push(CellLayout { kind: number as u32, first_atom, atoms, first_facet, facets });
-            layout.facets.extend(kind.rest.facets.iter().map(|facet| facet.map(|atom| atom + first_atom)));
-            for pair in &kind.drawn_links {
-                layout.links.push(pair.map(|atom| atom + first_atom));
-            }
             first_atom += atoms;
             first_facet += facets;
         }
@@ -107,14 +114,24 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// A recorder for a run.
-    pub fn new(model: &Model, schedule: &Schedule) -> Self {
-        let force_scratch = schedule.forces.then(|| Workspace::new(model));
-        Self { loads: load_names(model), touch: Touch::default(), force_scratch }
+    /// A recorder of everything but forces.
+    pub fn new(model: &Model) -> Self {
+        Self { loads: load_names(model), touch: Touch::default(), force_scratch: None }
+    }
+
+    /// The same that records the force on every atom, too.
+    pub fn with_forces(self, model: &Model) -> Self {
+        Self { force_scratch: Some(Workspace::new(model)), ..self }
     }
 
     /// The frame of this instant; takes the ended runs from the state, since they are recorded now.
     pub fn record(&mut self, model: &Model, state: &mut State, ws: &Workspace, dt: f64) -> Frame {
+        let frame = self.look(model, state, ws, dt);
+        Frame { runs: std::mem::take(&mut state.ended_runs), ..frame }
+    }
+
+    /// The frame of this instant without the runs that ended; `dt` is the size of the last step, s.
+    pub fn look(&mut self, model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
         let mut frame = frame_of(model, state, ws, dt);
         frame.scene = self.loads.iter().map(|&(_, k, l)| model.kinds[k].loads[l].force.at(state.time)).collect();
         if let Some(contact) = &model.contact {
@@ -130,13 +147,12 @@ impl Recorder {
                 }
             }
         }
-        frame.runs = std::mem::take(&mut state.ended_runs);
         frame
     }
 }
 
 /// Positions and measures of all cells at this instant, as if they did not touch; `dt` is the size of the last step, s.
-pub fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
+fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
     let velocities = mean_velocities(model, state, ws, dt);
     let mut frame = Frame { time: state.time, step: state.step, ..Frame::default() };
     for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
