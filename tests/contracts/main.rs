@@ -1,0 +1,9 @@
+//! What holds whatever is simulated, and for the source itself.
+
+mod book;
+mod layering;
+mod run;
+mod volume;
+
+#[path = "../support/turns.rs"]
+mod turns;
