@@ -4,9 +4,8 @@ use rayon::prelude::*;
 
 use super::boxes::Bounds;
 use super::neighbours::Neighbours;
-use super::scene::Scene;
+use super::scene::{Scene, centre};
 use super::shape::Sides;
-use super::way::centre;
 use crate::Vec3;
 
 /// How often a closed surface winds around a point: 1 inside, 0 outside, for a surface that faces outwards.

@@ -2,7 +2,7 @@
 
 use super::boxes::Bounds;
 use super::inside::{is_inside, passes_through};
-use super::scene::Scene;
+use super::scene::{Scene, centre};
 use super::shape::Sides;
 use crate::Vec3;
 
@@ -24,11 +24,6 @@ pub fn way_apart(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], gap: f64) 
         (None, normal) => normal,
     };
     way.map_or(Vec3::zeros(), |(normal, far)| (far + gap) * normal)
-}
-
-/// The mean of a body's atoms.
-pub fn centre(atoms: &[Vec3]) -> Vec3 {
-    atoms.iter().sum::<Vec3>() / atoms.len().max(1) as f64
 }
 
 /// The direction in which the volume of the overlap shrinks fastest when the first body moves: the vector area of what of

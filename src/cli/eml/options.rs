@@ -1,10 +1,62 @@
-//! What the options of `eml solve` ask for, over what the document asks for.
+//! The options of `eml solve` and what they ask for, over what the document asks for.
 
-use super::solve::SolveArgs;
+use std::path::PathBuf;
+
 use crate::equations::eml::{Document, SCHEMES};
 use crate::error::Fault;
 use crate::error::words::meant;
 use crate::ode::{MOST_IMPLICIT, Method, Scheme, SolveOptions, too_large};
+
+/// Solves the equations of a document, EML or SBML, and writes a table: a row for each point of time.
+#[derive(Debug, Clone, clap::Args)]
+pub struct SolveArgs {
+    /// The document.
+    #[arg(value_name = "FILE")]
+    pub document: PathBuf,
+    /// Where the time begins, in the document's unit of time.
+    #[arg(long, value_name = "TIME", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub from: f64,
+    /// Where it ends.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    pub until: f64,
+    /// Rows of the table, evenly spaced in time, with both ends.
+    #[arg(long, value_name = "NUMBER", default_value_t = 101, allow_negative_numbers = true)]
+    pub points: i64,
+    /// Columns, by commas: time, identifiers, in SBML S for an amount and [S] for a concentration; time and all
+    /// variables when absent.
+    #[arg(long, value_delimiter = ',', value_name = "COLUMNS")]
+    pub columns: Vec<String>,
+    /// Another value of a parameter or input, or another start of a variable, as in --set k=0.2.
+    #[arg(long = "set", value_name = "ID=NUMBER")]
+    pub sets: Vec<String>,
+    /// The scheme: rk45, rk65, rosenbrock, bdf, rk4 or euler; the document's when absent, or rosenbrock.
+    #[arg(long, value_name = "SCHEME")]
+    pub scheme: Option<String>,
+    /// Tolerance relative to the size of each variable.
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    pub rtol: Option<f64>,
+    /// Tolerance in the unit of each variable.
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
+    pub atol: Option<f64>,
+    /// The step of rk4 and euler.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    pub inner_step: Option<f64>,
+    /// The most steps that are taken.
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_steps: Option<u32>,
+    /// The table to write, as CSV; the terminal when absent.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Draws the curves: .svg or .png.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// Replaces files that are there.
+    #[arg(long)]
+    pub force: bool,
+    /// Prints what was done as JSON.
+    #[arg(long, requires = "output")]
+    pub json: bool,
+}
 
 /// The most rows of a table.
 const MOST_POINTS: i64 = 10_000_000;
