@@ -1,4 +1,4 @@
-//! The way on which one body leaves another: its direction and how far.
+//! The displacement by which one body leaves another: its direction and how far.
 
 use super::boxes::Bounds;
 use super::inside::{is_inside, passes_through};
@@ -11,19 +11,19 @@ const CLEARLY: f64 = 0.9;
 
 /// The displacement of the first body by which it leaves the second, with a gap beyond (µm). It is zero for bodies without
 /// a direction, those that have one centre and no normal.
-pub fn way_apart(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], gap: f64) -> Vec3 {
+pub fn separation(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], gap: f64) -> Vec3 {
     let [first, second] = bodies.map(|body| centre(scene.of_body(body, positions)));
     let along = |direction: Vec3| {
         let normal = direction.try_normalize(f64::MIN_POSITIVE)?;
         Some((normal, last_contact(scene, positions, bodies, normal)))
     };
     let (centres, normal) = (along(first - second), along(normal_of_overlap(scene, positions, bodies)));
-    let way = match (centres, normal) {
+    let displacement = match (centres, normal) {
         (Some(centres), Some(normal)) if normal.1 < CLEARLY * centres.1 => Some(normal),
         (Some(centres), _) => Some(centres),
         (None, normal) => normal,
     };
-    way.map_or(Vec3::zeros(), |(normal, far)| (far + gap) * normal)
+    displacement.map_or(Vec3::zeros(), |(normal, far)| (far + gap) * normal)
 }
 
 /// The direction in which the volume of the overlap shrinks fastest when the first body moves: the vector area of what of
@@ -40,7 +40,8 @@ fn normal_of_overlap(scene: &Scene, positions: &[Vec3], [first, second]: [u32; 2
 /// The vector area of what of a body is inside another.
 fn facing(scene: &Scene, positions: &[Vec3], body: u32, other: u32) -> Vec3 {
     let (here, bounds) = (scene.of_body(body, positions), Bounds::around(scene.of_body(other, positions), 0.0));
-    let inside: Vec<bool> = here.iter().map(|place| is_inside(scene, positions, *place, other, &bounds)).collect();
+    let inside: Vec<bool> =
+        here.iter().map(|position| is_inside(scene, positions, *position, other, &bounds)).collect();
     let shape = scene.shape(body);
     let facets = shape.facets.iter().filter(|facet| facet.iter().any(|atom| inside[*atom as usize]));
     let share = |facet: &[u32; 3]| facet.iter().filter(|atom| inside[**atom as usize]).count() as f64 / 3.0;
@@ -68,7 +69,7 @@ fn area_towards(sides: Sides, [a, b, c]: [Vec3; 3], point: Vec3) -> Vec3 {
 
 /// A body as seen along a direction: two coordinates across and the height along it.
 struct Seen {
-    places: Vec<Vec3>,
+    points: Vec<Vec3>,
     facets: Vec<[Vec3; 3]>,
     edges: Vec<[Vec3; 2]>,
 }
@@ -89,13 +90,13 @@ fn last_contact(scene: &Scene, positions: &[Vec3], [first, second]: [u32; 2], no
     let above = seen(scene, second, high, |z| z > lowest);
     let mut far: f64 = 0.0;
     for facet in &above.facets {
-        for place in &below.places {
-            far = far.max(height_at(facet, place).map_or(0.0, |height| height - place.z));
+        for position in &below.points {
+            far = far.max(height_at(facet, position).map_or(0.0, |height| height - position.z));
         }
     }
     for facet in &below.facets {
-        for place in &above.places {
-            far = far.max(height_at(facet, place).map_or(0.0, |height| place.z - height));
+        for position in &above.points {
+            far = far.max(height_at(facet, position).map_or(0.0, |height| position.z - height));
         }
     }
     for one in &below.edges {
@@ -107,13 +108,13 @@ fn last_contact(scene: &Scene, positions: &[Vec3], [first, second]: [u32; 2], no
 }
 
 /// What of a body matters: that with a corner whose height does.
-fn seen(scene: &Scene, body: u32, places: Vec<Vec3>, matters: impl Fn(f64) -> bool) -> Seen {
+fn seen(scene: &Scene, body: u32, points: Vec<Vec3>, matters: impl Fn(f64) -> bool) -> Seen {
     let shape = scene.shape(body);
-    let facets = shape.facets.iter().map(|facet| facet.map(|atom| places[atom as usize]));
+    let facets = shape.facets.iter().map(|facet| facet.map(|atom| points[atom as usize]));
     let facets = facets.filter(|corners| corners.iter().any(|x| matters(x.z))).collect();
-    let edges = shape.edges.iter().map(|edge| edge.map(|atom| places[atom as usize]));
+    let edges = shape.edges.iter().map(|edge| edge.map(|atom| points[atom as usize]));
     let edges = edges.filter(|ends| ends.iter().any(|x| matters(x.z))).collect();
-    Seen { facets, edges, places: places.into_iter().filter(|x| matters(x.z)).collect() }
+    Seen { facets, edges, points: points.into_iter().filter(|x| matters(x.z)).collect() }
 }
 
 /// Twice the area that two vectors span across the direction.
@@ -122,8 +123,9 @@ fn across(a: Vec3, b: Vec3) -> f64 {
 }
 
 /// Height of a facet above or below a place, if it is there.
-fn height_at([a, b, c]: &[Vec3; 3], place: &Vec3) -> Option<f64> {
-    let [u, v, w] = [across(b - place, c - place), across(c - place, a - place), across(a - place, b - place)];
+fn height_at([a, b, c]: &[Vec3; 3], position: &Vec3) -> Option<f64> {
+    let [u, v, w] =
+        [across(b - position, c - position), across(c - position, a - position), across(a - position, b - position)];
     let sum = u + v + w;
     let same = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
     (same && sum != 0.0).then(|| (u * a.z + v * b.z + w * c.z) / sum)
