@@ -221,6 +221,9 @@ impl Walk<'_> {
                     self.faults.push(Fault::new(format!("`{path}`: {}", error.message)).at(place).help(error.help));
                 }
             },
+            // Nothing is nothing in every unit.
+            Value::Integer(0) => self.quantity_bounds(node, 0.0, dimension, schema, path),
+            Value::Number(0.0) => self.quantity_bounds(node, 0.0, dimension, schema, path),
             Value::Integer(_) | Value::Number(_) => {
                 let article = dimension.with_article();
                 let example = dimension.example();
