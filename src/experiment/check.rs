@@ -52,6 +52,8 @@ struct Keys {
     chosen: Option<String>,
     /// The schema of values under names that the user chooses.
     named: Option<Json>,
+    /// Keys that there were once, with what to do instead.
+    gone: Map<String, Json>,
 }
 
 impl Keys {

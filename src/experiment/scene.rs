@@ -96,9 +96,12 @@ pub struct Plane {
     pub normal: [f64; 3],
 }
 
-/// What is recorded, and how often.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// What is recorded, and how often. The positions of all atoms always are.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
+#[schemars(extend("x-gone" = {
+    "positions": "remove the key: positions are always recorded; for a smaller file make `every` longer",
+}))]
 pub struct Output {
     /// Simulated time between frames; a hundredth of the run when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -112,10 +115,4 @@ pub struct Output {
     pub positions: bool,
     /// Records the force on every atom.
     pub forces: bool,
-}
-
-impl Default for Output {
-    fn default() -> Self {
-        Self { every: None, checkpoint: None, positions: true, forces: false }
-    }
 }

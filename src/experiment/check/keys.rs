@@ -73,6 +73,7 @@ impl Walk<'_> {
             elsewhere: Vec::new(),
             chosen: None,
             named: schema.get("additionalProperties").filter(|one| one.is_object()).cloned(),
+            gone: schema.get("x-gone").and_then(Json::as_object).cloned().unwrap_or_default(),
         };
         let alternatives = schema.get("oneOf").or(schema.get("anyOf")).and_then(Json::as_array);
         let variants: Vec<Variant> =
@@ -211,6 +212,10 @@ fn unknown(value: &Node, key: &str, keys: &Keys, path: &str) -> Fault {
     if let Some(chosen) = keys.chosen.as_ref().filter(|_| keys.elsewhere.iter().any(|other| other == key)) {
         let fault = Fault::new(format!("`{key}` in {} does not go with {chosen}", named(path)));
         return fault.at(value.key_place("not with this one")).help(help);
+    }
+    if let Some(instead) = keys.gone.get(key).and_then(Json::as_str) {
+        let fault = Fault::new(format!("`{key}` in {} is no key any more", named(path)));
+        return fault.at(value.key_place("without meaning")).help(instead);
     }
     let meant = words::meant(key, keys.known());
     let label = meant.map_or("unknown key".to_owned(), |meant| format!("did you mean `{meant}`?"));
