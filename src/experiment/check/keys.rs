@@ -60,8 +60,43 @@ impl Walk<'_> {
                 let fault = Fault::new(format!("in `{path}`: {}", error.message));
                 self.faults.push(fault.at(value.key_place("a name was expected")).help(error.help));
             }
-            self.node(value, named, &join(path, name));
+            match self.meant_for_another(value, name, table, named, path) {
+                Some(fault) => self.faults.push(fault),
+                None => self.node(value, named, &join(path, name)),
+            }
         }
+    }
+
+    /// That a table lacks what it needs where there is a whole one of a similar name: `cells.walkers` beside `cells.walker`.
+    fn meant_for_another(
+        &self,
+        value: &Node,
+        name: &str,
+        table: &IndexMap<String, Node>,
+        named: &Json,
+        path: &str,
+    ) -> Option<Fault> {
+        let schema = self.resolve(named);
+        let mut required = variant(&schema).required;
+        let alternatives = schema.get("oneOf").or(schema.get("anyOf")).and_then(Json::as_array).into_iter().flatten();
+        required.extend(tag(&alternatives.map(|one| variant(&self.resolve(one))).collect::<Vec<_>>()));
+        let lacks = |node: &Node| match &node.value {
+            Value::Table(keys) => required.iter().filter(|key| !keys.contains_key(*key)).collect(),
+            _ => Vec::new(),
+        };
+        let lacking = lacks(value);
+        if lacking.is_empty() {
+            return None;
+        }
+        let others = table.iter().filter(|(other, node)| *other != name && lacks(node).is_empty());
+        let meant = words::meant(name, others.map(|(other, _)| other.as_str()))?;
+        let lacking = words::all_of(lacking.into_iter().map(String::as_str));
+        let fault = Fault::new(format!("`{}` lacks {lacking}", join(path, name)));
+        let fault = fault.at(value.key_place(format!("did you mean `{meant}`?")));
+        Some(fault.help(format!(
+            "what is meant for `{0}` is written under its name; another one needs {lacking} too",
+            join(path, meant)
+        )))
     }
 
     /// The keys that belong here, alternatives chosen.
