@@ -25,14 +25,15 @@ pub struct Integrator {
     /// Order of the implicit method: 2 has an error estimate and adapts, 1 costs half and needs a fixed step.
     #[schemars(range(min = 1, max = 2))]
     pub order: u8,
-    /// A fixed step. Without it the implicit method adapts and the others choose a stable step.
+    /// A fixed step. Without it the implicit method adapts and the others choose a stable step, which contacts shorten where atoms
+    /// would travel too far.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub step: Option<Time>,
     /// Error that the adaptive method allows in a step, over the mean length of an edge.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub tolerance: f64,
-    /// The longest step that the adaptive method takes.
+    /// The longest step, where none is fixed.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub max_step: Option<Time>,
@@ -111,8 +112,6 @@ pub struct Output {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub checkpoint: Option<Time>,
-    /// Records the positions of all atoms.
-    pub positions: bool,
     /// Records the force on every atom.
     pub forces: bool,
 }
