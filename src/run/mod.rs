@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Compiled, Document, PushedApart, compile, settle_start};
+use crate::experiment::{Compiled, Document, PushedApart, compile, notices, prepare, settle_start};
 use crate::output::{Frame, Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
 use crate::sim::contact::check_passed;
 use crate::sim::{State, Trouble, Workspace, begin_chemistry, step};
@@ -57,8 +57,11 @@ pub static STOP: AtomicBool = AtomicBool::new(false);
 pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
     let pool = pool_of(options.threads)?;
     let document = &document.with_equations();
-    let mut compiled = compile(document)?;
+    let prepared = prepare(document)?;
+    let mut said = notices(document, &prepared);
+    let mut compiled = prepared.build();
     let pushed = settle_start(document, &mut compiled)?;
+    said.extend(pushed.notice());
     let (source, title) = (&document.source, &document.experiment.title);
     let header = Header {
         equations: document.equations.clone().into_iter().collect(),
@@ -66,7 +69,7 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
     };
     let layout = layout_of(&compiled.model);
     let writer = ResultWriter::create(&options.result, &header, &layout, options.overwrite)?;
-    pushed.notice().iter().for_each(|notice| report.notice(notice));
+    said.iter().for_each(|notice| report.notice(notice));
     within(pool, || drive(compiled, writer, &options.result, report, Start::Fresh))
         .map(|outcome| Outcome { pushed, ..outcome })
         .map_err(|error| can_go_on(error, &options.result))

@@ -136,6 +136,114 @@ fn equations_survive_markdown() {
     }
 }
 
+/// The words of a command line, without the quotes around some.
+fn words(command: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut quote = None;
+    for c in command.chars() {
+        match (c, quote) {
+            ('\'' | '"', None) => quote = Some(c),
+            (c, Some(open)) if c == open => quote = None,
+            (' ', None) => words.push(String::new()),
+            _ => words.last_mut().expect("a word").push(c),
+        }
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// The commands of the program that a page shows, in its blocks for the shell and in its text, without comments.
+fn commands(page: &str) -> Vec<String> {
+    let blocks = page.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next()).flat_map(str::lines);
+    let marked = page.split('`').skip(1).step_by(2);
+    let lines = blocks.chain(marked).map(|line| line.split(" #").next().unwrap_or_default().trim());
+    let program = |line: &str| line.starts_with("pseudopod ") || line.starts_with("./setup run ");
+    lines
+        .filter(|line| program(line) && !line.contains('\n'))
+        .map(|line| line.replace("./setup", "pseudopod"))
+        .collect()
+}
+
+/// The pages that show commands to users.
+fn pages_with_commands() -> Vec<PathBuf> {
+    let mut pages = files(&book(), "md");
+    pages.extend(files(&root().join("experiments"), "md"));
+    pages.push(root().join("README.md"));
+    pages
+}
+
+/// Stands for the document that a page shows, or for an experiment that it does not name.
+const STANDS_FOR: [&str; 3] = ["FILE", "EXPERIMENT", "experiment.toml"];
+
+#[test]
+fn commands_shown_to_users_are_accepted_with_their_changes() {
+    let (mut run, mut changed) = (0, 0);
+    for path in pages_with_commands() {
+        let page = read(&path);
+        let shown = page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+        let shown: Vec<&str> = shown.filter(|text| text.contains("[run]")).collect();
+        for command in commands(&page) {
+            let words = words(&command);
+            let [_, verb, document, ..] = words.as_slice() else { continue };
+            if !["run", "check"].contains(&verb.as_str()) {
+                continue;
+            }
+            let sets: Vec<String> =
+                words.windows(2).filter(|pair| pair[0] == "--set").map(|pair| pair[1].clone()).collect();
+            let name = format!("{}: {command}", path.display());
+            let read = match STANDS_FOR.contains(&document.as_str()) {
+                true if sets.is_empty() => continue,
+                true => {
+                    let first = shown.first().unwrap_or_else(|| panic!("{name}: the page shows no document"));
+                    pseudopod::experiment::Document::parse(&name, first, root(), &sets)
+                }
+                false => pseudopod::experiment::Document::read(&root().join(document), &sets),
+            };
+            if let Err(error) = read {
+                panic!("{name}\n{}", pseudopod::error::render(&error, pseudopod::error::Paint::Plain));
+            }
+            (run, changed) = (run + 1, changed + sets.len());
+        }
+    }
+    assert!(
+        run >= 20 && changed >= 3,
+        "{run} commands with {changed} changes were found; has the way of showing changed?"
+    );
+}
+
+#[test]
+fn pictures_shown_to_users_are_there_and_none_lies_idle() {
+    let mut shown = std::collections::BTreeSet::new();
+    for path in pages_with_commands() {
+        for target in links(&read(&path)).into_iter().filter(|target| target.ends_with(".png")) {
+            let file = path.parent().expect("a folder").join(target);
+            let file = file.canonicalize().unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+            shown.insert(file);
+        }
+    }
+    let kept = files(&root().join("docs/pictures"), "png");
+    let idle: Vec<&PathBuf> =
+        kept.iter().filter(|path| !shown.contains(&path.canonicalize().expect("a path"))).collect();
+    assert!(idle.is_empty(), "pictures that no page shows: {idle:?}");
+}
+
+#[test]
+fn the_book_lists_every_kind_of_measure_and_plot() {
+    let page = read(&book().join("documents.md"));
+    let schema = serde_json::to_value(pseudopod::experiment::schema()).expect("a schema");
+    let definitions = &schema["$defs"];
+    for (of, mark) in [("Measure", "**measure kinds**"), ("Plot", "**plot kinds**")] {
+        let line = page.split(mark).nth(1).unwrap_or_else(|| panic!("{mark} in documents.md"));
+        let line = line.split(['\n', '*']).next().unwrap_or_default();
+        let kinds = definitions[of]["oneOf"].as_array().unwrap_or_else(|| panic!("kinds of {of}"));
+        assert!(kinds.len() > 4, "{of}: {kinds:?}");
+        for kind in kinds {
+            let name = kind["properties"]["kind"]["const"].as_str().expect("a name");
+            assert!(line.contains(&format!("`{name}`")), "{mark} lacks `{name}`");
+        }
+    }
+}
+
 #[test]
 fn documents_shown_to_users_pass_the_check() {
     let mut pages = files(&book(), "md");
