@@ -12,7 +12,7 @@ use std::time::Instant;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, PushedApart};
 use crate::output::{Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
-use crate::simulation::{CancelToken, CheckpointFault, Prepared, Simulation, SimulationError, layout_of};
+use crate::simulation::{CancelToken, CheckpointFault, Ready, Simulation, SimulationError, layout_of};
 use recording::{Recording, Stop};
 
 /// How a run is to be made.
@@ -61,15 +61,15 @@ pub struct Outcome {
 pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
     let RunOptions { result, overwrite, threads, cancel } = options;
     let document = &document.with_equations();
-    let prepared = Simulation::builder().threads_or_all(*threads).cancel_token(cancel.clone()).prepare(document)?;
-    let (source, title, simulation) = (&document.source, &document.experiment.title, &prepared.simulation);
+    let ready = Simulation::builder().threads_or_all(*threads).cancel_token(cancel.clone()).ready(document)?;
+    let (source, title, simulation) = (&document.source, &document.experiment.title, &ready.simulation);
     let header = Header {
         equations: document.equations.clone().into_iter().collect(),
         ..Header::now(&source.name, title, &source.text, &document.sets, simulation.model().seed)
     };
     let writer = ResultWriter::create(result, &header, &layout_of(simulation.model()), *overwrite)?;
     simulation.notices().iter().for_each(|notice| report.notice(notice));
-    drive(prepared, writer, result, report, Start::Fresh).map_err(|error| can_go_on(error, result))
+    drive(ready, writer, result, report, Start::Fresh).map_err(|error| can_go_on(error, result))
 }
 
 /// What the run of a result did, if it came to its end; then there is nothing to resume.
@@ -105,11 +105,11 @@ pub fn resume(result: &Path, threads: Option<usize>, cancel: &CancelToken, repor
     };
     let header = checkpoint.meta.header.clone();
     let document = document_of(&header, result)?;
-    let mut prepared = builder.prepare_to_restore(&document)?;
-    prepared.simulation.restore(&checkpoint.payload).map_err(|error| cannot_restore(&error, result))?;
-    let layout = layout_of(prepared.simulation.model());
+    let mut ready = builder.ready_to_restore(&document)?;
+    ready.simulation.restore(&checkpoint.payload).map_err(|error| cannot_restore(&error, result))?;
+    let layout = layout_of(ready.simulation.model());
     let writer = ResultWriter::reopen(result, &header, &layout, checkpoint.meta.step)?;
-    drive(prepared, writer, result, report, Start::Resumed).map_err(|error| can_go_on(error, result))
+    drive(ready, writer, result, report, Start::Resumed).map_err(|error| can_go_on(error, result))
 }
 
 /// Why the state in a checkpoint cannot be taken up.
@@ -151,14 +151,8 @@ enum Start {
 }
 
 /// Lets a simulation go to the end of its experiment, recorded.
-fn drive(
-    prepared: Prepared,
-    writer: ResultWriter,
-    result: &Path,
-    report: &mut dyn Report,
-    start: Start,
-) -> Result<Outcome> {
-    let Prepared { mut simulation, schedule, pushed } = prepared;
+fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Report, start: Start) -> Result<Outcome> {
+    let Ready { mut simulation, schedule, pushed } = ready;
     simulation.within(|simulation| {
         let (began, first, until) = (Instant::now(), simulation.steps(), simulation.end());
         let mut recording = Recording::new(simulation, writer, schedule, result, report);

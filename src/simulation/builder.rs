@@ -8,7 +8,9 @@ use super::cancel::CancelToken;
 use super::error::SimulationError;
 use super::stepping::Simulation;
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Compiled, Document, Experiment, PushedApart, Schedule, compile, settle_start};
+use crate::experiment::{
+    Compiled, Document, Experiment, PushedApart, Schedule, compile, notices, prepare, settle_start,
+};
 
 /// What a simulation is made with: settings, a seed, threads, a token, texts of equations. Its last word says what from.
 ///
@@ -32,7 +34,7 @@ pub struct Builder {
 }
 
 /// A simulation that has not begun, and what a run needs to know besides.
-pub(crate) struct Prepared {
+pub(crate) struct Ready {
     pub simulation: Simulation,
     pub schedule: Schedule,
     pub pushed: PushedApart,
@@ -192,30 +194,34 @@ impl Builder {
     }
 
     fn make(&self, document: &Document) -> std::result::Result<Simulation, SimulationError> {
-        let mut simulation = self.prepare(document)?.simulation;
+        let mut simulation = self.ready(document)?.simulation;
         simulation.begin()?;
         Ok(simulation)
     }
 
     /// Compiles a document and moves cells that overlap apart.
-    pub(crate) fn prepare(&self, document: &Document) -> Result<Prepared> {
+    pub(crate) fn ready(&self, document: &Document) -> Result<Ready> {
         let pool = self.threads.map(pool_of).transpose()?;
-        let mut compiled = compile(document)?;
+        let prepared = prepare(document)?;
+        let mut notices = notices(document, &prepared);
+        let mut compiled = prepared.build();
         let pushed = settle_start(document, &mut compiled)?;
-        Ok(self.assemble(compiled, pushed, pool))
+        notices.extend(pushed.notice());
+        let mut ready = self.assemble(compiled, pushed, pool);
+        ready.simulation.notices = notices;
+        Ok(ready)
     }
 
     /// The same for a state that will be restored: where cells start does not matter.
-    pub(crate) fn prepare_to_restore(&self, document: &Document) -> Result<Prepared> {
+    pub(crate) fn ready_to_restore(&self, document: &Document) -> Result<Ready> {
         let pool = self.threads.map(pool_of).transpose()?;
         Ok(self.assemble(compile(document)?, PushedApart::default(), pool))
     }
 
-    fn assemble(&self, compiled: Compiled, pushed: PushedApart, pool: Option<Arc<rayon::ThreadPool>>) -> Prepared {
+    fn assemble(&self, compiled: Compiled, pushed: PushedApart, pool: Option<Arc<rayon::ThreadPool>>) -> Ready {
         let mut simulation = Simulation::assemble(compiled.model, compiled.state);
-        simulation.notices.extend(pushed.notice());
         (simulation.pool, simulation.cancel) = (pool, self.cancel.clone());
-        Prepared { simulation, schedule: compiled.schedule, pushed }
+        Ready { simulation, schedule: compiled.schedule, pushed }
     }
 }
 

@@ -44,7 +44,7 @@ mod touch;
 pub use crate::output::{SeriesInfo, SeriesScope};
 pub use crate::sim::{StepReport, Trouble};
 pub use builder::Builder;
-pub(crate) use builder::Prepared;
+pub(crate) use builder::Ready;
 pub use cancel::CancelToken;
 pub use cells::TypeView;
 pub use error::{CheckpointFault, SimulationError};

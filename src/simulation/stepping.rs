@@ -106,7 +106,8 @@ impl Simulation {
         self.model.until
     }
 
-    /// What there is to know about the start, in sentences: cells that were pushed apart.
+    /// What there is to know about the start, in sentences: cells that were pushed apart, that pass through each other, or that
+    /// have an unlikely size.
     pub fn notices(&self) -> &[String] {
         &self.notices
     }
