@@ -109,7 +109,7 @@ fn carry(
             (Target::Own(input), Owner::Field(field)) => state.chemistry.fields[field].inputs[input] = carried,
             (Target::Cell(whose, control), _) => {
                 for cell in cells_of(model, whose, own) {
-                    set(model, cell, control, carried, state);
+                    set_control(model, cell, control, carried, state);
                 }
             }
         }
@@ -118,7 +118,7 @@ fn carry(
 }
 
 /// What a target expects, if it cannot be set to a number.
-fn missed(target: Target, value: f64) -> Option<&'static str> {
+pub fn missed(target: Target, value: f64) -> Option<&'static str> {
     if !value.is_finite() {
         return Some("a finite number");
     }
@@ -202,7 +202,7 @@ fn pick(sensed: &Sensed, sense: Sense) -> f64 {
 }
 
 /// Sets what mechanics reads of a cell.
-fn set(model: &Model, cell: usize, control: Control, value: f64, state: &mut State) {
+pub fn set_control(model: &Model, cell: usize, control: Control, value: f64, state: &mut State) {
     let controls = &mut state.chemistry.controls;
     match control {
         Control::MotilitySpeed => controls.speed[cell] = value,
