@@ -2,30 +2,23 @@
 
 use super::touch::Touch;
 use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES, Schedule};
-use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
+use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
 use crate::sim::chemistry::Members;
 use crate::sim::contact::{Law, find_contacts};
+use crate::sim::model::Kind;
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
 use crate::sim::{Model, State, Workspace, forces};
 
-/// Names, cells, facets and planes of a model, as the result file lists them.
+/// Types of cells, names and planes of a model, as the result file lists them.
 pub fn layout_of(model: &Model) -> Layout {
-    let mut layout = Layout::default();
-    let (mut first_atom, mut first_facet) = (0u32, 0u32);
-    for (number, kind) in model.kinds.iter().enumerate() {
-        layout.types.push(kind.name.clone());
-        for _ in 0..kind.cells {
-            let (atoms, facets) = (kind.atoms() as u32, kind.rest.facets.len() as u32);
-            layout.cells.push(CellLayout { kind: number as u32, first_atom, atoms, first_facet, facets });
-            layout.facets.extend(kind.rest.facets.iter().map(|facet| facet.map(|atom| atom + first_atom)));
-            for pair in &kind.drawn_links {
-                layout.links.push(pair.map(|atom| atom + first_atom));
-            }
-            first_atom += atoms;
-            first_facet += facets;
-        }
-    }
+    let kind = |kind: &Kind| CellType {
+        name: kind.name.clone(),
+        atoms: kind.atoms() as u32,
+        facets: kind.rest.facets.clone(),
+        links: kind.drawn_links.clone(),
+    };
+    let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     layout.contacts = model.contact.is_some();
     if layout.contacts {
@@ -62,7 +55,7 @@ fn add_chemistry(model: &Model, layout: &mut Layout) {
             name: reactor.name.clone(),
             scope: match &reactor.members {
                 Members::Scene => SystemScope::Scene,
-                Members::Cells(cells) => SystemScope::Cells(cells.clone()),
+                Members::Cells(_) => SystemScope::Cells,
             },
             quantities: reactor.recorded.iter().map(|(_, id, unit)| (id.clone(), unit.clone())).collect(),
         });
@@ -80,9 +73,17 @@ fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
         let values = reactor.recorded.iter().map(|(quantity, ..)| {
             let mut values = vec![0.0; population.cells()];
             population.observe(&reactor.program, *quantity, time / reactor.seconds, &mut values);
-            values
+            match &reactor.members {
+                Members::Scene => values,
+                Members::Cells(cells) => {
+                    let mut of_all = vec![f64::NAN; frame.cells.len()];
+                    cells.iter().zip(values).for_each(|(cell, value)| of_all[*cell as usize] = value);
+                    of_all
+                }
+            }
         });
-        frame.systems.push(values.collect());
+        let values = values.collect();
+        frame.systems.push(values);
     }
 }
 
@@ -130,18 +131,25 @@ impl Recorder {
                 }
             }
         }
-        frame.runs = std::mem::take(&mut state.ended_runs);
+        let ended = std::mem::take(&mut state.ended_runs);
+        frame.runs = ended.into_iter().map(|(cell, end, duration)| (u64::from(cell), end, duration)).collect();
         frame
     }
+}
+
+/// The cells that there are, in the order of all arrays of a frame.
+fn cells_of(model: &Model, _: &State) -> Vec<Cell> {
+    let kinds = (0..).zip(&model.kinds).flat_map(|(number, kind)| std::iter::repeat_n(number, kind.cells));
+    (0..).zip(kinds).map(|(id, kind)| Cell { id, kind, parent: None }).collect()
 }
 
 /// Positions and measures of all cells at this instant, as if they did not touch; `dt` is the size of the last step, s.
 pub fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
     let velocities = mean_velocities(model, state, ws, dt);
-    let mut frame = Frame { time: state.time, step: state.step, ..Frame::default() };
+    let mut frame = Frame { time: state.time, step: state.step, cells: cells_of(model, state), ..Frame::default() };
     for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
         frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));
-        frame.cells.push(CellRecord {
+        frame.records.push(CellRecord {
             position: cell.centre.into(),
             velocity: velocity.into(),
             volume: cell.volume,
@@ -153,7 +161,7 @@ pub fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame 
             smallest_facet: cell.smallest_facet,
             smallest_cosine: cell.smallest_cosine,
             contact_share: 0.0,
-            aggregate: number as f64,
+            aggregate: frame.cells[number].id as f64,
         });
     }
     record_chemistry(model, state, &mut frame);
