@@ -170,8 +170,11 @@ pub(super) fn series(layout: &Layout) -> Vec<(String, &'static str)> {
 /// Series of how many aggregates were born, merged, split and died since the frame before.
 const CHANGES: [&str; 4] = ["contact.births", "contact.merges", "contact.splits", "contact.deaths"];
 
-/// Those of [`series`] whose [`values`] follow from a frame alone.
-fn series_of_frame(layout: &Layout) -> Vec<(String, &'static str)> {
+/// Those of [`series`] whose values follow from a frame alone; none in a result without contacts.
+pub(super) fn series_of_frame(layout: &Layout) -> Vec<(String, &'static str)> {
+    if !layout.contacts {
+        return Vec::new();
+    }
     let types = layout.type_names();
     let types = types.as_slice();
     let pairs = || pairs_of(types.len()).map(|[one, other]| format!("{}.{}", types[one], types[other]));
@@ -200,7 +203,7 @@ pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
     for frame in 0..result.frames() {
         let surface = ArrayView1::from(&result.cell_values("area", frame)?).sum();
         let (cells, pairs, on_planes) = (result.cells(frame), result.pairs(frame)?, result.on_planes(frame)?);
-        let values = values(result.layout(), &cells, surface, &pairs, &on_planes);
+        let values = values_of_frame(result.layout(), &cells, surface, &pairs, &on_planes);
         all.iter_mut().zip(values).for_each(|(series, value)| series.push(value));
     }
     all.extend(counts_of_changes(result.cell_series("aggregate")?.view()));
@@ -208,7 +211,13 @@ pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
 }
 
 /// The values of [`series_of_frame`] in a frame in which the cells have this surface, µm².
-fn values(layout: &Layout, cells: &[Cell], surface: f64, touching: &[Touching], on_planes: &[Touching]) -> Vec<f64> {
+pub(super) fn values_of_frame(
+    layout: &Layout,
+    cells: &[Cell],
+    surface: f64,
+    touching: &[Touching],
+    on_planes: &[Touching],
+) -> Vec<f64> {
     let types: Vec<u32> = cells.iter().map(|cell| cell.kind).collect();
     let (number, planes) = (layout.types.len(), layout.planes.len());
     let indices: HashMap<u64, u32> = (0..).zip(cells).map(|(index, cell)| (cell.id, index)).collect();

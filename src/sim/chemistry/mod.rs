@@ -11,6 +11,7 @@ mod scratch;
 mod stages;
 mod state;
 
+pub use carry::{missed, set_control};
 pub use model::{
     Chemistry, Control, FieldReactor, FieldStepping, Link, Members, Owner, Reactor, Source, Target, Whole, Whose,
 };

@@ -96,6 +96,18 @@ impl ChemistryState {
         self.carried = other.carried;
     }
 
+    /// Writes NaN over all numbers and forgets what is held in lists.
+    pub fn poison(&mut self) {
+        self.populations.clear();
+        self.events.clear();
+        self.times.fill(f64::NAN);
+        for field in &mut self.fields {
+            field.values.fill(f64::NAN);
+            field.inputs.fill(f64::NAN);
+        }
+        self.controls = Controls::default();
+    }
+
     /// Whether a checkpoint has the shape of a fresh start.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let cells = |a: &Population, b: &Population| a.cells() == b.cells() && a.has_shape_of(b);
@@ -116,23 +128,30 @@ impl Controls {
         let (mut controls, cells) = (Self::default(), model.cells());
         controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
         for link in &model.chemistry.links {
-            match link.to {
-                Target::Cell(_, Control::MotilitySpeed) => controls.speed = vec![f64::NAN; cells],
-                Target::Cell(_, Control::Bias(_)) => controls.bias = vec![[0.0; 3]; cells],
-                Target::Cell(_, Control::Stiffness) => controls.stiffness = vec![1.0; cells],
-                Target::Cell(_, Control::Adhesion) => controls.adhesion = vec![1.0; cells],
-                Target::Cell(_, Control::Load(load)) => {
-                    let loads = controls.loads.len().max(load + 1);
-                    controls.loads.resize(loads, vec![1.0; cells]);
-                }
-                Target::Cell(_, Control::Fibre(fibre)) => {
-                    let fibres = controls.fibres.len().max(fibre + 1);
-                    controls.fibres.resize(fibres, vec![-1.0; cells]);
-                }
-                _ => {}
+            if let Target::Cell(_, control) = link.to {
+                controls.admit(control, cells);
             }
         }
         controls
+    }
+
+    /// Makes the list that a control is written to, with one number for each of `cells`, where there is none: numbers that
+    /// change nothing until they are set.
+    pub fn admit(&mut self, control: Control, cells: usize) {
+        let lists = |lists: &mut Vec<Vec<f64>>, number: usize, value: f64| {
+            lists.resize(lists.len().max(number + 1), vec![value; cells]);
+        };
+        let list = |list: &mut Vec<f64>, value: f64| list.resize(cells, value);
+        match control {
+            Control::MotilitySpeed => list(&mut self.speed, f64::NAN),
+            Control::Bias(_) => self.bias.resize(cells, [0.0; 3]),
+            Control::Stiffness => list(&mut self.stiffness, 1.0),
+            Control::Adhesion => list(&mut self.adhesion, 1.0),
+            Control::Load(number) => lists(&mut self.loads, number, 1.0),
+            Control::Fibre(number) => lists(&mut self.fibres, number, -1.0),
+            Control::Secretion(channel) => lists(&mut self.secretion, channel, 0.0),
+            Control::RestVolume | Control::RestVolumeRatio | Control::Atom(..) => {}
+        }
     }
 
     fn copy_from(&mut self, other: &Self) {
