@@ -186,6 +186,37 @@ fn systems_read_each_other_and_the_means_of_types() {
 }
 
 #[test]
+fn what_links_read_of_other_systems_is_worked_out_once_for_all_who_read_it() {
+    let own = r#"<eml name="own" level="cell"><input id="x" default="0"/><variable id="u" initial="2" rate="-0.1*u"/>
+        <define id="w">u+x</define><link from="cell.position.x" to="system.x"/></eml>"#;
+    let other = r#"<eml name="other" level="cell"><input id="u" default="0"/><input id="w" default="0"/><input id="mean" default="0"/>
+        <define id="v">0*w</define>
+        <link from="cell.chemistry[own].u" to="system.u"/><link from="cell.chemistry[own].w" to="system.w"/>
+        <link from="type[cell].chemistry[own].u" to="system.mean"/><link from="system.v" to="cell.motility.bias.x"/></eml>"#;
+    let whole = r#"<eml name="whole"><input id="mean" default="0"/><input id="w" default="0"/>
+        <link from="type[cell].chemistry[own].u" to="system.mean"/><link from="type[cell].chemistry[own].w" to="system.w"/></eml>"#;
+    let blocks = |cells: u64| {
+        let some = format!(
+            "number = {cells}\nplacement = {{ random_from = [\"-90 um\", \"0 um\", \"0 um\"], random_to = [\"90 um\", \"0 um\", \"0 um\"] }}\n"
+        );
+        let text = one_cell("2 s", "0.5 s").replace("[\"own\"]", "[\"own\", \"other\"]") + &some;
+        let mut scene = scene(&[("own", own), ("other", other), ("whole", whole)], &text);
+        scene.run();
+        let (first, last) = (0, cells as usize - 1);
+        for cell in [first, last] {
+            let (u, w) = (scene.value(0, "u", cell), scene.value(0, "w", cell));
+            assert_eq!([scene.value(1, "u", cell), scene.value(1, "w", cell)], [u, w], "cell {cell} of {cells}");
+            assert!((w - u).abs() > 1e-3 && scene.value(1, "mean", cell) == scene.value(2, "mean", 0));
+        }
+        scene.ws.chemistry.blocks_observed()
+    };
+    // At the start and after each of four steps: `u` and `w` of `own`, one after the other, and `v` of `other`.
+    for cells in [16, 64, 256] {
+        assert_eq!(blocks(cells), 5 * 3 * cells / 16, "{cells} cells");
+    }
+}
+
+#[test]
 fn a_system_that_blows_up_is_named_and_the_state_stays() {
     let own = r#"<eml name="own" level="cell"><input id="x" default="0"/>
         <variable id="U" initial="1" rate="U^2*x"/><link from="cell.position.x" to="system.x"/></eml>"#;

@@ -1,10 +1,10 @@
 //! The values of all species on one grid.
 
 use super::grid::Grid;
-use super::react::POINTS;
+use super::react::PartScratch;
 use super::species::Species;
 use super::steady::steady;
-use super::sweeps::{Factors, PARTS, diffuse, room};
+use super::sweeps::{Factors, PARTS, diffuse, sweep_buffer};
 use crate::Vec3;
 use crate::equations::Range;
 use crate::error::{Error, Fault, Result};
@@ -37,8 +37,9 @@ pub(super) struct Work {
     /// When each of the factors was last used.
     used: Vec<u64>,
     uses: u64,
-    rooms: Vec<Vec<f64>>,
-    pub reacting: Vec<Vec<f64>>,
+    /// For the sweeps along the axes, and for the reactions: one for each part of the work.
+    sweeping: Vec<Vec<f64>>,
+    pub reacting: Vec<PartScratch>,
     /// Values at the start of the window, at the start of a checked step, and after it in one piece.
     pub start: Vec<f64>,
     pub before: Vec<f64>,
@@ -56,8 +57,8 @@ impl Work {
             factors: vec![Factors::new(grid, species); KEPT_FACTORS],
             used: vec![0; KEPT_FACTORS],
             uses: 0,
-            rooms: vec![room(grid); PARTS],
-            reacting: vec![vec![0.0; species.len() * POINTS]; PARTS],
+            sweeping: vec![sweep_buffer(grid); PARTS],
+            reacting: vec![PartScratch::new(species.len()); PARTS],
             start: vec![0.0; grid.len() * species.len()],
             before: vec![0.0; grid.len() * species.len()],
             whole: vec![0.0; grid.len() * species.len()],
@@ -217,7 +218,7 @@ impl Fields {
                 *value -= steady;
             }
         }
-        diffuse(grid, &work.factors[at], &work.ranges, values, &mut work.rooms);
+        diffuse(grid, &work.factors[at], &work.ranges, values, &mut work.sweeping);
         for (s, (steady, values)) in work.steady.iter().zip(values.chunks_exact_mut(grid.len())).enumerate() {
             let floor = if species[s].range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };
             for (value, steady) in values.iter_mut().zip(steady) {

@@ -270,7 +270,7 @@ fn begin<const L: usize, M: Adaptive>(
 
 /// What is wrong with the cell of a lane.
 #[inline(never)]
-pub fn explain<const L: usize>(
+fn explain<const L: usize>(
     program: &Program,
     s: &mut Scratch<L>,
     (time, step): (Lanes<L>, Lanes<L>),

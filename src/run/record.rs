@@ -3,7 +3,7 @@
 use super::touch::Touch;
 use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES, Schedule};
 use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
-use crate::sim::chemistry::Members;
+use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::{Law, find_contacts};
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
@@ -62,7 +62,9 @@ fn add_chemistry(model: &Model, layout: &mut Layout) {
             name: reactor.name.clone(),
             scope: match &reactor.members {
                 Members::Scene => SystemScope::Scene,
-                Members::Cells(cells) => SystemScope::Cells(cells.clone()),
+                Members::Kinds(_) => {
+                    SystemScope::Cells(member_cells(model, &reactor.members).map(|cell| cell as u32).collect())
+                }
             },
             quantities: reactor.recorded.iter().map(|(_, id, unit)| (id.clone(), unit.clone())).collect(),
         });

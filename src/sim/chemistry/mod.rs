@@ -5,14 +5,18 @@
 //! links stands still.
 
 mod carry;
+mod census;
 mod measure;
 mod model;
+mod observe;
 mod scratch;
 mod stages;
 mod state;
 
+pub use census::member_cells;
 pub use model::{
-    Chemistry, Control, FieldReactor, FieldStepping, Link, Members, Owner, Reactor, Source, Target, Whole, Whose,
+    Chemistry, Control, FieldReactor, FieldStepping, Link, LinkObservations, Members, Observation, Observations, Owner,
+    Reactor, Source, Target, Whole, Whose,
 };
 pub use scratch::ChemistryScratch;
 pub use stages::{advance_chemistry, begin_chemistry, next_exchange};

@@ -15,6 +15,8 @@ pub struct Chemistry {
     pub fields: Vec<FieldReactor>,
     /// Links in an order in which each comes after those whose numbers it uses in the same instant.
     pub links: Vec<Link>,
+    /// What these links read, each thing once: [`Observations::of`] them.
+    pub observations: Observations,
     /// Species that links sense as a mean over cells: (field, species).
     pub sensed: Vec<(usize, usize)>,
     /// Species that cells secrete: (field, species).
@@ -51,35 +53,12 @@ pub struct Reactor {
 }
 
 /// Who has a system.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Members {
     /// The scene, once.
     Scene,
-    /// These cells (numbers in the order of all cells), rising.
-    Cells(Vec<u32>),
-}
-
-impl Members {
-    /// How many copies of the system there are.
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Scene => 1,
-            Self::Cells(cells) => cells.len(),
-        }
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The cell that has a copy; none for the scene.
-    pub fn cell(&self, member: usize) -> Option<usize> {
-        match self {
-            Self::Scene => None,
-            Self::Cells(cells) => Some(cells[member] as usize),
-        }
-    }
+    /// Every cell of these kinds (rising numbers), in the order of all cells.
+    Kinds(Vec<usize>),
 }
 
 /// Fields on a grid and how they are stepped.
@@ -176,6 +155,78 @@ pub enum Source {
     Whole(usize, usize, Whole),
     /// A quantity of another system: (reactor, quantity, whose copy); the scene's only one for systems of the scene.
     Other(usize, QuantityId, Whose),
+}
+
+/// What links read, each thing once: however many links and members read it, it is observed once an exchange.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Observations {
+    /// Quantities of systems: (reactor, quantity), for all members.
+    pub quantities: Vec<(usize, QuantityId)>,
+    /// Sources that give all members of a system the same number.
+    pub shared: Vec<Source>,
+    /// What each link reads of these.
+    pub links: Vec<LinkObservations>,
+}
+
+/// What a link reads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinkObservations {
+    /// Where the quantities stand in [`Observations::quantities`]: first those that the transfer uses, in the order of [`Link::uses`].
+    pub quantities: Vec<usize>,
+    /// Where the number that is carried is found.
+    pub from: Observation,
+}
+
+/// Where the number that a link carries is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Observation {
+    /// The member's own quantity at this position of [`Observations::quantities`].
+    Own(usize),
+    /// The same of another system that the member's cell has.
+    OfOwnCell(usize),
+    /// The number at this position of [`Observations::shared`], the same for all members.
+    Shared(usize),
+    /// Read from the member's cell.
+    Cell,
+}
+
+impl Observations {
+    /// What some links of some systems read.
+    pub fn of(links: &[Link], reactors: &[Reactor]) -> Self {
+        let mut all = Self::default();
+        for link in links {
+            let quantity = |all: &mut Self, number, quantity| position_of(&mut all.quantities, (number, quantity));
+            let mut quantities: Vec<usize> = match link.owner {
+                Owner::Reactor(number) => link.uses.iter().map(|&used| quantity(&mut all, number, used)).collect(),
+                Owner::Field(_) => Vec::new(),
+            };
+            let from = match (link.from, link.owner) {
+                (Source::Own(own), Owner::Reactor(number)) => Observation::Own(quantity(&mut all, number, own)),
+                (Source::Other(number, other, whose), _) => {
+                    let slot = quantity(&mut all, number, other);
+                    quantities.push(slot);
+                    match (whose, &reactors[number].members) {
+                        (Whose::Own, Members::Kinds(_)) => Observation::OfOwnCell(slot),
+                        _ => Observation::Shared(position_of(&mut all.shared, link.from)),
+                    }
+                }
+                (Source::Cell(Whose::Own, _) | Source::Sensed(Whose::Own, ..) | Source::AtAtom(Whose::Own, ..), _) => {
+                    Observation::Cell
+                }
+                _ => Observation::Shared(position_of(&mut all.shared, link.from)),
+            };
+            all.links.push(LinkObservations { quantities, from });
+        }
+        all
+    }
+}
+
+/// Where a thing stands in a list of different things, in which it is put if it is not there.
+fn position_of<T: PartialEq>(list: &mut Vec<T>, thing: T) -> usize {
+    list.iter().position(|known| *known == thing).unwrap_or_else(|| {
+        list.push(thing);
+        list.len() - 1
+    })
 }
 
 /// A number of a whole field.

@@ -8,9 +8,10 @@ use super::super::targets::measure_volumes;
 use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
 use super::carry::carry_links;
-use super::model::{Members, Reactor};
+use super::census::cell_of_member;
+use super::model::Reactor;
 use crate::error::Error;
-use crate::ode::{Eventful, OdeTrouble};
+use crate::ode::{Eventful, OdeTrouble, PopulationScratch};
 
 /// Lets the links carry the numbers of the start, once, and executes the events of the start.
 pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
@@ -24,7 +25,7 @@ pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> 
     ws.chemistry.exchange_values(&mut state.chemistry, time);
     let result = carry_links(model, time, 0.0, true, state, ws).and_then(|()| {
         // What events change at the start goes through the links at once, so that the start shows it.
-        let changed = begin_events(model, state)?;
+        let changed = begin_events(model, state, &mut ws.chemistry.populations)?;
         if changed { carry_links(model, time, 0.0, true, state, ws) } else { Ok(()) }
     });
     ws.chemistry.exchange_values(&mut state.chemistry, time);
@@ -45,7 +46,7 @@ pub fn advance_chemistry(model: &Model, dt: f64, state: &mut State, ws: &mut Wor
     ws.chemistry.remember(state);
     let (start, end) = (state.time, state.time + dt);
     ws.chemistry.exchange_values(&mut state.chemistry, start);
-    let result = advance_systems(model, end, state).and_then(|()| {
+    let result = advance_systems(model, end, state, &mut ws.chemistry.populations).and_then(|()| {
         deposit_secretion(model, dt, state, ws);
         advance_fields(model, dt, state, ws)?;
         carry_links(model, end, dt, false, state, ws)
@@ -73,7 +74,12 @@ pub(super) fn is_due(reactor: &Reactor, time: f64) -> bool {
 }
 
 /// Advances all systems that are due, each from the time that it has reached.
-fn advance_systems(model: &Model, end: f64, state: &mut State) -> Result<(), Trouble> {
+fn advance_systems(
+    model: &Model,
+    end: f64,
+    state: &mut State,
+    scratch: &mut [PopulationScratch],
+) -> Result<(), Trouble> {
     let chemistry = &mut state.chemistry;
     for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
         let from = chemistry.times[number];
@@ -83,8 +89,11 @@ fn advance_systems(model: &Model, end: f64, state: &mut State) -> Result<(), Tro
         let population = &mut chemistry.populations[number];
         let window = (from / reactor.seconds, end / reactor.seconds);
         let advanced = match reactor.events.is_empty() {
-            true => population.advance(&reactor.program, window.0, window.1, &reactor.tolerances),
-            false => eventful(model, reactor).advance(population, &mut chemistry.events[number], window.0, window.1),
+            true => population.advance(&reactor.program, window.0, window.1, &reactor.tolerances, &mut scratch[number]),
+            false => {
+                let (events, scratch) = (&mut chemistry.events[number], &mut scratch[number]);
+                eventful(model, reactor).advance(population, events, window.0, window.1, scratch)
+            }
         };
         advanced.map_err(|trouble| system_trouble(model, reactor, &trouble))?;
         chemistry.times[number] = end;
@@ -93,13 +102,13 @@ fn advance_systems(model: &Model, end: f64, state: &mut State) -> Result<(), Tro
 }
 
 /// Executes the events of the start. Returns whether there were any.
-fn begin_events(model: &Model, state: &mut State) -> Result<bool, Trouble> {
+fn begin_events(model: &Model, state: &mut State, scratch: &mut [PopulationScratch]) -> Result<bool, Trouble> {
     let chemistry = &mut state.chemistry;
     let mut any = false;
     for (number, reactor) in model.chemistry.reactors.iter().enumerate().filter(|(_, r)| !r.events.is_empty()) {
         let now = chemistry.times[number] / reactor.seconds;
         let (population, memories) = (&mut chemistry.populations[number], &mut chemistry.events[number]);
-        let advanced = eventful(model, reactor).advance(population, memories, now, now);
+        let advanced = eventful(model, reactor).advance(population, memories, now, now, &mut scratch[number]);
         any |= advanced.map_err(|trouble| system_trouble(model, reactor, &trouble))?.events > 0;
     }
     Ok(any)
@@ -113,14 +122,8 @@ fn eventful<'a>(model: &Model, reactor: &'a Reactor) -> Eventful<'a> {
 
 /// Which cell of which type, when and in which variable.
 fn system_trouble(model: &Model, reactor: &Reactor, trouble: &OdeTrouble) -> Trouble {
-    let cell = match (&reactor.members, trouble.cell) {
-        (Members::Cells(cells), Some(member)) => cells.get(member).map(|&cell| cell as usize),
-        _ => None,
-    };
-    let owner = cell.and_then(|cell| {
-        let kind = model.kinds.iter().find(|kind| (kind.first_cell..kind.first_cell + kind.cells).contains(&cell))?;
-        Some((kind.name.clone(), cell - kind.first_cell))
-    });
+    let cell = trouble.cell.and_then(|member| cell_of_member(model, &reactor.members, member));
+    let owner = cell.map(|cell| model.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
     Trouble::System {
         system: reactor.name.clone(),
         owner,

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::model::Model;
+use super::census::member_count;
 use super::model::{Control, Reactor, Target};
 use crate::field::Fields;
 use crate::ode::{EventMemory, Population};
@@ -59,10 +60,11 @@ impl ChemistryState {
     pub fn new(model: &Model, fields: &[Fields]) -> Self {
         let chemistry = &model.chemistry;
         let reactors = &chemistry.reactors;
-        let populations = reactors.iter().map(|r| Population::new(&r.program, r.members.len(), r.method));
+        let populations =
+            reactors.iter().map(|r| Population::new(&r.program, member_count(model, &r.members), r.method));
         let events = |reactor: &Reactor| match reactor.events.is_empty() {
             true => Vec::new(),
-            false => vec![reactor.events.before_start(); reactor.members.len()],
+            false => vec![reactor.events.before_start(); member_count(model, &reactor.members)],
         };
         let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
             values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
@@ -81,8 +83,8 @@ impl ChemistryState {
 
     /// Copies another of the same shape without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.populations.clone_from(&other.populations);
-        self.events.clone_from(&other.events);
+        copy_each(&mut self.populations, &other.populations, Population::copy_from);
+        copy_each(&mut self.events, &other.events, |to, from| copy_each(to, from, EventMemory::copy_from));
         self.times.clone_from(&other.times);
         if self.fields.len() != other.fields.len() {
             self.fields.clone_from(&other.fields);
@@ -109,6 +111,13 @@ impl ChemistryState {
             && self.events.iter().zip(&other.events).all(|(a, b)| events(a, b))
             && self.fields.iter().zip(&other.fields).all(|(a, b)| a.values.len() == b.values.len())
     }
+}
+
+/// Makes a list the same as another, its first things without allocating, where `copy` does not.
+fn copy_each<T: Clone>(to: &mut Vec<T>, from: &[T], copy: impl Fn(&mut T, &T)) {
+    to.truncate(from.len());
+    to.iter_mut().zip(from).for_each(|(to, from)| copy(to, from));
+    to.extend_from_slice(&from[to.len()..]);
 }
 
 impl Controls {

@@ -10,7 +10,7 @@ use crate::equations::tree::{Event, Expr, Role, System};
 use crate::error::{Fault, Place};
 use crate::ode::assigned_parameters;
 use crate::sim::Kind;
-use crate::sim::chemistry::{Chemistry, Control, Link, Owner, Target};
+use crate::sim::chemistry::{Chemistry, Control, Link, Observations, Owner, Target};
 
 /// Parameters that a link of the experiment sets become inputs; those that events set do not.
 pub(super) fn open_linked_parameters(parts: &mut [Part]) {
@@ -64,6 +64,7 @@ pub(super) fn links(
                 act(&plain[number], chemistry, kinds);
             }
             chemistry.links = order.into_iter().map(|number| plain[number].clone()).collect();
+            chemistry.observations = Observations::of(&chemistry.links, &chemistry.reactors);
         }
         Err(circle) => {
             let texts: Vec<&str> = circle.iter().map(|&number| plain[number].text.as_str()).collect();
@@ -112,11 +113,7 @@ fn link_kinds(owner: Owner, whose: crate::sim::chemistry::Whose, chemistry: &Che
         (Whose::Cell(cell), _) => kind_of(cell).into_iter().collect(),
         (Whose::Own, Owner::Reactor(number)) => match &chemistry.reactors[number].members {
             Members::Scene => Vec::new(),
-            Members::Cells(cells) => {
-                let mut found: Vec<usize> = cells.iter().filter_map(|&cell| kind_of(cell as usize)).collect();
-                found.dedup();
-                found
-            }
+            Members::Kinds(kinds) => kinds.clone(),
         },
         (Whose::Own, Owner::Field(_)) => Vec::new(),
     }
