@@ -26,8 +26,10 @@ pub enum Reading {
     AreaStrain,
     /// Extent of the bounding box along an axis, µm.
     Size(usize),
-    /// Part of the atoms that touch a plane, or are near another cell where the experiment has contacts.
+    /// Part of the atoms near another cell, as it is recorded; 0 in an experiment without contacts.
     ContactShare,
+    /// Part of the atoms on a plane.
+    PlaneShare,
 }
 
 /// A number of a cell that chemistry can set.
@@ -67,7 +69,7 @@ pub enum Sense {
 }
 
 /// What can be read, as messages list it.
-pub const READABLE: [&str; 14] = [
+pub const READABLE: [&str; 15] = [
     "position.x",
     "atom[0].x",
     "velocity.x",
@@ -78,6 +80,7 @@ pub const READABLE: [&str; 14] = [
     "area_strain",
     "size.x",
     "contact_share",
+    "plane_share",
     "field[NAME]",
     "field[NAME].gradient.x",
     "field[NAME].steepness",
@@ -111,6 +114,7 @@ pub fn reading(path: &[Step]) -> Option<Reading> {
         [("area_strain", None)] => Reading::AreaStrain,
         [("size", None), (axis, None)] => Reading::Size(component(axis)?),
         [("contact_share", None)] => Reading::ContactShare,
+        [("plane_share", None)] => Reading::PlaneShare,
         _ => return None,
     })
 }

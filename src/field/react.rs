@@ -3,7 +3,7 @@
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
 use super::grid::Grid;
-use super::reactor::ReactorScratch;
+use super::reactor_scratch::ReactorScratch;
 use super::species::Species;
 use crate::equations::Range;
 
@@ -38,6 +38,12 @@ impl PartScratch {
     /// Scratch for so many species.
     pub fn new(species: usize) -> Self {
         Self { values: vec![0.0; species * POINTS], reactor: None }
+    }
+
+    /// Writes NaN over all numbers.
+    pub fn poison(&mut self) {
+        self.values.fill(f64::NAN);
+        self.reactor = None;
     }
 }
 

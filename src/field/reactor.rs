@@ -3,18 +3,17 @@
 //! A step of reactions is one explicit midpoint step, second order like the splitting, or what the document's scheme
 //! asks for: the engine's methods with error control, Rosenbrock's for stiff reactions, within each step of the splitting.
 
-use std::sync::Mutex;
-
 use pulp::Arch;
 
-use super::broken::{Broken, Course};
+use super::broken::Broken;
 use super::grid::Grid;
 use super::positions::{Positions, positions, set_positions};
 use super::react::{Chunk, POINTS};
+use super::reactor_scratch::ReactorScratch;
 use super::rows::{ROW, Rows};
-use super::system::{POSITION, Scales};
+use super::scales::{POSITION, Scales, compile};
 use crate::equations::eml::{Document, Scheme};
-use crate::equations::program::{Lanes, Program};
+use crate::equations::program::Program;
 use crate::equations::tree::{Expr, Role};
 use crate::error::{Error, Fault, Result};
 use crate::ode::block;
@@ -39,26 +38,6 @@ pub struct Reactor {
     inputs: Vec<usize>,
 }
 
-/// What reactions work in, one for each part of the boxes.
-#[derive(Debug, Clone)]
-pub struct ReactorScratch {
-    /// The program and method that it was made for.
-    key: (u64, Option<Method>),
-    scratch: Scratch<WIDTH>,
-    /// States now and before, and open quantities, of a row of boxes, for the engine's methods.
-    states: Vec<Lanes<WIDTH>>,
-    before: Vec<Lanes<WIDTH>>,
-    given: Vec<Lanes<WIDTH>>,
-}
-
-impl ReactorScratch {
-    fn new(key: (u64, Option<Method>), program: &Program) -> Self {
-        let (states, given) = (vec![[0.0; WIDTH]; program.size()], vec![[0.0; WIDTH]; program.open.len()]);
-        let scratch = Scratch::new(program, key.1.is_some_and(Method::is_implicit));
-        Self { key, scratch, before: states.clone(), states, given }
-    }
-}
-
 impl Reactor {
     /// The reactions of a document, or nothing where nothing reacts.
     ///
@@ -70,7 +49,7 @@ impl Reactor {
         if document.system.quantities.iter().all(|quantity| still(&quantity.role)) {
             return Ok(None);
         }
-        let program = super::system::compile(document)?;
+        let program = compile(document)?;
         debug_assert!(document.fields.iter().map(|field| field.quantity).eq(program.variables.iter().copied()));
         let usual = Tolerances::default();
         let tolerances = Tolerances {
@@ -82,11 +61,6 @@ impl Reactor {
         let ours = |number: &usize| !POSITION.contains(&program.names[program.open[*number] as usize].as_str());
         let inputs = (0..program.open.len()).filter(ours).map(|number| program.first_open() + number).collect();
         Ok(Some(Self { program, rows, method, tolerances, scales, place, inputs }))
-    }
-
-    /// A window with these inputs.
-    pub fn course<'a>(&'a self, grid: &'a Grid, inputs: &'a [f64], adaptive: bool) -> Course<'a> {
-        Course { reactor: self, grid, inputs, adaptive, broken: Mutex::new(None) }
     }
 
     /// Lets the boxes of a chunk react; of those whose values are finite before and

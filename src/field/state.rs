@@ -9,6 +9,8 @@ use crate::Vec3;
 use crate::equations::Range;
 use crate::error::{Error, Fault, Result};
 
+/// A window is never halved more often than this.
+pub const FINEST: u32 = 20;
 /// Step sizes whose factors are kept: a step, its half, and those of the last change.
 const KEPT_FACTORS: usize = 6;
 
@@ -63,6 +65,14 @@ impl Work {
             before: vec![0.0; grid.len() * species.len()],
             whole: vec![0.0; grid.len() * species.len()],
         }
+    }
+
+    /// Writes NaN over all numbers and forgets what is kept.
+    fn poison(&mut self) {
+        self.factors.iter_mut().for_each(|factors| factors.dt = f64::NAN);
+        let lists = [&mut self.start, &mut self.before, &mut self.whole];
+        lists.into_iter().chain(&mut self.sweeping).for_each(|list| list.fill(f64::NAN));
+        self.reacting.iter_mut().for_each(PartScratch::poison);
     }
 
     /// The factors of a step size, made now or kept.
@@ -127,6 +137,14 @@ impl Fields {
         std::mem::swap(values, &mut self.values);
     }
 
+    /// Writes NaN over the values, the time and all scratch: what holds fields for others while they lend their values must not
+    /// matter between.
+    pub fn poison(&mut self) {
+        self.values.fill(f64::NAN);
+        self.time = f64::NAN;
+        self.work.poison();
+    }
+
     /// Says what time it is, s.
     pub fn set_time(&mut self, time: f64) {
         self.time = time;
@@ -140,7 +158,7 @@ impl Fields {
 
     /// Takes up the pace of an earlier run.
     pub fn set_pace(&mut self, (level, unchecked): (u32, u32)) {
-        (self.level, self.unchecked) = (level.min(super::step::FINEST), unchecked);
+        (self.level, self.unchecked) = (level.min(FINEST), unchecked);
     }
 
     /// Values of a species in all boxes, x fastest: amount/µm² on the substrate, amount/µm³ in the medium.

@@ -39,7 +39,7 @@ impl Population {
         if self.variables == 0 || self.cells == 0 {
             return Ok(Work::default());
         }
-        scratch.suit(self, program);
+        scratch.suit(program, self.method(), self.blocks());
         let result = if self.cells <= FEW {
             self.advance_one_by_one(program, (from, until), tolerances, scratch)
         } else {
@@ -72,6 +72,7 @@ impl Population {
         scratch: &mut PopulationScratch,
     ) -> TaskResult {
         let (method, cells, n, open) = (self.method(), self.cells, self.variables, self.open);
+        scratch.suit_threads();
         let Self { states, steps, errors, given, .. } = self;
         let PopulationScratch { kept, threads, .. } = scratch;
         let blocks = blocks_a_task(steps.len(), rayon::current_num_threads());

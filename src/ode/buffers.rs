@@ -3,11 +3,13 @@
 use std::sync::Mutex;
 
 use super::cells::kept_numbers;
-use super::eventful::{Arrived, CellBuffers};
+use super::course::CourseBuffers;
+use super::events::{EventBuffers, EventMemory};
 use super::narrow::Narrow;
-use super::population::{LANES, Population};
 use super::scratch::Scratch;
-use crate::equations::program::{Lanes, Program};
+use super::stepper::StepperBuffers;
+use super::{Method, OdeTrouble, Work};
+use crate::equations::program::{LANES, Lanes, Program};
 
 /// Scratch of a population. No result depends on what is in it: it may be poisoned, made anew or used for another population at any
 /// time. It is cheapest when the same population uses it window after window.
@@ -37,6 +39,25 @@ pub(super) struct ThreadBuffers {
     pub single: CellBuffers,
 }
 
+/// A cell at the end of a window.
+#[derive(Debug, Default)]
+pub(super) struct Arrived {
+    pub state: Vec<f64>,
+    pub open: Vec<f64>,
+    pub pace: (f64, f64),
+    pub memory: EventMemory,
+    pub work: Work,
+    pub trouble: Option<OdeTrouble>,
+}
+
+/// What one thread works in, a cell after the other.
+#[derive(Debug, Default)]
+pub(super) struct CellBuffers {
+    pub stepper: Option<StepperBuffers>,
+    pub course: CourseBuffers,
+    pub events: EventBuffers,
+}
+
 /// The program, and whether its linear systems are solved.
 type Key = (u64, bool);
 
@@ -48,25 +69,27 @@ impl Clone for PopulationScratch {
 }
 
 impl PopulationScratch {
-    /// Makes the buffers fit a population and its program. Nothing is allocated where they do.
-    pub(super) fn suit(&mut self, population: &Population, program: &Program) {
-        let key = Some((program.mark, population.method().is_implicit()));
+    /// Makes the buffers fit so many blocks of cells of a program. Nothing is allocated where they do.
+    pub(super) fn suit(&mut self, program: &Program, method: Method, blocks: usize) {
+        let key = Some((program.mark, method.is_implicit()));
         if self.key != key {
             *self = Self { key, ..Self::default() };
         }
         if self.file.is_empty() {
             self.file = program.file();
         }
-        let threads = rayon::current_num_threads();
-        if self.threads.len() < threads {
-            self.threads.resize_with(threads, Mutex::default);
-        }
-        let keeps = population.method().keeps_rates() && program.rates_stand_still;
-        let length = if keeps { population.blocks() * kept_numbers(population.variables, population.open) } else { 0 };
+        let keeps = method.keeps_rates() && program.rates_stand_still;
+        let length = if keeps { blocks * kept_numbers(program.size(), program.open.len()) } else { 0 };
         if self.kept.len() != length {
             self.kept.clear();
             self.kept.resize(length, [f64::NAN; LANES]);
         }
+    }
+
+    /// Makes buffers for all threads.
+    pub(super) fn suit_threads(&mut self) {
+        let threads = rayon::current_num_threads().max(self.threads.len());
+        self.threads.resize_with(threads, Mutex::default);
     }
 
     /// Forgets everything.

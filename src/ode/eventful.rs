@@ -4,9 +4,9 @@ use std::sync::PoisonError;
 
 use rayon::prelude::*;
 
-use super::buffers::PopulationScratch;
-use super::course::{Course, CourseBuffers, LONGEST_SHARE};
-use super::events::{EventBuffers, EventMemory, EventPlan, Events};
+use super::buffers::{Arrived, CellBuffers, PopulationScratch};
+use super::course::{Course, LONGEST_SHARE};
+use super::events::{EventMemory, EventPlan, Events};
 use super::population::Population;
 use super::stepper::{Stepper, StepperBuffers};
 use super::{OdeTrouble, Tolerances, Work};
@@ -26,26 +26,7 @@ pub struct Eventful<'a> {
     pub span: f64,
 }
 
-/// A cell at the end of a window.
-#[derive(Debug, Default)]
-pub struct Arrived {
-    state: Vec<f64>,
-    open: Vec<f64>,
-    pace: (f64, f64),
-    memory: EventMemory,
-    work: Work,
-    trouble: Option<OdeTrouble>,
-}
-
-/// What one thread works in, a cell after the other.
-#[derive(Debug, Default)]
-pub struct CellBuffers {
-    stepper: Option<StepperBuffers>,
-    course: CourseBuffers,
-    events: EventBuffers,
-}
-
-impl<'a> Eventful<'a> {
+impl Eventful<'_> {
     /// Advances all cells through a window, as [`Population::advance`] does for systems without events. `memories`
     /// holds one entry a cell. Triggers that have turned true since the last window, because an open quantity was set
     /// or because nothing was before, fire at `from`; what is due at `until` is executed. A window of no length
@@ -66,7 +47,8 @@ impl<'a> Eventful<'a> {
         scratch: &mut PopulationScratch,
     ) -> Result<Work, OdeTrouble> {
         assert_eq!(memories.len(), population.cells(), "one memory a cell");
-        scratch.suit(population, self.program);
+        scratch.suit(self.program, population.method(), population.blocks());
+        scratch.suit_threads();
         let PopulationScratch { threads, arrived, .. } = scratch;
         arrived.resize_with(memories.len(), Arrived::default);
         let before = &*population;

@@ -1,10 +1,20 @@
 //! Cells of a population come and go: later ones move by one, whole blocks are added and dropped, and nothing else changes.
 
+use super::Method;
 use super::population::{LANES, Population};
 use crate::equations::program::{Lanes, Program};
 use crate::equations::tree::QuantityId;
 
 impl Population {
+    /// Cells at the system's initial values.
+    pub fn new(program: &Program, cells: usize, method: Method) -> Self {
+        let mut population = Self::empty(program.size(), program.open.len(), method);
+        population.cells = cells;
+        population.resize_blocks();
+        (0..cells).for_each(|cell| population.set_initial(program, cell));
+        population
+    }
+
     /// Adds a cell behind all others, with values of the variables and of the open quantities, in the order of [`Program::variables`]
     /// and [`Program::open`]. It tries its first step as cells do at the start.
     ///
@@ -44,17 +54,20 @@ impl Population {
     pub fn insert_default(&mut self, program: &Program, at: usize) {
         assert!(at <= self.cells, "before cell {at} of {}", self.cells);
         assert_eq!((self.variables, self.open), (program.size(), program.open.len()), "the population's own program");
-        if self.cells.is_multiple_of(LANES) {
-            self.add_blocks(program, 1);
-        }
         self.cells += 1;
+        self.resize_blocks();
         for cell in (at + 1..self.cells).rev() {
             self.copy_cell(cell - 1, cell);
         }
-        let initial = |quantity: &QuantityId| program.initial[*quantity as usize];
-        program.variables.iter().enumerate().for_each(|(variable, q)| self.set_state(at, variable, initial(q)));
-        program.open.iter().enumerate().for_each(|(open, q)| self.set_given(at, open, initial(q)));
+        self.set_initial(program, at);
         self.forget_step(at);
+    }
+
+    /// Gives a cell the system's initial values.
+    fn set_initial(&mut self, program: &Program, cell: usize) {
+        let initial = |quantity: &QuantityId| program.initial[*quantity as usize];
+        program.variables.iter().enumerate().for_each(|(variable, q)| self.set_state(cell, variable, initial(q)));
+        program.open.iter().enumerate().for_each(|(open, q)| self.set_given(cell, open, initial(q)));
     }
 
     /// Takes a cell out; later ones move down by one.
@@ -76,21 +89,20 @@ impl Population {
             }
         }
         self.cells = kept;
-        let blocks = kept.div_ceil(LANES);
-        self.states.truncate(blocks * self.variables);
-        self.given.truncate(blocks * self.open);
-        self.steps.truncate(blocks);
-        self.errors.truncate(blocks);
+        self.resize_blocks();
+        // Lanes without a cell hold what they would in a population that never had more.
+        for lane in kept..LANES * self.blocks() {
+            (0..self.variables).for_each(|variable| self.set_state(lane, variable, 0.0));
+            (0..self.open).for_each(|open| self.set_given(lane, open, 0.0));
+            self.forget_step(lane);
+        }
     }
 
-    /// Adds blocks of cells at the system's initial values.
-    pub(super) fn add_blocks(&mut self, program: &Program, blocks: usize) {
-        let initial = |&quantity: &QuantityId| [program.initial[quantity as usize]; LANES];
-        for _ in 0..blocks {
-            self.states.extend(program.variables.iter().map(initial));
-            self.given.extend(program.open.iter().map(initial));
-        }
-        let blocks = self.steps.len() + blocks;
+    /// Adds blocks of lanes without cells, or drops them, until there are as many as the cells need.
+    fn resize_blocks(&mut self) {
+        let blocks = self.cells.div_ceil(LANES);
+        self.states.resize(blocks * self.variables, [0.0; LANES]);
+        self.given.resize(blocks * self.open, [0.0; LANES]);
         self.steps.resize(blocks, [0.0; LANES]);
         self.errors.resize(blocks, [1.0; LANES]);
     }

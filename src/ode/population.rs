@@ -11,7 +11,7 @@ use crate::equations::tree::QuantityId;
 
 pub use crate::equations::program::LANES;
 
-/// The states of cells that share a program. Arrays are `[block][number][lane]`; lanes beyond the last cell are never read.
+/// The states of cells that share a program. Arrays are `[block][number][lane]`. In lanes beyond the last cell everything is 0, and the error 1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Population {
     /// How the cells are advanced.
@@ -28,20 +28,10 @@ pub struct Population {
 }
 
 impl Population {
-    /// Cells at the system's initial values.
-    pub fn new(program: &Program, cells: usize, method: Method) -> Self {
-        let mut population = Self {
-            method,
-            cells,
-            variables: program.size(),
-            open: program.open.len(),
-            states: Vec::new(),
-            given: Vec::new(),
-            steps: Vec::new(),
-            errors: Vec::new(),
-        };
-        population.add_blocks(program, cells.div_ceil(LANES));
-        population
+    /// No cells, of a system with so many variables and open quantities.
+    pub(super) fn empty(variables: usize, open: usize, method: Method) -> Self {
+        let (states, given, steps, errors) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { method, cells: 0, variables, open, states, given, steps, errors }
     }
 
     /// Whether another population has as many cells, variables and open quantities.
@@ -149,7 +139,7 @@ impl Population {
         scratch: &mut PopulationScratch,
         each: impl FnMut(BlockView),
     ) {
-        scratch.suit(self, program);
+        scratch.suit(program, self.method(), self.blocks());
         self.each_block(program, time, &mut scratch.file, each);
     }
 

@@ -164,8 +164,11 @@ pub(super) fn series(layout: &Layout) -> Vec<(String, &'static str)> {
 /// Series of how many aggregates were born, merged, split and died since the frame before.
 const CHANGES: [&str; 4] = ["contact.births", "contact.merges", "contact.splits", "contact.deaths"];
 
-/// Those of [`series`] whose [`values`] follow from a frame alone.
-fn series_of_frame(layout: &Layout) -> Vec<(String, &'static str)> {
+/// Those of [`series`] whose values follow from a frame alone; none in a result without contacts.
+pub(super) fn series_of_frame(layout: &Layout) -> Vec<(String, &'static str)> {
+    if !layout.contacts {
+        return Vec::new();
+    }
     let types = &layout.types;
     let pairs = || pairs_of(types.len()).map(|[one, other]| format!("{}.{}", types[one], types[other]));
     let of_planes = types.iter().flat_map(|kind| layout.planes.iter().map(move |plane| format!("{kind}.{}", plane.0)));
@@ -193,7 +196,7 @@ pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
     let surfaces = result.cell_series("area")?;
     for frame in 0..result.frames() {
         let surface = surfaces.row(frame).sum();
-        let values = values(result.layout(), surface, &result.pairs(frame)?, &result.on_planes(frame)?);
+        let values = values_of_frame(result.layout(), surface, &result.pairs(frame)?, &result.on_planes(frame)?);
         all.iter_mut().zip(values).for_each(|(series, value)| series.push(value));
     }
     all.extend(counts_of_changes(result.cell_series("aggregate")?.view()));
@@ -201,7 +204,12 @@ pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
 }
 
 /// The values of [`series_of_frame`] in a frame in which the cells have this surface, µm².
-fn values(layout: &Layout, surface: f64, touching: &[Touching], on_planes: &[Touching]) -> Vec<f64> {
+pub(super) fn values_of_frame(
+    layout: &Layout,
+    surface: f64,
+    touching: &[Touching],
+    on_planes: &[Touching],
+) -> Vec<f64> {
     let types: Vec<u32> = layout.cells.iter().map(|cell| cell.kind).collect();
     let (number, planes) = (layout.types.len(), layout.planes.len());
     let kind = |cell: u32| types[cell as usize] as usize;

@@ -24,7 +24,7 @@ fn areas_pairs_and_clusters_are_counted_by_types() {
     // A row of cells: red red white white, and a red one alone; the first and the third stand on the floor.
     let layout = layout(&[0, 0, 1, 1, 0]);
     let pairs = touching(&[(0, 1, 4.0), (1, 2, 2.0), (2, 3, 3.0)]);
-    let found = values(&layout, 90.0, &pairs, &touching(&[(0, 0, 10.0), (2, 0, 20.0)]));
+    let found = values_of_frame(&layout, 90.0, &pairs, &touching(&[(0, 0, 10.0), (2, 0, 20.0)]));
     let names = series_of_frame(&layout);
     assert_eq!(names.len(), found.len());
     let value = |wanted: &str| {
@@ -48,7 +48,7 @@ fn areas_pairs_and_clusters_are_counted_by_types() {
 #[test]
 fn without_contacts_shares_are_no_numbers_and_every_cell_is_a_cluster() {
     let layout = layout(&[0, 1, 1]);
-    let found = values(&layout, 1.0, &[], &[]);
+    let found = values_of_frame(&layout, 1.0, &[], &[]);
     let undefined: Vec<String> = series_of_frame(&layout)
         .into_iter()
         .zip(found)

@@ -38,6 +38,8 @@ struct Stage<'a> {
     arrows: LoadArrows,
     field: Option<FieldView>,
     times: Vec<f64>,
+    /// When the run was to end, s.
+    until: f64,
 }
 
 /// Finds what `name` means for this result: the type, a quantity of atoms or a series of cells.
@@ -108,7 +110,13 @@ impl<'a> Stage<'a> {
         look.field_range = picture.field_range;
         look.field_label = field.as_ref().map_or_else(String::new, FieldView::label);
         let arrows = if picture.loads { LoadArrows::of(document, result.layout())? } else { LoadArrows::default() };
-        Ok(Self { result, look, shown, arrows, field, times: result.times()? })
+        let until = document.experiment.run.until.value();
+        Ok(Self { result, look, shown, arrows, field, times: result.times()?, until })
+    }
+
+    /// Nothing seen yet; times are told in the unit that suits the whole run, whichever frames are drawn.
+    fn framing(&self) -> Framing {
+        Framing::new(&self.look).lasting(self.until)
     }
 
     fn shot(&self, frame: usize) -> Result<Shot> {
@@ -170,7 +178,7 @@ fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &
 pub fn still(result: &ResultFile, document: &Document, picture: &Picture) -> Result<Image> {
     let stage = Stage::new(result, document, picture)?;
     let shot = stage.shot(frame_at(result, picture.time)?)?;
-    let mut framing = Framing::new(&stage.look);
+    let mut framing = stage.framing();
     framing.include(&stage.snapshot(&shot));
     Ok(stage.draw(&shot, &framing, picture))
 }
@@ -187,7 +195,7 @@ pub fn film(
     mut keep: impl FnMut(&Image) -> Result<()>,
 ) -> Result<()> {
     let stage = Stage::new(result, document, picture)?;
-    let mut framing = Framing::new(&stage.look);
+    let mut framing = stage.framing();
     for &frame in frames {
         framing.include(&stage.snapshot(&stage.shot(frame)?));
     }

@@ -143,6 +143,12 @@ impl Framing {
         }
     }
 
+    /// For pictures of a run that lasts at least so long, s: all their times have the unit that suits this one.
+    pub fn lasting(mut self, time: f64) -> Self {
+        self.longest = self.longest.max(time);
+        self
+    }
+
     /// Makes room for a frame that will be drawn.
     pub fn include(&mut self, snapshot: &Snapshot) {
         let points = || snapshot.positions.iter().chain(snapshot.arrows.iter().flatten());
@@ -405,6 +411,22 @@ mod tests {
         assert_eq!(scene.surfaces[1].colour, SurfaceColour::Uniform(ColourMap::Viridis.at(1.0)));
         let key = overlay_of(&snapshot, &look, &framing).key;
         assert!(matches!(key, Key::Bar { low, high, .. } if low == -1.0 && high == 4.0));
+    }
+
+    #[test]
+    fn every_frame_of_a_run_has_its_time_in_the_same_unit() {
+        let (layout, positions) = two_cells();
+        let look = Look::default();
+        let stamp = |time: f64| {
+            let (positions, values) = (&positions, Values::Type);
+            let snapshot = Snapshot { layout: &layout, positions, time, values, arrows: &[], field: None };
+            // A picture of one frame alone: the others have not been seen.
+            let mut framing = Framing::new(&look).lasting(600.0);
+            framing.include(&snapshot);
+            overlay_of(&snapshot, &look, &framing).time
+        };
+        let stamps = [0.0, 1.5, 600.0].map(stamp);
+        assert!(stamps.iter().all(|stamp| stamp.ends_with(" min")), "{stamps:?}");
     }
 
     #[test]

@@ -198,6 +198,8 @@ impl std::fmt::Display for Trouble {
     }
 }
 
+impl std::error::Error for Trouble {}
+
 /// What is wrong with a system, in words.
 fn words_for(reason: Reason) -> &'static str {
     match reason {

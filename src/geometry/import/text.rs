@@ -46,8 +46,9 @@ impl Text {
 
     /// A fault that points at a word.
     pub fn fault(&self, at: Word, message: impl Into<String>, label: &str, help: &str) -> Fault {
-        let place = Place { source: self.source.clone(), start: at.start, length: at.text.len(), label: label.into() };
-        Fault::new(message).at(place).help(help)
+        let position =
+            Place { source: self.source.clone(), start: at.start, length: at.text.len(), label: label.into() };
+        Fault::new(message).at(position).help(help)
     }
 
     /// A fault at the end of the text.

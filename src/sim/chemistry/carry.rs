@@ -5,11 +5,11 @@ use super::super::state::{State, index, vector};
 use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
 use super::census::{cell_of_member, cells_of, member_of_cell};
+use super::exchange::is_due;
+use super::links::{Control, Observation, Owner, Target};
 use super::measure::measure_cells;
-use super::model::{Control, Observation, Owner, Target};
 use super::observe::{observe, read_cell};
 use super::scratch::ChemistryScratch;
-use super::stages::is_due;
 use crate::equations::eml::LinkDescription;
 use crate::field::Sensed;
 
@@ -31,7 +31,7 @@ pub(super) fn carry_links(
         measure_cells(model, state, ws, dt);
     }
     sense_fields(model, state, &mut ws.chemistry);
-    ws.chemistry.observed.forget(model);
+    ws.chemistry.observed.forget(&chemistry.observations);
     for (number, link) in chemistry.links.iter().enumerate() {
         let due = match link.owner {
             Owner::Reactor(number) => start || is_due(&chemistry.reactors[number], time),
@@ -115,19 +115,19 @@ fn carry(
             (Target::Own(input), Owner::Field(field)) => state.chemistry.fields[field].inputs[input] = carried,
             (Target::Cell(whose, control), _) => {
                 for cell in cells_of(model, whose, own) {
-                    set(model, cell, control, carried, state);
+                    set_control(model, cell, control, carried, state);
                 }
             }
         }
     }
     if let Target::Cell(_, Control::Atom(..)) = link.to {
-        scratch.observed.forget_places(model);
+        scratch.observed.forget_at_atoms(&chemistry.observations);
     }
     Ok(())
 }
 
 /// What a target expects, if it cannot be set to a number.
-fn missed(target: Target, value: f64) -> Option<&'static str> {
+pub fn missed(target: Target, value: f64) -> Option<&'static str> {
     if !value.is_finite() {
         return Some("a finite number");
     }
@@ -142,7 +142,7 @@ fn missed(target: Target, value: f64) -> Option<&'static str> {
 }
 
 /// Sets what mechanics reads of a cell.
-fn set(model: &Model, cell: usize, control: Control, value: f64, state: &mut State) {
+pub fn set_control(model: &Model, cell: usize, control: Control, value: f64, state: &mut State) {
     let controls = &mut state.chemistry.controls;
     match control {
         Control::MotilitySpeed => controls.speed[cell] = value,

@@ -3,19 +3,12 @@
 use std::ops::Range;
 
 use super::super::model::{Kind, Model};
-use super::model::{Members, Whose};
+use super::links::Whose;
+use super::model::Members;
 
 /// The numbers of the cells of a kind, in the order of all cells.
 fn cells_of_kind(kind: &Kind) -> Range<usize> {
     kind.first_cell..kind.first_cell + kind.cells
-}
-
-/// How many copies of a system there are.
-pub(super) fn member_count(model: &Model, members: &Members) -> usize {
-    match members {
-        Members::Scene => 1,
-        Members::Kinds(kinds) => kinds.iter().map(|&kind| model.kinds[kind].cells).sum(),
-    }
 }
 
 /// The cells that have a copy of a system, in the order of its copies; none for the scene.

@@ -25,8 +25,10 @@ pub struct CellNumbers {
     area: f64,
     /// Extents of the bounding box, µm.
     size: Vec3,
-    /// Part of the atoms on a plane or near another cell.
+    /// Part of the atoms near another cell, as it is recorded.
     contact_share: f64,
+    /// Part of the atoms on a plane.
+    plane_share: f64,
     /// Volume and area of the mesh at rest.
     rest: [f64; 2],
 }
@@ -50,6 +52,7 @@ impl CellNumbers {
             Reading::AreaStrain => strain(self.area, self.rest[1]),
             Reading::Size(axis) => self.size[axis],
             Reading::ContactShare => self.contact_share,
+            Reading::PlaneShare => self.plane_share,
             Reading::Atom(..) => f64::NAN,
         }
     }
@@ -91,12 +94,14 @@ fn near_cell<'a>(model: &Model, found: &'a [AtomContact], cell: usize) -> (u32, 
 fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(u32) -> bool) -> CellNumbers {
     let place = |atom: usize| vector(kind, x, cell, atom);
     let base = place(0);
-    let (mut low, mut high, mut sum, mut touching) = (base, base, Vec3::zeros(), 0_usize);
+    let (mut low, mut high, mut sum) = (base, base, Vec3::zeros());
+    let (mut near_cells, mut on_planes) = (0_usize, 0_usize);
     for atom in 0..kind.atoms() {
         let p = place(atom);
         (low, high, sum) = (low.inf(&p), high.sup(&p), sum + (p - base));
-        let near = |plane: &super::super::Plane| (p - plane.point).dot(&plane.normal) < TOUCHING * kind.edge;
-        touching += usize::from(model.planes.iter().any(near) || is_near(atom as u32));
+        let touches = |plane: &super::super::Plane| (p - plane.point).dot(&plane.normal) < TOUCHING * kind.edge;
+        on_planes += usize::from(model.planes.iter().any(touches));
+        near_cells += usize::from(is_near(atom as u32));
     }
     let (mut area, mut volume, mut moment) = (0.0, 0.0, Vec3::zeros());
     for facet in &kind.rest.facets {
@@ -113,7 +118,8 @@ fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(
         volume: if kind.closed { volume } else { 0.0 },
         area,
         size: high - low,
-        contact_share: touching as f64 / atoms,
+        contact_share: near_cells as f64 / atoms,
+        plane_share: on_planes as f64 / atoms,
         ..CellNumbers::default()
     }
 }

@@ -6,18 +6,22 @@
 
 mod carry;
 mod census;
+mod exchange;
+mod links;
 mod measure;
 mod model;
 mod observe;
+mod observed;
 mod scratch;
 mod stages;
 mod state;
+mod turnover;
 
+pub use carry::{missed, set_control};
 pub use census::member_cells;
-pub use model::{
-    Chemistry, Control, FieldReactor, FieldStepping, Link, LinkObservations, Members, Observation, Observations, Owner,
-    Reactor, Source, Target, Whole, Whose,
-};
+pub use exchange::next_exchange;
+pub use links::{Control, Link, LinkObservations, Observation, Observations, Owner, Source, Target, Whole, Whose};
+pub use model::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
 pub use scratch::ChemistryScratch;
-pub use stages::{advance_chemistry, begin_chemistry, next_exchange};
+pub use stages::{advance_chemistry, begin_chemistry};
 pub use state::{ChemistryState, Controls, FieldState};

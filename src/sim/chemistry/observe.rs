@@ -5,56 +5,11 @@ use rayon::prelude::*;
 use super::super::model::Model;
 use super::super::state::{State, vector};
 use super::census::{cells_of, member_of_cell};
-use super::model::{Members, Observation, Source, Whole};
+use super::links::{Observation, Source, Whole};
+use super::model::Members;
 use super::scratch::ChemistryScratch;
 use crate::cell::ends::{Reading, Sense};
 use crate::field::{Fields, Sensed};
-
-/// What has been observed in an exchange, in the order of [`Observations`](super::Observations).
-#[derive(Debug, Clone, Default)]
-pub(super) struct Observed {
-    /// `[quantity][member]`, where known.
-    quantities: Vec<Vec<f64>>,
-    known: Vec<bool>,
-    /// Numbers that are the same for all members, where known.
-    shared: Vec<Option<f64>>,
-    /// Sums over pieces of a field.
-    sums: Vec<f64>,
-    /// Blocks of cells whose equations were evaluated, ever.
-    pub blocks: u64,
-}
-
-impl Observed {
-    /// Forgets everything: an exchange begins.
-    pub fn forget(&mut self, model: &Model) {
-        let observations = &model.chemistry.observations;
-        self.quantities.resize_with(observations.quantities.len(), Vec::new);
-        self.known.clear();
-        self.known.resize(observations.quantities.len(), false);
-        self.shared.clear();
-        self.shared.resize(observations.shared.len(), None);
-    }
-
-    /// Forgets what depends on where atoms are, after a link has moved one. Positions themselves are read after they are set: the
-    /// order of links sees to that.
-    pub fn forget_places(&mut self, model: &Model) {
-        for (source, value) in model.chemistry.observations.shared.iter().zip(&mut self.shared) {
-            if matches!(source, Source::AtAtom(..)) {
-                *value = None;
-            }
-        }
-    }
-
-    /// An observed quantity of a member.
-    pub fn quantity(&self, slot: usize, member: usize) -> f64 {
-        self.quantities[slot][member]
-    }
-
-    /// An observed number that is the same for all members.
-    pub fn shared(&self, slot: usize) -> f64 {
-        self.shared[slot].unwrap_or(f64::NAN)
-    }
-}
 
 /// Observes what a link reads, if that has not been done in this exchange. When a link is carried all numbers that it reads are final:
 /// the links that set them come before it.

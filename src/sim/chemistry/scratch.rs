@@ -3,7 +3,7 @@
 use super::super::model::Model;
 use super::super::state::State;
 use super::measure::CellNumbers;
-use super::observe::Observed;
+use super::observed::Observed;
 use super::state::ChemistryState;
 use crate::Vec3;
 use crate::field::{Fields, Sensed};
@@ -52,6 +52,7 @@ impl ChemistryScratch {
     /// Writes NaN over all scratch numbers: a step must not notice.
     pub fn poison(&mut self, model: &Model) {
         *self = Self::new(model);
+        self.fields.iter_mut().for_each(Fields::poison);
         self.cells.fill(CellNumbers::poisoned());
         let nothing = Sensed { value: f64::NAN, gradient: Vec3::repeat(f64::NAN) };
         self.sensed.iter_mut().for_each(|cells| cells.fill(nothing));

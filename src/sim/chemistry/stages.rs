@@ -1,4 +1,4 @@
-//! The stages of chemistry in a step, and when systems exchange numbers with the model.
+//! The stages of chemistry in a step.
 
 use super::super::constraints::enforce_constraints;
 use super::super::contact::find_contacts;
@@ -9,6 +9,7 @@ use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
 use super::carry::carry_links;
 use super::census::cell_of_member;
+use super::exchange::is_due;
 use super::model::Reactor;
 use crate::error::Error;
 use crate::ode::{Eventful, OdeTrouble, PopulationScratch};
@@ -57,20 +58,6 @@ pub fn advance_chemistry(model: &Model, dt: f64, state: &mut State, ws: &mut Wor
         ws.chemistry.restore(state);
     }
     result
-}
-
-/// The next time after `time` at which a system exchanges numbers with the model, s; a step ends there.
-pub fn next_exchange(model: &Model, time: f64) -> f64 {
-    let next = |every: f64| ((time / every * (1.0 + 1e-12)).floor() + 1.0) * every;
-    model.chemistry.reactors.iter().filter_map(|reactor| reactor.exchange).map(next).fold(f64::INFINITY, f64::min)
-}
-
-/// Whether a system exchanges numbers with the model at a time.
-pub(super) fn is_due(reactor: &Reactor, time: f64) -> bool {
-    reactor.exchange.is_none_or(|every| {
-        let count = time / every;
-        (count - count.round()).abs() <= 1e-9 * count.abs().max(1.0)
-    })
 }
 
 /// Advances all systems that are due, each from the time that it has reached.

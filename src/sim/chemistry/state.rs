@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::model::Model;
-use super::census::member_count;
-use super::model::{Control, Reactor, Target};
+use super::links::{Control, Target};
+use super::model::Reactor;
 use crate::field::Fields;
 use crate::ode::{EventMemory, Population};
 
@@ -60,11 +60,11 @@ impl ChemistryState {
     pub fn new(model: &Model, fields: &[Fields]) -> Self {
         let chemistry = &model.chemistry;
         let reactors = &chemistry.reactors;
-        let populations =
-            reactors.iter().map(|r| Population::new(&r.program, member_count(model, &r.members), r.method));
+        let members = |reactor: &Reactor| reactor.members.count(|kind| model.kinds[kind].cells);
+        let populations = reactors.iter().map(|r| Population::new(&r.program, members(r), r.method));
         let events = |reactor: &Reactor| match reactor.events.is_empty() {
             true => Vec::new(),
-            false => vec![reactor.events.before_start(); member_count(model, &reactor.members)],
+            false => vec![reactor.events.before_start(); members(reactor)],
         };
         let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
             values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
@@ -125,23 +125,30 @@ impl Controls {
         let (mut controls, cells) = (Self::default(), model.cells());
         controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
         for link in &model.chemistry.links {
-            match link.to {
-                Target::Cell(_, Control::MotilitySpeed) => controls.speed = vec![f64::NAN; cells],
-                Target::Cell(_, Control::Bias(_)) => controls.bias = vec![[0.0; 3]; cells],
-                Target::Cell(_, Control::Stiffness) => controls.stiffness = vec![1.0; cells],
-                Target::Cell(_, Control::Adhesion) => controls.adhesion = vec![1.0; cells],
-                Target::Cell(_, Control::Load(load)) => {
-                    let loads = controls.loads.len().max(load + 1);
-                    controls.loads.resize(loads, vec![1.0; cells]);
-                }
-                Target::Cell(_, Control::Fibre(fibre)) => {
-                    let fibres = controls.fibres.len().max(fibre + 1);
-                    controls.fibres.resize(fibres, vec![-1.0; cells]);
-                }
-                _ => {}
+            if let Target::Cell(_, control) = link.to {
+                controls.admit(control, cells);
             }
         }
         controls
+    }
+
+    /// Makes the list that a control is written to, with one number for each of `cells`, where there is none: numbers that
+    /// change nothing until they are set.
+    pub fn admit(&mut self, control: Control, cells: usize) {
+        let lists = |lists: &mut Vec<Vec<f64>>, number: usize, value: f64| {
+            lists.resize(lists.len().max(number + 1), vec![value; cells]);
+        };
+        let list = |list: &mut Vec<f64>, value: f64| list.resize(cells, value);
+        match control {
+            Control::MotilitySpeed => list(&mut self.speed, f64::NAN),
+            Control::Bias(_) => self.bias.resize(cells, [0.0; 3]),
+            Control::Stiffness => list(&mut self.stiffness, 1.0),
+            Control::Adhesion => list(&mut self.adhesion, 1.0),
+            Control::Load(number) => lists(&mut self.loads, number, 1.0),
+            Control::Fibre(number) => lists(&mut self.fibres, number, -1.0),
+            Control::Secretion(channel) => lists(&mut self.secretion, channel, 0.0),
+            Control::RestVolume | Control::RestVolumeRatio | Control::Atom(..) => {}
+        }
     }
 
     fn copy_from(&mut self, other: &Self) {

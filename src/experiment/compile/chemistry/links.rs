@@ -10,7 +10,7 @@ use crate::equations::tree::{Event, Expr, Role, System};
 use crate::error::{Fault, Place};
 use crate::ode::assigned_parameters;
 use crate::sim::Kind;
-use crate::sim::chemistry::{Chemistry, Control, Link, Observations, Owner, Target};
+use crate::sim::chemistry::{Chemistry, Control, Link, Owner, Target};
 
 /// Parameters that a link of the experiment sets become inputs; those that events set do not.
 pub(super) fn open_linked_parameters(parts: &mut [Part]) {
@@ -63,8 +63,7 @@ pub(super) fn links(
             for &number in &order {
                 act(&plain[number], chemistry, kinds);
             }
-            chemistry.links = order.into_iter().map(|number| plain[number].clone()).collect();
-            chemistry.observations = Observations::of(&chemistry.links, &chemistry.reactors);
+            chemistry.set_links(order.into_iter().map(|number| plain[number].clone()).collect());
         }
         Err(circle) => {
             let texts: Vec<&str> = circle.iter().map(|&number| plain[number].text.as_str()).collect();
