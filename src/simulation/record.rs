@@ -134,7 +134,7 @@ impl Recorder {
 
     /// The frame of this instant without the runs that ended; `dt` is the size of the last step, s.
     pub fn look(&mut self, model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
-        let mut frame = frame_of(model, state, ws, dt);
+        let mut frame = frame_of(model, state);
         frame.scene = self.loads.iter().map(|&(_, k, l)| model.kinds[k].loads[l].force.at(state.time)).collect();
         if let Some(contact) = &model.contact {
             self.touch.look(model, contact, state, ws, dt, &mut frame);
@@ -153,9 +153,9 @@ impl Recorder {
     }
 }
 
-/// Positions and measures of all cells at this instant, as if they did not touch; `dt` is the size of the last step, s.
-fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
-    let velocities = mean_velocities(model, state, ws, dt);
+/// Positions and measures of all cells at this instant, as if they did not touch.
+fn frame_of(model: &Model, state: &State) -> Frame {
+    let velocities = mean_velocities(state);
     let mut frame = Frame { time: state.time, step: state.step, ..Frame::default() };
     for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
         frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));

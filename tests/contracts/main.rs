@@ -4,7 +4,10 @@ mod book;
 mod circles;
 mod layering;
 mod run;
+mod transaction;
 mod volume;
 
+#[path = "../support/everything.rs"]
+mod everything;
 #[path = "../support/turns.rs"]
 mod turns;

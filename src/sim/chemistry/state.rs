@@ -98,6 +98,18 @@ impl ChemistryState {
         self.carried = other.carried;
     }
 
+    /// Writes NaN over all numbers and forgets what is held in lists.
+    pub fn poison(&mut self) {
+        self.populations.clear();
+        self.events.clear();
+        self.times.fill(f64::NAN);
+        for field in &mut self.fields {
+            field.values.fill(f64::NAN);
+            field.inputs.fill(f64::NAN);
+        }
+        self.controls = Controls::default();
+    }
+
     /// Whether a checkpoint has the shape of a fresh start.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let cells = |a: &Population, b: &Population| a.cells() == b.cells() && a.has_shape_of(b);

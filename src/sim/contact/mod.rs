@@ -30,14 +30,16 @@ mod sweep_tests;
 mod zones;
 
 pub use depth::{Deepened, check_depth, check_passed, look_for_depth};
-pub use find::{add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, pull_contacts};
+pub use find::{
+    add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, locate_contacts, pull_contacts,
+};
 pub use give::energy_of_give;
 pub use hold::{hold_contacts, travel};
 pub use links::{Link, LinkTable, links_at, pull_links};
 pub use model::{ContactModel, Law, Strength};
 pub use penalty::{Penalty, press};
 pub use rows::{Pairing, Pull, Row};
-pub use scratch::ContactScratch;
+pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
 pub use state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 pub use zones::{AdhesiveAtom, AdhesiveScratch, AdhesiveTable, Zones};

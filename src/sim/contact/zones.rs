@@ -191,6 +191,8 @@ impl AdhesiveScratch {
         moved: &[[f64; 4]],
         kept: &mut ContactState,
     ) {
+        kept.released.clear();
+        kept.adhesives.clear();
         let Some(glue) = Glue::of(model, controls) else { return };
         for (one, force) in self.atoms.iter_mut().zip(&self.forces) {
             one.force = (*force).into();
@@ -214,9 +216,7 @@ impl AdhesiveScratch {
             }
         }
         let roles = &self.roles;
-        kept.released.clear();
         kept.released.extend((0..).zip(roles).filter(|(_, role)| **role == Role::Released).map(|(atom, _)| atom));
-        kept.adhesives.clear();
         kept.adhesives.extend(self.atoms.iter().filter(|one| roles[one.atom as usize] == Role::Cloned));
         keep_living(&mut kept.adhesives, |atom| self.grounded[atom as usize]);
     }
