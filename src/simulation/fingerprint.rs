@@ -59,7 +59,7 @@ fn add_contact(hash: &mut Fnv, contact: &ContactModel) {
 
 fn add_chemistry(hash: &mut Fnv, chemistry: &Chemistry) {
     for reactor in &chemistry.reactors {
-        hash.value(&(&reactor.name, &reactor.program, &reactor.events, reactor.members.len()));
+        hash.value(&(&reactor.name, &reactor.program, &reactor.events, &reactor.members));
         hash.value(&(reactor.seconds, reactor.method, reactor.tolerances, reactor.exchange));
     }
     for field in &chemistry.fields {

@@ -3,7 +3,7 @@
 use super::touch::Touch;
 use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES};
 use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
-use crate::sim::chemistry::Members;
+use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::{Law, find_contacts};
 use crate::sim::model::Kind;
 use crate::sim::observe::{mean_velocities, measure_cells};
@@ -59,7 +59,7 @@ fn add_chemistry(model: &Model, layout: &mut Layout) {
             name: reactor.name.clone(),
             scope: match &reactor.members {
                 Members::Scene => SystemScope::Scene,
-                Members::Cells(_) => SystemScope::Cells,
+                Members::Kinds(_) => SystemScope::Cells,
             },
             quantities: reactor.recorded.iter().map(|(_, id, unit)| (id.clone(), unit.clone())).collect(),
         });
@@ -79,9 +79,10 @@ fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
             population.observe(&reactor.program, *quantity, time / reactor.seconds, &mut values);
             match &reactor.members {
                 Members::Scene => values,
-                Members::Cells(cells) => {
+                Members::Kinds(_) => {
                     let mut of_all = vec![f64::NAN; frame.cells.len()];
-                    cells.iter().zip(values).for_each(|(cell, value)| of_all[*cell as usize] = value);
+                    let cells = member_cells(model, &reactor.members);
+                    cells.zip(values).for_each(|(cell, value)| of_all[cell] = value);
                     of_all
                 }
             }

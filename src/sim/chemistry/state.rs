@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::super::controls::Controls;
 use super::super::model::Model;
-use super::model::{Reactor, Target};
+use super::links::Target;
+use super::model::Reactor;
 use crate::field::Fields;
 use crate::ode::{EventMemory, Population};
 
@@ -41,10 +42,11 @@ impl ChemistryState {
     pub fn new(model: &Model, fields: &[Fields]) -> Self {
         let chemistry = &model.chemistry;
         let reactors = &chemistry.reactors;
-        let populations = reactors.iter().map(|r| Population::new(&r.program, r.members.len(), r.method));
+        let members = |reactor: &Reactor| reactor.members.count(|kind| model.kinds[kind].cells);
+        let populations = reactors.iter().map(|r| Population::new(&r.program, members(r), r.method));
         let events = |reactor: &Reactor| match reactor.events.is_empty() {
             true => Vec::new(),
-            false => vec![reactor.events.before_start(); reactor.members.len()],
+            false => vec![reactor.events.before_start(); members(reactor)],
         };
         let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
             values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
@@ -63,8 +65,8 @@ impl ChemistryState {
 
     /// Copies another of the same shape without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.populations.clone_from(&other.populations);
-        self.events.clone_from(&other.events);
+        copy_each(&mut self.populations, &other.populations, Population::copy_from);
+        copy_each(&mut self.events, &other.events, |to, from| copy_each(to, from, EventMemory::copy_from));
         self.times.clone_from(&other.times);
         if self.fields.len() != other.fields.len() {
             self.fields.clone_from(&other.fields);
@@ -103,6 +105,13 @@ impl ChemistryState {
             && self.events.iter().zip(&other.events).all(|(a, b)| events(a, b))
             && self.fields.iter().zip(&other.fields).all(|(a, b)| a.values.len() == b.values.len())
     }
+}
+
+/// Makes a list the same as another, its first things without allocating, where `copy` does not.
+fn copy_each<T: Clone>(to: &mut Vec<T>, from: &[T], copy: impl Fn(&mut T, &T)) {
+    to.truncate(from.len());
+    to.iter_mut().zip(from).for_each(|(to, from)| copy(to, from));
+    to.extend_from_slice(&from[to.len()..]);
 }
 
 /// The lists that the links of a model write, at numbers that change nothing.

@@ -63,7 +63,7 @@ pub(super) fn links(
             for &number in &order {
                 act(&plain[number], chemistry, kinds);
             }
-            chemistry.links = order.into_iter().map(|number| plain[number].clone()).collect();
+            chemistry.set_links(order.into_iter().map(|number| plain[number].clone()).collect());
         }
         Err(circle) => {
             let texts: Vec<&str> = circle.iter().map(|&number| plain[number].text.as_str()).collect();
@@ -112,11 +112,7 @@ fn link_kinds(owner: Owner, whose: crate::sim::chemistry::Whose, chemistry: &Che
         (Whose::Cell(cell), _) => kind_of(cell).into_iter().collect(),
         (Whose::Own, Owner::Reactor(number)) => match &chemistry.reactors[number].members {
             Members::Scene => Vec::new(),
-            Members::Cells(cells) => {
-                let mut found: Vec<usize> = cells.iter().filter_map(|&cell| kind_of(cell as usize)).collect();
-                found.dedup();
-                found
-            }
+            Members::Kinds(kinds) => kinds.clone(),
         },
         (Whose::Own, Owner::Field(_)) => Vec::new(),
     }

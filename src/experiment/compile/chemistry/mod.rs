@@ -71,7 +71,7 @@ pub fn chemistry(document: &Document, kinds: &mut [Kind], faults: &mut Vec<Fault
     }
     links::open_linked_parameters(&mut parts);
     for part in parts.iter().filter(|part| !part.is_field()) {
-        chemistry.reactors.extend(reactor(document, part, kinds, faults));
+        chemistry.reactors.extend(reactor(document, part, faults));
     }
     // Ends of links name systems and fields by their numbers, which stand only when all are there.
     if faults.len() == before {
@@ -99,7 +99,7 @@ fn tell(error: Error, faults: &mut Vec<Fault>) {
     }
 }
 
-fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fault>) -> Option<Reactor> {
+fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<Reactor> {
     let (entry, eml) = (part.entry, &part.document);
     let method = method(document, part, faults)?;
     let variables = eml.system.variables().len();
@@ -121,14 +121,7 @@ fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fa
             return None;
         }
     };
-    let members = match &part.kinds[..] {
-        [] => Members::Scene,
-        some => {
-            let cells =
-                |kind: &usize| kinds[*kind].first_cell as u32..(kinds[*kind].first_cell + kinds[*kind].cells) as u32;
-            Members::Cells(some.iter().flat_map(cells).collect())
-        }
-    };
+    let members = if part.kinds.is_empty() { Members::Scene } else { Members::Kinds(part.kinds.clone()) };
     let exchange = entry.exchange.map(|time| time.value()).or(eml.solver.step.map(|step| step * eml.seconds));
     let set_by_events = assigned_parameters(&eml.system);
     let kept = |number: u32, role: &Role| match role {
