@@ -36,7 +36,6 @@ pub fn make_exact(model: &Model, time: f64, from: &State, to: &mut State, ws: &m
 /// # Errors
 /// As [`make_exact`].
 pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
-    ws.rooms.suit(model);
     let Workspace { kinds, rooms, .. } = ws;
     for ((kind, now), w) in model.kinds.iter().zip(&mut to.kinds).zip(kinds) {
         let exact = matches!(kind.volume, VolumeRule::Exact(_));
@@ -61,7 +60,7 @@ pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Wo
                 }
             });
         let missed = |cell: &usize| exact && (left[*cell].is_nan() || left[*cell] > VOLUME_TOLERANCE);
-        if let Some(cell) = (0..kind.cells).find(missed) {
+        if let Some(cell) = (0..now.cells()).find(missed) {
             return Err(Trouble::Volume { kind: kind.name.clone(), cell, error: left[cell], time });
         }
     }

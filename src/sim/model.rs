@@ -40,6 +40,39 @@ pub struct Model {
     pub until: f64,
     /// Times at which a course bends, rising; a step ends there.
     pub kinks: Vec<f64>,
+    /// Cells that come and go at given times, in rising order of these; a step ends there.
+    pub changes: Vec<PopulationChange>,
+}
+
+/// Cells of a kind that come or go between two steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PopulationChange {
+    /// When, s.
+    pub time: f64,
+    /// Number of the kind.
+    pub kind: usize,
+    /// What happens.
+    pub change: Change,
+}
+
+/// What happens to the cells of a kind.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Change {
+    /// Cells at rest are added around these centres, µm.
+    Add(Vec<Vec3>),
+    /// Cells are removed.
+    Remove(Removal),
+}
+
+/// Which cells of a kind are removed. Those that are drawn depend on the seed, on their ids and on the number of the change alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Removal {
+    /// All.
+    All,
+    /// This share of them, from 0 to 1, drawn at random and rounded to a whole number of cells.
+    Share(f64),
+    /// So many, drawn at random; all, where there are fewer.
+    Number(usize),
 }
 
 /// A rigid plane: the half space that its normal points into is free.
@@ -88,10 +121,6 @@ pub struct Kind {
     pub biased: bool,
     /// Central attraction.
     pub attraction: Option<Attraction>,
-    /// Number of the first cell in the order of all cells.
-    pub first_cell: usize,
-    /// Number of cells.
-    pub cells: usize,
     /// Lanes of a block: [`LANES`], or 1 for a few cells.
     pub lanes: usize,
     /// Mean edge length at rest, µm.
@@ -158,18 +187,20 @@ impl Kind {
             brownian: None,
             biased: false,
             attraction: None,
-            first_cell: 0,
-            cells: 1,
             lanes: 1,
             edge: geometry::mean_edge_length(&rest),
             rest,
         }
     }
 
-    /// The same kind with a number of cells, from `first_cell` on in the order of all cells.
-    pub fn with_cells(mut self, first_cell: usize, cells: usize) -> Self {
-        (self.first_cell, self.cells, self.lanes) = (first_cell, cells, Self::best_lanes(cells));
-        self
+    /// The same kind with the lanes that are best for so many cells. Results do not depend on it but by round-off.
+    pub fn for_cells(self, cells: usize) -> Self {
+        Self { lanes: Self::best_lanes(cells), ..self }
+    }
+
+    /// Volume of the mesh at rest, µm³; 0 of an open surface.
+    pub fn rest_volume(&self) -> f64 {
+        if self.closed { geometry::volume(&self.rest) } else { 0.0 }
     }
 
     /// Largest eigenvalue of the true stiffness at rest, attraction and active fibres included, pN/µm, by power iteration on differences
@@ -239,12 +270,6 @@ impl Kind {
         largest
     }
 
-    /// The cell in a lane of a block, in the order of all cells; none in lanes beyond the last.
-    pub fn cell_at(&self, block: usize, lane: usize) -> Option<usize> {
-        let local = block * self.lanes + lane;
-        (local < self.cells).then_some(self.first_cell + local)
-    }
-
     /// Atoms of a cell.
     pub fn atoms(&self) -> usize {
         self.rest.positions.len()
@@ -252,10 +277,6 @@ impl Kind {
     /// Numbers in a block: 3 · atoms · lanes.
     pub fn block_len(&self) -> usize {
         3 * self.atoms() * self.lanes
-    }
-    /// Number of blocks.
-    pub fn blocks(&self) -> usize {
-        self.cells.div_ceil(self.lanes)
     }
     /// The lanes that a number of cells is best run on: single cells run alone, more fill blocks.
     pub fn best_lanes(cells: usize) -> usize {
@@ -280,21 +301,18 @@ impl Model {
             integrator,
             until,
             kinks: Vec::new(),
+            changes: Vec::new(),
         }
     }
 
-    /// The kind of a cell, by its number in the order of all cells, and its number within the kind.
-    pub fn kind_of(&self, cell: usize) -> (usize, usize) {
-        let kind = self.kinds.partition_point(|kind| kind.first_cell + kind.cells <= cell);
-        (kind, cell - self.kinds[kind].first_cell)
+    /// Times at which something happens, s, in no order: a step ends there.
+    pub fn instants(&self) -> impl Iterator<Item = f64> {
+        let changes = self.changes.iter().map(|change| change.time);
+        self.kinks.iter().copied().chain([self.until]).chain(changes)
     }
 
-    /// Number of cells.
-    pub fn cells(&self) -> usize {
-        self.kinds.iter().map(|kind| kind.cells).sum()
-    }
-    /// Number of atoms of all cells.
-    pub fn atoms(&self) -> usize {
-        self.kinds.iter().map(|kind| kind.cells * kind.atoms()).sum()
+    /// What the clock cannot tell apart, s: the round-off of adding many steps.
+    pub fn clock_slack(&self) -> f64 {
+        1e-12 * self.until
     }
 }

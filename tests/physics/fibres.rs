@@ -47,7 +47,7 @@ fn forces_are_the_gradient_of_the_energy_without_net_force_or_torque() {
 fn drawn_together(cells: usize, size: StepSize) -> f64 {
     let rest = pseudopod::geometry::icosphere(5.0, 1);
     let (from, to) = (rest.positions[0], rest.positions[20]);
-    let mut kind = Kind::new("cell", rest, Elasticity::default()).with_cells(0, cells);
+    let mut kind = Kind::new("cell", rest, Elasticity::default()).for_cells(cells);
     kind.volume = VolumeRule::Free;
     kind.drag = 2.0;
     // The documents' trunk: 0 to 1 in 2 s, back in half a second, then rest.

@@ -38,11 +38,11 @@ pub struct FieldState {
 }
 
 impl ChemistryState {
-    /// The start: systems at their initial values, `fields` as they start.
-    pub fn new(model: &Model, fields: &[Fields]) -> Self {
+    /// The start of so many cells of each kind: systems at their initial values, `fields` as they start.
+    pub fn new(model: &Model, cells: &[usize], fields: &[Fields]) -> Self {
         let chemistry = &model.chemistry;
         let reactors = &chemistry.reactors;
-        let members = |reactor: &Reactor| reactor.members.count(|kind| model.kinds[kind].cells);
+        let members = |reactor: &Reactor| reactor.members.count(|kind| cells[kind]);
         let populations = reactors.iter().map(|r| Population::new(&r.program, members(r), r.method));
         let events = |reactor: &Reactor| match reactor.events.is_empty() {
             true => Vec::new(),
@@ -58,7 +58,7 @@ impl ChemistryState {
             events: reactors.iter().map(events).collect(),
             times: vec![0.0; reactors.len()],
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
-            controls: controls_of(model),
+            controls: controls_of(model, cells.iter().sum()),
             carried: false,
         }
     }
@@ -115,8 +115,8 @@ fn copy_each<T: Clone>(to: &mut Vec<T>, from: &[T], copy: impl Fn(&mut T, &T)) {
 }
 
 /// The lists that the links of a model write, at numbers that change nothing.
-fn controls_of(model: &Model) -> Controls {
-    let (mut controls, cells) = (Controls::default(), model.cells());
+fn controls_of(model: &Model, cells: usize) -> Controls {
+    let mut controls = Controls::default();
     controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
     for link in &model.chemistry.links {
         if let Target::Cell(_, control) = link.to {
