@@ -13,13 +13,13 @@ until = "60 s"
 [cells.squeezed]
 mesh = { shape = "icosphere", radius = "5 um", level = 1 }
 mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
-fibres = [{ name = "belt", pattern = "horizontal", stiffness = "1 pN/um" }]
+fibres = [{ name = "belt", pattern = "horizontal", stiffness = "3 pN/um" }]
 "#;
 
 /// Time between two decisions of the controller, s.
 const INTERVAL: f64 = 0.1;
 /// Activation for each um that the cell is too wide, and for each um s.
-const GAINS: [f64; 2] = [0.2, 0.3];
+const GAINS: [f64; 2] = [0.3, 0.3];
 
 pub fn main() -> Result<(), SimulationError> {
     let mut simulation = Simulation::from_text("belt.toml", EXPERIMENT)?;

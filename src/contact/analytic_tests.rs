@@ -52,7 +52,7 @@ fn two_spheres_at_a_known_gap_touch_at_their_facing_atoms() {
         if gap > 0.0 {
             assert!((nearest.normal.wide().z.abs() - 1.0).abs() < 1e-12, "{nearest:?}");
         } else {
-            // The facets around the facing atom lean by 15°, and the way out is the shortest: through one of them.
+            // The facets around the facing atom lean by 15°, and the shortest displacement leads out: through one of them.
             assert!(nearest.normal.wide().z.abs() > 0.95 && (-0.05..-0.045).contains(&nearest.gap), "{nearest:?}");
         }
     }
@@ -144,7 +144,7 @@ fn an_atom_that_slides_into_a_groove_has_its_other_wall_before_it_is_there() {
     }
 }
 
-/// A tent that hangs from its lowest edge, between two places.
+/// A tent that hangs from its lowest edge, between two points.
 fn keel(from: Vec3, to: Vec3) -> Surface {
     let (middle, across) = (0.5 * (from + to) + Vec3::z(), Vec3::z().cross(&(to - from)).normalize());
     tetrahedron([from, to, middle + across, middle - across])

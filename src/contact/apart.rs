@@ -20,7 +20,7 @@ pub struct Yielding<'a> {
     pub rounds: u32,
 }
 
-/// Moves bodies as wholes until none overlaps another. In a round every pair that overlaps asks for the shortest way
+/// Moves bodies as wholes until none overlaps another. In a round every pair that overlaps asks for the shortest displacement
 /// apart along the line of centres, or along the normal of their overlap where that is clearly shorter; a body makes the
 /// sum of what its pairs ask for. No body is moved behind a plane, or farther behind it than it was. Returns how far each
 /// has been moved, µm, and what still overlaps. Deterministic, whatever the threads.
@@ -62,7 +62,7 @@ pub fn push_apart(scene: &Scene, positions: &mut [Vec3], yielding: &Yielding) ->
     (moves, left)
 }
 
-/// What two bodies move of the way between them.
+/// What two bodies move of the displacement between them.
 fn shares(resistance: f64, other: f64) -> [f64; 2] {
     match (resistance.is_finite(), other.is_finite()) {
         (true, true) => [other / (resistance + other), resistance / (resistance + other)],

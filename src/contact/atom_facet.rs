@@ -1,4 +1,4 @@
-//! Atoms on facets: the places where the distance from an atom to a surface is least, with a sign that is right at
+//! Atoms on facets: the points where the distance from an atom to a surface is least, with a sign that is right at
 //! edges and corners.
 
 use super::closest::{FacetPoint, Feature, closest_on_facet};
@@ -12,7 +12,7 @@ use crate::Vec3;
 /// between two facets is never refused by both.
 const COSINE_ROUND_OFF: f64 = 1e-9;
 
-/// A place on a surface where the distance to an atom is least.
+/// A point on a surface where the distance to an atom is least.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Low {
     facet: u32,
@@ -20,7 +20,7 @@ pub(super) struct Low {
     squared: f64,
 }
 
-/// On which side of a low place the atom is.
+/// On which side of a point of least distance the atom is.
 #[derive(Clone, Copy)]
 struct Side {
     inside: bool,
@@ -94,7 +94,7 @@ impl Other<'_> {
         self.shape.corners(facet, self.positions)
     }
 
-    /// Finds the places where the distance is least, within `range` µm, in the order of facets; the nearest comes back.
+    /// Finds the points where the distance is least, within `range` µm, in the order of facets; the nearest comes back.
     #[inline]
     fn find_lows(
         &self,
@@ -124,7 +124,7 @@ impl Other<'_> {
                 push(lows, low);
             }
         }
-        // The nearest is a low place by definition; should round-off have refused it, it is put where it belongs.
+        // The nearest is a point of least distance by definition; should round-off have refused it, it is put where it belongs.
         let nearest = nearest?;
         if lows.iter().all(|low| low.squared > nearest.squared * (1.0 + COSINE_ROUND_OFF)) {
             let after = lows.partition_point(|low| low.facet < nearest.facet);

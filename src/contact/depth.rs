@@ -51,7 +51,7 @@ fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bou
     let distance = |position: Vec3, facets: &mut dyn Iterator<Item = [Vec3; 3]>| {
         facets.map(|facet| closest_on_facet(position, facet).offset.norm()).fold(f64::INFINITY, f64::min)
     };
-    // The facets that are near tell at once that most places are not deeper.
+    // The facets that are near tell at once that most points are not deeper.
     let deeper = |deepest: f64, position: Vec3| match distance(position, &mut near.iter().copied()) {
         above if above <= deepest => deepest,
         _ => deepest.max(distance(position, &mut other.facets.iter().map(corners))),

@@ -11,7 +11,7 @@ const FLAT: f64 = 1e-6;
 
 /// Adds to contacts with surfaces that have two outsides the facets beside them that rise towards the atom, where it is nearer to the
 /// side that they share than `within` (µm). The region in front of a groove is that in front of the planes of both walls, eq. (contacts.10), so that
-/// the second plane is no obstacle before its facet is one; found by the place where the distance is least, an atom at a
+/// the second plane is no obstacle before its facet is one; found by the point where the distance is least, an atom at a
 /// small gap has one wall in one step and the other in the next.
 pub fn add_walls_of_grooves(scene: &Scene, positions: &[Vec3], within: f64, contacts: &mut Contacts) {
     let count = contacts.atoms.len();

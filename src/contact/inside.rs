@@ -85,7 +85,7 @@ fn overlap_of(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], bounds: &[Bou
     (atoms_inside != [0, 0] || crossings > 0).then_some(Overlap { bodies, atoms_inside, crossings })
 }
 
-/// Whether a place is inside a body, whose box is given; never when the body is open.
+/// Whether a point is inside a body, whose box is given; never when the body is open.
 pub(super) fn is_inside(scene: &Scene, positions: &[Vec3], position: Vec3, body: u32, bounds: &Bounds) -> bool {
     let shape = scene.shape(body);
     shape.closed

@@ -63,7 +63,7 @@ pub(super) struct Lists {
     range: f64,
     /// Levels in a µm.
     scale: f64,
-    /// Scratch: the facets near one facet: of each body its place among the neighbours, how many facets, and these.
+    /// Scratch: the facets near one facet: of each body its index among the neighbours, how many facets, and these.
     near: Vec<u32>,
     /// Scratch: the pairs with one other body, as (number, level).
     pairs: Vec<(u32, u32)>,

@@ -7,7 +7,7 @@ use crate::Vec3;
 /// How a body has moved since the pairs were collected, µm.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Motion {
-    /// The mean way of its atoms.
+    /// The mean displacement of its atoms.
     pub mean: Vec3,
     /// The farthest that an atom has moved beside that.
     pub beside: f64,
@@ -48,7 +48,7 @@ impl Grid {
         self.low + Vec3::from(steps.map(f64::from)).component_mul(&self.size)
     }
 
-    /// The most by which a place is off along each axis.
+    /// The most by which a position is off along each axis.
     fn rounding(&self) -> Vec3 {
         self.size * 0.500_001
     }

@@ -2,11 +2,11 @@
 
 use super::boxes::Bounds;
 
-/// A body takes no more places in the grid than this on average; a wider grid is taken where large bodies would.
+/// A body takes no more cells of the grid than this on average; a wider grid is taken where large bodies would.
 const ENTRIES_PER_BODY: usize = 32;
 
 /// For every body the bodies whose boxes meet its own, in ascending order and itself among them, and the scratch to find them. What is large
-/// (a sheet) takes many places of the grid, what is small takes one to eight, so the cost is linear in the bodies.
+/// (a sheet) takes many cells of the grid, what is small takes one to eight, so the cost is linear in the bodies.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Neighbours {
     first: Vec<u32>,
@@ -15,7 +15,7 @@ pub(super) struct Neighbours {
     widths: Vec<f32>,
 }
 
-/// The place of the grid along each axis. Places wrap at 2²¹: bodies that far apart are told apart by their boxes.
+/// The cell of the grid along each axis. Numbers wrap at 2²¹: bodies that far apart are told apart by their boxes.
 fn grid_cell(point: [f32; 3], width: f32) -> [i64; 3] {
     point.map(|x| (f64::from(x) / f64::from(width)).floor().clamp(-1e6, 1e6) as i64)
 }
@@ -29,13 +29,13 @@ fn grid_cells_of(bounds: &Bounds, width: f32) -> [std::ops::RangeInclusive<i64>;
     [0, 1, 2].map(|axis| low[axis]..=high[axis])
 }
 
-/// Calls `found` once for every two bodies whose boxes meet; `places` are sorted.
+/// Calls `found` once for every two bodies whose boxes meet; `entries` are sorted.
 fn for_each_pair(points: &[(u64, u32)], bounds: &[Bounds], width: f32, mut found: impl FnMut(u32, u32)) {
     for together in points.chunk_by(|left, right| left.0 == right.0) {
         for (index, &(here, first)) in together.iter().enumerate() {
             for &(_, second) in &together[index + 1..] {
                 let (one, other) = (&bounds[first as usize], &bounds[second as usize]);
-                // Two boxes may share many places: the lowest corner of what they share lies in one only.
+                // Two boxes may share many cells of the grid: the lowest corner of what they share lies in one only.
                 let corner = [0, 1, 2].map(|axis| one.low[axis].max(other.low[axis]));
                 if one.meets(other) && key(grid_cell(corner, width)) == here {
                     found(first, second);
@@ -85,7 +85,7 @@ impl Neighbours {
             add(one, other);
             add(other, one);
         });
-        // The place of the next neighbour is by now that of the next body's first.
+        // The entry of the next neighbour is by now that of the next body's first.
         self.first.rotate_right(1);
         self.first[0] = 0;
         for body in 0..bounds.len() {

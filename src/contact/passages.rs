@@ -6,7 +6,7 @@ use super::swept::{atom_meets_facet, edges_meet};
 use super::words::HIGHEST;
 use crate::Vec3;
 
-/// Two things that met on the way.
+/// Two things that met while they moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pair {
     /// An atom and a facet, numbered through the scene.

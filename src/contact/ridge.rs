@@ -39,7 +39,7 @@ impl<'a> Ridge<'a> {
         [self.along.cross(&left), right.cross(&self.along)]
     }
 
-    /// How far a way leads along the sum of the unit normals of the two facets.
+    /// How far a displacement leads along the sum of the unit normals of the two facets.
     #[inline(always)]
     pub fn leads_out(&self, displacement: &Vec3) -> f64 {
         let [left, right] = self.normals();

@@ -6,7 +6,7 @@ use super::scene::{Scene, centre};
 use super::shape::Sides;
 use crate::Vec3;
 
-/// How much shorter than along the line of centres the way along the normal must be to be taken.
+/// How much shorter than along the line of centres the displacement along the normal must be to be taken.
 const CLEARLY: f64 = 0.9;
 
 /// The displacement of the first body by which it leaves the second, with a gap beyond (µm). It is zero for bodies without
@@ -28,7 +28,7 @@ pub fn separation(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], gap: f64)
 
 /// The direction in which the volume of the overlap shrinks fastest when the first body moves: the vector area of what of
 /// the second is inside the first, less that of what of the first is inside the second. Where no atom is inside, facets
-/// that edges pass through take the place. Eq. (contacts.9); a surface without an inside faces the other's centre.
+/// that edges pass through stand in for them. Eq. (contacts.9); a surface without an inside faces the other's centre.
 fn normal_of_overlap(scene: &Scene, positions: &[Vec3], [first, second]: [u32; 2]) -> Vec3 {
     let facing = facing(scene, positions, second, first) - facing(scene, positions, first, second);
     if facing != Vec3::zeros() {
@@ -75,7 +75,7 @@ struct Seen {
 }
 
 /// How far the first body has to move along a unit direction until it touches the second for the last time, µm: the
-/// largest height of a place of the second over one of the first. Exact for any shape; nothing lies beyond it.
+/// largest height of a point of the second over one of the first. Exact for any shape; nothing lies beyond it.
 fn last_contact(scene: &Scene, positions: &[Vec3], [first, second]: [u32; 2], normal: Vec3) -> f64 {
     let aside = if normal.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
     let u = normal.cross(&aside).normalize();
@@ -122,7 +122,7 @@ fn across(a: Vec3, b: Vec3) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// Height of a facet above or below a place, if it is there.
+/// Height of a facet above or below a point, if it is there.
 fn height_at([a, b, c]: &[Vec3; 3], position: &Vec3) -> Option<f64> {
     let [u, v, w] =
         [across(b - position, c - position), across(c - position, a - position), across(a - position, b - position)];

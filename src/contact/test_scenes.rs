@@ -31,7 +31,7 @@ pub struct Stage {
     pub positions: Vec<Vec3>,
 }
 
-/// Bodies in a scene, from surfaces at rest and places of their atoms.
+/// Bodies in a scene, from surfaces at rest and positions of their atoms.
 pub fn stage(bodies: &[(&Surface, Sides, Vec<Vec3>)], planes: Vec<Plane>, reach: Reach) -> Stage {
     let shapes = bodies.iter().map(|(rest, sides, _)| Shape::new(rest, *sides, 1.5 * reach.proximity)).collect();
     let scene = Scene::new(shapes, &(0..bodies.len()).collect::<Vec<_>>(), planes, reach);

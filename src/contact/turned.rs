@@ -72,7 +72,7 @@ mod tests {
                 if wait == 0.0 {
                     continue;
                 }
-                // All of the motion that is allowed, or much more, shared out among both bodies and the way between them.
+                // All of the motion that is allowed, or much more, shared out among both bodies and the displacement between them.
                 let mut after = |motion: f64| {
                     let shares = [1.0 + dice.roll(), 1.0 + dice.roll(), 1.0 + dice.roll()];
                     let [one, two, displacement] = shares.map(|share| motion * share / shares.iter().sum::<f64>());

@@ -1,6 +1,6 @@
 //! Lists of pairs in words of two bytes: they are most of what contacts hold in memory, and all of it is read in every look.
 //!
-//! A list is the atom (or edge) that has it, then a body, by its place among the neighbours of the owner's, then facets (or edges) of
+//! A list is the atom (or edge) that has it, then a body, by its index among the neighbours of the owner's, then facets (or edges) of
 //! that body as they are numbered in its shape, ascending, with their levels; then the next body. Owners, bodies and what is beyond
 //! the bits of a number are told by how much farther on they are; where that does not fit into a word, several add up.
 
@@ -30,7 +30,7 @@ const PAGE_BITS: u32 = 13;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Words {
     words: Vec<u16>,
-    /// The owner and the place that the last words belong to.
+    /// The owner and the index that the last words belong to.
     owner: u32,
     index: u32,
 }
@@ -42,8 +42,8 @@ impl Words {
         (self.owner, self.index) = (0, 0);
     }
 
-    /// Adds the pairs of an owner with the body at a place among its neighbours, as (number, level), ascending. Owners must
-    /// ascend from call to call, and places of one owner.
+    /// Adds the pairs of an owner with the body at an index among its neighbours, as (number, level), ascending. Owners must
+    /// ascend from call to call, and indices of one owner.
     pub fn add(&mut self, owner: u32, position: u32, pairs: &[(u32, u32)]) {
         if pairs.is_empty() {
             return;
@@ -66,7 +66,7 @@ impl Words {
         self.words[body] |= (self.words.len() - body - 1).min(usize::from(MANY)) as u16;
     }
 
-    /// Writes as many marked words as a way takes, which stands above some bits.
+    /// Writes as many marked words as a distance takes, which stands above some bits.
     fn go_on(&mut self, mark: u16, bits: u32, above: u32, mut displacement: u32) {
         let most = (1 << bits) - 1;
         loop {
@@ -100,7 +100,7 @@ impl Words {
         2 * self.words.capacity()
     }
 
-    /// All that is listed: the owner, ascending, the place of a body among the neighbours of the owner's, ascending for each owner, and
+    /// All that is listed: the owner, ascending, the index of a body among the neighbours of the owner's, ascending for each owner, and
     /// the pairs with it.
     pub fn parts(&self) -> Parts<'_> {
         Parts { rest: &self.words, owner: 0, index: 0 }

@@ -6,7 +6,10 @@ mod examples;
 mod layering;
 mod run;
 mod simulation;
+mod transaction;
 mod volume;
 
+#[path = "../support/everything.rs"]
+mod everything;
 #[path = "../support/turns.rs"]
 mod turns;

@@ -1,4 +1,4 @@
-//! Words of a text file with their places, so that a fault can point at them.
+//! Words of a text file with their locations, so that a fault can point at them.
 
 use crate::Vec3;
 use crate::error::{Fault, Place, Source};

@@ -14,7 +14,7 @@ use crate::cell::ends::{Reading, Sense};
 use crate::equations::eml::LinkDescription;
 use crate::field::Sensed;
 
-/// Carries the numbers of all links whose system exchanges with the model at `time`; `dt` is the step just made.
+/// Carries the numbers of all links whose system exchanges with the model at `time`.
 /// The values of the fields must be with their solvers. At the start every system exchanges.
 ///
 /// # Errors
@@ -22,14 +22,13 @@ use crate::field::Sensed;
 pub(super) fn carry_links(
     model: &Model,
     time: f64,
-    dt: f64,
     start: bool,
     state: &mut State,
     ws: &mut Workspace,
 ) -> Result<(), Trouble> {
     let chemistry = &model.chemistry;
     if chemistry.measures_cells {
-        measure_cells(model, state, ws, dt);
+        measure_cells(model, state, &ws.contact.found.atoms, &mut ws.chemistry.cells);
     }
     sense_fields(model, state, &mut ws.chemistry);
     for link in &chemistry.links {

@@ -17,4 +17,4 @@ pub use model::{
 };
 pub use scratch::ChemistryScratch;
 pub use stages::{advance_chemistry, begin_chemistry, next_exchange};
-pub use state::{ChemistryState, Controls, FieldState};
+pub use state::{ChemistryState, FieldState};
