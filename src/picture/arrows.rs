@@ -39,7 +39,7 @@ impl LoadArrows {
         let mut cells = layout.cells.iter();
         for kind in &model.kinds {
             for cell in cells.by_ref().take(kind.cells) {
-                for load in &kind.loads {
+                for load in kind.loads() {
                     let atom = |&(atom, share): &(u32, f64)| ((cell.first_atom + atom) as usize, share);
                     arrows.push(Arrow {
                         atoms: load.atoms.iter().map(atom).collect(),

@@ -23,7 +23,7 @@ pub mod trouble;
 pub mod workspace;
 
 pub use chemistry::{Chemistry, begin_chemistry};
-pub use model::{Attraction, Kind, Load, Model, Plane, VolumeRule};
+pub use model::{Kind, Model, Plane, VolumeRule};
 pub use state::{Inertia, KindState, State};
 pub use step::{StepReport, step};
 pub use trouble::Trouble;

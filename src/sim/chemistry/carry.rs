@@ -99,7 +99,7 @@ fn carry(
             if quantity == LinkDescription::VALUE { value } else { used(quantity) }
         });
         let carried = link.gain * carried;
-        if let Some(expected) = missed(link.to, carried) {
+        if let Some(expected) = missed(model, link.to, carried) {
             let owner = own.map(|cell| model.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
             return Err(Trouble::Link { link: link.text.clone(), owner, value: carried, expected, time });
         }
@@ -119,7 +119,7 @@ fn carry(
 }
 
 /// What a target expects, if it cannot be set to a number.
-fn missed(target: Target, value: f64) -> Option<&'static str> {
+fn missed(model: &Model, target: Target, value: f64) -> Option<&'static str> {
     if !value.is_finite() {
         return Some("a finite number");
     }
@@ -127,7 +127,10 @@ fn missed(target: Target, value: f64) -> Option<&'static str> {
         Target::Cell(_, Control::MotilitySpeed | Control::Stiffness | Control::Adhesion) if value < 0.0 => {
             Some("a number not below 0")
         }
-        Target::Cell(_, Control::Fibre(_)) if !(0.0..=1.0).contains(&value) => Some("a number from 0 to 1"),
+        Target::Cell(_, Control::Force(control)) => {
+            let handle = model.chemistry.controlled[control].0;
+            (!handle.allows(value)).then_some(handle.expected)
+        }
         Target::Cell(_, Control::RestVolume | Control::RestVolumeRatio) if value <= 0.0 => Some("a number above 0"),
         _ => None,
     }
@@ -210,8 +213,7 @@ fn set(model: &Model, cell: usize, control: Control, value: f64, state: &mut Sta
         Control::Bias(axis) => controls.bias[cell][axis] = value,
         Control::Stiffness => controls.stiffness[cell] = value,
         Control::Adhesion => controls.adhesion[cell] = value,
-        Control::Load(load) => controls.loads[load][cell] = value,
-        Control::Fibre(fibre) => controls.fibres[fibre][cell] = value,
+        Control::Force(control) => controls.forces[control][cell] = value,
         Control::Secretion(channel) => controls.secretion[channel][cell] = value,
         Control::RestVolume | Control::RestVolumeRatio => {
             let (kind, local) = model.kind_of(cell);

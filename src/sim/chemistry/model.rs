@@ -4,6 +4,7 @@ use crate::cell::ends::{Reading, Sense};
 use crate::equations::program::Program;
 use crate::equations::tree::{Expr, QuantityId};
 use crate::field::{FieldSystem, Stepping};
+use crate::mechanics::control::Handle;
 use crate::ode::{EventPlan, Method, Tolerances};
 
 /// All chemistry of a model; empty lists where there is none.
@@ -17,6 +18,8 @@ pub struct Chemistry {
     pub links: Vec<Link>,
     /// Species that links sense as a mean over cells: (field, species).
     pub sensed: Vec<(usize, usize)>,
+    /// Forces that links set, as `load[NAME]`: what is set of them, and their name.
+    pub controlled: Vec<(Handle, String)>,
     /// Species that cells secrete: (field, species).
     pub secreted: Vec<(usize, usize)>,
     /// Volume (µm³, 0 of an open mesh) and area (µm²) of the mesh at rest of each kind.
@@ -215,10 +218,8 @@ pub enum Control {
     RestVolume,
     /// Rest volume over that of the mesh at rest.
     RestVolumeRatio,
-    /// Factor of the load with this number in the kind's list.
-    Load(usize),
-    /// Activation of the fibres with this number in the kind's list.
-    Fibre(usize),
+    /// What [`Chemistry::controlled`] has at this number.
+    Force(usize),
     /// A component of an atom's position, µm.
     Atom(usize, usize),
     /// Amount released per second into a channel of [`Chemistry::secreted`].

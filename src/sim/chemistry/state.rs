@@ -46,10 +46,8 @@ pub struct Controls {
     pub stiffness: Vec<f64>,
     /// Factor of the strength with which a cell sticks; empty without a link to one.
     pub adhesion: Vec<f64>,
-    /// Factors of loads, one list a load number.
-    pub loads: Vec<Vec<f64>>,
-    /// Activation of fibres, one list a number of fibres; below 0 where their own course stands.
-    pub fibres: Vec<Vec<f64>>,
+    /// Factors of loads and activation of fibres, one list for each force that links set; NaN where nothing is set.
+    pub forces: Vec<Vec<f64>>,
     /// Amount released per second, one list for each species secreted.
     pub secretion: Vec<Vec<f64>>,
 }
@@ -114,6 +112,7 @@ impl ChemistryState {
 impl Controls {
     fn new(model: &Model) -> Self {
         let (mut controls, cells) = (Self::default(), model.cells());
+        controls.forces = vec![vec![f64::NAN; cells]; model.chemistry.controlled.len()];
         controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
         for link in &model.chemistry.links {
             match link.to {
@@ -121,14 +120,6 @@ impl Controls {
                 Target::Cell(_, Control::Bias(_)) => controls.bias = vec![[0.0; 3]; cells],
                 Target::Cell(_, Control::Stiffness) => controls.stiffness = vec![1.0; cells],
                 Target::Cell(_, Control::Adhesion) => controls.adhesion = vec![1.0; cells],
-                Target::Cell(_, Control::Load(load)) => {
-                    let loads = controls.loads.len().max(load + 1);
-                    controls.loads.resize(loads, vec![1.0; cells]);
-                }
-                Target::Cell(_, Control::Fibre(fibre)) => {
-                    let fibres = controls.fibres.len().max(fibre + 1);
-                    controls.fibres.resize(fibres, vec![-1.0; cells]);
-                }
                 _ => {}
             }
         }
@@ -140,8 +131,7 @@ impl Controls {
         self.bias.clone_from(&other.bias);
         self.stiffness.clone_from(&other.stiffness);
         self.adhesion.clone_from(&other.adhesion);
-        self.loads.clone_from(&other.loads);
-        self.fibres.clone_from(&other.fibres);
+        self.forces.clone_from(&other.forces);
         self.secretion.clone_from(&other.secretion);
     }
 
@@ -163,15 +153,5 @@ impl Controls {
     /// Factor of the strength with which a cell sticks.
     pub fn adhesion_of(&self, cell: usize) -> f64 {
         self.adhesion.get(cell).copied().unwrap_or(1.0)
-    }
-
-    /// Factor of a load of a cell.
-    pub fn load_of(&self, load: usize, cell: usize) -> f64 {
-        self.loads.get(load).and_then(|cells| cells.get(cell)).copied().unwrap_or(1.0)
-    }
-
-    /// The activation that a link asks of fibres of a cell, 0 to 1.
-    pub fn activation_of(&self, fibre: usize, cell: usize) -> Option<f64> {
-        self.fibres.get(fibre).and_then(|cells| cells.get(cell)).copied().filter(|activation| *activation >= 0.0)
     }
 }
