@@ -10,6 +10,7 @@ use pseudopod::mechanics::angles::Angles;
 use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
 use pseudopod::mechanics::bending::{Bending, RestAngle};
+use pseudopod::mechanics::control::Context;
 use pseudopod::mechanics::course::Course;
 use pseudopod::mechanics::fibres::Fibres;
 use pseudopod::mechanics::gravity::Gravity;
@@ -19,7 +20,7 @@ use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
 use pseudopod::mechanics::ordering::Ordering;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::mechanics::springs::Springs;
-use pseudopod::mechanics::sum::{Context, measure_forces};
+use pseudopod::mechanics::sum::measure_forces;
 use pseudopod::mechanics::tension::Tension;
 use pseudopod::mechanics::volume;
 

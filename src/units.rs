@@ -19,6 +19,7 @@ mod symbols;
 
 pub use dimension::{Dimension, label, pretty};
 pub use parse::{Measured, UnitError, parse, parse_as, parse_unit};
+pub(crate) use quantity::Written;
 pub use quantity::{
     Acceleration, Angle, Drag, Energy, Force, Frequency, Length, LineStiffness, Mass, Quantity, Speed, Stress, Time,
     Volume,

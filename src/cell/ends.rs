@@ -5,7 +5,6 @@
 
 use crate::equations::eml::{Index, Step};
 use crate::mechanics::CONTROLLED;
-use crate::mechanics::control::Handle;
 
 /// A number that can be read from a cell at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,8 +27,10 @@ pub enum Reading {
     AreaStrain,
     /// Extent of the bounding box along an axis, µm.
     Size(usize),
-    /// Part of the atoms that touch a plane, or are near another cell where the experiment has contacts.
+    /// Part of the atoms near another cell, as it is recorded; 0 in an experiment without contacts.
     ContactShare,
+    /// Part of the atoms on a plane.
+    PlaneShare,
 }
 
 /// A number of a cell that chemistry can set.
@@ -47,8 +48,8 @@ pub enum Setting {
     RestVolume,
     /// Rest volume over that of the mesh at rest.
     RestVolumeRatio,
-    /// What may be set of a force, by its name.
-    Force(Handle, String),
+    /// What may be set of a force: the number of its handle in [`CONTROLLED`], and its name.
+    Force(usize, String),
     /// A component of an atom's position, µm, imposed.
     Atom(usize, usize),
     /// Amount of a field's substance that the cell releases in a second; negative: takes up.
@@ -67,7 +68,7 @@ pub enum Sense {
 }
 
 /// What can be read, as messages list it.
-pub const READABLE: [&str; 14] = [
+pub const READABLE: [&str; 15] = [
     "position.x",
     "atom[0].x",
     "velocity.x",
@@ -78,6 +79,7 @@ pub const READABLE: [&str; 14] = [
     "area_strain",
     "size.x",
     "contact_share",
+    "plane_share",
     "field[NAME]",
     "field[NAME].gradient.x",
     "field[NAME].steepness",
@@ -105,6 +107,7 @@ pub fn reading(path: &[Step]) -> Option<Reading> {
         [("area_strain", None)] => Reading::AreaStrain,
         [("size", None), (axis, None)] => Reading::Size(component(axis)?),
         [("contact_share", None)] => Reading::ContactShare,
+        [("plane_share", None)] => Reading::PlaneShare,
         _ => return None,
     })
 }
@@ -121,7 +124,7 @@ pub fn setting(path: &[Step]) -> Option<Setting> {
         [("atom", Some(Index::Number(atom))), (axis, None)] => Setting::Atom(*atom, component(axis)?),
         [("secretion", Some(Index::Name(name)))] => Setting::Secretion(name.clone()),
         [(word, Some(Index::Name(name)))] => {
-            Setting::Force(CONTROLLED.into_iter().find(|handle| handle.word == word)?, name.clone())
+            Setting::Force(CONTROLLED.iter().position(|handle| handle.word == word)?, name.clone())
         }
         _ => return None,
     })

@@ -1,11 +1,14 @@
 //! `pseudopod check`: finds all faults of experiment documents without running them.
 
 use super::report::{Report, path_text};
-use crate::error::{Error, Result};
-use crate::experiment::{Document, compile, settle_start};
+use crate::error::{Error, Result, say};
+use crate::experiment::{Document, Prepared, PushedApart, notices, prepare, settle_start};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
+
+/// So many cells take some seconds to be looked over.
+const MANY: usize = 20_000;
 
 /// Checks experiment documents and reports all their faults.
 #[derive(Debug, Clone, clap::Args)]
@@ -21,7 +24,7 @@ pub struct CheckArgs {
     pub json: bool,
 }
 
-/// Runs the command: reads every document and builds its cells. A line for every good document; the faults of all
+/// Runs the command: reads every document, compiles it, and looks over the start of its cells. A line for every good document; the faults of all
 /// others together.
 ///
 /// # Errors
@@ -31,18 +34,29 @@ pub fn run(args: &CheckArgs) -> Result<Report> {
     for path in &args.documents {
         // Faults of meshes and steps show only once the cells are built.
         let checked = Document::read(path, &args.sets).and_then(|document| {
-            let pushed = compile(&document).and_then(|mut compiled| settle_start(&document, &mut compiled))?;
-            Ok((document, pushed))
+            let prepared = prepare(&document)?;
+            let mut said = notices(&document, &prepared);
+            let pushed = settled(&document, prepared)?;
+            said.extend(pushed.notice());
+            Ok((document, pushed, said))
         });
         match checked {
-            Ok((document, pushed)) => {
+            Ok((document, pushed, said)) => {
                 let cells: usize = document.experiment.cells.values().map(|cell| cell.count()).sum();
                 let (types, title) = (document.experiment.cells.len(), &document.experiment.title);
                 // Writing to a text cannot fail.
                 let _ = writeln!(words, "{}: good: \"{title}\", {}", path.display(), counted(cells, types));
-                // Writing to a text cannot fail.
-                let _ = pushed.notice().map_or(Ok(()), |notice| writeln!(words, "{}: {notice}", path.display()));
-                good.push(json!({ "path": path_text(path), "title": title, "cells": cells, "types": types, "cells_pushed_apart": pushed.cells }));
+                for notice in &said {
+                    let _ = writeln!(words, "{}: {notice}", path.display());
+                }
+                good.push(json!({
+                    "path": path_text(path),
+                    "title": title,
+                    "cells": cells,
+                    "types": types,
+                    "cells_pushed_apart": pushed.cells,
+                    "notices": said,
+                }));
             }
             Err(Error::Input(found)) => faults.extend(found),
             Err(other) => return Err(other),
@@ -56,6 +70,18 @@ pub fn run(args: &CheckArgs) -> Result<Report> {
         report.print("check", super::report::Form::Words)?;
     }
     Err(Error::Input(faults))
+}
+
+/// Looks whether cells overlap at the start, where they touch: only then they have to be built.
+fn settled(document: &Document, prepared: Prepared) -> Result<PushedApart> {
+    if prepared.model.contact.is_none() {
+        return Ok(PushedApart::default());
+    }
+    let cells = prepared.model.cells();
+    if cells >= MANY {
+        say(&format!("looking whether any of {cells} cells overlap, which takes a while"));
+    }
+    settle_start(document, &mut prepared.build())
 }
 
 /// "1 cell", "12 cells of 2 types".

@@ -52,6 +52,8 @@ struct Keys {
     chosen: Option<String>,
     /// The schema of values under names that the user chooses.
     named: Option<Json>,
+    /// Keys that there were once, with what to do instead.
+    gone: Map<String, Json>,
 }
 
 impl Keys {
@@ -221,6 +223,9 @@ impl Walk<'_> {
                     self.faults.push(Fault::new(format!("`{path}`: {}", error.message)).at(place).help(error.help));
                 }
             },
+            // Nothing is nothing in every unit.
+            Value::Integer(0) => self.quantity_bounds(node, 0.0, dimension, schema, path),
+            Value::Number(0.0) => self.quantity_bounds(node, 0.0, dimension, schema, path),
             Value::Integer(_) | Value::Number(_) => {
                 let article = dimension.with_article();
                 let example = dimension.example();

@@ -10,7 +10,7 @@ pub use gaps::{GapStatistic, Gaps};
 pub use sorting::{Segregation, SegregationStatistic};
 
 use super::values::{OneOrMany, words_or_time};
-use crate::units::{LineStiffness, Speed, Time, UnitError};
+use crate::units::{LineStiffness, Speed, Time, UnitError, Written};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -221,7 +221,7 @@ pub enum Over {
 
 /// How the values at several instants become one.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[serde(try_from = "Written", into = "String")]
 pub enum Reduction {
     /// The value in the last frame.
     #[default]
@@ -266,10 +266,10 @@ impl fmt::Display for Reduction {
     }
 }
 
-impl TryFrom<String> for Reduction {
+impl TryFrom<Written> for Reduction {
     type Error = UnitError;
-    fn try_from(text: String) -> Result<Self, UnitError> {
-        text.parse()
+    fn try_from(written: Written) -> Result<Self, UnitError> {
+        written.0.parse()
     }
 }
 

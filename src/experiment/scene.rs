@@ -25,14 +25,15 @@ pub struct Integrator {
     /// Order of the implicit method: 2 has an error estimate and adapts, 1 costs half and needs a fixed step.
     #[schemars(range(min = 1, max = 2))]
     pub order: u8,
-    /// A fixed step. Without it the implicit method adapts and the others choose a stable step.
+    /// A fixed step. Without it the implicit method adapts and the others choose a stable step, which contacts shorten where atoms
+    /// would travel too far.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub step: Option<Time>,
     /// Error that the adaptive method allows in a step, over the mean length of an edge.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub tolerance: f64,
-    /// The longest step that the adaptive method takes.
+    /// The longest step, where none is fixed.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub max_step: Option<Time>,
@@ -96,9 +97,12 @@ pub struct Plane {
     pub normal: [f64; 3],
 }
 
-/// What is recorded, and how often.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// What is recorded, and how often. The positions of all atoms always are.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
+#[schemars(extend("x-gone" = {
+    "positions": "remove the key: positions are always recorded; for a smaller file make `every` longer",
+}))]
 pub struct Output {
     /// Simulated time between frames; a hundredth of the run when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -108,14 +112,6 @@ pub struct Output {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub checkpoint: Option<Time>,
-    /// Records the positions of all atoms.
-    pub positions: bool,
     /// Records the force on every atom.
     pub forces: bool,
-}
-
-impl Default for Output {
-    fn default() -> Self {
-        Self { every: None, checkpoint: None, positions: true, forces: false }
-    }
 }

@@ -1,6 +1,6 @@
 //! Small values that several parts of a document share: time courses, instants, colours.
 
-use crate::units::{self, Dimension, Quantity, Time, UnitError};
+use crate::units::{self, Dimension, Quantity, Time, UnitError, Written};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -74,7 +74,7 @@ pub enum Axis {
 
 /// An instant of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[serde(try_from = "Written", into = "String")]
 pub enum When {
     /// The first frame.
     First,
@@ -106,10 +106,10 @@ impl fmt::Display for When {
     }
 }
 
-impl TryFrom<String> for When {
+impl TryFrom<Written> for When {
     type Error = UnitError;
-    fn try_from(text: String) -> Result<Self, UnitError> {
-        text.parse()
+    fn try_from(written: Written) -> Result<Self, UnitError> {
+        written.0.parse()
     }
 }
 
@@ -131,9 +131,16 @@ impl JsonSchema for When {
     }
 }
 
-/// The schema of a text that is one of some words, or else a time.
+/// The schema of what is one of some words, or else a time.
 pub(super) fn words_or_time(words: &[&str]) -> Schema {
-    json_schema!({ "type": "string", "x-dimension": "time", "x-words": words, "examples": ["last", "12 s"] })
+    json_schema!({
+        "type": ["string", "integer"],
+        "minimum": 0,
+        "maximum": 0,
+        "x-dimension": "time",
+        "x-words": words,
+        "examples": ["last", "12 s"],
+    })
 }
 
 /// The length that one unit of a file's coordinates stands for, written as a unit: "um", "mm".

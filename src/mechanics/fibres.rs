@@ -7,10 +7,10 @@ use super::control::Handle;
 use super::course::Course;
 use super::lanes::{LANES, Real, Vectors, VectorsMut};
 use super::stiffness::StiffnessMatrix;
-use super::sum::Context;
 
-/// Chemistry sets the activation.
-pub const HANDLE: Handle = Handle { word: "fibre", key: "fibres", range: [0.0, 1.0], expected: "a number from 0 to 1" };
+/// What may be set is the activation; below 0 the course stands.
+pub const HANDLE: Handle =
+    Handle { word: "fibre", key: "fibres", range: [0.0, 1.0], expected: "a number from 0 to 1", unset: -1.0 };
 
 /// Fibres of a cell that are active together.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,20 +23,18 @@ pub struct Fibres {
     pub stiffness: f64,
     /// Activation A, 0 to 1, in the course of time.
     pub activation: Course,
-    /// The control that sets the activation instead, if any.
-    pub control: Option<usize>,
 }
 
 impl Fibres {
-    /// Fibres that nothing but their course controls.
+    /// Fibres.
     pub fn new(name: &str, pairs: Vec<[u32; 2]>, stiffness: f64, activation: Course) -> Self {
-        Self { name: name.to_owned(), pairs, stiffness, activation, control: None }
+        Self { name: name.to_owned(), pairs, stiffness, activation }
     }
 
-    /// The activation in each lane: what chemistry sets, or else that of the course.
-    pub(super) fn activation(&self, context: &Context) -> [f64; LANES] {
-        let own = self.activation.at(context.time);
-        context.control(self.control).map(|set| if set.is_nan() { own } else { set })
+    /// The activation in each lane at a time: what is set, or else that of the course.
+    pub(super) fn activation(&self, time: f64, set: &[f64; LANES]) -> [f64; LANES] {
+        let own = self.activation.at(time);
+        set.map(|set| if set >= 0.0 { set } else { own })
     }
 
     /// Adds the force on every atom at this activation and returns the energy, pN·µm.

@@ -3,12 +3,16 @@
 use super::control::Handle;
 use super::course::Course;
 use super::lanes::{LANES, Real, V3, Vectors, VectorsMut};
-use super::sum::Context;
 use crate::Vec3;
 
-/// Chemistry sets a factor of the force.
-pub const HANDLE: Handle =
-    Handle { word: "load", key: "loads", range: [f64::NEG_INFINITY, f64::INFINITY], expected: "a finite number" };
+/// What may be set is a factor of the force.
+pub const HANDLE: Handle = Handle {
+    word: "load",
+    key: "loads",
+    range: [f64::NEG_INFINITY, f64::INFINITY],
+    expected: "a finite number",
+    unset: 1.0,
+};
 
 /// A load on a cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,20 +25,18 @@ pub struct Load {
     pub direction: Vec3,
     /// Total force, pN.
     pub force: Course,
-    /// The control that sets a factor of the force, if any.
-    pub control: Option<usize>,
 }
 
 impl Load {
-    /// A load that nothing but its course controls.
+    /// A load.
     pub fn new(name: &str, atoms: Vec<(u32, f64)>, direction: Vec3, force: Course) -> Self {
-        Self { name: name.to_owned(), atoms, direction, force, control: None }
+        Self { name: name.to_owned(), atoms, direction, force }
     }
 
-    /// The total force on the cell of each lane, pN: that of the course times what chemistry sets.
-    pub(super) fn strength(&self, context: &Context) -> [f64; LANES] {
-        let force = self.force.at(context.time);
-        context.control(self.control).map(|factor| if factor.is_nan() { force } else { force * factor })
+    /// The total force on the cell of each lane at a time, pN: that of the course times what is set.
+    pub(super) fn strength(&self, time: f64, set: &[f64; LANES]) -> [f64; LANES] {
+        let force = self.force.at(time);
+        set.map(|factor| force * factor)
     }
 
     /// Adds the total force (pN) to the atoms by their shares and returns the energy, pN·µm: minus the work done on the way from

@@ -30,11 +30,10 @@ pub mod tension;
 pub mod volume;
 
 use crate::Vec3;
-use control::Handle;
+use control::{Context, Handle};
 use course::Course;
 use lanes::{LANES, Real, Vectors, VectorsMut};
 use stiffness::StiffnessMatrix;
-use sum::Context;
 
 /// A force on the atoms of every cell of a kind. Drag is none: it is what the schemes divide by.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,7 +64,7 @@ pub enum Force {
     Attraction(attraction::Attraction),
 }
 
-/// The kinds of forces that chemistry may set, in the order in which messages list them.
+/// The kinds of forces that chemistry or a program may set, in the order in which messages list them.
 pub const CONTROLLED: [Handle; 2] = [load::HANDLE, fibres::HANDLE];
 
 impl Force {
@@ -121,21 +120,12 @@ impl Force {
         self.course().into_iter().flat_map(Course::kinks)
     }
 
-    /// The entry of [`CONTROLLED`] and the name by which chemistry may set it, if it may.
-    pub fn handle(&self) -> Option<(Handle, &str)> {
+    /// The number in [`CONTROLLED`] and the name by which it may be set, if it may.
+    pub fn handle(&self) -> Option<(usize, &str)> {
         match self {
-            Self::Load(force) => Some((load::HANDLE, &force.name)),
-            Self::Fibres(force) => Some((fibres::HANDLE, &force.name)),
+            Self::Load(force) => Some((0, &force.name)),
+            Self::Fibres(force) => Some((1, &force.name)),
             _ => None,
-        }
-    }
-
-    /// Lets a control of the model set it, by its number; nothing else than a force with a handle is changed.
-    pub fn set_control(&mut self, control: usize) {
-        match self {
-            Self::Load(force) => force.control = Some(control),
-            Self::Fibres(force) => force.control = Some(control),
-            _ => {}
         }
     }
 
@@ -156,11 +146,11 @@ impl Force {
         }
     }
 
-    /// How strongly it acts on the cell of each lane of a block; elastic forces act as they are.
-    fn strength(&self, context: &Context) -> [f64; LANES] {
+    /// How strongly it acts on the cell of each lane of a block where these numbers are `set`; elastic forces act as they are.
+    fn strength(&self, context: &Context, set: &[f64; LANES]) -> [f64; LANES] {
         match self {
-            Self::Load(force) => force.strength(context),
-            Self::Fibres(force) => force.activation(context),
+            Self::Load(force) => force.strength(context.time, set),
+            Self::Fibres(force) => force.activation(context.time, set),
             Self::Gravity(_) => [context.mass; LANES],
             _ => [1.0; LANES],
         }

@@ -11,10 +11,11 @@ use super::render::Sheet;
 use super::{Image, plots};
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Picture, When};
-use crate::output::ResultFile;
+use crate::output::{Cell, ResultFile};
 
 /// What one frame gives to a picture.
 struct Shot {
+    cells: Vec<Cell>,
     positions: Vec<[f64; 3]>,
     values: Vec<f64>,
     arrows: Vec<[[f64; 3]; 2]>,
@@ -38,6 +39,8 @@ struct Stage<'a> {
     arrows: LoadArrows,
     field: Option<FieldView>,
     times: Vec<f64>,
+    /// When the run was to end, s.
+    until: f64,
 }
 
 /// Finds what `name` means for this result: the type, a quantity of atoms or a series of cells.
@@ -107,20 +110,27 @@ impl<'a> Stage<'a> {
         let field = FieldView::of(result, picture)?;
         look.field_range = picture.field_range;
         look.field_label = field.as_ref().map_or_else(String::new, FieldView::label);
-        let arrows = if picture.loads { LoadArrows::of(document, result.layout())? } else { LoadArrows::default() };
-        Ok(Self { result, look, shown, arrows, field, times: result.times()? })
+        let arrows = if picture.loads { LoadArrows::of(document)? } else { LoadArrows::default() };
+        let until = document.experiment.run.until.value();
+        Ok(Self { result, look, shown, arrows, field, times: result.times()?, until })
+    }
+
+    /// Nothing seen yet; times are told in the unit that suits the whole run, whichever frames are drawn.
+    fn framing(&self) -> Framing {
+        Framing::new(&self.look).lasting(self.until)
     }
 
     fn shot(&self, frame: usize) -> Result<Shot> {
-        let positions = self.result.positions(frame)?;
+        let (cells, positions) = (self.result.cells(frame), self.result.positions(frame)?);
         let values = match &self.shown {
             Shown::Type => Vec::new(),
             Shown::Atoms(quantity) => quantity.of_frame(self.result, frame, &positions)?,
-            Shown::Cells(name) => self.result.cell_series(name)?.row(frame).to_vec(),
+            Shown::Cells(name) => self.result.cell_values(name, frame)?,
         };
         let time = self.times[frame];
         let field = self.field.as_ref().map(|field| field.sheet(self.result, frame, &positions)).transpose()?;
-        Ok(Shot { arrows: self.arrows.at(time, &positions), positions, values, field, time })
+        let arrows = self.arrows.at(time, self.result.layout(), &cells, &positions);
+        Ok(Shot { cells, positions, values, arrows, field, time })
     }
 
     fn snapshot<'b>(&'b self, shot: &'b Shot) -> Snapshot<'b> {
@@ -130,8 +140,8 @@ impl<'a> Stage<'a> {
             Shown::Cells(_) => Values::Cells(&shot.values),
         };
         let layout = self.result.layout();
-        let (positions, arrows, field) = (&shot.positions, &shot.arrows, shot.field.as_ref());
-        Snapshot { layout, positions, time: shot.time, values, arrows, field }
+        let (cells, positions, arrows, field) = (&shot.cells, &shot.positions, &shot.arrows, shot.field.as_ref());
+        Snapshot { layout, cells, positions, time: shot.time, values, arrows, field }
     }
 
     fn draw(&self, shot: &Shot, framing: &Framing, picture: &Picture) -> Image {
@@ -140,7 +150,7 @@ impl<'a> Stage<'a> {
 }
 
 fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &Shown) -> Look {
-    let types = &result.layout().types;
+    let types = result.layout().type_names();
     let palette = |i: usize| super::colour::PALETTE[i % super::colour::PALETTE.len()];
     let colour = |(i, name): (usize, &String)| {
         let given = document.experiment.cells.get(name).and_then(|cell| cell.colour);
@@ -170,7 +180,7 @@ fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &
 pub fn still(result: &ResultFile, document: &Document, picture: &Picture) -> Result<Image> {
     let stage = Stage::new(result, document, picture)?;
     let shot = stage.shot(frame_at(result, picture.time)?)?;
-    let mut framing = Framing::new(&stage.look);
+    let mut framing = stage.framing();
     framing.include(&stage.snapshot(&shot));
     Ok(stage.draw(&shot, &framing, picture))
 }
@@ -187,7 +197,7 @@ pub fn film(
     mut keep: impl FnMut(&Image) -> Result<()>,
 ) -> Result<()> {
     let stage = Stage::new(result, document, picture)?;
-    let mut framing = Framing::new(&stage.look);
+    let mut framing = stage.framing();
     for &frame in frames {
         framing.include(&stage.snapshot(&stage.shot(frame)?));
     }

@@ -2,14 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::chemistry::Controls;
-use super::contact::{ContactScratch, add_contact_forces, pull_contacts};
+use super::contact::{ContactForces, add_contact_forces, pull_contacts};
+use super::controls::Controls;
 use super::model::{Kind, Model, VolumeRule};
-use super::rooms::each_or_none;
-use super::state::State;
-use super::workspace::Workspace;
+use super::rooms::{Rooms, each_or_none};
+use super::state::{KindState, State};
+use super::workspace::{KindScratch, Workspace};
 use crate::mechanics::lanes::LANES;
-use crate::mechanics::sum::{Context, measure_elastic, measure_forces};
+use crate::mechanics::control::Context;
+use crate::mechanics::sum::{measure_elastic, measure_forces};
 use crate::mechanics::volume;
 
 /// All forces on the cells of a kind, drag not included. Motility enters as the drag that its velocity
@@ -24,8 +25,8 @@ pub struct Forces<'a> {
     pub controls: &'a Controls,
     /// Mean velocity that motility asks of every cell of the model, µm/s.
     pub drive: &'a [[f64; 3]],
-    /// What contacts carry.
-    pub contact: &'a ContactScratch,
+    /// What contacts do.
+    pub contact: &'a ContactForces,
 }
 
 impl Forces<'_> {
@@ -48,24 +49,48 @@ impl Forces<'_> {
     }
 }
 
-/// Sets `force` of every kind to the sum of all forces at time `time` (pN), and `energy` to the energy of every cell.
+/// Sets `force` of every kind to the sum of all forces at time `time` (pN), and `energy` to the energy of every cell. What contacts
+/// carry must have been found.
 pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
-    for (w, now) in ws.kinds.iter_mut().zip(&state.kinds) {
-        w.force.resize(now.positions.len(), 0.0);
-    }
-    measure_energy(model, time, state, ws);
+    sum_forces(model, time, &state.chemistry.controls, &state.kinds, ws);
 }
 
-/// Sets `energy` of every kind to the energy of every cell, pN·µm, and `force` where it is held.
-pub fn measure_energy(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
-    ws.rooms.suit(model);
-    pull_contacts(model, state, &mut ws.contact);
+/// As [`add_forces`], for cells that stand elsewhere than where what chemistry sets was set.
+pub fn sum_forces(model: &Model, time: f64, controls: &Controls, cells: &[KindState], ws: &mut Workspace) {
+    pull_contacts(model, controls, cells, &mut ws.contact);
+    for (w, now) in ws.kinds.iter_mut().zip(cells) {
+        w.force.resize(now.positions.len(), 0.0);
+    }
     let Workspace { kinds, rooms, drive, contact, .. } = ws;
-    for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
-        let forces = Forces { model, number, controls: &state.chemistry.controls, drive, contact };
+    rooms.suit(model);
+    let contact = &contact.forces;
+    for_each_kind(model, time, (controls, drive, contact), cells, kinds, rooms, |w| (&mut w.force, &mut w.energy));
+}
+
+/// Sets `energy` of every kind to the energy of every cell, pN·µm; contacts have none.
+pub fn measure_energy(model: &Model, time: f64, controls: &Controls, cells: &[KindState], ws: &mut Workspace) {
+    let Workspace { kinds, rooms, drive, .. } = ws;
+    rooms.suit(model);
+    let none = ContactForces::default();
+    for_each_kind(model, time, (controls, drive, &none), cells, kinds, rooms, |w| (&mut [], &mut w.energy));
+}
+
+/// Forces and energies of all kinds, written to what is lent of their scratch; forces that are not held are those of a block.
+fn for_each_kind(
+    model: &Model,
+    time: f64,
+    (controls, drive, contact): (&Controls, &[[f64; 3]], &ContactForces),
+    cells: &[KindState],
+    kinds: &mut [KindScratch],
+    rooms: &Rooms,
+    lent: impl Fn(&mut KindScratch) -> (&mut [f64], &mut [f64]),
+) {
+    for (number, ((kind, now), w)) in model.kinds.iter().zip(cells).zip(kinds).enumerate() {
+        let forces = Forces { model, number, controls, drive, contact };
         let (length, lanes) = (kind.block_len(), kind.lanes);
+        let (force, energy) = lent(w);
         (now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
-            .zip(w.energy.par_chunks_exact_mut(lanes).zip(each_or_none(&mut w.force, length, kind.blocks())))
+            .zip(energy.par_chunks_exact_mut(lanes).zip(each_or_none(force, length, kind.blocks())))
             .enumerate()
             .for_each(|(block, (cells, (energy, held)))| {
                 rooms.enter(length, |[f, spare, ..]| {

@@ -222,6 +222,12 @@ impl Kind {
         })
     }
 
+    /// Names of its forces with a handle, by the number of the handle in [`CONTROLLED`](crate::mechanics::CONTROLLED).
+    pub fn controlled(&self, handle: usize) -> impl Iterator<Item = &str> {
+        let handles = self.forces.iter().filter_map(Force::handle);
+        handles.filter(move |(number, _)| *number == handle).map(|(_, name)| name)
+    }
+
     /// The cell in a lane of a block, in the order of all cells; none in lanes beyond the last.
     pub fn cell_at(&self, block: usize, lane: usize) -> Option<usize> {
         let local = block * self.lanes + lane;

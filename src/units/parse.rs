@@ -43,13 +43,14 @@ fn parse_like(text: &str, example: &str) -> Result<Measured, UnitError> {
     measured(&number, scale, text)
 }
 
-/// Reads a quantity that must have the given dimension, and returns its value in base units.
+/// Reads a quantity that must have the given dimension, and returns its value in base units. Zero needs no unit.
 ///
 /// # Errors
 /// As [`parse`], and when it is something else: "is a speed; a length was expected".
 pub fn parse_as(text: &str, expected: Dimension) -> Result<f64, UnitError> {
     let found = parse_like(text, &expected.example())?;
-    if found.dimension == expected {
+    // Nothing is nothing in every unit.
+    if found.dimension == expected || found.dimension == Dimension::NUMBER && found.value == 0.0 {
         return Ok(found.value);
     }
     let (message, help) = if found.dimension == Dimension::NUMBER {

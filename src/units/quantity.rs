@@ -82,7 +82,46 @@ impl<const L: i8, const T: i8, const F: i8, const A: i8> Serialize for Quantity<
 
 impl<'de, const L: i8, const T: i8, const F: i8, const A: i8> Deserialize<'de> for Quantity<L, T, F, A> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Cow::<'de, str>::deserialize(deserializer)?.parse().map_err(de::Error::custom)
+        Written::deserialize(deserializer)?.0.parse().map_err(de::Error::custom)
+    }
+}
+
+/// The text of a quantity as a document has it: quoted, or a bare 0, which needs no unit.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Written(pub(crate) String);
+
+impl<'de> Deserialize<'de> for Written {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ReadsWritten)
+    }
+}
+
+struct ReadsWritten;
+
+impl de::Visitor<'_> for ReadsWritten {
+    type Value = Written;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a quantity with its unit in quotes, or 0")
+    }
+
+    fn visit_str<E: de::Error>(self, text: &str) -> Result<Written, E> {
+        Ok(Written(text.to_owned()))
+    }
+
+    fn visit_i64<E: de::Error>(self, number: i64) -> Result<Written, E> {
+        self.visit_f64(number as f64)
+    }
+
+    fn visit_u64<E: de::Error>(self, number: u64) -> Result<Written, E> {
+        self.visit_f64(number as f64)
+    }
+
+    fn visit_f64<E: de::Error>(self, number: f64) -> Result<Written, E> {
+        match number == 0.0 {
+            true => Ok(Written("0".to_owned())),
+            false => Err(E::invalid_value(de::Unexpected::Float(number), &self)),
+        }
     }
 }
 
@@ -97,8 +136,11 @@ impl<const L: i8, const T: i8, const F: i8, const A: i8> JsonSchema for Quantity
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let dimension = Self::DIMENSION;
+        // A text with its unit, or 0.
         json_schema!({
-            "type": "string",
+            "type": ["string", "integer"],
+            "minimum": 0,
+            "maximum": 0,
             "x-dimension": dimension.name(),
             "examples": [dimension.example()],
         })
@@ -114,6 +156,14 @@ mod tests {
     fn a_quantity_refuses_another_dimension() {
         let error = "5 um/min".parse::<Length>().expect_err("a speed is no length");
         assert_eq!(error.message, "\"5 um/min\" is a speed; a length was expected");
+    }
+
+    #[test]
+    fn zero_needs_no_unit_and_everything_else_does() {
+        assert_eq!("0".parse(), Ok(Length::ZERO));
+        assert_eq!(serde_json::from_str::<Time>("0").ok(), Some(Time::ZERO));
+        assert_eq!(serde_json::from_str::<Angle>("0.0").ok(), Some(Angle::ZERO));
+        assert!("5".parse::<Length>().is_err() && serde_json::from_str::<Length>("5").is_err());
     }
 
     proptest! {

@@ -60,8 +60,43 @@ impl Walk<'_> {
                 let fault = Fault::new(format!("in `{path}`: {}", error.message));
                 self.faults.push(fault.at(value.key_place("a name was expected")).help(error.help));
             }
-            self.node(value, named, &join(path, name));
+            match self.meant_for_another(value, name, table, named, path) {
+                Some(fault) => self.faults.push(fault),
+                None => self.node(value, named, &join(path, name)),
+            }
         }
+    }
+
+    /// That a table lacks what it needs where there is a whole one of a similar name: `cells.walkers` beside `cells.walker`.
+    fn meant_for_another(
+        &self,
+        value: &Node,
+        name: &str,
+        table: &IndexMap<String, Node>,
+        named: &Json,
+        path: &str,
+    ) -> Option<Fault> {
+        let schema = self.resolve(named);
+        let mut required = variant(&schema).required;
+        let alternatives = schema.get("oneOf").or(schema.get("anyOf")).and_then(Json::as_array).into_iter().flatten();
+        required.extend(tag(&alternatives.map(|one| variant(&self.resolve(one))).collect::<Vec<_>>()));
+        let lacks = |node: &Node| match &node.value {
+            Value::Table(keys) => required.iter().filter(|key| !keys.contains_key(*key)).collect(),
+            _ => Vec::new(),
+        };
+        let lacking = lacks(value);
+        if lacking.is_empty() {
+            return None;
+        }
+        let others = table.iter().filter(|(other, node)| *other != name && lacks(node).is_empty());
+        let meant = words::meant(name, others.map(|(other, _)| other.as_str()))?;
+        let lacking = words::all_of(lacking.into_iter().map(String::as_str));
+        let fault = Fault::new(format!("`{}` lacks {lacking}", join(path, name)));
+        let fault = fault.at(value.key_place(format!("did you mean `{meant}`?")));
+        Some(fault.help(format!(
+            "what is meant for `{0}` is written under its name; another one needs {lacking} too",
+            join(path, meant)
+        )))
     }
 
     /// The keys that belong here, alternatives chosen.
@@ -73,6 +108,7 @@ impl Walk<'_> {
             elsewhere: Vec::new(),
             chosen: None,
             named: schema.get("additionalProperties").filter(|one| one.is_object()).cloned(),
+            gone: schema.get("x-gone").and_then(Json::as_object).cloned().unwrap_or_default(),
         };
         let alternatives = schema.get("oneOf").or(schema.get("anyOf")).and_then(Json::as_array);
         let variants: Vec<Variant> =
@@ -211,6 +247,10 @@ fn unknown(value: &Node, key: &str, keys: &Keys, path: &str) -> Fault {
     if let Some(chosen) = keys.chosen.as_ref().filter(|_| keys.elsewhere.iter().any(|other| other == key)) {
         let fault = Fault::new(format!("`{key}` in {} does not go with {chosen}", named(path)));
         return fault.at(value.key_place("not with this one")).help(help);
+    }
+    if let Some(instead) = keys.gone.get(key).and_then(Json::as_str) {
+        let fault = Fault::new(format!("`{key}` in {} is no key any more", named(path)));
+        return fault.at(value.key_place("without meaning")).help(instead);
     }
     let meant = words::meant(key, keys.known());
     let label = meant.map_or("unknown key".to_owned(), |meant| format!("did you mean `{meant}`?"));

@@ -4,6 +4,7 @@ mod chemistry;
 mod contact;
 mod forces;
 mod mesh;
+mod notices;
 mod overlap;
 mod place;
 mod room;
@@ -11,12 +12,14 @@ mod select;
 mod start;
 mod steps;
 
+pub use notices::notices;
 pub use start::{PushedApart, settle_start};
 
 use super::{CellType, Document, Experiment, Space, VolumeRule as Rule};
 use crate::Vec3;
 use crate::cell::motility::{BrownianMotility, Space as WalkSpace};
 use crate::error::{Error, Fault, Result};
+use crate::field::Fields;
 use crate::geometry::{self, Surface};
 use crate::mechanics::course::Course;
 use crate::sim::chemistry::ChemistryState;
@@ -45,12 +48,46 @@ pub struct Compiled {
     pub schedule: Schedule,
 }
 
+/// An experiment whose types of cells are compiled, and whose cells are not built yet: it has the faults of the whole, and takes
+/// no more memory for a million cells than for one.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    /// What it means.
+    pub model: Model,
+    /// When it is recorded.
+    pub schedule: Schedule,
+    /// Where the centres of the cells start, µm: `[kind][cell]`.
+    pub centres: Vec<Vec<Vec3>>,
+    /// Where the fields start.
+    fields: Vec<Fields>,
+}
+
+impl Prepared {
+    /// Builds the cells where they start.
+    pub fn build(self) -> Compiled {
+        let Self { model, schedule, centres, fields } = self;
+        let cells = model.kinds.iter().zip(&centres);
+        let positions: Vec<_> = cells.map(|(kind, centres)| place::atoms_at(kind, centres)).collect();
+        let mut state = State::new(&model, &positions);
+        state.chemistry = ChemistryState::new(&model, &fields);
+        Compiled { model, state, schedule }
+    }
+}
+
 /// Compiles a checked document.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn compile(document: &Document) -> Result<Compiled> {
+    prepare(document).map(Prepared::build)
+}
+
+/// Compiles a checked document but for building its cells.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault that shows only once meshes are built: files that cannot be read, atoms that do
 /// not exist, a step that is not stable.
-pub fn compile(document: &Document) -> Result<Compiled> {
+pub fn prepare(document: &Document) -> Result<Prepared> {
     let experiment = &document.experiment;
     let (mut kinds, mut faults) = (Vec::new(), Vec::new());
     let mut first_cell = 0;
@@ -73,9 +110,11 @@ pub fn compile(document: &Document) -> Result<Compiled> {
         return Err(Error::Input(faults));
     }
     let (reach, planes) = (contact::reach(document, &kinds)?, planes(experiment));
-    let places = match reach {
-        Some(reach) => room::place_apart(document, &kinds, &planes, reach.proximity)?,
-        None => place::place(experiment, &kinds),
+    let centres = match reach {
+        Some(reach) => room::centres_apart(document, &kinds, &planes, reach.proximity)?,
+        None => {
+            experiment.cells.values().zip(&kinds).map(|(cell, kind)| place::centres(experiment, cell, kind)).collect()
+        }
     };
     let integrator = steps::integrator(document, &mut kinds)?;
     let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach));
@@ -90,9 +129,7 @@ pub fn compile(document: &Document) -> Result<Compiled> {
         until: experiment.run.until.value(),
     };
     let schedule = steps::schedule(document, &model)?;
-    let mut state = State::new(&model, &places);
-    state.chemistry = ChemistryState::new(&model, &fields);
-    Ok(Compiled { model, state, schedule })
+    Ok(Prepared { model, schedule, centres, fields })
 }
 
 /// Three numbers as a vector.

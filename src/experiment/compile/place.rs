@@ -9,12 +9,6 @@ use crate::sim::Kind;
 /// Distance of neighbours on the default grid over the cell's largest extent.
 const GRID_SPACING: f64 = 1.5;
 
-/// Positions of all atoms of all cells of all kinds: `[kind][cell][atom]`.
-pub fn place(experiment: &Experiment, kinds: &[Kind]) -> Vec<Vec<Vec<Vec3>>> {
-    let cells = experiment.cells.values().zip(kinds);
-    cells.map(|(cell, kind)| atoms_at(kind, &centres(experiment, cell, kind))).collect()
-}
-
 /// Cells of a kind at these centres: `[cell][atom]`.
 pub fn atoms_at(kind: &Kind, centres: &[Vec3]) -> Vec<Vec<Vec3>> {
     let at = |centre: &Vec3| kind.rest.positions.iter().map(|p| p + centre).collect();

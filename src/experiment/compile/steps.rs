@@ -50,8 +50,13 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
         }
     }
     let Some(step) = text.step.map(|step| step.value()) else {
-        let step = (SAFETY * limit.0).min(HUNDREDTH * until);
-        return Ok(Integrator { method, size: StepSize::Fixed(step) });
+        let largest = text.max_step.map_or(HUNDREDTH * until, |step| step.value()).min(SAFETY * limit.0);
+        // How far an atom may travel in a step is for contacts to say, and they say it within the run.
+        let size = match document.experiment.contact {
+            Some(_) => StepSize::Adaptive { tolerance: text.tolerance, largest },
+            None => StepSize::Fixed(largest),
+        };
+        return Ok(Integrator { method, size });
     };
     if step > limit.0 && !text.allow_unstable {
         let fault = Fault::new(format!(

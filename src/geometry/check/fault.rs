@@ -39,11 +39,11 @@ pub enum MeshFault {
         /// The atom.
         atom: u32,
     },
-    /// Two atoms stand at the same place.
+    /// Two atoms stand at the same point.
     DuplicateAtoms {
         /// The two atoms.
         atoms: [u32; 2],
-        /// Their place, µm.
+        /// Their position, µm.
         position: [f64; 3],
     },
     /// An edge is shared by three facets or more.
@@ -104,12 +104,14 @@ pub enum MeshFault {
         /// Its area, µm².
         area: f64,
     },
-    /// More faults of the kind just listed.
-    More {
-        /// How many were left out.
+    /// Two faults of a kind or more.
+    Several {
+        /// How many.
         count: usize,
         /// Of what, in the plural ("slivers").
         what: &'static str,
+        /// The first few of them.
+        first: Vec<MeshFault>,
     },
 }
 
@@ -168,7 +170,12 @@ impl fmt::Display for MeshFault {
             Self::ZeroVolume { volume, area } => {
                 write!(out, "the mesh encloses no volume ({volume:.1e} um^3 inside an area of {area:.4} um^2)")
             }
-            Self::More { count, what } => write!(out, "and {count} more {what}"),
+            Self::Several { count, what, first } => {
+                let open = if matches!(first[..], [Self::BoundaryEdge { .. }, ..]) { "is open: it " } else { "" };
+                let places = first.iter().map(Self::place).collect::<Vec<_>>().join("; ");
+                let more = if *count > first.len() { "; …" } else { "" };
+                write!(out, "the mesh {open}has {count} {what}: {places}{more}")
+            }
         }
     }
 }
@@ -176,9 +183,33 @@ impl fmt::Display for MeshFault {
 impl std::error::Error for MeshFault {}
 
 impl MeshFault {
-    /// What was expected and what to do about it; `None` where the sentence before said it.
-    pub fn help(&self) -> Option<&'static str> {
-        Some(match self {
+    /// Where it is, in the fewest words.
+    fn place(&self) -> String {
+        match self {
+            Self::AtomOutOfRange { facet, atoms, .. } | Self::RepeatedAtom { facet, atoms } => {
+                format!("facet {facet} (atoms {})", list(atoms))
+            }
+            Self::NotFinite { atom, .. } | Self::UnusedAtom { atom } | Self::PinchedAtom { atom, .. } => {
+                format!("atom {atom}")
+            }
+            Self::DuplicateAtoms { atoms: [one, other], .. } => format!("atoms {one} and {other}"),
+            Self::CrowdedEdge { edge: [a, b], .. } => format!("from atom {a} to atom {b}"),
+            Self::OpposedFacets { facets: [one, other], .. } => format!("facets {one} and {other}"),
+            Self::BoundaryEdge { edge: [a, b], facet } => format!("of facet {facet}, from atom {a} to atom {b}"),
+            Self::Sliver { facet, atoms, quality, .. } => {
+                format!("facet {facet} (atoms {}), of quality {quality:.1e}", list(atoms))
+            }
+            Self::Empty
+            | Self::SeparateSurfaces { .. }
+            | Self::Inverted { .. }
+            | Self::ZeroVolume { .. }
+            | Self::Several { .. } => self.to_string(),
+        }
+    }
+
+    /// What was expected and what to do about it.
+    pub fn help(&self) -> &'static str {
+        match self {
             Self::Empty => "give at least one triangle; a closed cell has at least 4",
             Self::AtomOutOfRange { .. } => "check the facets against the list of positions",
             Self::NotFinite { .. } => "give finite coordinates",
@@ -195,18 +226,17 @@ impl MeshFault {
             Self::Sliver { .. } => "quality is 4 sqrt(3) area / (sum of squared edges), 1 at best; remesh that region",
             Self::Inverted { .. } => "flip the orientation of all facets (\"flip normals\" in a mesh editor)",
             Self::ZeroVolume { .. } => "give a body with an inside, not a folded sheet",
-            Self::More { .. } => return None,
-        })
+            Self::Several { first, .. } => first.first().map_or("", Self::help),
+        }
     }
 
     /// The fault as bad input of the mesh `mesh`, named as the user knows it ("mesh `cell.obj`").
     pub fn into_fault(self, mesh: &str) -> Fault {
-        let fault = Fault::new(format!("{mesh}: {self}"));
-        match (&self, self.help()) {
-            (_, None) => fault,
-            (Self::Empty | Self::Inverted { .. } | Self::ZeroVolume { .. }, Some(help)) => fault.help(help),
+        let (fault, help) = (Fault::new(format!("{mesh}: {self}")), self.help());
+        match self {
+            Self::Empty | Self::Inverted { .. } | Self::ZeroVolume { .. } => fault.help(help),
             // Mesh formats count from 1 or not at all.
-            (_, Some(help)) => fault.help(format!("{help}; atoms and facets are counted from 0")),
+            _ => fault.help(format!("{help}; atoms and facets are counted from 0")),
         }
     }
 }

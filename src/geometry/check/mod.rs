@@ -37,11 +37,14 @@ pub const LEAST_FACET_QUALITY: f64 = 0.05;
 /// a red cell 0.061, and a pancake whose thickness is 1/1000 of its width still 4e-4.
 const LEAST_VOLUME_RATIO: f64 = 1e-6;
 
-/// Atoms closer than this times the diagonal of the mesh stand at the same place.
+/// Atoms closer than this times the diagonal of the mesh stand at the same point.
 const SAME_PLACE: f64 = 1e-9;
 
-/// At most so many faults of one kind are listed, then how many more there are.
-const LISTED: usize = 10;
+/// So many faults of one kind are named in the one that stands for all of them.
+const NAMED: usize = 3;
+
+/// So many facets are named of a mesh in pieces.
+const PIECES: usize = 10;
 
 impl SurfaceRules {
     /// The rules for a cell: closed, without slivers.
@@ -53,29 +56,29 @@ impl SurfaceRules {
 /// Checks a surface against the rules and changes nothing.
 ///
 /// # Errors
-/// All faults found, kind after kind. Where a fault would only cause others (an atom that does not exist, a position
+/// All faults found, kind after kind, one for each kind. Where a fault would only cause others (an atom that does not exist, a position
 /// that is not finite, a hole that leaves no volume to measure), these are not looked for.
 pub fn check_surface(surface: &Surface, rules: &SurfaceRules) -> Result<(), Vec<MeshFault>> {
     let mut faults = Vec::new();
     if surface.facets.is_empty() {
         return Err(vec![MeshFault::Empty]);
     }
-    list_some(&mut faults, atoms_out_of_range(surface), "facets with atoms that do not exist");
+    add_as_one(&mut faults, atoms_out_of_range(surface), "facets with atoms that do not exist");
     if !faults.is_empty() {
         return Err(faults);
     }
-    list_some(&mut faults, repeated_atoms(surface), "facets that name an atom twice");
+    add_as_one(&mut faults, repeated_atoms(surface), "facets that name an atom twice");
     if faults.is_empty() {
         check_connections(surface, rules, &mut faults);
     }
     let connected_well = faults.is_empty();
-    list_some(&mut faults, unused_atoms(surface), "atoms without facets");
+    add_as_one(&mut faults, unused_atoms(surface), "atoms without facets");
 
     let positions = faults.len();
-    list_some(&mut faults, positions_not_finite(surface), "atoms whose position is not a number");
+    add_as_one(&mut faults, positions_not_finite(surface), "atoms whose position is not a number");
     if faults.len() == positions {
-        list_some(&mut faults, duplicate_atoms(surface), "atoms at the place of another");
-        list_some(&mut faults, slivers(surface, rules.least_quality), "slivers");
+        add_as_one(&mut faults, duplicate_atoms(surface), "atoms at the place of another");
+        add_as_one(&mut faults, slivers(surface, rules.least_quality), "slivers");
         if connected_well {
             faults.extend(bad_volume(surface));
         }
@@ -83,14 +86,14 @@ pub fn check_surface(surface: &Surface, rules: &SurfaceRules) -> Result<(), Vec<
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
-/// Adds the first [`LISTED`] faults of a kind and the number of those left out.
-fn list_some(faults: &mut Vec<MeshFault>, mut found: Vec<MeshFault>, what: &'static str) {
-    let more = found.len().saturating_sub(LISTED);
-    found.truncate(LISTED);
-    faults.append(&mut found);
-    if more > 0 {
-        faults.push(MeshFault::More { count: more, what });
+/// Adds the faults of a kind as one: they mostly have one cause.
+fn add_as_one(faults: &mut Vec<MeshFault>, mut found: Vec<MeshFault>, what: &'static str) {
+    let count = found.len();
+    if count < 2 {
+        return faults.append(&mut found);
     }
+    found.truncate(NAMED);
+    faults.push(MeshFault::Several { count, what, first: found });
 }
 
 /// Edges, orientation, holes, pinched atoms and separate pieces of a surface whose facets name three atoms each.
@@ -111,13 +114,13 @@ fn check_connections(surface: &Surface, rules: &SurfaceRules, faults: &mut Vec<M
         }
     }
     let edges_are_sound = crowded.is_empty() && opposed.is_empty();
-    list_some(faults, crowded, "edges shared by more than 2 facets");
-    list_some(faults, opposed, "pairs of facets that face to opposite sides");
+    add_as_one(faults, crowded, "edges shared by more than 2 facets");
+    add_as_one(faults, opposed, "pairs of facets that face to opposite sides");
     if rules.boundary == Boundary::Closed {
-        list_some(faults, open, "edges with one facet only");
+        add_as_one(faults, open, "edges with one facet only");
     }
     if edges_are_sound {
-        list_some(faults, pinched_atoms(surface, &sides), "atoms where separate fans meet");
+        add_as_one(faults, pinched_atoms(surface, &sides), "atoms where separate fans meet");
     }
     faults.extend(separate_surfaces(surface, &sides));
 }
@@ -230,11 +233,11 @@ fn separate_surfaces(surface: &Surface, sides: &[HalfEdge]) -> Option<MeshFault>
         }
     }
     let count = first_facets.len();
-    first_facets.truncate(LISTED);
+    first_facets.truncate(PIECES);
     (count > 1).then_some(MeshFault::SeparateSurfaces { count, facets: first_facets })
 }
 
-/// The representative of an atom's surface; halves the path to it on the way.
+/// The representative of an atom's surface; halves the path to it on the path.
 fn root(parents: &mut [u32], mut atom: u32) -> u32 {
     while parents[atom as usize] != atom {
         parents[atom as usize] = parents[parents[atom as usize] as usize];

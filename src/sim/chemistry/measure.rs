@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::super::model::{Kind, Model};
 use super::super::state::{State, vector};
-use super::super::workspace::Workspace;
 use crate::Vec3;
 use crate::cell::ends::Reading;
 use crate::contact::AtomContact;
@@ -25,8 +24,10 @@ pub struct CellNumbers {
     area: f64,
     /// Extents of the bounding box, µm.
     size: Vec3,
-    /// Part of the atoms on a plane or near another cell.
+    /// Part of the atoms near another cell, as it is recorded.
     contact_share: f64,
+    /// Part of the atoms on a plane.
+    plane_share: f64,
     /// Volume and area of the mesh at rest.
     rest: [f64; 2],
 }
@@ -50,17 +51,17 @@ impl CellNumbers {
             Reading::AreaStrain => strain(self.area, self.rest[1]),
             Reading::Size(axis) => self.size[axis],
             Reading::ContactShare => self.contact_share,
+            Reading::PlaneShare => self.plane_share,
             Reading::Atom(..) => f64::NAN,
         }
     }
 }
 
-/// Measures all cells; `dt` is the step just made, s, 0 before the first. What touches is what was found last: under
+/// Measures all cells. What touches is what was found last: under
 /// adhesives where the step ended, and else where it began.
-pub(super) fn measure_cells(model: &Model, state: &State, ws: &mut Workspace, dt: f64) {
-    let (rest, found) = (&model.chemistry.rest, &ws.contact.found.atoms);
-    for (((kind, now), w), rest) in model.kinds.iter().zip(&state.kinds).zip(&ws.kinds).zip(rest) {
-        let out = &mut ws.chemistry.cells[kind.first_cell..kind.first_cell + kind.cells];
+pub(super) fn measure_cells(model: &Model, state: &State, found: &[AtomContact], cells: &mut [CellNumbers]) {
+    for ((kind, now), rest) in model.kinds.iter().zip(&state.kinds).zip(&model.chemistry.rest) {
+        let out = &mut cells[kind.first_cell..kind.first_cell + kind.cells];
         out.par_iter_mut().enumerate().for_each(|(cell, out)| {
             let (first, near) = near_cell(model, found, kind.first_cell + cell);
             *out = measure(model, kind, &now.positions, cell, |atom| {
@@ -71,10 +72,7 @@ pub(super) fn measure_cells(model: &Model, state: &State, ws: &mut Workspace, dt
                 scene.is_some_and(|scene| of_atom.any(|contact| is_other(scene, contact)))
             });
             out.rest = *rest;
-            if dt > 0.0 {
-                let mean = |x: &[f64]| (0..kind.atoms()).map(|atom| vector(kind, x, cell, atom)).sum::<Vec3>();
-                out.velocity = (mean(&now.positions) - mean(&w.start)) / (kind.atoms() as f64 * dt);
-            }
+            out.velocity = Vec3::from(now.mean_velocities[cell]);
         });
     }
 }
@@ -91,12 +89,14 @@ fn near_cell<'a>(model: &Model, found: &'a [AtomContact], cell: usize) -> (u32, 
 fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(u32) -> bool) -> CellNumbers {
     let place = |atom: usize| vector(kind, x, cell, atom);
     let base = place(0);
-    let (mut low, mut high, mut sum, mut touching) = (base, base, Vec3::zeros(), 0_usize);
+    let (mut low, mut high, mut sum) = (base, base, Vec3::zeros());
+    let (mut near_cells, mut on_planes) = (0_usize, 0_usize);
     for atom in 0..kind.atoms() {
         let p = place(atom);
         (low, high, sum) = (low.inf(&p), high.sup(&p), sum + (p - base));
-        let near = |plane: &super::super::Plane| (p - plane.point).dot(&plane.normal) < TOUCHING * kind.edge;
-        touching += usize::from(model.planes.iter().any(near) || is_near(atom as u32));
+        let touches = |plane: &super::super::Plane| (p - plane.point).dot(&plane.normal) < TOUCHING * kind.edge;
+        on_planes += usize::from(model.planes.iter().any(touches));
+        near_cells += usize::from(is_near(atom as u32));
     }
     let (mut area, mut volume, mut moment) = (0.0, 0.0, Vec3::zeros());
     for facet in &kind.rest.facets {
@@ -113,7 +113,8 @@ fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(
         volume: if kind.closed { volume } else { 0.0 },
         area,
         size: high - low,
-        contact_share: touching as f64 / atoms,
+        contact_share: near_cells as f64 / atoms,
+        plane_share: on_planes as f64 / atoms,
         ..CellNumbers::default()
     }
 }

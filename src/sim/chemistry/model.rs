@@ -4,7 +4,6 @@ use crate::cell::ends::{Reading, Sense};
 use crate::equations::program::Program;
 use crate::equations::tree::{Expr, QuantityId};
 use crate::field::{FieldSystem, Stepping};
-use crate::mechanics::control::Handle;
 use crate::ode::{EventPlan, Method, Tolerances};
 
 /// All chemistry of a model; empty lists where there is none.
@@ -18,8 +17,6 @@ pub struct Chemistry {
     pub links: Vec<Link>,
     /// Species that links sense as a mean over cells: (field, species).
     pub sensed: Vec<(usize, usize)>,
-    /// Forces that links set, as `load[NAME]`: what is set of them, and their name.
-    pub controlled: Vec<(Handle, String)>,
     /// Species that cells secrete: (field, species).
     pub secreted: Vec<(usize, usize)>,
     /// Volume (µm³, 0 of an open mesh) and area (µm²) of the mesh at rest of each kind.
@@ -218,8 +215,9 @@ pub enum Control {
     RestVolume,
     /// Rest volume over that of the mesh at rest.
     RestVolumeRatio,
-    /// What [`Chemistry::controlled`] has at this number.
-    Force(usize),
+    /// What may be set of a force: the number of its handle in [`CONTROLLED`](crate::mechanics::CONTROLLED), and its own among those
+    /// of the kind that have this handle.
+    Force(usize, usize),
     /// A component of an atom's position, µm.
     Atom(usize, usize),
     /// Amount released per second into a channel of [`Chemistry::secreted`].

@@ -5,7 +5,7 @@ use crate::cell::ends::{self, Reading, Sense, Setting};
 use crate::equations::eml::{Endpoint, Index, LinkDescription, Root, Step};
 use crate::error::words;
 use crate::error::{Fault, short};
-use crate::mechanics::Force;
+use crate::mechanics::CONTROLLED;
 use crate::mechanics::control::Handle;
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, Control, Source, Target, Whole, Whose};
@@ -139,15 +139,7 @@ impl Ends<'_, '_> {
             Setting::RestVolume => Control::RestVolume,
             Setting::RestVolumeRatio => Control::RestVolumeRatio,
             Setting::Atom(atom, axis) => Control::Atom(atom, axis),
-            Setting::Force(handle, name) => {
-                self.check_force(end, whose, handle, &name)?;
-                let controlled = &mut self.chemistry.controlled;
-                let known = controlled.iter().position(|(other, known)| (*other, known) == (handle, &name));
-                Control::Force(known.unwrap_or_else(|| {
-                    controlled.push((handle, name));
-                    controlled.len() - 1
-                }))
-            }
+            Setting::Force(handle, name) => Control::Force(handle, self.numbered(end, whose, handle, &name)?),
             Setting::Secretion(name) => {
                 let channel = self.species(end, &Index::Name(name))?;
                 let secreted = &mut self.chemistry.secreted;
@@ -190,23 +182,29 @@ impl Ends<'_, '_> {
         Ok(())
     }
 
-    /// Whether all kinds concerned have such a force of this name.
-    fn check_force(&self, end: &Endpoint, whose: Whose, handle: Handle, name: &str) -> Result<(), Fault> {
-        let Handle { word: one, key: many, .. } = handle;
+    /// The number of a force by its name among those with a handle, the same in all kinds concerned.
+    fn numbered(&self, end: &Endpoint, whose: Whose, handle: usize, name: &str) -> Result<usize, Fault> {
+        let Handle { word: one, key: many, .. } = CONTROLLED[handle];
+        let mut found = None;
         for kind in self.kinds_of(whose) {
             let kind = &self.kinds[kind];
-            let handles = kind.forces.iter().filter_map(Force::handle);
-            let known: Vec<&str> = handles.filter(|(other, _)| *other == handle).map(|(_, name)| name).collect();
-            if !known.contains(&name) {
+            let known: Vec<&str> = kind.controlled(handle).collect();
+            let Some(number) = known.iter().position(|known| *known == name) else {
                 let message = format!("type `{}` has no {one} `{name}`", kind.name);
                 let help = match known.is_empty() {
                     true => format!("add [[cells.{}.{many}]] with that name to the experiment", kind.name),
                     false => format!("its {many} are {}", words::all_of(known)),
                 };
                 return Err(within(&end.place, &format!("no such {one}"), message, help));
+            };
+            if found.is_some_and(|other| other != number) {
+                let message = format!("{one} `{name}` stands at another place in type `{}`", kind.name);
+                let help = format!("list the {many} of the types that share the system in the same order");
+                return Err(within(&end.place, "not the same", message, help));
             }
+            found = Some(number);
         }
-        Ok(())
+        Ok(found.unwrap_or(0))
     }
 
     /// A quantity of another system.

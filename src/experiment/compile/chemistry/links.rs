@@ -8,7 +8,6 @@ use crate::equations::eml::{self, Endpoint, LinkDescription, Root};
 use crate::equations::expression::Trouble;
 use crate::equations::tree::{Event, Expr, Role, System};
 use crate::error::{Fault, Place};
-use crate::mechanics::Force;
 use crate::ode::assigned_parameters;
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, Control, Link, Owner, Target};
@@ -92,11 +91,6 @@ fn act(link: &Link, chemistry: &mut Chemistry, kinds: &mut [Kind]) {
         let kind = &mut kinds[kind];
         match control {
             Control::Bias(_) => kind.biased = true,
-            Control::Force(control) => {
-                let (handle, name) = &chemistry.controlled[control];
-                let is_meant = |force: &&mut Force| force.handle() == Some((*handle, name));
-                kind.forces.iter_mut().filter(is_meant).for_each(|force| force.set_control(control));
-            }
             Control::Atom(atom, axis) => {
                 chemistry.imposes_atoms = true;
                 let held =

@@ -1,0 +1,137 @@
+//! What is worth a word before a run though nothing is wrong: sizes that no cell has, cells that nothing keeps apart.
+
+use super::super::{Document, Mesh};
+use super::Prepared;
+use crate::Vec3;
+use crate::geometry::bounding_box;
+use crate::mechanics::Force;
+use crate::sim::{Kind, Model};
+use crate::units::{Dimension, pretty};
+
+/// The widths of cells, µm: from the smallest bacterium to the largest egg of a frog and more.
+const WIDTHS: std::ops::RangeInclusive<f64> = 0.1..=1e4;
+
+/// The width of most cells, µm.
+const USUAL: f64 = 10.0;
+
+/// Units in which meshes come, with their µm.
+const UNITS: [(&str, f64); 5] = [("nm", 1e-3), ("um", 1.0), ("mm", 1e3), ("cm", 1e4), ("m", 1e6)];
+
+/// What there is to say about an experiment before it runs, a sentence each; empty for most.
+pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
+    let Prepared { model, centres, .. } = prepared;
+    let mut notices: Vec<String> = model.kinds.iter().filter_map(|kind| unusual_width(document, kind)).collect();
+    if model.contact.is_none() && may_meet(model, centres) {
+        let words = "nothing keeps cells apart: without [contact] they pass through each other; \
+                     add that table, which may be empty, if they are to touch";
+        notices.push(words.to_owned());
+    }
+    notices
+}
+
+/// That cells of a kind are not of the size of cells: mostly a unit that was meant and not written.
+fn unusual_width(document: &Document, kind: &Kind) -> Option<String> {
+    let (low, high) = bounding_box(&kind.rest.positions)?;
+    let width = (high - low).max();
+    if WIDTHS.contains(&width) {
+        return None;
+    }
+    let advice = match &document.experiment.cells.get(&kind.name)?.mesh {
+        Mesh::File { unit, .. } => {
+            let written = width / unit.micrometres();
+            let away = |size: f64| (written * size / USUAL).ln().abs();
+            let fits = UNITS.into_iter().filter(|(_, size)| WIDTHS.contains(&(written * size)));
+            match fits.min_by(|one, other| away(one.1).total_cmp(&away(other.1))) {
+                Some((unit, _)) => format!("write `unit = \"{unit}\"` beside the path if its coordinates are in that"),
+                None => "give the `unit` of its coordinates beside the path".to_owned(),
+            }
+        }
+        _ => "check the sizes of its mesh and their units".to_owned(),
+    };
+    let told = |length: f64| pretty(length, Dimension::LENGTH);
+    let (least, most) = (told(*WIDTHS.start()), told(*WIDTHS.end()));
+    Some(format!(
+        "cells of type `{}` are {} wide, where cells are between {least} and {most}: {advice}",
+        kind.name,
+        told(width)
+    ))
+}
+
+/// Whether two cells may come to the same place; false only where that is plain to see.
+fn may_meet(model: &Model, centres: &[Vec<Vec3>]) -> bool {
+    if model.cells() < 2 {
+        return false;
+    }
+    let reaches: Option<Vec<f64>> = model.kinds.iter().map(|kind| reach(model, kind)).collect();
+    let Some(reaches) = reaches else { return true };
+    let mut boxes: Vec<[Vec3; 2]> = Vec::with_capacity(model.cells());
+    for ((kind, centres), reach) in model.kinds.iter().zip(centres).zip(reaches) {
+        let Some((low, high)) = bounding_box(&kind.rest.positions) else { continue };
+        let (low, high) = (low.add_scalar(-reach), high.add_scalar(reach));
+        boxes.extend(centres.iter().map(|centre| [centre + low, centre + high]));
+    }
+    any_two_meet(&mut boxes)
+}
+
+/// How far cells of a kind may come in the run, µm; none where forces move them or change their size.
+fn reach(model: &Model, kind: &Kind) -> Option<f64> {
+    let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
+    let driven = kind.biased || !kind.forces.iter().all(Force::is_elastic);
+    let still = steady && !driven && model.chemistry.is_empty();
+    let walks = kind.brownian.map_or(0.0, |brownian| brownian.speed * model.until);
+    still.then_some(walks)
+}
+
+/// Whether two boxes share a point: those whose ranges along x meet are compared.
+fn any_two_meet(boxes: &mut [[Vec3; 2]]) -> bool {
+    boxes.sort_unstable_by(|one, other| one[0].x.total_cmp(&other[0].x));
+    boxes.iter().enumerate().any(|(number, [low, high])| {
+        let near = boxes[number + 1..].iter().take_while(|[other, _]| other.x <= high.x);
+        near.into_iter().any(|[from, to]| (1..3).all(|axis| from[axis] <= high[axis] && low[axis] <= to[axis]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::prepare;
+    use std::path::Path;
+
+    fn said(cells: &str) -> Vec<String> {
+        let text = format!("title = \"Notices\"\n[run]\nuntil = \"10 s\"\n{cells}");
+        let document = Document::parse("notices.toml", &text, Path::new("."), &[]).expect("a good document");
+        notices(&document, &prepare(&document).expect("a good experiment"))
+    }
+
+    fn balls(radius: &str, more: &str) -> String {
+        format!(
+            "[cells.ball]\nmesh = {{ shape = \"icosphere\", radius = \"{radius}\", level = 1 }}\n\
+             mechanics = {{ drag = \"20 pN s/um\", shape_memory = {{ stiffness = \"1 pN/um\" }} }}\n{more}"
+        )
+    }
+
+    const PAIR: &str = "placement = { at = [[0, 0, 0], [\"20 um\", 0, 0]] }\nnumber = 2\n";
+
+    #[test]
+    fn cells_that_may_pass_through_each_other_are_told_once() {
+        let pass = |more: &str| said(&balls("5 um", more)).len();
+        let pulled = "motility = { attraction = { to = [0, 0, 0], stiffness = \"1 pN/um\" } }\n";
+        assert_eq!(pass(&format!("{PAIR}{pulled}")), 1, "drawn together");
+        assert_eq!(pass(&format!("{PAIR}{pulled}[contact]\n")), 0, "contacts hold them apart");
+        assert_eq!(pass(pulled), 0, "one cell alone");
+        assert_eq!(pass(PAIR), 0, "nothing moves them");
+        let walks =
+            |speed: &str| format!("motility = {{ brownian = {{ speed = \"{speed}\", persistence = \"1 s\" }} }}\n");
+        assert_eq!(pass(&format!("{PAIR}{}", walks("0.4 um/s"))), 0, "10 um lie between them, and each goes 4");
+        assert_eq!(pass(&format!("{PAIR}{}", walks("0.6 um/s"))), 1, "each may go 6");
+        let close = PAIR.replace("20 um", "9 um");
+        assert_eq!(pass(&close), 1, "they overlap from the start");
+    }
+
+    #[test]
+    fn a_cell_of_no_size_that_cells_have_is_told() {
+        for (radius, times) in [("5 um", 0), ("60 nm", 0), ("40 nm", 1), ("4 mm", 0), ("6 mm", 1)] {
+            assert_eq!(said(&balls(radius, "")).len(), times, "{radius}");
+        }
+    }
+}
