@@ -83,12 +83,12 @@ fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
     }
 }
 
-/// Series name, kind and load of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
+/// Series name, kind and number of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
 fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
-    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads.iter().any(|load| load.name == name)).count();
+    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads().any(|load| load.name == name)).count();
     let mut names: Vec<(String, usize, usize)> = Vec::new();
     for (k, kind) in model.kinds.iter().enumerate() {
-        for (l, load) in kind.loads.iter().enumerate() {
+        for (l, load) in kind.loads().enumerate() {
             let owner = if owners(&load.name) > 1 { format!("{}.", kind.name) } else { String::new() };
             names.push((format!("load.{owner}{}", load.name), k, l));
         }
@@ -125,7 +125,8 @@ impl Recorder {
     /// The frame of this instant without the runs that ended; `dt` is the size of the last step, s.
     pub fn look(&mut self, model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
         let mut frame = frame_of(model, state);
-        frame.scene = self.loads.iter().map(|&(_, k, l)| model.kinds[k].loads[l].force.at(state.time)).collect();
+        let at = |&(_, kind, number): &(String, usize, usize)| model.kinds[kind].loads().nth(number);
+        frame.scene = self.loads.iter().filter_map(at).map(|load| load.force.at(state.time)).collect();
         if let Some(contact) = &model.contact {
             self.touch.look(model, contact, state, ws, dt, &mut frame);
         }
