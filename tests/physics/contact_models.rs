@@ -14,8 +14,8 @@ use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::contact::{
     ContactModel, Law, Link, LinkTable, Penalty, Row, Strength, links_at, press, pull_links,
 };
-use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::controls::Controls;
+use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::{Kind, Model, State, VolumeRule, Workspace, step};
 
 /// Radius of the cells, µm.
