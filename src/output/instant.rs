@@ -79,7 +79,9 @@ impl Frame {
             CELL.iter().find_map(|quantity| Some((quantity.values, quantity.component(name)?)))?;
         Some(match (values, component) {
             (Values::Number(value, _), _) => self.records.iter().map(value).collect(),
-            (Values::Vector(value, _), axis) => self.records.iter().map(|cell| value(cell)[axis.unwrap_or(0)]).collect(),
+            (Values::Vector(value, _), axis) => {
+                self.records.iter().map(|cell| value(cell)[axis.unwrap_or(0)]).collect()
+            }
         })
     }
 

@@ -1,10 +1,10 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
-use super::touch::Touch;
-use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES};
+use super::touch::{Touch, recorded_by};
 use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
+use crate::recorded::contact_quantities;
 use crate::sim::chemistry::Members;
-use crate::sim::contact::{Law, find_contacts};
+use crate::sim::contact::find_contacts;
 use crate::sim::model::Kind;
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
@@ -25,16 +25,8 @@ pub fn outline_of(model: &Model) -> Layout {
     let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     layout.contacts = model.contact.is_some();
-    if layout.contacts {
-        let unit = |name: &str| if name == "contact.energy" { "pN um" } else { "1" }.to_owned();
-        layout.scene_series.extend(CONTACT_SERIES.map(|name| (name.to_owned(), unit(name))));
-    }
-    let of_law: &[&str] = match model.contact.as_ref().map(|contact| &contact.law) {
-        Some(Law::Links(_)) => &[LINK_SERIES],
-        Some(Law::VirtualAdhesives(_)) => &ADHESIVE_SERIES,
-        _ => &[],
-    };
-    layout.scene_series.extend(of_law.iter().map(|name| ((*name).to_owned(), "1".to_owned())));
+    let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(recorded_by(&contact.law)));
+    layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
     layout.planes = model.planes.iter().map(plane).collect();
     add_chemistry(model, &mut layout);
