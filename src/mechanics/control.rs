@@ -61,7 +61,8 @@ impl Context<'_> {
 
     fn in_lanes(&self, list: &[f64], empty: f64) -> [f64; LANES] {
         let mut lanes = [empty; LANES];
-        lanes.iter_mut().zip(&list[self.cells.clone()]).for_each(|(lane, number)| *lane = *number);
+        let own = list.get(self.cells.clone()).unwrap_or_default();
+        lanes.iter_mut().zip(own).for_each(|(lane, number)| *lane = *number);
         lanes
     }
 }

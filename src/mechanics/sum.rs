@@ -1,9 +1,9 @@
 //! The sum of all forces on a block of cells.
 
 use super::control::Context;
-use super::{CONTROLLED, Force};
 use super::lanes::{BlockWork, LANES, Real, Vectors, VectorsMut, dispatch};
 use super::stiffness::StiffnessMatrix;
+use super::{CONTROLLED, Force};
 use crate::Vec3;
 
 /// Sets `f` to the sum of all forces on the atoms of a block of `lanes` cells at `x` (µm), pN, and `energy` to the energy of each

@@ -8,8 +8,8 @@ use super::model::{Kind, Model, VolumeRule};
 use super::rooms::{Rooms, each_or_none};
 use super::state::{KindState, State};
 use super::workspace::{KindScratch, Workspace};
-use crate::mechanics::lanes::LANES;
 use crate::mechanics::control::Context;
+use crate::mechanics::lanes::LANES;
 use crate::mechanics::sum::{measure_elastic, measure_forces};
 use crate::mechanics::volume;
 

@@ -3,7 +3,7 @@
 use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
-use crate::cell::ends::{Setting, setting, settable};
+use crate::cell::ends::{Setting, settable, setting};
 use crate::equations::eml::{Step, read_end};
 use crate::equations::tree::System;
 use crate::geometry;

@@ -48,7 +48,10 @@ fn scene(steps: Steps) -> (Model, State, Workspace) {
 
 /// Gives the first load of the first kind another force, pN.
 fn load_with(model: &mut Model, force: f64) {
-    let loads = model.kinds[0].forces.iter_mut().filter_map(|force| if let Force::Load(load) = force { Some(load) } else { None });
+    let loads = model.kinds[0]
+        .forces
+        .iter_mut()
+        .filter_map(|force| if let Force::Load(load) = force { Some(load) } else { None });
     loads.take(1).for_each(|load| load.force = Course::constant(force));
 }
 

@@ -6,7 +6,6 @@ use std::sync::LazyLock;
 use nalgebra::DMatrix;
 use pseudopod::Vec3;
 use pseudopod::geometry::{Surface, Topology, icosphere};
-use pseudopod::mechanics::{CONTROLLED, Force};
 use pseudopod::mechanics::angles::Angles;
 use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
@@ -24,6 +23,7 @@ use pseudopod::mechanics::springs::{Spring, Springs};
 use pseudopod::mechanics::stiffness::StiffnessMatrix;
 use pseudopod::mechanics::sum::measure_forces;
 use pseudopod::mechanics::tension::Tension;
+use pseudopod::mechanics::{CONTROLLED, Force};
 
 /// A force, and what is known of it.
 pub struct Case {
@@ -189,8 +189,7 @@ fn elastic() -> Vec<Case> {
 /// Forces that do work on the cell; chemistry sets those that let it.
 fn driven() -> Vec<Case> {
     let course = || Course::through(vec![(0.0, 0.4), (1.0, 1.4)]).expect("times that rise");
-    let load =
-        Force::Load(Load::new("pull", vec![(0, 0.5), (7, 0.3), (8, 0.2)], Vec3::new(0.6, 0.0, 0.8), course()));
+    let load = Force::Load(Load::new("pull", vec![(0, 0.5), (7, 0.3), (8, 0.2)], Vec3::new(0.6, 0.0, 0.8), course()));
     let pairs = (0..6).map(|i| [i, 40 - 3 * i]).chain([[0, 3]]).collect();
     let fibres = Force::Fibres(Fibres::new("trunk", pairs, 3.0, course()));
     let gravity = Force::Gravity(Gravity { acceleration: Vec3::new(0.3, -0.2, -9.0) });
