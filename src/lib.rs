@@ -26,6 +26,7 @@ pub mod random;
 pub mod run;
 pub mod sim;
 pub mod units;
+pub mod xml;
 
 /// A point or a vector in space, µm unless said otherwise.
 pub type Vec3 = nalgebra::Vector3<f64>;
