@@ -4,7 +4,8 @@
 use rayon::prelude::*;
 
 use super::contact::settle_adhesives;
-use super::model::{Model, VolumeRule};
+use super::kind::VolumeRule;
+use super::model::Model;
 use super::projection::{ProjectScratch, project_cell};
 use super::state::State;
 use super::trouble::Trouble;
@@ -70,7 +71,7 @@ pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Wo
 /// Cell by cell, the thorough way.
 fn project_block(
     model: &Model,
-    kind: &super::model::Kind,
+    kind: &super::kind::Kind,
     exact: bool,
     x: &mut [f64],
     target: &[f64],

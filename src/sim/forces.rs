@@ -6,19 +6,20 @@ use rayon::prelude::*;
 
 use super::contact::{ContactForces, add_contact_forces, pull_contacts};
 use super::controls::Controls;
-use super::model::{Kind, Model, VolumeRule};
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
 use super::rooms::{Rooms, each_or_none};
 use super::state::{KindState, State};
 use super::workspace::{KindScratch, Workspace};
+use crate::mechanics::control::Context;
 use crate::mechanics::lanes::LANES;
+use crate::mechanics::sum::{measure_elastic, measure_forces};
 use crate::mechanics::volume;
 
 /// All forces on the cells of a kind, drag not included. Motility enters as the drag that its velocity
 /// overcomes.
 #[derive(Clone, Copy)]
 pub struct Forces<'a> {
-    /// The model.
-    pub model: &'a Model,
     /// The kind.
     pub kind: &'a Kind,
     /// Its cells, wherever their atoms are.
@@ -42,16 +43,10 @@ impl Forces<'_> {
         (f, energy): (&mut [f64], &mut [f64]),
         spare: &mut [f64],
     ) {
-        let &Self { model, kind, cells, controls, drive, contact } = self;
+        let &Self { kind, cells, controls, drive, contact } = self;
         let numbers = cells.numbers_of_block(kind, block);
-        f.fill(0.0);
-        energy.fill(0.0);
-        kind.elasticity.add_forces(kind.lanes, x, f, energy);
-        scale_elasticity(kind, controls, numbers.clone(), f, energy);
-        add_loads(kind, controls, numbers.clone(), time, f);
-        add_fibres(kind, controls, numbers.clone(), time, x, f, energy);
-        add_gravity(model, kind, f);
-        add_attraction(kind, x, f, energy);
+        let context = context(kind, controls, numbers.clone(), time);
+        measure_forces(&kind.forces, &context, kind.lanes, x, f, energy);
         add_drive(kind, &drive[numbers], f);
         add_pressure(kind, time, x, rest, spare, f, energy);
         add_contact_forces(kind, cells, block, contact, f);
@@ -94,7 +89,7 @@ fn for_each_kind(
     lent: impl Fn(&mut KindScratch) -> (&mut [f64], &mut [f64]),
 ) {
     for ((kind, now), w) in model.kinds.iter().zip(cells).zip(kinds) {
-        let forces = Forces { model, kind, cells: now, controls, drive, contact };
+        let forces = Forces { kind, cells: now, controls, drive, contact };
         let (length, lanes) = (kind.block_len(), kind.lanes);
         let (force, energy) = lent(w);
         (now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
@@ -113,82 +108,15 @@ pub fn elastic_energy(kind: &Kind, cells: &KindState) -> Vec<f64> {
     let mut energy = vec![0.0; cells.blocks(kind) * kind.lanes];
     let mut force = vec![0.0; kind.block_len()];
     for (x, energy) in cells.positions.chunks_exact(kind.block_len()).zip(energy.chunks_exact_mut(kind.lanes)) {
-        kind.elasticity.add_forces(kind.lanes, x, &mut force, energy);
+        measure_elastic(&kind.forces, kind.lanes, x, &mut force, energy);
     }
     energy.truncate(cells.cells());
     energy
 }
 
-/// What chemistry makes of the elastic forces, the only ones in `f` so far.
-fn scale_elasticity(kind: &Kind, controls: &Controls, cells: Range<usize>, f: &mut [f64], energy: &mut [f64]) {
-    if controls.stiffness.is_empty() {
-        return;
-    }
-    let mut factors = [1.0; LANES];
-    for (factor, cell) in factors.iter_mut().zip(cells) {
-        *factor = controls.stiffness_of(cell);
-    }
-    for row in f.chunks_exact_mut(kind.lanes).chain([energy]) {
-        row.iter_mut().zip(&factors).for_each(|(slot, factor)| *slot *= factor);
-    }
-}
-
-fn add_loads(kind: &Kind, controls: &Controls, cells: Range<usize>, time: f64, f: &mut [f64]) {
-    for (number, load) in kind.loads.iter().enumerate() {
-        let force = load.force.at(time);
-        let mut forces = [force; LANES];
-        if controls.loads.get(number).is_some() {
-            for (force, cell) in forces.iter_mut().zip(cells.clone()) {
-                *force *= controls.load_of(number, cell);
-            }
-        }
-        for &(atom, share) in &load.atoms {
-            for axis in 0..3 {
-                let along = share * load.direction[axis];
-                let at = (3 * atom as usize + axis) * kind.lanes;
-                f[at..at + kind.lanes].iter_mut().zip(&forces).for_each(|(slot, force)| *slot += force * along);
-            }
-        }
-    }
-}
-
-/// Fibres pull with the activation that chemistry sets, or else with that of their course.
-fn add_fibres(
-    kind: &Kind,
-    controls: &Controls,
-    cells: Range<usize>,
-    time: f64,
-    x: &[f64],
-    f: &mut [f64],
-    energy: &mut [f64],
-) {
-    for (number, fibres) in kind.fibres.iter().enumerate() {
-        let mut activation = [fibres.activation.at(time); LANES];
-        for (activation, cell) in activation.iter_mut().zip(cells.clone()) {
-            *activation = controls.activation_of(number, cell).unwrap_or(*activation);
-        }
-        fibres.add_forces(kind.lanes, &activation, x, f, energy);
-    }
-}
-
-fn add_gravity(model: &Model, kind: &Kind, f: &mut [f64]) {
-    let weight = model.gravity * kind.mass;
-    if weight.norm_squared() > 0.0 {
-        for (i, row) in f.chunks_exact_mut(kind.lanes).enumerate() {
-            row.iter_mut().for_each(|slot| *slot += weight[i % 3]);
-        }
-    }
-}
-
-fn add_attraction(kind: &Kind, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
-    let Some(attraction) = &kind.attraction else { return };
-    for (i, (row, place)) in f.chunks_exact_mut(kind.lanes).zip(x.chunks_exact(kind.lanes)).enumerate() {
-        for ((slot, here), energy) in row.iter_mut().zip(place).zip(energy.iter_mut()) {
-            let away = here - attraction.to[i % 3];
-            *slot -= attraction.stiffness * away;
-            *energy += 0.5 * attraction.stiffness * away * away;
-        }
-    }
+/// What forces on these cells depend on beside positions.
+fn context<'a>(kind: &Kind, controls: &'a Controls, cells: Range<usize>, time: f64) -> Context<'a> {
+    Context { time, mass: kind.mass, cells, stiffness: &controls.stiffness, controls: &controls.forces }
 }
 
 fn add_drive(kind: &Kind, drive: &[[f64; 3]], f: &mut [f64]) {

@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::contact::{has_live_forces, pull_contacts};
 use super::forces::Forces;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::planes::{self, TouchScratch};
 use super::pressure::{carry_pressure, constrain};
 use super::rooms::each_or_none;
@@ -73,7 +74,7 @@ fn advance_stages(
     let cells = from.kinds.iter().zip(&mut to.kinds);
     for ((kind, (now, next)), w) in model.kinds.iter().zip(cells).zip(kinds) {
         let controls = &from.chemistry.controls;
-        let forces = Forces { model, kind, cells: now, controls, drive, contact: &contact.forces };
+        let forces = Forces { kind, cells: now, controls, drive, contact: &contact.forces };
         let solver = &*w.solver(kind, dt, gamma(order));
         let targets = Targets::of(model, kind, [from.time, from.time + dt]);
         let step = Step { model, kind, forces, solver, targets, order, start: from.time, dt };

@@ -1,6 +1,7 @@
 //! The stage that lets motile cells decide where they go during the step.
 
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::state::{KindState, State};
 use super::workspace::Workspace;
 use crate::Vec3;

@@ -2,7 +2,8 @@
 
 use super::chemistry::next_exchange;
 use super::contact::SweepRules;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::state::State;
 use super::trouble::Trouble;
 use crate::mechanics::integrator::StepSize;

@@ -2,7 +2,8 @@
 //! is good.
 
 use super::contact::check_added;
-use super::model::{Change, Kind, Model, Removal};
+use super::kind::Kind;
+use super::model::{Change, Model, Removal};
 use super::population_trouble::PopulationTrouble;
 use super::state::State;
 use super::workspace::Workspace;

@@ -4,7 +4,8 @@
 //! several times stiffer than K, eq. (step.8), and then only tiny steps are stable. A kind of one cell therefore makes K
 //! again for the shape that the cell has now, whenever an edge has changed enough since K was last made.
 
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::state::{KindState, State};
 use super::workspace::Workspace;
 use crate::Vec3;

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::chemistry::ChemistryState;
 use super::contact::ContactState;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use crate::Vec3;
 use crate::cell::motility::Walk;
 

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::model::{Kind, Model, VolumeRule};
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
 use super::state::State;
 use super::workspace::Workspace;
 use crate::mechanics::volume;

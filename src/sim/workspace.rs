@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::chemistry::ChemistryScratch;
 use super::contact::ContactScratch;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::planes::TouchScratch;
 use super::projection::ProjectScratch;
 use super::rooms::Rooms;

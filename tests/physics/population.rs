@@ -4,7 +4,9 @@ use crate::everything::{Steps, everything};
 use pseudopod::Vec3;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::geometry::{self, Surface, Topology, icosphere};
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::{
     Change, Kind, Model, NewCell, PopulationChange, PopulationTrouble, Removal, State, VolumeRule, Workspace,
     add_cells, apply_due_changes, begin_chemistry, remove_cells, step,
@@ -213,15 +215,9 @@ fn a_course_with_cells_that_come_and_go_is_the_same_for_any_threads_scratch_and_
 fn lanes_are_filled_and_emptied_in_any_order() {
     let surface = icosphere(5.0, 1);
     let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
-    let memory = pseudopod::mechanics::shape_memory::ShapeMemory::new(
-        &surface.positions,
-        &rings,
-        10.0,
-        pseudopod::mechanics::shape_memory::Reaction::Exact,
-    );
-    let elasticity = pseudopod::mechanics::elasticity::Elasticity { shape_memory: vec![memory], ..Default::default() };
+    let memory = ShapeMemory::new(&surface.positions, &rings, 10.0, Reaction::Exact);
     for (lanes, cells) in [(8, 20), (1, 2)] {
-        let mut kind = Kind::new("cell", surface.clone(), elasticity.clone()).for_cells(cells);
+        let mut kind = Kind::new("cell", surface.clone(), vec![Force::ShapeMemory(memory.clone())]).for_cells(cells);
         assert_eq!(kind.lanes, lanes);
         kind.bound_stiffness();
         kind.brownian = Some(BrownianMotility { speed: 0.5, persistence: 2.0, space: Space::Volume });

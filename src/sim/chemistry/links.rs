@@ -167,6 +167,16 @@ pub enum Target {
     Cell(Whose, Control),
 }
 
+impl Target {
+    /// What it sets of cells; none where it sets a quantity of its owner.
+    pub fn control(&self) -> Option<Control> {
+        match *self {
+            Self::Own(_) => None,
+            Self::Cell(_, control) => Some(control),
+        }
+    }
+}
+
 /// What mechanics reads of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Control {
@@ -182,10 +192,9 @@ pub enum Control {
     RestVolume,
     /// Rest volume over that of the mesh at rest.
     RestVolumeRatio,
-    /// Factor of the load with this number in the kind's list.
-    Load(usize),
-    /// Activation of the fibres with this number in the kind's list.
-    Fibre(usize),
+    /// What may be set of a force: the number of its handle in [`CONTROLLED`](crate::mechanics::CONTROLLED), and its own among those
+    /// of the kind that have this handle.
+    Force(usize, usize),
     /// A component of an atom's position, µm.
     Atom(usize, usize),
     /// Amount released per second into a channel of [`Chemistry::secreted`].

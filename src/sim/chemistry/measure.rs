@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::super::contact::ContactScene;
-use super::super::model::{Kind, Model};
+use super::super::kind::Kind;
+use super::super::model::Model;
 use super::super::state::{KindState, State, vector};
 use crate::Vec3;
 use crate::cell::ends::Reading;

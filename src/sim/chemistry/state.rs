@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::super::controls::Controls;
 use super::super::model::Model;
-use super::links::Target;
 use super::model::Reactor;
 use crate::field::Fields;
 use crate::ode::{EventMemory, Population};
@@ -118,10 +117,7 @@ fn copy_each<T: Clone>(to: &mut Vec<T>, from: &[T], copy: impl Fn(&mut T, &T)) {
 fn controls_of(model: &Model, cells: usize) -> Controls {
     let mut controls = Controls::default();
     controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
-    for link in &model.chemistry.links {
-        if let Target::Cell(_, control) = link.to {
-            controls.admit(control, cells);
-        }
-    }
+    let set = model.chemistry.links.iter().filter_map(|link| link.to.control());
+    set.for_each(|control| controls.admit(control, cells));
     controls
 }

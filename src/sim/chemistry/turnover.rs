@@ -3,6 +3,7 @@
 use super::super::controls::Controls;
 use super::model::{Chemistry, Members};
 use super::state::ChemistryState;
+use crate::mechanics::CONTROLLED;
 
 impl ChemistryState {
     /// A cell comes: every system of its kind gets a member at the system's start, and no link has set anything of it. It stands before
@@ -22,6 +23,13 @@ impl ChemistryState {
             }
         }
         self.controls.insert_cell(cells[..kind].iter().sum::<usize>() + local);
+        // Where there was no cell before, lists that links write were as empty as those that none does.
+        let all = cells.iter().sum::<usize>() + 1;
+        chemistry
+            .links
+            .iter()
+            .filter_map(|link| link.to.control())
+            .for_each(|control| self.controls.admit(control, all));
     }
 
     /// Cells go: those of which `keep` (of a kind, and a number among its cells) says no. `cells` says how many each kind has before.
@@ -41,25 +49,23 @@ impl ChemistryState {
 impl Controls {
     /// Adds a cell to all lists that are there, with numbers that change nothing.
     fn insert_cell(&mut self, at: usize) {
-        let insert = |list: &mut Vec<f64>, nothing: f64| {
+        for (list, nothing) in [(&mut self.speed, f64::NAN), (&mut self.stiffness, 1.0), (&mut self.adhesion, 1.0)] {
             if !list.is_empty() {
                 list.insert(at, nothing);
             }
-        };
-        insert(&mut self.speed, f64::NAN);
-        insert(&mut self.stiffness, 1.0);
-        insert(&mut self.adhesion, 1.0);
-        self.loads.iter_mut().for_each(|list| insert(list, 1.0));
-        self.fibres.iter_mut().for_each(|list| insert(list, -1.0));
-        self.secretion.iter_mut().for_each(|list| insert(list, 0.0));
+        }
         if !self.bias.is_empty() {
             self.bias.insert(at, [0.0; 3]);
         }
+        for (lists, handle) in self.forces.iter_mut().zip(CONTROLLED) {
+            lists.iter_mut().for_each(|list| list.insert(at, handle.unset));
+        }
+        self.secretion.iter_mut().for_each(|list| list.insert(at, 0.0));
     }
 
     fn retain_cells(&mut self, stays: &[bool]) {
         let single = [&mut self.speed, &mut self.stiffness, &mut self.adhesion];
-        let many = self.loads.iter_mut().chain(&mut self.fibres).chain(&mut self.secretion);
+        let many = self.forces.iter_mut().flatten().chain(&mut self.secretion);
         single.into_iter().chain(many).for_each(|list| retain(list, stays));
         retain(&mut self.bias, stays);
     }

@@ -15,7 +15,8 @@ use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
 use crate::contact::{AtomContact, Contacts, PlaneContact};
 use crate::sim::controls::Controls;
-use crate::sim::model::{Kind, Model};
+use crate::sim::kind::Kind;
+use crate::sim::model::Model;
 use crate::sim::state::{KindState, State};
 use crate::sim::workspace::Workspace;
 

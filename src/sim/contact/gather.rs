@@ -2,7 +2,8 @@
 
 use super::scene::ContactScene;
 use crate::Vec3;
-use crate::sim::model::{Kind, Model};
+use crate::sim::kind::Kind;
+use crate::sim::model::Model;
 use crate::sim::state::{KindState, index, vector};
 
 /// Takes the vectors of a kind in the order of its cells, and what `make` makes of each.

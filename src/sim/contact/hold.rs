@@ -13,7 +13,8 @@ use super::sweep::{Change, V4, VolumeRow, sweep_contacts, sweep_depths, sweep_vo
 use crate::Vec3;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
-use crate::sim::model::{Kind, Model, VolumeRule};
+use crate::sim::kind::{Kind, VolumeRule};
+use crate::sim::model::Model;
 use crate::sim::rooms::Rooms;
 use crate::sim::state::{State, vector};
 use crate::sim::trouble::Trouble;

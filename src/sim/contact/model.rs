@@ -6,7 +6,8 @@ use super::law::{Law, Strength};
 use crate::contact::{self, Reach, Shape, Sides};
 use crate::geometry;
 use crate::mechanics::integrator::StepSize;
-use crate::sim::model::{Kind, Plane};
+use crate::sim::kind::Kind;
+use crate::sim::plane::Plane;
 
 /// Contacts of a model.
 #[derive(Debug, Clone)]

@@ -10,7 +10,7 @@ use super::state::{AdhesiveAtom, ContactState};
 use crate::Vec3;
 use crate::contact::Contacts;
 use crate::sim::controls::Controls;
-use crate::sim::model::Kind;
+use crate::sim::kind::Kind;
 
 impl AdhesiveScratch {
     /// Finds the adhesives of a step: those before, with what touches now.
