@@ -28,7 +28,7 @@ const ALLOWED: &[&[&str]] = &[
     &["field/state.rs", "field/step.rs"],
     &["ode/block.rs", "ode/fixed.rs"],
     &["ode/multistep.rs", "ode/solve.rs"],
-    &["output/columns.rs", "output/field_column.rs", "output/fields.rs", "output/systems.rs"],
+    &["output/field_column.rs", "output/fields.rs"],
     &["output/contacts.rs", "output/reader.rs"],
     &["picture/field_plots.rs", "picture/from_file.rs", "picture/plots.rs"],
     &["sim/chemistry/carry.rs", "sim/chemistry/stages.rs"],
