@@ -77,7 +77,7 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
         }
     }
     let integrator = Integrator { method, size: StepSize::Fixed(0.01) };
-    Model { planes, ..Model::of(vec![kind.with_cells(0, cells)], integrator, 1e9) }
+    Model { planes, ..Model::of(vec![kind.for_cells(cells)], integrator, 1e9) }
 }
 
 fn pull(direction: Vec3, atom: u32) -> Force {
@@ -132,7 +132,7 @@ fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
     let places = vec![model.kinds[0].rest.positions.clone(); 100_000];
     let (mut state, mut ws) = (State::new(&model, &[places]), Workspace::new(&model));
     step(&model, &mut state, &mut ws).unwrap();
-    let bytes = (BYTES.load(Ordering::Relaxed) - before) as f64 / model.atoms() as f64;
-    println!("{bytes:.0} bytes an atom on {} cells of {} atoms", model.cells(), model.kinds[0].atoms());
+    let bytes = (BYTES.load(Ordering::Relaxed) - before) as f64 / state.atoms(&model) as f64;
+    println!("{bytes:.0} bytes an atom on {} cells of {} atoms", state.cells(), model.kinds[0].atoms());
     assert!(bytes < 250.0, "{bytes}");
 }

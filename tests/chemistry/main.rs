@@ -3,6 +3,7 @@
 mod eml;
 mod eml_write;
 mod engine_events;
+mod engine_members;
 mod engine_order;
 mod engine_program;
 mod engine_stiff;

@@ -53,7 +53,7 @@ fn centres(compiled: &Compiled) -> Vec<(Vec3, f64)> {
     let of_kind = |(kind, now): (&pseudopod::sim::Kind, &pseudopod::sim::KindState)| -> Vec<(Vec3, f64)> {
         let radius = kind.rest.positions[0].norm();
         let mean = |cell| now.cell(kind, cell).iter().sum::<Vec3>() / kind.atoms() as f64;
-        (0..kind.cells).map(|cell| (mean(cell), radius)).collect()
+        (0..now.cells()).map(|cell| (mean(cell), radius)).collect()
     };
     kinds.flat_map(of_kind).collect()
 }
@@ -88,7 +88,7 @@ fn an_empty_table_turns_contacts_on_and_nothing_sticks() {
     let contact = model.contact.expect("contacts");
     assert!(contact.between.iter().chain(&contact.on_planes).all(|strength| *strength == Strength::default()));
     let smallest = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
-    assert_eq!(contact.scene.reach.proximity, 0.1 * smallest);
+    assert_eq!(contact.reach.proximity, 0.1 * smallest);
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn cells_at_random_start_apart_and_above_the_planes() {
         }
     }
     let lowest = |kind: &pseudopod::sim::Kind, now: &pseudopod::sim::KindState| {
-        (0..kind.cells).flat_map(|cell| now.cell(kind, cell)).map(|p| p.z).fold(f64::INFINITY, f64::min)
+        (0..now.cells()).flat_map(|cell| now.cell(kind, cell)).map(|p| p.z).fold(f64::INFINITY, f64::min)
     };
     for (kind, now) in with.model.kinds.iter().zip(&with.state.kinds) {
         assert!(lowest(kind, now) > -1e-7, "an atom stands on the plane at most");
