@@ -11,6 +11,7 @@ mod fields;
 mod fields_analytic;
 mod sbml;
 mod sbml_features;
+mod xml;
 
 #[path = "../support/every_function.rs"]
 mod every_function;
