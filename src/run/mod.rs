@@ -199,7 +199,8 @@ fn drive(
     let mut recorder = record::Recorder::new(&model, &schedule);
     let (mut recorded, first, mut limited) = (state.step, state.step, 0);
     if let Err(trouble) = begin_chemistry(&model, &mut state, &mut ws) {
-        return Err(failed(trouble, writer, &state, None, result));
+        let help = trouble.help_at(&model, &state);
+        return Err(failed(trouble, help, writer, &state, None, result));
     }
     if start == Start::Fresh {
         writer.append(&recorder.record(&model, &mut state, &ws, 0.0))?;
@@ -217,7 +218,8 @@ fn drive(
                 if last || passed(before, state.time, schedule.every) {
                     if let Err(trouble) = check_passed(&model, &state) {
                         report.end();
-                        return Err(failed(trouble, writer, &good.unwrap_or(state), None, result));
+                        let help = trouble.help_at(&model, &state);
+                        return Err(failed(trouble, help, writer, &good.unwrap_or(state), None, result));
                     }
                     good = model.contact.is_some().then(|| state.clone());
                     writer.append(&recorder.record(&model, &mut state, &ws, done.dt))?;
@@ -231,7 +233,8 @@ fn drive(
                 // The last good state is what the user wants to look at.
                 let unseen = (state.step > recorded).then(|| recorder.record(&model, &mut state, &ws, 0.0));
                 report.end();
-                return Err(failed(trouble, writer, &state, unseen, result));
+                let help = trouble.help_at(&model, &state);
+                return Err(failed(trouble, help, writer, &state, unseen, result));
             }
         }
         report.step(state.time, state.step);
@@ -263,10 +266,17 @@ fn save(writer: &mut ResultWriter, state: &State) -> Result<()> {
 }
 
 /// Keeps the last good state, as a frame and as a checkpoint, and says what happened.
-fn failed(trouble: Trouble, mut writer: ResultWriter, state: &State, unseen: Option<Frame>, result: &Path) -> Error {
+fn failed(
+    trouble: Trouble,
+    help: &str,
+    mut writer: ResultWriter,
+    state: &State,
+    unseen: Option<Frame>,
+    result: &Path,
+) -> Error {
     let kept = unseen.map_or(Ok(()), |frame| writer.append(&frame)).and_then(|()| save(&mut writer, state));
     let kept = kept.is_ok().then(|| result.to_path_buf());
-    Error::Numbers { message: trouble.to_string(), help: trouble.help().to_owned(), kept }
+    Error::Numbers { message: trouble.to_string(), help: help.to_owned(), kept }
 }
 
 /// Evaluates the measures of the experiment on what was recorded and ends the file.

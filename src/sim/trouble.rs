@@ -1,6 +1,7 @@
 //! When the numbers fail: what, where and when.
 
 use super::constraints::VolumeFailure;
+use super::contact::{Cause, cause_of};
 use super::model::Model;
 use super::state::{State, index};
 use crate::ode::Reason;
@@ -105,7 +106,28 @@ impl Trouble {
         Self::Volume { kind, cell: failure.cell, error: failure.error, time }
     }
 
-    /// What to do about it.
+    /// What to do about it, in the light of the state that it came from.
+    pub fn help_at(&self, model: &Model, state: &State) -> &'static str {
+        let (Self::Contact { cells, .. } | Self::Pressed { cells, .. }) = self else { return self.help() };
+        match cause_of(model, state, cells) {
+            Cause::Crowded => {
+                "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
+                 let run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
+            }
+            Cause::Folded => {
+                "the surface of one of these cells is folded: it is too soft for what moves it. Raise its stiffness \
+                 (shape_memory, or shear, area and bending of its membrane), pull or press it more gently, or let \
+                 run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
+            }
+            Cause::Open => {
+                "nothing presses these cells together from around; they move or yield faster than contacts follow: let \
+                 run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance), pull \
+                 more gently, or raise their stiffness"
+            }
+        }
+    }
+
+    /// What to do about it, where nothing is known but the trouble.
     pub fn help(&self) -> &'static str {
         match self {
             Self::NotFinite { .. } => {
@@ -130,8 +152,8 @@ impl Trouble {
                 "bound the number in the link's transfer, such as transfer=\"max(value, 0)\", or mend the equations behind it"
             }
             Self::Contact { .. } | Self::Pressed { .. } => {
-                "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
-                 let run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
+                "contacts could not keep these cells apart: look at their last state; weaker loads, stiffer cells or \
+                 shorter steps (run.integrator: a smaller step where you set one, else max_step or tolerance) may help"
             }
             Self::TooFast { .. } => "shorten run.integrator.step, or leave it out so that steps limit themselves",
             Self::StepTooSmall { .. } => {

@@ -7,6 +7,7 @@
 //! Three other models are there to compare with: springs that link facets in place of strengths, penalties in place of the
 //! projection, whose forces are those of where the atoms are in each stage of a step, and zones of contact that are rigid.
 
+mod cause;
 mod depth;
 mod find;
 mod gather;
@@ -29,6 +30,7 @@ mod sweep;
 mod sweep_tests;
 mod zones;
 
+pub use cause::{Cause, cause_of};
 pub use depth::{Deepened, check_depth, check_passed, look_for_depth};
 pub use find::{add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, pull_contacts};
 pub use give::energy_of_give;
