@@ -2,7 +2,7 @@
 //! of each of its windows; the ratios that matter are printed from one run, on one thread. The same cells, start and end
 //! for both, and the error of both against a run at 1e-11. A word given picks the problems and methods whose name has it.
 
-#[path = "../tests/ode_problems/mod.rs"]
+#[path = "../tests/support/ode_problems.rs"]
 mod ode_problems;
 
 use std::cell::RefCell;

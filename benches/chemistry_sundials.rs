@@ -10,7 +10,7 @@ use std::time::Instant;
 use pseudopod::ode::{Method, Scheme, SolveOptions, solve};
 use serde_json::Value;
 
-#[path = "../tests/ode_problems/mod.rs"]
+#[path = "../tests/support/ode_problems.rs"]
 mod ode_problems;
 
 const ROUNDS: usize = 15;

@@ -1,9 +1,10 @@
 //! Pseudopod simulates populations of deformable 3-D cells: closed, exactly incompressible elastic shells that
 //! crawl, carry loads and are recorded in one HDF5 file.
 //!
-//! The way through the library is the way of a run: an [`experiment::Experiment`] says what the user wants,
-//! [`experiment::compile()`] turns it into a [`sim::Model`] (what it means) and a [`sim::State`] (where it starts),
-//! [`sim::step()`] moves the state, [`run`] loops and records, [`analysis`] and [`picture`] read the finished file.
+//! A program begins with a [`Simulation`]: made from a document or from an [`experiment::Experiment`] built in Rust, it is
+//! stepped, looked at, driven and saved in memory. What is behind it goes the course of a run: the experiment says what the
+//! user wants, [`experiment::compile()`] turns it into a [`sim::Model`] (what it means) and a [`sim::State`] (where it
+//! starts), [`sim::step()`] moves the state. [`run`] records a simulation in a file, which [`analysis`] and [`picture`] read.
 #![warn(missing_docs)]
 
 #[cfg(test)]
@@ -23,9 +24,14 @@ pub mod ode;
 pub mod output;
 pub mod picture;
 pub mod random;
+pub mod recorded;
 pub mod run;
 pub mod sim;
+pub mod simulation;
 pub mod units;
+pub mod xml;
+
+pub use simulation::{CancelToken, Simulation, SimulationError};
 
 /// A point or a vector in space, µm unless said otherwise.
 pub type Vec3 = nalgebra::Vector3<f64>;

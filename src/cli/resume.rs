@@ -1,7 +1,7 @@
 //! `pseudopod resume`: goes on with a run from its last checkpoint.
 
 use super::report::Report;
-use super::run::{How, reporter, stop_on_signals, tell};
+use super::run::{How, cancelled_by_signals, reporter, tell};
 use crate::error::Result;
 use std::path::PathBuf;
 
@@ -27,7 +27,7 @@ pub fn run(args: &ResumeArgs) -> Result<Report> {
         };
         return Ok(Report { words, ..Report::of_files(&args.result, &[]) });
     }
-    stop_on_signals();
-    let outcome = crate::run::resume(&args.result, args.how.threads, &mut *reporter(&args.how))?;
+    let (threads, cancel) = (args.how.threads, cancelled_by_signals());
+    let outcome = crate::run::resume(&args.result, threads, &cancel, &mut *reporter(&args.how))?;
     tell(&args.result, &outcome, &args.how)
 }

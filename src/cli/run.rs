@@ -4,10 +4,10 @@ use super::report::{Report, path_text, paths};
 use crate::error::{Error, Result, say};
 use crate::experiment::Document;
 use crate::output::Overwrite;
-use crate::run::{self, Outcome, Progress, Quiet, RunOptions, STOP};
+use crate::run::{self, Outcome, Progress, Quiet, RunOptions};
+use crate::simulation::CancelToken;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 /// Runs an experiment.
 #[derive(Debug, Clone, clap::Args)]
@@ -64,8 +64,8 @@ pub fn run(args: &RunArgs) -> Result<Report> {
     let folder = result.parent().filter(|folder| args.output.is_none() && !folder.exists());
     folder.map_or(Ok(()), make_folder)?;
     let overwrite = if args.force { Overwrite::Replace } else { Overwrite::Refuse };
-    stop_on_signals();
-    let options = RunOptions { result: result.clone(), overwrite, threads: args.how.threads };
+    let options =
+        RunOptions { result: result.clone(), overwrite, threads: args.how.threads, cancel: cancelled_by_signals() };
     let outcome = run::run(&document, &options, &mut *reporter(&args.how)).inspect_err(|_| {
         // A run that did not begin leaves no folder behind; one that holds something is not removed.
         folder.map(std::fs::remove_dir);
@@ -92,16 +92,20 @@ fn make_folder(folder: &Path) -> Result<()> {
     })
 }
 
-/// The first signal asks the run to stop after the step; a second one ends the program at once.
-pub fn stop_on_signals() {
-    let heard = ctrlc::set_handler(|| {
-        if STOP.swap(true, Ordering::Relaxed) {
+/// A token that the first signal cancels, so that the run stops after its step; a second signal ends the program at once.
+pub fn cancelled_by_signals() -> CancelToken {
+    let token = CancelToken::new();
+    let heard = token.clone();
+    let listening = ctrlc::set_handler(move || {
+        if heard.is_cancelled() {
             std::process::exit(130);
         }
+        heard.cancel();
         say("stopping after this step; once more to stop at once");
     });
-    // A second handler in one program is refused; the first still works.
-    drop(heard);
+    // A program that has a handler of its own stops as that one says.
+    drop(listening);
+    token
 }
 
 /// The listener that the options ask for.

@@ -52,7 +52,7 @@ fn two_spheres_at_a_known_gap_touch_at_their_facing_atoms() {
         if gap > 0.0 {
             assert!((nearest.normal.wide().z.abs() - 1.0).abs() < 1e-12, "{nearest:?}");
         } else {
-            // The facets around the facing atom lean by 15°, and the way out is the shortest: through one of them.
+            // The facets around the facing atom lean by 15°, and the shortest displacement leads out: through one of them.
             assert!(nearest.normal.wide().z.abs() > 0.95 && (-0.05..-0.045).contains(&nearest.gap), "{nearest:?}");
         }
     }
@@ -144,7 +144,7 @@ fn an_atom_that_slides_into_a_groove_has_its_other_wall_before_it_is_there() {
     }
 }
 
-/// A tent that hangs from its lowest edge, between two places.
+/// A tent that hangs from its lowest edge, between two points.
 fn keel(from: Vec3, to: Vec3) -> Surface {
     let (middle, across) = (0.5 * (from + to) + Vec3::z(), Vec3::z().cross(&(to - from)).normalize());
     tetrahedron([from, to, middle + across, middle - across])
@@ -154,7 +154,11 @@ fn keel(from: Vec3, to: Vec3) -> Surface {
 fn an_edge_that_has_slid_in_over_its_end_touches_the_crest_that_it_passes_below() {
     // The wall of this block at x = 1 leans in below its crest: what passes 0.01 below the crest is beside the wall there.
     let mut block = block();
-    block.positions.iter_mut().filter(|place| place.x == 1.0).for_each(|place| place.x += 0.05 * place.z);
+    block
+        .positions
+        .iter_mut()
+        .filter(|position| position.x == 1.0)
+        .for_each(|position| position.x += 0.05 * position.z);
     for (end, touches) in [(1.1, true), (1.0002, true), (0.9998, true), (0.99, false)] {
         let keel = keel(Vec3::new(end, 0.3, -0.01), Vec3::new(-1.2, 0.3, -0.01));
         for (own, stage) in [(1, pair(&block, &keel, REACH)), (0, pair(&keel, &block, REACH))] {
@@ -263,11 +267,11 @@ fn a_folded_sheet_touches_itself_and_a_flat_one_does_not() {
 #[test]
 fn sheets_have_one_outside_or_two_and_none_beyond_their_rim() {
     let flat = sheet(2.0, 2.0, 2, 2);
-    let tip = |place: Vec3, sides: Sides| {
-        let needle = needle(place);
-        let places = (flat.positions.clone(), needle.positions.clone());
+    let tip = |position: Vec3, sides: Sides| {
+        let needle = needle(position);
+        let points = (flat.positions.clone(), needle.positions.clone());
         let contacts =
-            detect(&stage(&[(&flat, sides, places.0), (&needle, Sides::Outer, places.1)], Vec::new(), REACH));
+            detect(&stage(&[(&flat, sides, points.0), (&needle, Sides::Outer, points.1)], Vec::new(), REACH));
         contacts.atoms.iter().find(|contact| contact.atom == 9).map(|contact| (contact.gap, contact.normal.wide().z))
     };
     assert_eq!(tip(Vec3::new(0.7, 0.6, -0.1), Sides::Outer), Some((-0.1, 1.0)));

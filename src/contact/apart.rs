@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::inside::{Overlap, find_overlaps};
 use super::scene::Scene;
-use super::way::way_apart;
+use super::separation::separation;
 use crate::Vec3;
 
 /// What bodies may do while they are pushed apart.
@@ -20,7 +20,7 @@ pub struct Yielding<'a> {
     pub rounds: u32,
 }
 
-/// Moves bodies as wholes until none overlaps another. In a round every pair that overlaps asks for the shortest way
+/// Moves bodies as wholes until none overlaps another. In a round every pair that overlaps asks for the shortest displacement
 /// apart along the line of centres, or along the normal of their overlap where that is clearly shorter; a body makes the
 /// sum of what its pairs ask for. No body is moved behind a plane, or farther behind it than it was. Returns how far each
 /// has been moved, µm, and what still overlaps. Deterministic, whatever the threads.
@@ -38,29 +38,31 @@ pub fn push_apart(scene: &Scene, positions: &mut [Vec3], yielding: &Yielding) ->
         if left.is_empty() {
             break;
         }
-        let ways: Vec<Vec3> =
-            left.par_iter().map(|overlap| way_apart(scene, positions, overlap.bodies, yielding.gap)).collect();
+        let displacements: Vec<Vec3> =
+            left.par_iter().map(|overlap| separation(scene, positions, overlap.bodies, yielding.gap)).collect();
         let mut steps = vec![Vec3::zeros(); scene.bodies.len()];
-        for (overlap, way) in left.iter().zip(ways) {
+        for (overlap, displacement) in left.iter().zip(displacements) {
             let [first, second] = overlap.bodies.map(|body| body as usize);
             let [share, other] = shares(yielding.resistance[first], yielding.resistance[second]);
-            steps[first] += share * way;
-            steps[second] -= other * way;
+            steps[first] += share * displacement;
+            steps[second] -= other * displacement;
         }
         for body in bodies.clone().filter(|body| steps[*body as usize] != Vec3::zeros()) {
             let step = steps[body as usize].cap_magnitude(yielding.stride);
             moves[body as usize] += step;
             shift(scene, body, positions, step);
         }
-        for (body, way) in bodies.clone().zip(&mut moves).filter(|(_, way)| **way != Vec3::zeros()) {
-            *way += back_before_planes(scene, body, positions, &floors[body as usize]);
+        for (body, displacement) in
+            bodies.clone().zip(&mut moves).filter(|(_, displacement)| **displacement != Vec3::zeros())
+        {
+            *displacement += back_before_planes(scene, body, positions, &floors[body as usize]);
         }
         left = find_overlaps(scene, positions);
     }
     (moves, left)
 }
 
-/// What two bodies move of the way between them.
+/// What two bodies move of the displacement between them.
 fn shares(resistance: f64, other: f64) -> [f64; 2] {
     match (resistance.is_finite(), other.is_finite()) {
         (true, true) => [other / (resistance + other), resistance / (resistance + other)],

@@ -1,4 +1,4 @@
-//! Atoms on facets: the places where the distance from an atom to a surface is least, with a sign that is right at
+//! Atoms on facets: the points where the distance from an atom to a surface is least, with a sign that is right at
 //! edges and corners.
 
 use super::closest::{FacetPoint, Feature, closest_on_facet};
@@ -12,7 +12,7 @@ use crate::Vec3;
 /// between two facets is never refused by both.
 const COSINE_ROUND_OFF: f64 = 1e-9;
 
-/// A place on a surface where the distance to an atom is least.
+/// A point on a surface where the distance to an atom is least.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Low {
     facet: u32,
@@ -20,7 +20,7 @@ pub(super) struct Low {
     squared: f64,
 }
 
-/// On which side of a low place the atom is.
+/// On which side of a point of least distance the atom is.
 #[derive(Clone, Copy)]
 struct Side {
     inside: bool,
@@ -48,14 +48,14 @@ pub(super) fn find_atom_contacts(
     contacts: &mut Vec<AtomContact>,
 ) {
     let numbered = scene.bodies[body as usize].first_atom + atom;
-    let place = positions[numbered as usize];
+    let position = positions[numbered as usize];
     let surface = Other {
         shape: scene.shape(other),
         positions: scene.of_body(other, positions),
         own: (other == body).then_some(atom),
     };
     lows.clear();
-    let Some(nearest) = surface.find_lows(place, facets.up_to(limit), scene.reach.range(), lows) else { return };
+    let Some(nearest) = surface.find_lows(position, facets.up_to(limit), scene.reach.range(), lows) else { return };
     let first_facet = scene.bodies[other as usize].first_facet;
     let mut add = |low: &Low, side: Side| {
         let (gap, normal) = surface.gap(low, side);
@@ -94,11 +94,11 @@ impl Other<'_> {
         self.shape.corners(facet, self.positions)
     }
 
-    /// Finds the places where the distance is least, within `range` µm, in the order of facets; the nearest comes back.
+    /// Finds the points where the distance is least, within `range` µm, in the order of facets; the nearest comes back.
     #[inline]
     fn find_lows(
         &self,
-        place: Vec3,
+        position: Vec3,
         facets: impl Iterator<Item = u32>,
         range: f64,
         lows: &mut Vec<Low>,
@@ -108,11 +108,11 @@ impl Other<'_> {
         for facet in facets {
             let corners = self.corners(facet);
             let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-            let height = normal.dot(&(place - corners[0]));
+            let height = normal.dot(&(position - corners[0]));
             if height * height > farthest * normal.norm_squared() {
                 continue;
             }
-            let point = closest_on_facet(place, corners);
+            let point = closest_on_facet(position, corners);
             let low = Low { facet, point, squared: point.offset.norm_squared() };
             if low.squared > farthest {
                 continue;
@@ -120,11 +120,11 @@ impl Other<'_> {
             if nearest.is_none_or(|nearest| low.squared < nearest.squared) {
                 nearest = Some(low);
             }
-            if self.is_lowest(place, &low) {
+            if self.is_lowest(position, &low) {
                 push(lows, low);
             }
         }
-        // The nearest is a low place by definition; should round-off have refused it, it is put where it belongs.
+        // The nearest is a point of least distance by definition; should round-off have refused it, it is put where it belongs.
         let nearest = nearest?;
         if lows.iter().all(|low| low.squared > nearest.squared * (1.0 + COSINE_ROUND_OFF)) {
             let after = lows.partition_point(|low| low.facet < nearest.facet);
@@ -140,12 +140,12 @@ impl Other<'_> {
 
     /// Whether the distance rises in all directions along the surface, eq. (contacts.2), and this is the first of the facets with that
     /// point.
-    fn is_lowest(&self, place: Vec3, low: &Low) -> bool {
+    fn is_lowest(&self, position: Vec3, low: &Low) -> bool {
         let offset = low.point.offset;
         let falls_towards = |atom: u32| {
-            let way = self.positions[atom as usize] - (place - offset);
-            let along = offset.dot(&way);
-            along > 0.0 && along * along > COSINE_ROUND_OFF.powi(2) * way.norm_squared() * low.squared
+            let displacement = self.positions[atom as usize] - (position - offset);
+            let along = offset.dot(&displacement);
+            along > 0.0 && along * along > COSINE_ROUND_OFF.powi(2) * displacement.norm_squared() * low.squared
         };
         let facet = self.shape.facets[low.facet as usize];
         match low.point.feature {
@@ -244,7 +244,9 @@ impl Other<'_> {
         if low.point.feature == Feature::Face || distance <= COSINE_ROUND_OFF * size {
             // The offset is too short for a direction here, or less exact than the facet's own normal.
             let normal = normal.or_else(|| self.pseudonormal(low)).and_then(|normal| normal.try_normalize(0.0));
-            let normal = normal.or_else(|| offset.try_normalize(0.0).map(|way| way * sign)).unwrap_or(Vec3::z());
+            let normal = normal
+                .or_else(|| offset.try_normalize(0.0).map(|displacement| displacement * sign))
+                .unwrap_or(Vec3::z());
             let height = offset.dot(&normal);
             return if (height < 0.0) == inside { (height, normal) } else { (-height, -normal) };
         }

@@ -55,7 +55,7 @@ impl Bounds {
     }
 }
 
-/// The places of a body's box in steps from 0 to 126 along each axis. Rounding keeps the order of numbers, so that boxes
+/// The positions of a body's box in steps from 0 to 126 along each axis. Rounding keeps the order of numbers, so that boxes
 /// that meet also meet in steps.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Steps {

@@ -48,15 +48,15 @@ fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bou
     let corners = |facet: &[u32; 3]| facet.map(|atom| there[atom as usize]);
     let near: Vec<[Vec3; 3]> =
         other.facets.iter().map(corners).filter(|facet| Bounds::around(facet, 0.0).meets(&around_inner)).collect();
-    let distance = |place: Vec3, facets: &mut dyn Iterator<Item = [Vec3; 3]>| {
-        facets.map(|facet| closest_on_facet(place, facet).offset.norm()).fold(f64::INFINITY, f64::min)
+    let distance = |position: Vec3, facets: &mut dyn Iterator<Item = [Vec3; 3]>| {
+        facets.map(|facet| closest_on_facet(position, facet).offset.norm()).fold(f64::INFINITY, f64::min)
     };
-    // The facets that are near tell at once that most places are not deeper.
-    let deeper = |deepest: f64, place: Vec3| match distance(place, &mut near.iter().copied()) {
+    // The facets that are near tell at once that most points are not deeper.
+    let deeper = |deepest: f64, position: Vec3| match distance(position, &mut near.iter().copied()) {
         above if above <= deepest => deepest,
-        _ => deepest.max(distance(place, &mut other.facets.iter().map(corners))),
+        _ => deepest.max(distance(position, &mut other.facets.iter().map(corners))),
     };
-    let is_inside = |place: Vec3| is_inside(scene, positions, place, outer, &around_outer);
+    let is_inside = |position: Vec3| is_inside(scene, positions, position, outer, &around_outer);
     let (mut deepest, mut crossings) = (most, Vec::new());
     // Atoms that edges join without a crossing are on one side.
     let mut parts = Parts::new(here.len());
@@ -75,14 +75,14 @@ fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bou
         for part in crossings.windows(2) {
             let at = |share: f64| from.lerp(&to, part[0] + share * (part[1] - part[0]));
             if is_inside(at(0.5)) {
-                let places = (1..=PLACES).map(|place| at(place as f64 / (PLACES + 1) as f64));
-                deepest = places.fold(deepest, deeper);
+                let points = (1..=PLACES).map(|position| at(position as f64 / (PLACES + 1) as f64));
+                deepest = points.fold(deepest, deeper);
             }
         }
     }
     let mut may_be_inside = vec![true; here.len()];
-    for (place, atom) in here.iter().zip(0..) {
-        if !Bounds::around(&[*place], 0.0).meets(&around_outer) {
+    for (position, atom) in here.iter().zip(0..) {
+        if !Bounds::around(&[*position], 0.0).meets(&around_outer) {
             may_be_inside[parts.root(atom) as usize] = false;
         }
     }
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn a_ball_in_a_ball_is_as_deep_as_its_farthest_place() {
         let ball = icosphere(1.0, 3);
-        let at = |x: f64| ball.positions.iter().map(|place| place + Vec3::new(x, 0.0, 0.0)).collect::<Vec<_>>();
+        let at = |x: f64| ball.positions.iter().map(|position| position + Vec3::new(x, 0.0, 0.0)).collect::<Vec<_>>();
         for shift in [1.2, 1.7, 1.95] {
             let bodies = [(&ball, Sides::Outer, at(0.0)), (&ball, Sides::Outer, at(shift))];
             let stage = stage(&bodies, Vec::new(), REACH);
@@ -153,7 +153,11 @@ mod tests {
         for height in [0.5, 0.9, 0.97] {
             let bodies = [
                 (&ball, Sides::Outer, ball.positions.clone()),
-                (&flat, Sides::Both, flat.positions.iter().map(|place| place + Vec3::new(0.0, 0.0, height)).collect()),
+                (
+                    &flat,
+                    Sides::Both,
+                    flat.positions.iter().map(|position| position + Vec3::new(0.0, 0.0, height)).collect(),
+                ),
             ];
             let stage = stage(&bodies, Vec::new(), REACH);
             // A sheet has no inside; its diagonal passes over the middle of the ball.

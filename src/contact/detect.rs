@@ -234,13 +234,13 @@ fn look(
     let bodies = scene.bodies_of(batch);
     let Some(first) = scene.bodies.get(bodies.start as usize).filter(|_| !bodies.is_empty()) else { return };
     let mut body = bodies.start;
-    for (atom, place, part) in lists.facets.parts() {
+    for (atom, position, part) in lists.facets.parts() {
         let mut atom = first.first_atom + atom - scene.bodies[body as usize].first_atom;
         while atom as usize >= scene.shape(body).atoms {
             atom -= scene.shape(body).atoms as u32;
             body += 1;
         }
-        let pair = [body, neighbours.of(body)[place]];
+        let pair = [body, neighbours.of(body)[position]];
         let limit = moved.limit(pair);
         if part.has(limit) {
             find_atom_contacts(scene, positions, pair, atom, (part, limit), lows, &mut contacts.atoms);
@@ -248,7 +248,7 @@ fn look(
     }
     let mut body = bodies.start;
     let (mut ridge, mut last) = (None, None);
-    for (edge, place, part) in lists.edges.parts() {
+    for (edge, position, part) in lists.edges.parts() {
         if last.replace(edge) != Some(edge) {
             ridge = None;
         }
@@ -257,7 +257,7 @@ fn look(
             edge -= scene.shape(body).edges.len() as u32;
             body += 1;
         }
-        let pair = [body, neighbours.of(body)[place]];
+        let pair = [body, neighbours.of(body)[position]];
         let limit = moved.limit(pair);
         if part.has(limit) {
             find_edge_contacts(scene, positions, pair, edge, (part, limit), &mut ridge, &mut contacts.edges);
@@ -274,9 +274,9 @@ pub(super) fn find_plane_contacts(scene: &Scene, positions: &[Vec3], body: u32, 
         return;
     }
     let first = scene.bodies[body as usize].first_atom;
-    for (place, atom) in scene.of_body(body, positions).iter().zip(first..) {
+    for (position, atom) in scene.of_body(body, positions).iter().zip(first..) {
         for (plane, number) in scene.planes.iter().zip(0..) {
-            let gap = (place - plane.point).dot(&plane.normal);
+            let gap = (position - plane.point).dot(&plane.normal);
             if gap < scene.reach.proximity {
                 push(contacts, PlaneContact { atom, plane: number, gap });
             }

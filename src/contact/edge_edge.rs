@@ -20,13 +20,13 @@ pub(super) fn find_edge_contacts<'a>(
     contacts: &mut Vec<EdgeContact>,
 ) {
     let first = first.get_or_insert_with(|| First::of(scene.shape(body), scene.of_body(body, positions), edge));
-    let (there, places) = (scene.shape(other), scene.of_body(other, positions));
+    let (there, points) = (scene.shape(other), scene.of_body(other, positions));
     let is_outer = [first.is_one_sided && other != body, there.sides == Sides::Outer && other != body];
     if is_outer == [true; 2] && !first.is_convex && there.closed {
         return;
     }
     for candidate in candidates.up_to(limit) {
-        let second = Ridge::of(there, places, candidate);
+        let second = Ridge::of(there, points, candidate);
         let outer = Outer([is_outer[0], is_outer[1] && !second.is_rim()]);
         let crossing = cross(first, &second, outer, scene);
         let Some((along, gap, normal)) = crossing else { continue };
@@ -135,10 +135,10 @@ fn cross(
     fits.then(|| (along.map(|share| share.clamp(0.0, 1.0)), gap, normal))
 }
 
-/// How far a way leads from the second edge to the first, by where the outsides of their surfaces are.
+/// How far a displacement leads from the second edge to the first, by where the outsides of their surfaces are.
 #[inline(always)]
-fn leads_out(first: &Ridge, second: &Ridge, outer: Outer, way: &Vec3) -> f64 {
-    let of = |ridge: &Ridge, side: usize| if outer.0[side] { ridge.leads_out(way) } else { 0.0 };
+fn leads_out(first: &Ridge, second: &Ridge, outer: Outer, displacement: &Vec3) -> f64 {
+    let of = |ridge: &Ridge, side: usize| if outer.0[side] { ridge.leads_out(displacement) } else { 0.0 };
     of(second, 1) - of(first, 0)
 }
 
@@ -159,7 +159,7 @@ fn are_within(first: &Ridge, second: &Ridge, distance: f64) -> bool {
 /// Whether an edge that passes below the crest of a ridge is behind both its facets there, or comes to be so close by and is nearer
 /// to the facet that faces it than to the other. On ridges sharper than a right angle an edge may be below the other's
 /// crest and yet beside it; on one as sharp as that an edge that slides in over its end is still beside one facet where it
-/// crosses the crest, or crosses it just beyond its end, and inside next to that. `facing` is the way into the ridge.
+/// crosses the crest, or crosses it just beyond its end, and inside next to that. `facing` is the direction into the ridge.
 fn dips_into(edge: &Ridge, at: f64, ridge: &Ridge, gap: f64, facing: &Vec3) -> bool {
     let facets = ridge.normals().map(|normal| normal.normalize());
     let slopes = facets.map(|facet| edge.along.dot(&facet));

@@ -47,17 +47,17 @@ fn kept_pairs_find_what_all_pairs_find_in_packed_cells_that_drift_and_roll() {
         let mut stage = packed_stage(12, reach, seed);
         let mut dice = Dice(2_000 + seed);
         let (mut detector, mut contacts) = (Detector::default(), Contacts::default());
-        let ways: Vec<Vec3> = stage.scene.bodies.iter().map(|_| dice.vector() * 0.008).collect();
-        let turns: Vec<Vec3> = ways.iter().map(|_| dice.vector() * 0.008).collect();
+        let displacements: Vec<Vec3> = stage.scene.bodies.iter().map(|_| dice.vector() * 0.008).collect();
+        let turns: Vec<Vec3> = displacements.iter().map(|_| dice.vector() * 0.008).collect();
         for step in 0..12 {
             let detection = detector.detect(&stage.scene, &stage.positions, &mut contacts);
             assert_eq!(contacts, all_pairs(&stage), "seed {seed}, step {step}");
             kept += usize::from(!detection.collected);
             edges += contacts.edges.len();
-            for (body, (way, turn)) in stage.scene.bodies.iter().zip(ways.iter().zip(&turns)) {
+            for (body, (displacement, turn)) in stage.scene.bodies.iter().zip(displacements.iter().zip(&turns)) {
                 let own = &mut stage.positions[body.first_atom as usize..][..42];
                 let centre = own.iter().sum::<Vec3>() / 42.0;
-                own.iter_mut().for_each(|x| *x += way + turn.cross(&(*x - centre)) + dice.vector() * 0.015);
+                own.iter_mut().for_each(|x| *x += displacement + turn.cross(&(*x - centre)) + dice.vector() * 0.015);
             }
         }
     }
@@ -132,8 +132,8 @@ fn a_contact_is_a_point_of_the_facet_and_a_gap_along_a_unit_normal() {
 }
 
 /// The distance of an atom to a surface, by looking at all facets.
-fn distance(place: Vec3, positions: &[Vec3], facets: &[[u32; 3]]) -> f64 {
-    let of = |facet: &[u32; 3]| closest_on_facet(place, facet.map(|atom| positions[atom as usize])).offset.norm();
+fn distance(position: Vec3, positions: &[Vec3], facets: &[[u32; 3]]) -> f64 {
+    let of = |facet: &[u32; 3]| closest_on_facet(position, facet.map(|atom| positions[atom as usize])).offset.norm();
     facets.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
@@ -148,8 +148,8 @@ fn the_sign_of_a_gap_is_that_of_the_winding_number_and_its_size_the_distance() {
             let (turn, centre) = (dice.turn(), dice.vector() * 0.7);
             // Squeezed and bent, without noise that could make facets pass through each other.
             let bend = 0.5 * dice.roll();
-            let places = super::test_scenes::deform(&rest, &mut dice, bend, 0.0);
-            bodies.push((&rest, Sides::Outer, places.into_iter().map(|x| turn * x + centre).collect()));
+            let points = super::test_scenes::deform(&rest, &mut dice, bend, 0.0);
+            bodies.push((&rest, Sides::Outer, points.into_iter().map(|x| turn * x + centre).collect()));
         }
         let reach = Reach { proximity: 0.2, depth: 0.25, margin: 0.1 };
         let stage = stage(&bodies, Vec::new(), reach);
@@ -157,15 +157,15 @@ fn the_sign_of_a_gap_is_that_of_the_winding_number_and_its_size_the_distance() {
         for atom in 0..84 {
             let other = usize::from(atom < 42);
             let there = &stage.positions[42 * other..42 * other + 42];
-            let place = stage.positions[atom];
-            let far = distance(place, there, &rest.facets);
+            let position = stage.positions[atom];
+            let far = distance(position, there, &rest.facets);
             let gaps: Vec<f64> = contacts
                 .atoms
                 .iter()
                 .filter(|contact| contact.atom == atom as u32 && contact.body(&stage.scene) == other as u32)
                 .map(|contact| contact.gap)
                 .collect();
-            if winding_number(place, there, &rest.facets) > 0.5 {
+            if winding_number(position, there, &rest.facets) > 0.5 {
                 let expected = if far <= reach.depth { vec![-far] } else { vec![] };
                 assert_eq!(gaps.len(), expected.len(), "seed {seed}, atom {atom} at −{far}");
                 assert!(gaps.iter().zip(&expected).all(|(a, b)| (a - b).abs() < ROUND_OFF), "{gaps:?} {expected:?}");
@@ -189,14 +189,15 @@ fn the_smallest_gap_of_two_cells_apart_is_their_distance() {
         let mut dice = Dice(seed);
         let rest = icosphere(1.0, 1);
         let first: Vec<Vec3> = rest.positions.clone();
-        let (turn, way) = (dice.turn(), dice.vector().normalize());
-        let second: Vec<Vec3> = rest.positions.iter().map(|x| turn * x + way * (2.02 + 0.02 * dice.roll())).collect();
+        let (turn, displacement) = (dice.turn(), dice.vector().normalize());
+        let second: Vec<Vec3> =
+            rest.positions.iter().map(|x| turn * x + displacement * (2.02 + 0.02 * dice.roll())).collect();
         let reach = Reach { proximity: 0.3, depth: 0.1, margin: 0.1 };
         let stage = stage(&[(&rest, Sides::Outer, first), (&rest, Sides::Outer, second)], Vec::new(), reach);
         let (one, other) = stage.positions.split_at(42);
         let mut least = f64::INFINITY;
-        for (place, there) in one.iter().map(|x| (x, other)).chain(other.iter().map(|x| (x, one))) {
-            least = least.min(distance(*place, there, &rest.facets));
+        for (position, there) in one.iter().map(|x| (x, other)).chain(other.iter().map(|x| (x, one))) {
+            least = least.min(distance(*position, there, &rest.facets));
         }
         let of_atoms = least;
         for a in &stage.scene.shapes[0].edges {
@@ -222,17 +223,17 @@ fn the_closest_point_is_no_farther_than_any_point_of_the_facet() {
             3 => corners[2] = corners[0] + (corners[1] - corners[0]) * 0.5 + dice.vector() * 1e-8,
             _ => {}
         }
-        let place = dice.vector() * 2.0;
-        let found = closest_on_facet(place, corners);
+        let position = dice.vector() * 2.0;
+        let found = closest_on_facet(position, corners);
         let [second, third] = found.weights;
         let point = corners[0] * (1.0 - second - third) + corners[1] * second + corners[2] * third;
         // A sliver of height 1e-8 may answer with its side, that much off.
-        assert!((place - found.offset - point).norm() < 2e-8);
+        assert!((position - found.offset - point).norm() < 2e-8);
         for i in 0..=12 {
             for j in 0..=12 - i {
                 let [s, t] = [i, j].map(|n| f64::from(n) / 12.0);
                 let other = corners[0] * (1.0 - s - t) + corners[1] * s + corners[2] * t;
-                assert!((place - other).norm() > found.offset.norm() - 2e-8, "case {case}");
+                assert!((position - other).norm() > found.offset.norm() - 2e-8, "case {case}");
             }
         }
     }

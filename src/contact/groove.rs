@@ -11,7 +11,7 @@ const FLAT: f64 = 1e-6;
 
 /// Adds to contacts with surfaces that have two outsides the facets beside them that rise towards the atom, where it is nearer to the
 /// side that they share than `within` (µm). The region in front of a groove is that in front of the planes of both walls, eq. (contacts.10), so that
-/// the second plane is no obstacle before its facet is one; found by the place where the distance is least, an atom at a
+/// the second plane is no obstacle before its facet is one; found by the point where the distance is least, an atom at a
 /// small gap has one wall in one step and the other in the next.
 pub fn add_walls_of_grooves(scene: &Scene, positions: &[Vec3], within: f64, contacts: &mut Contacts) {
     let count = contacts.atoms.len();
@@ -24,7 +24,7 @@ pub fn add_walls_of_grooves(scene: &Scene, positions: &[Vec3], within: f64, cont
         let body = &scene.bodies[number as usize];
         let (shape, there) = (scene.shape(number), scene.of_body(number, positions));
         let own = near.atom.checked_sub(body.first_atom).filter(|atom| (*atom as usize) < shape.atoms);
-        let (facet, place) = (near.facet - body.first_facet, positions[near.atom as usize]);
+        let (facet, position) = (near.facet - body.first_facet, positions[near.atom as usize]);
         let corners = shape.corners(facet, there);
         for side in 0..3 {
             let other = shape.beyond[facet as usize][side];
@@ -33,7 +33,7 @@ pub fn add_walls_of_grooves(scene: &Scene, positions: &[Vec3], within: f64, cont
             }
             let (start, along) = (corners[side], corners[(side + 1) % 3] - corners[side]);
             let across = near.normal.wide().cross(&along).normalize();
-            if across.dot(&(place - start)).abs() > within {
+            if across.dot(&(position - start)).abs() > within {
                 continue;
             }
             let known = body.first_facet + other;
@@ -41,7 +41,7 @@ pub fn add_walls_of_grooves(scene: &Scene, positions: &[Vec3], within: f64, cont
             if found.binary_search_by_key(&(near.atom, known), |one| (one.atom, one.facet)).is_ok() {
                 continue;
             }
-            let wall = wall(&near, shape.corners(other, there), &start, &along, place, known);
+            let wall = wall(&near, shape.corners(other, there), &start, &along, position, known);
             let is_near = |wall: &AtomContact| wall.gap < scene.reach.proximity && wall.gap >= -scene.reach.depth;
             contacts.atoms.extend(wall.filter(is_near));
         }
@@ -59,7 +59,7 @@ fn wall(
     corners: [Vec3; 3],
     start: &Vec3,
     along: &Vec3,
-    place: Vec3,
+    position: Vec3,
     facet: u32,
 ) -> Option<AtomContact> {
     let [a, b, c] = corners;
@@ -71,7 +71,7 @@ fn wall(
     let facing = near.normal.wide();
     let up = third - start;
     let rises = facing.dot(&up) > FLAT * up.norm() && normal.dot(&facing) > 0.0;
-    let point = closest_on_facet(place, corners);
-    let (gap, second_weights, feature) = (normal.dot(&(place - a)), point.weights, point.feature);
+    let point = closest_on_facet(position, corners);
+    let (gap, second_weights, feature) = (normal.dot(&(position - a)), point.weights, point.feature);
     rises.then_some(AtomContact { facet, feature, second_weights, gap, normal: normal.into(), ..*near })
 }

@@ -4,9 +4,8 @@ use rayon::prelude::*;
 
 use super::boxes::Bounds;
 use super::neighbours::Neighbours;
-use super::scene::Scene;
+use super::scene::{Scene, centre};
 use super::shape::Sides;
-use super::way::centre;
 use crate::Vec3;
 
 /// How often a closed surface winds around a point: 1 inside, 0 outside, for a surface that faces outwards.
@@ -77,7 +76,7 @@ pub(super) fn bounds_of_bodies(scene: &Scene, positions: &[Vec3]) -> Vec<Bounds>
 fn overlap_of(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], bounds: &[Bounds]) -> Option<Overlap> {
     let [first, second] = bodies;
     let inside = |inner: u32, outer: u32| {
-        let within = |place: &&Vec3| is_inside(scene, positions, **place, outer, &bounds[outer as usize]);
+        let within = |position: &&Vec3| is_inside(scene, positions, **position, outer, &bounds[outer as usize]);
         scene.of_body(inner, positions).iter().filter(within).count() as u32
     };
     let through = |edges: u32, facets: u32| crossings(scene, positions, edges, facets, &bounds[facets as usize]);
@@ -86,13 +85,13 @@ fn overlap_of(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], bounds: &[Bou
     (atoms_inside != [0, 0] || crossings > 0).then_some(Overlap { bodies, atoms_inside, crossings })
 }
 
-/// Whether a place is inside a body, whose box is given; never when the body is open.
-pub(super) fn is_inside(scene: &Scene, positions: &[Vec3], place: Vec3, body: u32, bounds: &Bounds) -> bool {
+/// Whether a point is inside a body, whose box is given; never when the body is open.
+pub(super) fn is_inside(scene: &Scene, positions: &[Vec3], position: Vec3, body: u32, bounds: &Bounds) -> bool {
     let shape = scene.shape(body);
     shape.closed
         && shape.sides == Sides::Outer
-        && Bounds::around(&[place], 0.0).meets(bounds)
-        && winding_number(place, scene.of_body(body, positions), &shape.facets).abs() > 0.5
+        && Bounds::around(&[position], 0.0).meets(bounds)
+        && winding_number(position, scene.of_body(body, positions), &shape.facets).abs() > 0.5
 }
 
 /// Whether the mean of the atoms of a body is inside another, which is closed.
@@ -128,8 +127,8 @@ pub(super) fn crossing(from: Vec3, to: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f64
     if before * after >= 0.0 {
         return None;
     }
-    let way = to - from;
-    let turn = |one: Vec3, other: Vec3| way.dot(&(one - from).cross(&(other - from)));
+    let displacement = to - from;
+    let turn = |one: Vec3, other: Vec3| displacement.dot(&(one - from).cross(&(other - from)));
     let turns = [turn(a, b), turn(b, c), turn(c, a)];
     let through = turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0);
     through.then(|| before / (before - after))

@@ -63,7 +63,7 @@ pub(super) struct Lists {
     range: f64,
     /// Levels in a µm.
     scale: f64,
-    /// Scratch: the facets near one facet: of each body its place among the neighbours, how many facets, and these.
+    /// Scratch: the facets near one facet: of each body its index among the neighbours, how many facets, and these.
     near: Vec<u32>,
     /// Scratch: the pairs with one other body, as (number, level).
     pairs: Vec<(u32, u32)>,
@@ -93,10 +93,10 @@ impl Lists {
             let here = scene.of_body(body, positions);
             for atom in 0..shape.atoms {
                 let bounds = Bounds::around(&here[atom..=atom], self.reach);
-                for (&other, place) in boxes.neighbours.of(body).iter().zip(0..) {
+                for (&other, position) in boxes.neighbours.of(body).iter().zip(0..) {
                     if bounds.meets(&boxes.bounds[other as usize]) {
                         self.collect_facets(scene, [body, other], atom, &bounds, positions, boxes);
-                        self.facets.add(first_atom + atom as u32, place, &self.pairs);
+                        self.facets.add(first_atom + atom as u32, position, &self.pairs);
                     }
                 }
             }
@@ -121,14 +121,14 @@ impl Lists {
         boxes: &Boxes,
     ) {
         let (shape, there) = (scene.shape(other), scene.of_body(other, positions));
-        let place = scene.of_body(body, positions)[atom];
+        let position = scene.of_body(body, positions)[atom];
         let farthest = self.reach.powi(2);
         self.pairs.clear();
         visit(scene, other, boxes, bounds, &mut |facet| {
             if other == body && shape.is_near(atom as u32, facet) {
                 return;
             }
-            let squared = closest_on_facet(place, shape.corners(facet, there)).offset.norm_squared();
+            let squared = closest_on_facet(position, shape.corners(facet, there)).offset.norm_squared();
             if squared <= farthest {
                 self.pairs.push((facet, level_at(squared, self.range, self.scale)));
             }
@@ -155,10 +155,10 @@ impl Lists {
         let reach = self.reach;
         let bounds = Bounds::around(&shape.corners(facet, here), reach);
         self.near.clear();
-        for (&other, place) in boxes.neighbours.of(body).iter().zip(0..).filter(|(other, _)| **other >= body) {
+        for (&other, position) in boxes.neighbours.of(body).iter().zip(0..).filter(|(other, _)| **other >= body) {
             if bounds.meets(&boxes.bounds[other as usize]) {
                 let start = self.near.len();
-                self.near.extend([place, 0]);
+                self.near.extend([position, 0]);
                 visit(scene, other, boxes, &bounds, &mut |candidate| {
                     if other != body || !shape.are_facets_near(facet, candidate) {
                         self.near.push(candidate);
@@ -172,10 +172,10 @@ impl Lists {
             let (ends, ridge) = (shape.ends(edge, here), Ridge::of(shape, here, edge));
             let (low, high) = (ends[0].inf(&ends[1]).add_scalar(-reach), ends[0].sup(&ends[1]).add_scalar(reach));
             let mut rest = &self.near[..];
-            while let [place, count, others @ ..] = rest {
+            while let [position, count, others @ ..] = rest {
                 let facets;
                 (facets, rest) = others.split_at(*count as usize);
-                let other = boxes.neighbours.of(body)[*place as usize];
+                let other = boxes.neighbours.of(body)[*position as usize];
                 let (shape, there) = (scene.shape(other), scene.of_body(other, positions));
                 self.pairs.clear();
                 for candidate in facets.iter().flat_map(|&facet| shape.edges_of(facet)) {
@@ -195,7 +195,7 @@ impl Lists {
                         self.pairs.push((candidate, level));
                     }
                 }
-                self.edges.add(first_edge + edge, *place, &self.pairs);
+                self.edges.add(first_edge + edge, *position, &self.pairs);
             }
         }
     }

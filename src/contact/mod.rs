@@ -22,10 +22,10 @@ mod passages;
 mod reference;
 mod ridge;
 mod scene;
+mod separation;
 mod shape;
 mod swept;
 mod turned;
-mod way;
 mod words;
 
 pub use apart::{Yielding, push_apart};

@@ -7,7 +7,7 @@ use crate::Vec3;
 /// How a body has moved since the pairs were collected, µm.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Motion {
-    /// The mean way of its atoms.
+    /// The mean displacement of its atoms.
     pub mean: Vec3,
     /// The farthest that an atom has moved beside that.
     pub beside: f64,
@@ -39,16 +39,16 @@ impl Grid {
         Self { low, size: (high - low) / f64::from(u16::MAX) }
     }
 
-    fn nearest(&self, place: &Vec3) -> [u16; 3] {
-        let from_low = place - self.low;
+    fn nearest(&self, position: &Vec3) -> [u16; 3] {
+        let from_low = position - self.low;
         [0, 1, 2].map(|axis| (from_low[axis] / self.size[axis]).round() as u16)
     }
 
-    fn place(&self, steps: &[u16; 3]) -> Vec3 {
+    fn position(&self, steps: &[u16; 3]) -> Vec3 {
         self.low + Vec3::from(steps.map(f64::from)).component_mul(&self.size)
     }
 
-    /// The most by which a place is off along each axis.
+    /// The most by which a position is off along each axis.
     fn rounding(&self) -> Vec3 {
         self.size * 0.500_001
     }
@@ -63,12 +63,12 @@ impl Then {
     /// Takes down where the atoms are; nothing where one is nowhere.
     pub fn take(&mut self, scene: &Scene, positions: &[Vec3], boxes: &[Bounds]) {
         self.forget();
-        if positions.iter().any(|place| place.iter().any(|part| !part.is_finite())) {
+        if positions.iter().any(|position| position.iter().any(|part| !part.is_finite())) {
             return;
         }
         for (body, bounds) in (0..).zip(boxes) {
             let grid = Grid::of(bounds);
-            self.steps.extend(scene.of_body(body, positions).iter().map(|place| grid.nearest(place)));
+            self.steps.extend(scene.of_body(body, positions).iter().map(|position| grid.nearest(position)));
         }
     }
 
@@ -87,14 +87,14 @@ impl Then {
         let now = scene.of_body(body, positions);
         let then = &self.steps[scene.bodies[body as usize].first_atom as usize..][..now.len()];
         let grid = Grid::of(bounds);
-        let way = |now: &Vec3, then: &[u16; 3]| now - grid.place(then);
-        let sum: Vec3 = now.iter().zip(then).map(|(now, then)| way(now, then)).sum();
+        let displacement = |now: &Vec3, then: &[u16; 3]| now - grid.position(then);
+        let sum: Vec3 = now.iter().zip(then).map(|(now, then)| displacement(now, then)).sum();
         let (mean, rounding) = (sum / now.len().max(1) as f64, grid.rounding());
         let (mut farthest, mut beside) = (0.0, 0.0);
         for (now, then) in now.iter().zip(then) {
-            let way = way(now, then);
-            farthest = larger(farthest, (way.abs() + rounding).norm_squared());
-            beside = larger(beside, ((way - mean).abs() + rounding).norm_squared());
+            let displacement = displacement(now, then);
+            farthest = larger(farthest, (displacement.abs() + rounding).norm_squared());
+            beside = larger(beside, ((displacement - mean).abs() + rounding).norm_squared());
         }
         Motion { mean, beside: beside.sqrt(), farthest: farthest.sqrt() }
     }
@@ -124,14 +124,21 @@ mod tests {
         assert!(then.is_of(stage.positions.len()));
         let mut dice = Dice(3);
         for size in [0.0, 1e-6, 1e-3, 0.1, 10.0] {
-            let ways: Vec<Vec3> = stage.positions.iter().map(|_| dice.vector() * size).collect();
-            let now: Vec<Vec3> = stage.positions.iter().zip(&ways).map(|(place, way)| place + way).collect();
+            let displacements: Vec<Vec3> = stage.positions.iter().map(|_| dice.vector() * size).collect();
+            let now: Vec<Vec3> = stage
+                .positions
+                .iter()
+                .zip(&displacements)
+                .map(|(position, displacement)| position + displacement)
+                .collect();
             for body in 0..boxes.len() as u32 {
-                let (motion, ways) =
-                    (then.motion(&stage.scene, body, &boxes[body as usize], &now), stage.scene.of_body(body, &ways));
-                let farthest = ways.iter().map(Vec3::norm).fold(0.0, f64::max);
-                let mean = ways.iter().sum::<Vec3>() / ways.len() as f64;
-                let beside = ways.iter().map(|way| (way - mean).norm()).fold(0.0, f64::max);
+                let (motion, displacements) = (
+                    then.motion(&stage.scene, body, &boxes[body as usize], &now),
+                    stage.scene.of_body(body, &displacements),
+                );
+                let farthest = displacements.iter().map(Vec3::norm).fold(0.0, f64::max);
+                let mean = displacements.iter().sum::<Vec3>() / displacements.len() as f64;
+                let beside = displacements.iter().map(|displacement| (displacement - mean).norm()).fold(0.0, f64::max);
                 // A step along each axis of a box of less than 30 µm.
                 let rounding = 3.0 * 30.0 / f64::from(u16::MAX);
                 assert!((farthest..farthest + rounding).contains(&motion.farthest), "{farthest}: {motion:?}");

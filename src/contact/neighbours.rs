@@ -2,42 +2,42 @@
 
 use super::boxes::Bounds;
 
-/// A body takes no more places in the grid than this on average; a wider grid is taken where large bodies would.
-const PLACES_PER_BODY: usize = 32;
+/// A body takes no more cells of the grid than this on average; a wider grid is taken where large bodies would.
+const ENTRIES_PER_BODY: usize = 32;
 
 /// For every body the bodies whose boxes meet its own, in ascending order and itself among them, and the scratch to find them. What is large
-/// (a sheet) takes many places of the grid, what is small takes one to eight, so the cost is linear in the bodies.
+/// (a sheet) takes many cells of the grid, what is small takes one to eight, so the cost is linear in the bodies.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Neighbours {
     first: Vec<u32>,
     bodies: Vec<u32>,
-    places: Vec<(u64, u32)>,
+    entries: Vec<(u64, u32)>,
     widths: Vec<f32>,
 }
 
-/// The place of the grid along each axis. Places wrap at 2²¹: bodies that far apart are told apart by their boxes.
-fn place(point: [f32; 3], width: f32) -> [i64; 3] {
+/// The cell of the grid along each axis. Numbers wrap at 2²¹: bodies that far apart are told apart by their boxes.
+fn grid_cell(point: [f32; 3], width: f32) -> [i64; 3] {
     point.map(|x| (f64::from(x) / f64::from(width)).floor().clamp(-1e6, 1e6) as i64)
 }
 
-fn key(place: [i64; 3]) -> u64 {
-    place.iter().fold(0, |key, &index| key << 21 | (index + (1 << 20)) as u64)
+fn key(position: [i64; 3]) -> u64 {
+    position.iter().fold(0, |key, &index| key << 21 | (index + (1 << 20)) as u64)
 }
 
-fn places_of(bounds: &Bounds, width: f32) -> [std::ops::RangeInclusive<i64>; 3] {
-    let (low, high) = (place(bounds.low, width), place(bounds.high, width));
+fn grid_cells_of(bounds: &Bounds, width: f32) -> [std::ops::RangeInclusive<i64>; 3] {
+    let (low, high) = (grid_cell(bounds.low, width), grid_cell(bounds.high, width));
     [0, 1, 2].map(|axis| low[axis]..=high[axis])
 }
 
-/// Calls `found` once for every two bodies whose boxes meet; `places` are sorted.
-fn for_each_pair(places: &[(u64, u32)], bounds: &[Bounds], width: f32, mut found: impl FnMut(u32, u32)) {
-    for together in places.chunk_by(|left, right| left.0 == right.0) {
+/// Calls `found` once for every two bodies whose boxes meet; `entries` are sorted.
+fn for_each_pair(points: &[(u64, u32)], bounds: &[Bounds], width: f32, mut found: impl FnMut(u32, u32)) {
+    for together in points.chunk_by(|left, right| left.0 == right.0) {
         for (index, &(here, first)) in together.iter().enumerate() {
             for &(_, second) in &together[index + 1..] {
                 let (one, other) = (&bounds[first as usize], &bounds[second as usize]);
-                // Two boxes may share many places: the lowest corner of what they share lies in one only.
+                // Two boxes may share many cells of the grid: the lowest corner of what they share lies in one only.
                 let corner = [0, 1, 2].map(|axis| one.low[axis].max(other.low[axis]));
-                if one.meets(other) && key(place(corner, width)) == here {
+                if one.meets(other) && key(grid_cell(corner, width)) == here {
                     found(first, second);
                 }
             }
@@ -54,21 +54,21 @@ impl Neighbours {
     /// Finds all neighbours of the bodies with these boxes.
     pub fn find(&mut self, bounds: &[Bounds]) {
         let width = self.width(bounds);
-        self.places.clear();
+        self.entries.clear();
         for (body, bounds) in bounds.iter().enumerate() {
-            let [x, y, z] = places_of(bounds, width);
+            let [x, y, z] = grid_cells_of(bounds, width);
             for i in x {
                 for j in y.clone() {
-                    self.places.extend(z.clone().map(|k| (key([i, j, k]), body as u32)));
+                    self.entries.extend(z.clone().map(|k| (key([i, j, k]), body as u32)));
                 }
             }
         }
-        self.places.sort_unstable();
+        self.entries.sort_unstable();
         // Counted at first, so that no list of pairs is held beside that of neighbours.
         self.first.clear();
         self.first.resize(bounds.len() + 1, 0);
         (1..=bounds.len()).for_each(|body| self.first[body] = 1);
-        for_each_pair(&self.places, bounds, width, |one, other| {
+        for_each_pair(&self.entries, bounds, width, |one, other| {
             self.first[one as usize + 1] += 1;
             self.first[other as usize + 1] += 1;
         });
@@ -81,11 +81,11 @@ impl Neighbours {
             first[body as usize] += 1;
         };
         (0..bounds.len() as u32).for_each(|body| add(body, body));
-        for_each_pair(&self.places, bounds, width, |one, other| {
+        for_each_pair(&self.entries, bounds, width, |one, other| {
             add(one, other);
             add(other, one);
         });
-        // The place of the next neighbour is by now that of the next body's first.
+        // The entry of the next neighbour is by now that of the next body's first.
         self.first.rotate_right(1);
         self.first[0] = 0;
         for body in 0..bounds.len() {
@@ -104,11 +104,11 @@ impl Neighbours {
         }
         let middle = self.widths.len() / 2;
         let mut width = *self.widths.select_nth_unstable_by(middle, f32::total_cmp).1;
-        let places = |width: f32| -> f64 {
+        let entries = |width: f32| -> f64 {
             let count = |along: &std::ops::RangeInclusive<i64>| (along.end() - along.start() + 1).max(0) as f64;
-            bounds.iter().map(|bounds| places_of(bounds, width).iter().map(count).product::<f64>()).sum()
+            bounds.iter().map(|bounds| grid_cells_of(bounds, width).iter().map(count).product::<f64>()).sum()
         };
-        while places(width) > (PLACES_PER_BODY * bounds.len() + 64) as f64 {
+        while entries(width) > (ENTRIES_PER_BODY * bounds.len() + 64) as f64 {
             width *= 2.0;
         }
         width
@@ -116,6 +116,6 @@ impl Neighbours {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * (self.first.capacity() + self.bodies.capacity() + self.widths.capacity()) + 16 * self.places.capacity()
+        4 * (self.first.capacity() + self.bodies.capacity() + self.widths.capacity()) + 16 * self.entries.capacity()
     }
 }

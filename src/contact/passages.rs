@@ -6,7 +6,7 @@ use super::swept::{atom_meets_facet, edges_meet};
 use super::words::HIGHEST;
 use crate::Vec3;
 
-/// Two things that met on the way.
+/// Two things that met while they moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pair {
     /// An atom and a facet, numbered through the scene.
@@ -65,10 +65,10 @@ impl Detector {
         let (lists, neighbours) = self.lists();
         for (batch, lists) in lists.iter().enumerate() {
             let Some(first) = scene.bodies.get(scene.bodies_of(batch).start as usize) else { continue };
-            for (atom, place, facets) in lists.facets.parts() {
+            for (atom, point, facets) in lists.facets.parts() {
                 let atom = first.first_atom + atom;
                 let body = scene.body_of_atom(atom);
-                let other = neighbours.of(body)[place];
+                let other = neighbours.of(body)[point];
                 for facet in facets.up_to(HIGHEST).map(|facet| facet + scene.bodies[other as usize].first_facet) {
                     let corners = scene.facet_atoms(other, facet);
                     let facet_at = [before, after].map(|at| corners.map(|corner| at[corner as usize]));
@@ -79,10 +79,10 @@ impl Detector {
                     }
                 }
             }
-            for (edge, place, edges) in lists.edges.parts() {
+            for (edge, point, edges) in lists.edges.parts() {
                 let edge = first.first_edge + edge;
                 let body = scene.body_of_edge(edge);
-                let other = neighbours.of(body)[place];
+                let other = neighbours.of(body)[point];
                 let ends = |body: u32, edge: u32| {
                     let atoms = scene.edge_atoms(body, edge);
                     [before, after].map(|at| atoms.map(|atom| at[atom as usize]))

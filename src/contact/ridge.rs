@@ -39,11 +39,11 @@ impl<'a> Ridge<'a> {
         [self.along.cross(&left), right.cross(&self.along)]
     }
 
-    /// How far a way leads along the sum of the unit normals of the two facets.
+    /// How far a displacement leads along the sum of the unit normals of the two facets.
     #[inline(always)]
-    pub fn leads_out(&self, way: &Vec3) -> f64 {
+    pub fn leads_out(&self, displacement: &Vec3) -> f64 {
         let [left, right] = self.normals();
-        left.dot(way) / left.norm() + right.dot(way) / right.norm()
+        left.dot(displacement) / left.norm() + right.dot(displacement) / right.norm()
     }
 
     /// Whether the surface bends away from its outside here.

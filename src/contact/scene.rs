@@ -77,6 +77,11 @@ pub struct Scene {
     pub(super) batches: Vec<u32>,
 }
 
+/// The mean of a body's atoms.
+pub(super) fn centre(atoms: &[Vec3]) -> Vec3 {
+    atoms.iter().sum::<Vec3>() / atoms.len().max(1) as f64
+}
+
 impl Scene {
     /// A scene in which body `i` has shape `shape_of_body[i]`.
     ///

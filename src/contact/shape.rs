@@ -203,9 +203,9 @@ fn joined(lists: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
 
 /// The facets that an atom never touches: see [`Shape::new`].
 fn near_at_rest(rest: &Surface, around: &[Vec<u32>], atom: usize, clearance: f64) -> Vec<u32> {
-    let place = rest.positions[atom];
+    let position = rest.positions[atom];
     let is_close = |facet: u32| {
-        super::closest::closest_on_facet(place, rest.corners(rest.facets[facet as usize])).offset.norm() < clearance
+        super::closest::closest_on_facet(position, rest.corners(rest.facets[facet as usize])).offset.norm() < clearance
     };
     let neighbours = |facet: u32| rest.facets[facet as usize].iter().flat_map(|&corner| &around[corner as usize]);
     let mut near: Vec<u32> = around[atom].iter().flat_map(|&facet| neighbours(facet)).copied().collect();
@@ -214,10 +214,10 @@ fn near_at_rest(rest: &Surface, around: &[Vec<u32>], atom: usize, clearance: f64
     let mut edge_of_search = near.clone();
     while let Some(facet) = edge_of_search.pop() {
         for &next in neighbours(facet) {
-            if let Err(place) = near.binary_search(&next)
+            if let Err(position) = near.binary_search(&next)
                 && is_close(next)
             {
-                near.insert(place, next);
+                near.insert(position, next);
                 edge_of_search.push(next);
             }
         }

@@ -83,13 +83,14 @@ fn a_cell_that_flies_through_a_sheet_in_one_step_is_seen_to_pass() {
     let stage = super::test_scenes::stage(&bodies, Vec::new(), reach);
     let (mut detector, mut contacts) = (Detector::default(), Contacts::default());
     detector.detect(&stage.scene, &stage.positions, &mut contacts);
-    let moved = |way: f64| -> Vec<Vec3> {
-        let fall = |(atom, x): (usize, &Vec3)| if atom < 16 { *x } else { x - Vec3::z() * way };
+    let moved = |displacement: f64| -> Vec<Vec3> {
+        let fall = |(atom, x): (usize, &Vec3)| if atom < 16 { *x } else { x - Vec3::z() * displacement };
         stage.positions.iter().enumerate().map(fall).collect()
     };
     let mut passages = Vec::new();
-    let mut pass = |way: f64| {
-        let coverage = detector.find_passages(&stage.scene, &stage.positions, &moved(way), 1e-9, &mut passages);
+    let mut pass = |displacement: f64| {
+        let coverage =
+            detector.find_passages(&stage.scene, &stage.positions, &moved(displacement), 1e-9, &mut passages);
         (coverage, passages.clone())
     };
     assert_eq!(pass(0.02), (Coverage::Complete, vec![]));
@@ -109,9 +110,9 @@ fn atoms_that_go_through_a_surface_by_less_than_the_safe_travel_are_found_inside
     let mut entered = 0;
     for _ in 0..60 {
         let rest = icosphere(1.0, 1);
-        let (turn, way) = (dice.turn(), dice.vector().normalize());
-        let places = rest.positions.iter().map(|x| turn * x + way * 1.97).collect();
-        let bodies = [(&rest, Sides::Outer, rest.positions.clone()), (&rest, Sides::Outer, places)];
+        let (turn, displacement) = (dice.turn(), dice.vector().normalize());
+        let points = rest.positions.iter().map(|x| turn * x + displacement * 1.97).collect();
+        let bodies = [(&rest, Sides::Outer, rest.positions.clone()), (&rest, Sides::Outer, points)];
         let mut stage = super::test_scenes::stage(&bodies, Vec::new(), reach);
         let (mut detector, mut contacts) = (Detector::default(), Contacts::default());
         for _ in 0..4 {
@@ -123,7 +124,7 @@ fn atoms_that_go_through_a_surface_by_less_than_the_safe_travel_are_found_inside
                 .map(|atom| is_inside(&stage.positions[atom], &stage.positions[if atom < 42 { 42..84 } else { 0..42 }]))
                 .collect();
             // The second cell comes nearer, the first not.
-            stage.positions[42..].iter_mut().for_each(|x| *x -= way * travel);
+            stage.positions[42..].iter_mut().for_each(|x| *x -= displacement * travel);
             detector.detect(&stage.scene, &stage.positions, &mut contacts);
             for atom in 0..84 {
                 let there = &stage.positions[if atom < 42 { 42..84 } else { 0..42 }];

@@ -31,7 +31,7 @@ pub struct Stage {
     pub positions: Vec<Vec3>,
 }
 
-/// Bodies in a scene, from surfaces at rest and places of their atoms.
+/// Bodies in a scene, from surfaces at rest and positions of their atoms.
 pub fn stage(bodies: &[(&Surface, Sides, Vec<Vec3>)], planes: Vec<Plane>, reach: Reach) -> Stage {
     let shapes = bodies.iter().map(|(rest, sides, _)| Shape::new(rest, *sides, 1.5 * reach.proximity)).collect();
     let scene = Scene::new(shapes, &(0..bodies.len()).collect::<Vec<_>>(), planes, reach);
@@ -41,11 +41,11 @@ pub fn stage(bodies: &[(&Surface, Sides, Vec<Vec3>)], planes: Vec<Plane>, reach:
 /// Squeezes along one axis, bends into a banana and adds noise: not convex any more.
 pub fn deform(rest: &Surface, dice: &mut Dice, bend: f64, noise: f64) -> Vec<Vec3> {
     let squeeze = 1.0 + 0.3 * dice.roll();
-    let place = |x: &Vec3| {
+    let position = |x: &Vec3| {
         let squeezed = Vec3::new(x.x / squeeze.sqrt(), x.y / squeeze.sqrt(), x.z * squeeze);
         squeezed + Vec3::x() * (bend * x.z * x.z) + dice.vector() * noise
     };
-    rest.positions.iter().map(place).collect()
+    rest.positions.iter().map(position).collect()
 }
 
 /// Three to eight bodies of all kinds close together, many of them overlapping, and two planes.
@@ -69,8 +69,8 @@ pub fn random_stage(seed: u64) -> Stage {
             let (rest, sides) = &kinds[if choice < kinds.len() { choice } else { 0 }];
             let (bend, noise) = (0.4 * dice.roll(), 0.04 * (1.0 + dice.roll()));
             let (turn, centre) = (dice.turn(), dice.vector() * spread);
-            let places = deform(rest, &mut dice, bend, noise).into_iter().map(|x| turn * x + centre).collect();
-            (rest, *sides, places)
+            let points = deform(rest, &mut dice, bend, noise).into_iter().map(|x| turn * x + centre).collect();
+            (rest, *sides, points)
         })
         .collect();
     let planes = vec![
@@ -90,19 +90,20 @@ pub fn packed_stage(count: usize, reach: Reach, seed: u64) -> Stage {
     let side = (1..).find(|side: &usize| side.pow(3).div_ceil(2) >= count).expect("a cube large enough");
     let cube = (0..side.pow(3)).map(|i| [i % side, i / side % side, i / side / side]);
     let sites = cube.filter(|site| site.iter().sum::<usize>() % 2 == 0).take(count);
-    let ways = [[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]];
-    let ways = ways.map(|way: [i8; 3]| Vec3::from(way.map(f64::from)) / 2f64.sqrt());
+    let displacements = [[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]];
+    let displacements =
+        displacements.map(|displacement: [i8; 3]| Vec3::from(displacement.map(f64::from)) / 2f64.sqrt());
     let mut positions = Vec::new();
     for site in sites {
         let centre = Vec3::from(site.map(|index| index as f64)) * (2f64.sqrt() * HALF_DISTANCE);
         let turn = dice.turn();
         for x in &rest.positions {
-            let mut place = turn * x;
-            for way in ways {
-                let height = place.dot(&way);
-                place -= way * (height - height.clamp(0.02 - HALF_DISTANCE, HALF_DISTANCE - 0.02));
+            let mut position = turn * x;
+            for displacement in displacements {
+                let height = position.dot(&displacement);
+                position -= displacement * (height - height.clamp(0.02 - HALF_DISTANCE, HALF_DISTANCE - 0.02));
             }
-            positions.push(centre + place + dice.vector() * 0.01);
+            positions.push(centre + position + dice.vector() * 0.01);
         }
     }
     Stage { scene: Scene::new(vec![shape], &vec![0; count], Vec::new(), reach), positions }

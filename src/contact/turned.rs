@@ -59,27 +59,27 @@ mod tests {
         let (mut told, mut at_last) = (0, 0);
         for seed in 0..300 {
             let mut dice = Dice(seed);
-            let places = [0, 1].map(|_| deform(&rest, &mut dice, 0.2, 0.15));
+            let points = [0, 1].map(|_| deform(&rest, &mut dice, 0.2, 0.15));
             for edge in 0..shape.edges.len() as u32 {
                 let other = (7 * edge + seed as u32) % shape.edges.len() as u32;
-                let ridges = |places: &[Vec<Vec3>; 2]| -> (f64, f64) {
-                    let [first, second] = [0, 1].map(|k| Ridge::of(&shape, &places[k], [edge, other][k]));
+                let ridges = |points: &[Vec<Vec3>; 2]| -> (f64, f64) {
+                    let [first, second] = [0, 1].map(|k| Ridge::of(&shape, &points[k], [edge, other][k]));
                     let normal = first.along.cross(&second.along).normalize();
                     (turned_for(&first, &second, 0.5), both_sides(&first, &second, &normal).0)
                 };
-                let (wait, before) = ridges(&places);
+                let (wait, before) = ridges(&points);
                 assert_eq!(wait > 0.0, before > RISE + ROUND_OFF, "{seed}, {edge}: {wait} for {before}");
                 if wait == 0.0 {
                     continue;
                 }
-                // All of the motion that is allowed, or much more, shared out among both bodies and the way between them.
+                // All of the motion that is allowed, or much more, shared out among both bodies and the displacement between them.
                 let mut after = |motion: f64| {
                     let shares = [1.0 + dice.roll(), 1.0 + dice.roll(), 1.0 + dice.roll()];
-                    let [one, two, way] = shares.map(|share| motion * share / shares.iter().sum::<f64>());
-                    let way = dice.vector().normalize() * way;
-                    let mut moved = places.clone();
+                    let [one, two, displacement] = shares.map(|share| motion * share / shares.iter().sum::<f64>());
+                    let displacement = dice.vector().normalize() * displacement;
+                    let mut moved = points.clone();
                     moved[0].iter_mut().for_each(|x| *x += dice.vector().normalize() * one);
-                    moved[1].iter_mut().for_each(|x| *x += dice.vector().normalize() * two + way);
+                    moved[1].iter_mut().for_each(|x| *x += dice.vector().normalize() * two + displacement);
                     ridges(&moved).1
                 };
                 for _ in 0..3 {

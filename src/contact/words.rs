@@ -1,6 +1,6 @@
 //! Lists of pairs in words of two bytes: they are most of what contacts hold in memory, and all of it is read in every look.
 //!
-//! A list is the atom (or edge) that has it, then a body, by its place among the neighbours of the owner's, then facets (or edges) of
+//! A list is the atom (or edge) that has it, then a body, by its index among the neighbours of the owner's, then facets (or edges) of
 //! that body as they are numbered in its shape, ascending, with their levels; then the next body. Owners, bodies and what is beyond
 //! the bits of a number are told by how much farther on they are; where that does not fit into a word, several add up.
 
@@ -30,30 +30,30 @@ const PAGE_BITS: u32 = 13;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Words {
     words: Vec<u16>,
-    /// The owner and the place that the last words belong to.
+    /// The owner and the index that the last words belong to.
     owner: u32,
-    place: u32,
+    index: u32,
 }
 
 impl Words {
     /// Forgets all lists and keeps the memory.
     pub fn clear(&mut self) {
         self.words.clear();
-        (self.owner, self.place) = (0, 0);
+        (self.owner, self.index) = (0, 0);
     }
 
-    /// Adds the pairs of an owner with the body at a place among its neighbours, as (number, level), ascending. Owners must
-    /// ascend from call to call, and places of one owner.
-    pub fn add(&mut self, owner: u32, place: u32, pairs: &[(u32, u32)]) {
+    /// Adds the pairs of an owner with the body at an index among its neighbours, as (number, level), ascending. Owners must
+    /// ascend from call to call, and indices of one owner.
+    pub fn add(&mut self, owner: u32, position: u32, pairs: &[(u32, u32)]) {
         if pairs.is_empty() {
             return;
         }
         if owner != self.owner {
             self.go_on(OWNER, OWNER_BITS, 0, owner - self.owner);
-            (self.owner, self.place) = (owner, 0);
+            (self.owner, self.index) = (owner, 0);
         }
-        self.go_on(BODY, BODY_BITS, COUNT_BITS, place - self.place);
-        self.place = place;
+        self.go_on(BODY, BODY_BITS, COUNT_BITS, position - self.index);
+        self.index = position;
         let (body, mut page) = (self.words.len() - 1, 0);
         for &(number, level) in pairs {
             if number >> NUMBER_BITS != page {
@@ -66,14 +66,14 @@ impl Words {
         self.words[body] |= (self.words.len() - body - 1).min(usize::from(MANY)) as u16;
     }
 
-    /// Writes as many marked words as a way takes, which stands above some bits.
-    fn go_on(&mut self, mark: u16, bits: u32, above: u32, mut way: u32) {
+    /// Writes as many marked words as a distance takes, which stands above some bits.
+    fn go_on(&mut self, mark: u16, bits: u32, above: u32, mut displacement: u32) {
         let most = (1 << bits) - 1;
         loop {
-            let word = way.min(most);
+            let word = displacement.min(most);
             self.push(mark | (word << above) as u16);
-            way -= word;
-            if way == 0 {
+            displacement -= word;
+            if displacement == 0 {
                 break;
             }
         }
@@ -100,10 +100,10 @@ impl Words {
         2 * self.words.capacity()
     }
 
-    /// All that is listed: the owner, ascending, the place of a body among the neighbours of the owner's, ascending for each owner, and
+    /// All that is listed: the owner, ascending, the index of a body among the neighbours of the owner's, ascending for each owner, and
     /// the pairs with it.
     pub fn parts(&self) -> Parts<'_> {
-        Parts { rest: &self.words, owner: 0, place: 0 }
+        Parts { rest: &self.words, owner: 0, index: 0 }
     }
 }
 
@@ -111,7 +111,7 @@ impl Words {
 pub(super) struct Parts<'a> {
     rest: &'a [u16],
     owner: u32,
-    place: usize,
+    index: usize,
 }
 
 impl<'a> Iterator for Parts<'a> {
@@ -124,10 +124,10 @@ impl<'a> Iterator for Parts<'a> {
             self.rest = rest;
             if word >= OWNER {
                 self.owner += u32::from(word & !OWNER);
-                self.place = 0;
+                self.index = 0;
                 continue;
             }
-            self.place += usize::from((word & !BODY) >> COUNT_BITS);
+            self.index += usize::from((word & !BODY) >> COUNT_BITS);
             let count = match word & MANY {
                 0 => continue,
                 MANY => rest.iter().position(|word| (BODY..PAGE).contains(word)).unwrap_or(rest.len()),
@@ -135,7 +135,7 @@ impl<'a> Iterator for Parts<'a> {
             };
             let part;
             (part, self.rest) = rest.split_at(count);
-            return Some((self.owner, self.place, Part(part)));
+            return Some((self.owner, self.index, Part(part)));
         }
     }
 }
@@ -181,12 +181,12 @@ mod tests {
     fn written(lists: &[(u32, u32, Pairs)]) -> Words {
         let mut words = Words::default();
         words.clear();
-        lists.iter().for_each(|(owner, place, pairs)| words.add(*owner, *place, pairs));
+        lists.iter().for_each(|(owner, position, pairs)| words.add(*owner, *position, pairs));
         words
     }
 
     fn read(words: &Words, limit: u32) -> Vec<(u32, u32, Vec<u32>)> {
-        let all = words.parts().map(|(owner, place, part)| (owner, place as u32, part.up_to(limit).collect()));
+        let all = words.parts().map(|(owner, position, part)| (owner, position as u32, part.up_to(limit).collect()));
         all.filter(|(.., numbers): &(_, _, Vec<u32>)| !numbers.is_empty()).collect()
     }
 
@@ -207,7 +207,7 @@ mod tests {
         ];
         let numbers = |limit: u32| -> Vec<(u32, u32, Vec<u32>)> {
             let of = |pairs: &Pairs| pairs.iter().filter(|pair| pair.1 <= limit).map(|pair| pair.0).collect();
-            let all = lists.iter().map(|(owner, place, pairs)| (*owner, *place, of(pairs)));
+            let all = lists.iter().map(|(owner, position, pairs)| (*owner, *position, of(pairs)));
             all.filter(|(.., numbers): &(_, _, Vec<u32>)| !numbers.is_empty()).collect()
         };
         let words = written(&lists);

@@ -120,6 +120,11 @@ impl FieldSystem {
         &self.name
     }
 
+    /// The equations, in the document's own units.
+    pub fn equations(&self) -> &System {
+        &self.system
+    }
+
     /// The fields in the order of the document, their coefficients in µm and s.
     pub fn species(&self) -> &[Species] {
         &self.species

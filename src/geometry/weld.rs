@@ -1,10 +1,10 @@
-//! Finds points that stand at the same place.
+//! Finds points that stand at the same point.
 
 use crate::Vec3;
 use std::collections::HashMap;
 
 /// For every point, the number of the first point within `tolerance` (µm) of it: its own number if it is the first at
-/// its place. The points must be finite; a tolerance of 0 finds points that are exactly equal.
+/// its position. The points must be finite; a tolerance of 0 finds points that are exactly equal.
 pub(super) fn first_at_same_place(points: &[Vec3], tolerance: f64) -> Vec<u32> {
     // Points are sorted into cubes of twice the tolerance, so a partner stands in the same cube or in the next one
     // along each axis.

@@ -1,21 +1,19 @@
-//! The loop: steps, records, checkpoints, progress, stop and resume.
+//! The run of an experiment into a file: a simulation that is recorded, saved, reported, stopped and resumed.
 
 mod progress;
-mod record;
-mod touch;
+mod recording;
 
 pub use progress::{Progress, Quiet, Report};
-pub use record::{frame_of, layout_of};
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Compiled, Document, PushedApart, compile, notices, prepare, settle_start};
-use crate::output::{Frame, Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
-use crate::sim::contact::check_passed;
-use crate::sim::{State, Trouble, Workspace, begin_chemistry, step};
+use crate::experiment::{Document, PushedApart};
+use crate::output::{Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
+use crate::simulation::{CancelToken, CheckpointFault, Ready, Simulation, SimulationError, layout_of};
+use recording::{Recording, Stop};
 
 /// How a run is to be made.
 #[derive(Debug, Clone)]
@@ -26,6 +24,15 @@ pub struct RunOptions {
     pub overwrite: Overwrite,
     /// Threads; all cores when absent. The result does not depend on it.
     pub threads: Option<usize>,
+    /// Ends the run at the next step, with a checkpoint to resume from.
+    pub cancel: CancelToken,
+}
+
+impl RunOptions {
+    /// A run into this file, on all cores, that leaves a result alone that is there.
+    pub fn new(result: impl Into<PathBuf>) -> Self {
+        Self { result: result.into(), overwrite: Overwrite::Refuse, threads: None, cancel: CancelToken::new() }
+    }
 }
 
 /// What a run did.
@@ -45,34 +52,24 @@ pub struct Outcome {
     pub pushed: PushedApart,
 }
 
-/// Set by the first Ctrl-C or termination signal; a run then ends at the next step with a checkpoint.
-pub static STOP: AtomicBool = AtomicBool::new(false);
-
 /// Runs an experiment from its start.
 ///
 /// # Errors
 /// [`Error::Input`] for a document that cannot be compiled or a result that cannot be made, [`Error::Numbers`] when a
-/// step fails (the last good state is in the checkpoint), [`Error::Interrupted`] after [`STOP`], [`Error::Machine`] when
-/// the disk refuses.
+/// step fails (the last good state is in the checkpoint), [`Error::Interrupted`] once the token is cancelled,
+/// [`Error::Machine`] when the disk refuses.
 pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
-    let pool = pool_of(options.threads)?;
+    let RunOptions { result, overwrite, threads, cancel } = options;
     let document = &document.with_equations();
-    let prepared = prepare(document)?;
-    let mut said = notices(document, &prepared);
-    let mut compiled = prepared.build();
-    let pushed = settle_start(document, &mut compiled)?;
-    said.extend(pushed.notice());
-    let (source, title) = (&document.source, &document.experiment.title);
+    let ready = Simulation::builder().threads_or_all(*threads).cancel_token(cancel.clone()).ready(document)?;
+    let (source, title, simulation) = (&document.source, &document.experiment.title, &ready.simulation);
     let header = Header {
         equations: document.equations.clone().into_iter().collect(),
-        ..Header::now(&source.name, title, &source.text, &document.sets, compiled.model.seed)
+        ..Header::now(&source.name, title, &source.text, &document.sets, simulation.model().seed)
     };
-    let layout = layout_of(&compiled.model);
-    let writer = ResultWriter::create(&options.result, &header, &layout, options.overwrite)?;
-    said.iter().for_each(|notice| report.notice(notice));
-    within(pool, || drive(compiled, writer, &options.result, report, Start::Fresh))
-        .map(|outcome| Outcome { pushed, ..outcome })
-        .map_err(|error| can_go_on(error, &options.result))
+    let writer = ResultWriter::create(result, &header, &layout_of(simulation.model()), *overwrite)?;
+    simulation.notices().iter().for_each(|notice| report.notice(notice));
+    drive(ready, writer, result, report, Start::Fresh).map_err(|error| can_go_on(error, result))
 }
 
 /// What the run of a result did, if it came to its end; then there is nothing to resume.
@@ -95,8 +92,8 @@ pub fn finished_already(result: &Path) -> Result<Option<Outcome>> {
 ///
 /// # Errors
 /// As [`run`], and [`Error::Input`] when there is no checkpoint or it belongs to another experiment.
-pub fn resume(result: &Path, threads: Option<usize>, report: &mut dyn Report) -> Result<Outcome> {
-    let pool = pool_of(threads)?;
+pub fn resume(result: &Path, threads: Option<usize>, cancel: &CancelToken, report: &mut dyn Report) -> Result<Outcome> {
+    let builder = Simulation::builder().threads_or_all(threads).cancel_token(cancel.clone());
     if let Some(outcome) = finished_already(result)? {
         return Ok(outcome);
     }
@@ -108,17 +105,24 @@ pub fn resume(result: &Path, threads: Option<usize>, report: &mut dyn Report) ->
     };
     let header = checkpoint.meta.header.clone();
     let document = document_of(&header, result)?;
-    let mut compiled = compile(&document)?;
-    let state: State = postcard::from_bytes(&checkpoint.payload).map_err(|error| {
-        let fault = Fault::new(format!("the checkpoint of {} cannot be read: {error}", result.display()))
-            .help("resume with the version of pseudopod that began the run");
-        Error::input(fault)
-    })?;
-    check_fits(&compiled.state, &state, result)?;
-    compiled.state = state;
-    let layout = layout_of(&compiled.model);
+    let mut ready = builder.ready_to_restore(&document)?;
+    ready.simulation.restore(&checkpoint.payload).map_err(|error| cannot_restore(&error, result))?;
+    let layout = layout_of(ready.simulation.model());
     let writer = ResultWriter::reopen(result, &header, &layout, checkpoint.meta.step)?;
-    within(pool, || drive(compiled, writer, result, report, Start::Resumed)).map_err(|error| can_go_on(error, result))
+    drive(ready, writer, result, report, Start::Resumed).map_err(|error| can_go_on(error, result))
+}
+
+/// Why the state in a checkpoint cannot be taken up.
+fn cannot_restore(error: &SimulationError, result: &Path) -> Error {
+    let name = result.display();
+    Error::input(match error {
+        SimulationError::Checkpoint(CheckpointFault::Foreign) => Fault::new(format!(
+            "the checkpoint of {name} belongs to another experiment"
+        ))
+        .help("a mesh file may have changed since the run began: put the old one back, or run the experiment again"),
+        other => Fault::new(format!("the checkpoint of {name} cannot be read: {other}"))
+            .help("resume with the version of pseudopod that began the run"),
+    })
 }
 
 /// When the machine failed in the middle of a run: what is recorded is safe, and how to go on from there.
@@ -140,143 +144,44 @@ pub fn document_of(header: &Header, result: &Path) -> Result<Document> {
     Document::parse_beside(&header.document, &header.experiment, &base, &header.sets, equations)
 }
 
-fn check_fits(fresh: &State, state: &State, result: &Path) -> Result<()> {
-    let same = fresh.kinds.len() == state.kinds.len()
-        && fresh.walks.len() == state.walks.len()
-        && fresh.chemistry.has_shape_of(&state.chemistry)
-        && fresh.kinds.iter().zip(&state.kinds).all(|(a, b)| {
-            a.positions.len() == b.positions.len()
-                && a.velocities.len() == b.velocities.len()
-                && a.rest_volumes.len() == b.rest_volumes.len()
-        });
-    if same {
-        return Ok(());
-    }
-    let fault = Fault::new(format!("the checkpoint of {} belongs to another experiment", result.display()))
-        .help("a mesh file may have changed since the run began: put the old one back, or run the experiment again");
-    Err(Error::input(fault))
-}
-
-/// The threads that were asked for; `None` stands for all cores.
-fn pool_of(threads: Option<usize>) -> Result<Option<rayon::ThreadPool>> {
-    let Some(threads) = threads else { return Ok(None) };
-    if threads == 0 {
-        let fault =
-            Fault::new("a run cannot be made by 0 threads").help("ask for 1 or more; leave it out for all cores");
-        return Err(Error::input(fault));
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| Error::Machine {
-        message: format!("{threads} threads could not be started: {error}"),
-        help: "ask for fewer with --threads".into(),
-    })?;
-    Ok(Some(pool))
-}
-
-fn within<T: Send>(pool: Option<rayon::ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
-    match pool {
-        Some(pool) => pool.install(work),
-        None => work(),
-    }
-}
-
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Start {
     Fresh,
     Resumed,
 }
 
-/// Steps, records and checkpoints until the end.
-fn drive(
-    compiled: Compiled,
-    mut writer: ResultWriter,
-    result: &Path,
-    report: &mut dyn Report,
-    start: Start,
-) -> Result<Outcome> {
-    let Compiled { model, mut state, schedule } = compiled;
-    let began = Instant::now();
-    let mut ws = Workspace::new(&model);
-    let mut recorder = record::Recorder::new(&model, &schedule);
-    let (mut recorded, first, mut limited) = (state.step, state.step, 0);
-    if let Err(trouble) = begin_chemistry(&model, &mut state, &mut ws) {
-        let help = trouble.help_at(&model, &state);
-        return Err(failed(trouble, help, writer, &state, None, result));
-    }
-    if start == Start::Fresh {
-        writer.append(&recorder.record(&model, &mut state, &ws, 0.0))?;
-        save(&mut writer, &state)?;
-    }
-    // Where cells were last known to be outside each other.
-    let mut good = model.contact.is_some().then(|| state.clone());
-    report.begin(state.time, model.until);
-    while state.time < model.until {
-        let before = state.time;
-        match step(&model, &mut state, &mut ws) {
-            Ok(done) => {
-                limited += u64::from(done.limited);
-                let last = state.time >= model.until;
-                if last || passed(before, state.time, schedule.every) {
-                    if let Err(trouble) = check_passed(&model, &state) {
-                        report.end();
-                        let help = trouble.help_at(&model, &state);
-                        return Err(failed(trouble, help, writer, &good.unwrap_or(state), None, result));
-                    }
-                    good = model.contact.is_some().then(|| state.clone());
-                    writer.append(&recorder.record(&model, &mut state, &ws, done.dt))?;
-                    recorded = state.step;
-                }
-                if passed(before, state.time, schedule.checkpoint) && !last {
-                    save(&mut writer, &state)?;
-                }
-            }
-            Err(trouble) => {
-                // The last good state is what the user wants to look at.
-                let unseen = (state.step > recorded).then(|| recorder.record(&model, &mut state, &ws, 0.0));
-                report.end();
-                let help = trouble.help_at(&model, &state);
-                return Err(failed(trouble, help, writer, &state, unseen, result));
-            }
+/// Lets a simulation go to the end of its experiment, recorded.
+fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Report, start: Start) -> Result<Outcome> {
+    let Ready { mut simulation, schedule, pushed } = ready;
+    simulation.within(|simulation| {
+        let (began, first, until) = (Instant::now(), simulation.steps(), simulation.end());
+        let mut recording = Recording::new(simulation, writer, schedule, result, report);
+        if let Err(trouble) = simulation.begin() {
+            return Err(recording.keep_last(&trouble, simulation));
         }
-        report.step(state.time, state.step);
-        if STOP.load(Ordering::Relaxed) {
-            save(&mut writer, &state)?;
-            report.end();
-            return Err(Error::Interrupted { time: state.time, result: result.to_path_buf() });
+        if start == Start::Fresh {
+            recording.record_start(simulation)?;
         }
-    }
-    save(&mut writer, &state)?;
-    report.end();
-    let wall_time = began.elapsed().as_secs_f64();
-    let frames = writer.frames();
-    finish(writer, result, wall_time)?;
-    let pushed = PushedApart::default();
-    Ok(Outcome { steps: state.step, frames, made: state.step - first, limited, wall_time, pushed })
-}
-
-/// Whether a multiple of `interval` lies in (before, after].
-fn passed(before: f64, after: f64, interval: f64) -> bool {
-    // The slack lets a clock that adds many steps reach a multiple that it misses by round-off.
-    let count = |time: f64| (time / interval * (1.0 + 1e-12)).floor();
-    count(after) > count(before)
-}
-
-fn save(writer: &mut ResultWriter, state: &State) -> Result<()> {
-    let payload = postcard::to_stdvec(state).expect("plain numbers always encode");
-    writer.save_checkpoint(state.step, state.time, &payload)
-}
-
-/// Keeps the last good state, as a frame and as a checkpoint, and says what happened.
-fn failed(
-    trouble: Trouble,
-    help: &str,
-    mut writer: ResultWriter,
-    state: &State,
-    unseen: Option<Frame>,
-    result: &Path,
-) -> Error {
-    let kept = unseen.map_or(Ok(()), |frame| writer.append(&frame)).and_then(|()| save(&mut writer, state));
-    let kept = kept.is_ok().then(|| result.to_path_buf());
-    Error::Numbers { message: trouble.to_string(), help: help.to_owned(), kept }
+        recording.begin(simulation);
+        let ended = simulation.run_with(until, |simulation, made| recording.look(simulation, made));
+        recording.end();
+        match ended {
+            Ok(ControlFlow::Continue(())) => recording.save(simulation)?,
+            Ok(ControlFlow::Break(Stop::Machine(error))) => return Err(error),
+            Ok(ControlFlow::Break(Stop::Passed(trouble))) => return Err(recording.keep_good(&trouble, simulation)),
+            Err(SimulationError::Trouble(trouble)) => return Err(recording.keep_last(&trouble, simulation)),
+            Err(SimulationError::Cancelled { time }) => {
+                recording.save(simulation)?;
+                return Err(Error::Interrupted { time, result: result.to_path_buf() });
+            }
+            Err(other) => return Err(other.into()),
+        }
+        let wall_time = began.elapsed().as_secs_f64();
+        let Recording { writer, limited, .. } = recording;
+        let (steps, frames) = (simulation.steps(), writer.frames());
+        finish(writer, result, wall_time)?;
+        Ok(Outcome { steps, frames, made: steps - first, limited, wall_time, pushed })
+    })
 }
 
 /// Evaluates the measures of the experiment on what was recorded and ends the file.

@@ -8,31 +8,41 @@ use super::model::{Kind, Model};
 use super::state::State;
 use super::workspace::Workspace;
 use crate::Vec3;
+use crate::mechanics::integrator::Method;
 
 /// K is made again when the square of some edge's length has changed by this factor: by then a cell that hardens with
 /// the fourth power of its stretch is two times stiffer than K takes it to be, which the scheme still bears.
 const CHANGE: f64 = 1.4;
 
+/// Makes K fit for the step, where the scheme has one.
+pub fn fit_stiffness(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) {
+    if let Method::Implicit { .. } = model.integrator.method {
+        refresh_stiffness(model, from, to, ws);
+        cover_stiffening(model, from, ws);
+    }
+}
+
 /// Makes K again where a cell has changed its shape; which shape K belongs to is part of the state.
-pub fn refresh_stiffness(model: &Model, state: &mut State, ws: &mut Workspace) {
-    for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds) {
+fn refresh_stiffness(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) {
+    let cells = from.kinds.iter().zip(&mut to.kinds);
+    for ((kind, (now, next)), w) in model.kinds.iter().zip(cells).zip(&mut ws.kinds) {
         if kind.cells != 1 {
             continue;
         }
         if has_changed(kind, &now.stiffness_shape, &now.positions) {
-            now.stiffness_shape.clone_from(&now.positions);
+            next.stiffness_shape.clone_from(&now.positions);
         }
-        if w.stiffness_shape != now.stiffness_shape {
-            let shape: Vec<Vec3> = now.stiffness_shape.chunks_exact(3).map(Vec3::from_column_slice).collect();
-            w.set_stiffness((!shape.is_empty()).then(|| kind.stiffness_at(&shape)), &now.stiffness_shape);
+        if w.stiffness_shape != next.stiffness_shape {
+            let shape: Vec<Vec3> = next.stiffness_shape.chunks_exact(3).map(Vec3::from_column_slice).collect();
+            w.set_stiffness((!shape.is_empty()).then(|| kind.stiffness_at(&shape)), &next.stiffness_shape);
         }
     }
 }
 
 /// Raises K to cover the stiffest cell of each kind where chemistry sets the stiffness, in powers of two so that few
 /// factorisations are made. A K that is too large costs some accuracy, one that is too small stability.
-pub fn cover_stiffening(model: &Model, state: &State, ws: &mut Workspace) {
-    let controls = &state.chemistry.controls;
+fn cover_stiffening(model: &Model, from: &State, ws: &mut Workspace) {
+    let controls = &from.chemistry.controls;
     for (kind, w) in model.kinds.iter().zip(&mut ws.kinds) {
         let cells = kind.first_cell..kind.first_cell + kind.cells;
         let largest = controls.stiffness.get(cells).map_or(1.0, |cells| cells.iter().copied().fold(1.0, f64::max));

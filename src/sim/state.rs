@@ -9,7 +9,7 @@ use crate::Vec3;
 use crate::cell::motility::Walk;
 
 /// Everything that changes and is needed to go on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct State {
     /// Simulated time, s.
     pub time: f64,
@@ -30,7 +30,7 @@ pub struct State {
 }
 
 /// The cells of a kind, in blocks of lanes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct KindState {
     /// Positions, µm: `[block][atom][axis][lane]`. Lanes beyond the last cell repeat it and are never read.
     pub positions: Vec<f64>,
@@ -41,6 +41,8 @@ pub struct KindState {
     /// Positions of the cell when the stiffness of the implicit step was last made, µm; empty where it is that of the
     /// rest shape.
     pub stiffness_shape: Vec<f64>,
+    /// Mean velocity of the atoms of every cell over the last step, µm/s; zero before the first.
+    pub mean_velocities: Vec<[f64; 3]>,
 }
 
 /// Index of a number in a block array.
@@ -76,7 +78,24 @@ impl KindState {
             velocities,
             rest_volumes: vec![volume; kind.blocks() * kind.lanes],
             stiffness_shape: Vec::new(),
+            mean_velocities: vec![[0.0; 3]; kind.cells],
         }
+    }
+
+    /// As [`State::begin_from`].
+    fn begin_from(&mut self, from: &Self) {
+        self.positions.resize(from.positions.len(), 0.0);
+        self.velocities.resize(from.velocities.len(), 0.0);
+        self.rest_volumes.clone_from(&from.rest_volumes);
+        self.stiffness_shape.clone_from(&from.stiffness_shape);
+        self.mean_velocities.resize(from.mean_velocities.len(), [0.0; 3]);
+    }
+
+    fn poison(&mut self) {
+        for array in [&mut self.positions, &mut self.velocities, &mut self.rest_volumes, &mut self.stiffness_shape] {
+            array.fill(f64::NAN);
+        }
+        self.mean_velocities.fill([f64::NAN; 3]);
     }
 
     /// Moves a cell as a whole, µm.
@@ -120,5 +139,24 @@ impl State {
         let chemistry = ChemistryState::new(model, &[]);
         let contact = ContactState::default();
         Self { time: 0.0, step: 0, next_step: 0.0, kinds, walks, ended_runs: Vec::new(), chemistry, contact }
+    }
+
+    /// Makes this state, which may hold anything, the one that a step from another leads to, as far as that is known before it: where
+    /// the step begins, and room for what its stages write. Positions, velocities, contacts and chemistry are written by the stages.
+    /// Nothing is allocated where both are as large.
+    pub fn begin_from(&mut self, from: &Self) {
+        (self.time, self.step, self.next_step) = (from.time, from.step, from.next_step);
+        self.kinds.resize_with(from.kinds.len(), KindState::default);
+        self.kinds.iter_mut().zip(&from.kinds).for_each(|(kind, from)| kind.begin_from(from));
+    }
+
+    /// Writes NaN over all numbers and forgets what is held in lists.
+    pub fn poison(&mut self) {
+        (self.time, self.step, self.next_step) = (f64::NAN, u64::MAX, f64::NAN);
+        self.kinds.iter_mut().for_each(KindState::poison);
+        self.walks.clear();
+        self.ended_runs.clear();
+        self.chemistry.poison();
+        self.contact = ContactState::default();
     }
 }

@@ -1,9 +1,5 @@
 //! When the numbers fail: what, where and when.
 
-use super::constraints::VolumeFailure;
-use super::contact::{Cause, cause_of};
-use super::model::Model;
-use super::state::{State, index};
 use crate::ode::Reason;
 
 /// Why a step could not be made. The state is the one before the step.
@@ -101,33 +97,7 @@ pub enum Trouble {
 }
 
 impl Trouble {
-    pub(super) fn of_volume(model: &Model, time: f64, failure: VolumeFailure) -> Self {
-        let kind = model.kinds[failure.kind].name.clone();
-        Self::Volume { kind, cell: failure.cell, error: failure.error, time }
-    }
-
-    /// What to do about it, in the light of the state that it came from.
-    pub fn help_at(&self, model: &Model, state: &State) -> &'static str {
-        let (Self::Contact { cells, .. } | Self::Pressed { cells, .. }) = self else { return self.help() };
-        match cause_of(model, state, cells) {
-            Cause::Crowded => {
-                "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
-                 let run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
-            }
-            Cause::Folded => {
-                "the surface of one of these cells is folded: it is too soft for what moves it. Raise its stiffness \
-                 (shape_memory, or shear, area and bending of its membrane), pull or press it more gently, or let \
-                 run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
-            }
-            Cause::Open => {
-                "nothing presses these cells together from around; they move or yield faster than contacts follow: let \
-                 run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance), pull \
-                 more gently, or raise their stiffness"
-            }
-        }
-    }
-
-    /// What to do about it, where nothing is known but the trouble.
+    /// What to do about it, where nothing is known but the trouble; [`help_at`](super::contact::help_at) looks at the cells, too.
     pub fn help(&self) -> &'static str {
         match self {
             Self::NotFinite { .. } => {
@@ -220,6 +190,8 @@ impl std::fmt::Display for Trouble {
     }
 }
 
+impl std::error::Error for Trouble {}
+
 /// What is wrong with a system, in words.
 fn words_for(reason: Reason) -> &'static str {
     match reason {
@@ -229,22 +201,4 @@ fn words_for(reason: Reason) -> &'static str {
         Reason::EndlessEvents => "events follow each other without end",
         Reason::Solver => "the solver gave up",
     }
-}
-
-/// Finds the first position that is not finite.
-pub fn check_finite(model: &Model, time: f64, state: &State) -> Result<(), Trouble> {
-    for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-        // A sum is not finite when a part is not, or when it overflows, which is no better.
-        if now.positions.iter().map(|x| x * 1e-30).sum::<f64>().is_finite() {
-            continue;
-        }
-        for cell in 0..kind.cells {
-            for atom in 0..kind.atoms() {
-                if (0..3).any(|axis| !now.positions[index(kind, cell, atom, axis)].is_finite()) {
-                    return Err(Trouble::NotFinite { kind: kind.name.clone(), cell, atom, time });
-                }
-            }
-        }
-    }
-    Ok(())
 }

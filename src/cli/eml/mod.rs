@@ -4,9 +4,9 @@ pub mod check;
 mod columns;
 mod draw;
 pub mod from_sbml;
+mod options;
 mod read;
 pub mod solve;
-mod wishes;
 
 use super::report::Report;
 use crate::error::{Error, Fault, Result};
@@ -27,7 +27,7 @@ pub enum EmlCommand {
     /// Checks documents and says what is in them.
     Check(check::CheckArgs),
     /// Solves the equations of a document, without any cells.
-    Solve(solve::SolveArgs),
+    Solve(options::SolveArgs),
     /// Writes an SBML model as an EML document.
     FromSbml(from_sbml::FromSbmlArgs),
 }

@@ -2,66 +2,16 @@
 
 use super::columns::{Table, columns, set};
 use super::draw::Drawing;
+use super::options::{SolveArgs, options, points};
 use super::read::read;
 use super::refuse_same;
-use super::wishes::{options, points};
+
 use crate::cli::render::{Named, refuse_existing};
 use crate::cli::report::{Report, path_text, paths};
 use crate::error::{Error, Fault, Result, say};
 use crate::ode::solve_each;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-
-/// Solves the equations of a document, EML or SBML, and writes a table: a row for each point of time.
-#[derive(Debug, Clone, clap::Args)]
-pub struct SolveArgs {
-    /// The document.
-    #[arg(value_name = "FILE")]
-    pub document: PathBuf,
-    /// Where the time begins, in the document's unit of time.
-    #[arg(long, value_name = "TIME", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub from: f64,
-    /// Where it ends.
-    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
-    pub until: f64,
-    /// Rows of the table, evenly spaced in time, with both ends.
-    #[arg(long, value_name = "NUMBER", default_value_t = 101, allow_negative_numbers = true)]
-    pub points: i64,
-    /// Columns, by commas: time, identifiers, in SBML S for an amount and [S] for a concentration; time and all
-    /// variables when absent.
-    #[arg(long, value_delimiter = ',', value_name = "COLUMNS")]
-    pub columns: Vec<String>,
-    /// Another value of a parameter or input, or another start of a variable, as in --set k=0.2.
-    #[arg(long = "set", value_name = "ID=NUMBER")]
-    pub sets: Vec<String>,
-    /// The scheme: rk45, rk65, rosenbrock, bdf, rk4 or euler; the document's when absent, or rosenbrock.
-    #[arg(long, value_name = "SCHEME")]
-    pub scheme: Option<String>,
-    /// Tolerance relative to the size of each variable.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
-    pub rtol: Option<f64>,
-    /// Tolerance in the unit of each variable.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
-    pub atol: Option<f64>,
-    /// The step of rk4 and euler.
-    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
-    pub inner_step: Option<f64>,
-    /// The most steps that are taken.
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
-    pub max_steps: Option<u32>,
-    /// The table to write, as CSV; the terminal when absent.
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Draws the curves: .svg or .png.
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
-    /// Replaces files that are there.
-    #[arg(long)]
-    pub force: bool,
-    /// Prints what was done as JSON.
-    #[arg(long, requires = "output")]
-    pub json: bool,
-}
 
 /// Runs the command.
 ///

@@ -39,11 +39,11 @@ pub enum MeshFault {
         /// The atom.
         atom: u32,
     },
-    /// Two atoms stand at the same place.
+    /// Two atoms stand at the same point.
     DuplicateAtoms {
         /// The two atoms.
         atoms: [u32; 2],
-        /// Their place, µm.
+        /// Their position, µm.
         position: [f64; 3],
     },
     /// An edge is shared by three facets or more.

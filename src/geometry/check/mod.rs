@@ -37,7 +37,7 @@ pub const LEAST_FACET_QUALITY: f64 = 0.05;
 /// a red cell 0.061, and a pancake whose thickness is 1/1000 of its width still 4e-4.
 const LEAST_VOLUME_RATIO: f64 = 1e-6;
 
-/// Atoms closer than this times the diagonal of the mesh stand at the same place.
+/// Atoms closer than this times the diagonal of the mesh stand at the same point.
 const SAME_PLACE: f64 = 1e-9;
 
 /// So many faults of one kind are named in the one that stands for all of them.
@@ -237,7 +237,7 @@ fn separate_surfaces(surface: &Surface, sides: &[HalfEdge]) -> Option<MeshFault>
     (count > 1).then_some(MeshFault::SeparateSurfaces { count, facets: first_facets })
 }
 
-/// The representative of an atom's surface; halves the path to it on the way.
+/// The representative of an atom's surface; halves the path to it on the path.
 fn root(parents: &mut [u32], mut atom: u32) -> u32 {
     while parents[atom as usize] != atom {
         parents[atom as usize] = parents[parents[atom as usize] as usize];

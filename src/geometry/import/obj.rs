@@ -11,7 +11,7 @@ const MOST_FAULTS: usize = 10;
 /// Reads the vertices and polygons of an OBJ file and passes over everything else.
 ///
 /// # Errors
-/// The first ten faults, each with its place.
+/// The first ten faults, each with its location.
 pub(super) fn parse(name: &str, bytes: &[u8]) -> Result<Surface, Vec<Fault>> {
     let text = Text::new(name, bytes);
     let mut surface = Surface::default();

@@ -18,7 +18,7 @@ const FACET: usize = 50;
 /// Reads an STL file.
 ///
 /// # Errors
-/// The first fault; in an ASCII file with its place.
+/// The first fault; in an ASCII file with its location.
 pub(super) fn parse(name: &str, bytes: &[u8]) -> Result<Surface, Vec<Fault>> {
     let corners = if is_ascii(bytes) { parse_ascii(name, bytes) } else { parse_binary(name, bytes) };
     corners.map(|corners| merge_corners(&corners)).map_err(|fault| vec![fault])
@@ -114,7 +114,7 @@ fn wrong_corners(text: &Text, keyword: Word, count: usize) -> Fault {
     )
 }
 
-/// Makes atoms of the corners, three per facet, that stand at the same place; numbered in the order of the file.
+/// Makes atoms of the corners, three per facet, that stand at the same point; numbered in the order of the file.
 fn merge_corners(corners: &[Vec3]) -> Surface {
     let firsts = first_at_same_place(corners, SAME_PLACE * diagonal(corners));
     let mut surface = Surface::default();

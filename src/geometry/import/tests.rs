@@ -97,9 +97,13 @@ fn obj_faults_are_reported_together_with_their_places() {
     let found: Vec<_> = faults
         .iter()
         .map(|fault| {
-            let place = fault.place.as_ref().unwrap();
-            let line = place.source.text[..place.start].matches('\n').count() + 1;
-            format!("{line}: {} [{}]", fault.message, &place.source.text[place.start..place.start + place.length])
+            let position = fault.place.as_ref().unwrap();
+            let line = position.source.text[..position.start].matches('\n').count() + 1;
+            format!(
+                "{line}: {} [{}]",
+                fault.message,
+                &position.source.text[position.start..position.start + position.length]
+            )
         })
         .collect();
     assert_eq!(

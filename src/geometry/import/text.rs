@@ -1,4 +1,4 @@
-//! Words of a text file with their places, so that a fault can point at them.
+//! Words of a text file with their locations, so that a fault can point at them.
 
 use crate::Vec3;
 use crate::error::{Fault, Place, Source};
@@ -46,8 +46,9 @@ impl Text {
 
     /// A fault that points at a word.
     pub fn fault(&self, at: Word, message: impl Into<String>, label: &str, help: &str) -> Fault {
-        let place = Place { source: self.source.clone(), start: at.start, length: at.text.len(), label: label.into() };
-        Fault::new(message).at(place).help(help)
+        let position =
+            Place { source: self.source.clone(), start: at.start, length: at.text.len(), label: label.into() };
+        Fault::new(message).at(position).help(help)
     }
 
     /// A fault at the end of the text.

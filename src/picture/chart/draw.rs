@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
+use super::entry::entries;
 use super::frame::{FittedAxis, Frame, LABEL, NUMBER, TITLE};
 use super::heat::Heat;
 use super::legend::{self, Box};
-use super::series::{dashes, write_bar, write_marker, write_points, write_series};
-use super::{Chart, Legend, Marker, Series, Stroke, svg_to_png};
+use super::series::{write_points, write_series};
+use super::{Chart, Legend, Series, svg_to_png};
 use crate::error::Result;
 use crate::picture::Image;
 use crate::picture::colour::Colour;
@@ -16,21 +17,6 @@ use crate::picture::ticks;
 const FRAME_COLOUR: &str = "#5a616b";
 const GRID_COLOUR: &str = "#e3e6ea";
 const FINE_GRID_COLOUR: &str = "#f2f4f6";
-
-/// What the legend shows of one series.
-pub(super) struct Entry {
-    pub label: String,
-    shape: Shape,
-    colour: Colour,
-}
-
-enum Shape {
-    Line(Stroke, f64),
-    Points(Marker, bool),
-    Band,
-    /// A line and its band under one name.
-    LineInBand(Stroke, f64),
-}
 
 /// Draws a chart on a page of `width` × `height` px. Any contents give a valid SVG document.
 pub fn to_svg(chart: &Chart, width: f64, height: f64) -> String {
@@ -149,65 +135,6 @@ fn colours(chart: &Chart) -> Vec<Colour> {
             colour
         })
         .collect()
-}
-
-/// The named series, a line and a band of one name in one entry.
-fn entries(chart: &Chart, colours: &[Colour]) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = Vec::new();
-    for (series, colour) in chart.series.iter().zip(colours) {
-        let label = series.label();
-        if label.is_empty() {
-            continue;
-        }
-        let shape = match series {
-            Series::Line { stroke, width, .. } => Shape::Line(*stroke, *width),
-            Series::Points { marker, bars, .. } => Shape::Points(*marker, !bars.is_empty()),
-            Series::Band { .. } => Shape::Band,
-            Series::Tracks { .. } => Shape::Line(Stroke::Solid, 1.6),
-        };
-        match (entries.iter_mut().find(|entry| entry.label == label), shape) {
-            (Some(Entry { shape: known @ Shape::Band, .. }), Shape::Line(stroke, width)) => {
-                *known = Shape::LineInBand(stroke, width);
-            }
-            (Some(Entry { shape: known @ Shape::Line(..), .. }), Shape::Band) => {
-                if let Shape::Line(stroke, width) = *known {
-                    *known = Shape::LineInBand(stroke, width);
-                }
-            }
-            (_, shape) => entries.push(Entry { label: label.into(), shape, colour: *colour }),
-        }
-    }
-    entries
-}
-
-/// Draws the sample of a series in the legend between two x at height `y`.
-pub(super) fn write_sample(svg: &mut String, entry: &Entry, left: f64, right: f64, y: f64) {
-    let colour = entry.colour.hex();
-    if let Shape::Band | Shape::LineInBand(..) = entry.shape {
-        let _ = writeln!(
-            svg,
-            r#"<rect x="{left:.1}" y="{:.1}" width="{:.1}" height="11" fill="{colour}" fill-opacity="0.2"/>"#,
-            y - 5.5,
-            right - left
-        );
-    }
-    match entry.shape {
-        Shape::Line(stroke, width) | Shape::LineInBand(stroke, width) => {
-            let dash = dashes(stroke, width);
-            let _ = writeln!(
-                svg,
-                r#"<path d="M{left:.1} {y:.1}H{right:.1}" stroke="{colour}" stroke-width="{width}"{dash}/>"#
-            );
-        }
-        Shape::Points(marker, bar) => {
-            let x = 0.5 * (left + right);
-            if bar {
-                write_bar(svg, x, y - 8.0, y + 8.0, &colour);
-            }
-            write_marker(svg, marker, x, y, &colour);
-        }
-        Shape::Band => {}
-    }
 }
 
 fn write_grid(svg: &mut String, frame: &Frame) {

@@ -1,6 +1,6 @@
 //! The legend of a chart: how large it is and where it hides the least.
 
-use super::draw::{Entry, write_sample};
+use super::entry::{Entry, write_sample};
 use super::frame::{Frame, NUMBER};
 use super::{Chart, Corner, Legend, Series};
 use crate::picture::text::{Anchor, Style, Weight, text_width, write_text};

@@ -5,6 +5,7 @@
 //! a line is broken there.
 
 mod draw;
+mod entry;
 mod frame;
 mod heat;
 mod legend;

@@ -1,6 +1,6 @@
 //! Where a picture is cut off, and the flat faces that solids show there.
 
-use super::raster::NOTHING;
+use super::samples::NOTHING;
 use super::view::View;
 
 /// A side of a solid as seen from the camera.

@@ -9,6 +9,7 @@ mod cut;
 mod floor;
 mod overlay;
 mod raster;
+mod samples;
 mod scene;
 mod shade;
 mod sheet;
@@ -27,13 +28,9 @@ pub use overlay::{FieldBar, Key, Overlay, ScaleBar, time_text};
 pub use scene::{Background, Edges, Floor, Pane, Scene, Sheet, Surface, SurfaceColour};
 
 use raster::{Band, Geometry};
+use samples::BAND_ROWS;
 use shade::Shader;
 use view::View;
-
-/// Samples per pixel along each side; 2 × 2 samples smooth outlines at a third of the cost of 3 × 3.
-const SAMPLES: usize = 2;
-/// Rows of pixels that are worked on as one piece; its buffers fit a core's own cache.
-const BAND_ROWS: usize = 8;
 
 /// Draws a picture of `width` × `height` pixels (at least one, at most 16 384 each).
 ///

@@ -2,17 +2,11 @@
 
 use nalgebra::Vector3;
 
+use super::camera::Bounds;
 use super::cut::{Cut, Face, Side};
+use super::samples::{BAND_ROWS, NOTHING, SAMPLES};
 use super::scene::{Edges, Scene, Surface, SurfaceColour};
 use super::view::View;
-use super::{BAND_ROWS, SAMPLES};
-
-/// A sample through which nothing but the background is seen.
-pub(super) const NOTHING: u32 = u32::MAX;
-/// A sample through which the floor is seen.
-pub(super) const FLOOR: u32 = u32::MAX - 1;
-/// A sample through which the sheet is seen.
-pub(super) const SHEET: u32 = u32::MAX - 2;
 
 /// All facets of a scene in the coordinates of the picture.
 pub(super) struct Geometry {
@@ -61,7 +55,7 @@ impl Geometry {
         let mut radii: Vec<f64> = Vec::with_capacity(scene.surfaces.len());
         for surface in &scene.surfaces {
             geometry.append(surface, view);
-            radii.extend(super::Bounds::around(&surface.positions).map(|bounds| 0.5 * bounds.diagonal()));
+            radii.extend(Bounds::around(&surface.positions).map(|bounds| 0.5 * bounds.diagonal()));
         }
         geometry.append(&scene.strokes, view);
         if !radii.is_empty() {

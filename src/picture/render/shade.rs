@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::SAMPLES;
 use super::cut::Side;
 use super::floor::Ground;
-use super::raster::{Band, FLOOR, Geometry, NOTHING, SHEET, Triangle};
+use super::raster::{Band, Geometry, Triangle};
+use super::samples::{FLOOR, NOTHING, SAMPLES, SHEET};
 use super::scene::{Background, Edges, Pane, Scene};
 use super::sheet::Carpet;
 use super::view::{PlaneOnScreen, View};

@@ -13,8 +13,9 @@ use super::stages::is_due;
 use crate::cell::ends::{Reading, Sense};
 use crate::equations::eml::LinkDescription;
 use crate::field::Sensed;
+use crate::mechanics::CONTROLLED;
 
-/// Carries the numbers of all links whose system exchanges with the model at `time`; `dt` is the step just made.
+/// Carries the numbers of all links whose system exchanges with the model at `time`.
 /// The values of the fields must be with their solvers. At the start every system exchanges.
 ///
 /// # Errors
@@ -22,14 +23,13 @@ use crate::field::Sensed;
 pub(super) fn carry_links(
     model: &Model,
     time: f64,
-    dt: f64,
     start: bool,
     state: &mut State,
     ws: &mut Workspace,
 ) -> Result<(), Trouble> {
     let chemistry = &model.chemistry;
     if chemistry.measures_cells {
-        measure_cells(model, state, ws, dt);
+        measure_cells(model, state, &ws.contact.found.atoms, &mut ws.chemistry.cells);
     }
     sense_fields(model, state, &mut ws.chemistry);
     for link in &chemistry.links {
@@ -110,7 +110,7 @@ fn carry(
             (Target::Own(input), Owner::Field(field)) => state.chemistry.fields[field].inputs[input] = carried,
             (Target::Cell(whose, control), _) => {
                 for cell in cells_of(model, whose, own) {
-                    set(model, cell, control, carried, state);
+                    set_control(model, cell, control, carried, state);
                 }
             }
         }
@@ -119,7 +119,7 @@ fn carry(
 }
 
 /// What a target expects, if it cannot be set to a number.
-fn missed(target: Target, value: f64) -> Option<&'static str> {
+pub fn missed(target: Target, value: f64) -> Option<&'static str> {
     if !value.is_finite() {
         return Some("a finite number");
     }
@@ -127,7 +127,9 @@ fn missed(target: Target, value: f64) -> Option<&'static str> {
         Target::Cell(_, Control::MotilitySpeed | Control::Stiffness | Control::Adhesion) if value < 0.0 => {
             Some("a number not below 0")
         }
-        Target::Cell(_, Control::Fibre(_)) if !(0.0..=1.0).contains(&value) => Some("a number from 0 to 1"),
+        Target::Cell(_, Control::Force(handle, _)) if !CONTROLLED[handle].allows(value) => {
+            Some(CONTROLLED[handle].expected)
+        }
         Target::Cell(_, Control::RestVolume | Control::RestVolumeRatio) if value <= 0.0 => Some("a number above 0"),
         _ => None,
     }
@@ -203,15 +205,14 @@ fn pick(sensed: &Sensed, sense: Sense) -> f64 {
 }
 
 /// Sets what mechanics reads of a cell.
-fn set(model: &Model, cell: usize, control: Control, value: f64, state: &mut State) {
+pub fn set_control(model: &Model, cell: usize, control: Control, value: f64, state: &mut State) {
     let controls = &mut state.chemistry.controls;
     match control {
         Control::MotilitySpeed => controls.speed[cell] = value,
         Control::Bias(axis) => controls.bias[cell][axis] = value,
         Control::Stiffness => controls.stiffness[cell] = value,
         Control::Adhesion => controls.adhesion[cell] = value,
-        Control::Load(load) => controls.loads[load][cell] = value,
-        Control::Fibre(fibre) => controls.fibres[fibre][cell] = value,
+        Control::Force(handle, number) => controls.forces[handle][number][cell] = value,
         Control::Secretion(channel) => controls.secretion[channel][cell] = value,
         Control::RestVolume | Control::RestVolumeRatio => {
             let (kind, local) = model.kind_of(cell);

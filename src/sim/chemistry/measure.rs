@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::super::model::{Kind, Model};
 use super::super::state::{State, vector};
-use super::super::workspace::Workspace;
 use crate::Vec3;
 use crate::cell::ends::Reading;
 use crate::contact::AtomContact;
@@ -58,12 +57,11 @@ impl CellNumbers {
     }
 }
 
-/// Measures all cells; `dt` is the step just made, s, 0 before the first. What touches is what was found last: under
+/// Measures all cells. What touches is what was found last: under
 /// adhesives where the step ended, and else where it began.
-pub(super) fn measure_cells(model: &Model, state: &State, ws: &mut Workspace, dt: f64) {
-    let (rest, found) = (&model.chemistry.rest, &ws.contact.found.atoms);
-    for (((kind, now), w), rest) in model.kinds.iter().zip(&state.kinds).zip(&ws.kinds).zip(rest) {
-        let out = &mut ws.chemistry.cells[kind.first_cell..kind.first_cell + kind.cells];
+pub(super) fn measure_cells(model: &Model, state: &State, found: &[AtomContact], cells: &mut [CellNumbers]) {
+    for ((kind, now), rest) in model.kinds.iter().zip(&state.kinds).zip(&model.chemistry.rest) {
+        let out = &mut cells[kind.first_cell..kind.first_cell + kind.cells];
         out.par_iter_mut().enumerate().for_each(|(cell, out)| {
             let (first, near) = near_cell(model, found, kind.first_cell + cell);
             *out = measure(model, kind, &now.positions, cell, |atom| {
@@ -74,10 +72,7 @@ pub(super) fn measure_cells(model: &Model, state: &State, ws: &mut Workspace, dt
                 scene.is_some_and(|scene| of_atom.any(|contact| is_other(scene, contact)))
             });
             out.rest = *rest;
-            if dt > 0.0 {
-                let mean = |x: &[f64]| (0..kind.atoms()).map(|atom| vector(kind, x, cell, atom)).sum::<Vec3>();
-                out.velocity = (mean(&now.positions) - mean(&w.start)) / (kind.atoms() as f64 * dt);
-            }
+            out.velocity = Vec3::from(now.mean_velocities[cell]);
         });
     }
 }

@@ -11,9 +11,10 @@ mod scratch;
 mod stages;
 mod state;
 
+pub use carry::{missed, set_control};
 pub use model::{
     Chemistry, Control, FieldReactor, FieldStepping, Link, Members, Owner, Reactor, Source, Target, Whole, Whose,
 };
 pub use scratch::ChemistryScratch;
 pub use stages::{advance_chemistry, begin_chemistry, next_exchange};
-pub use state::{ChemistryState, Controls, FieldState};
+pub use state::{ChemistryState, FieldState};

@@ -1,7 +1,6 @@
 //! Scratch paper of chemistry: sized once, never saved, never read before it is written.
 
 use super::super::model::Model;
-use super::super::state::State;
 use super::measure::CellNumbers;
 use super::model::Whose;
 use super::state::ChemistryState;
@@ -23,10 +22,6 @@ pub struct ChemistryScratch {
     pub(super) places: Vec<Vec3>,
     pub(super) senses: Vec<Sensed>,
     pub(super) amounts: Vec<f64>,
-    /// Chemistry at the start of the step.
-    pub(super) before: ChemistryState,
-    /// Rest volumes of each kind at the start of the step.
-    rest_volumes: Vec<Vec<f64>>,
 }
 
 impl ChemistryScratch {
@@ -51,23 +46,6 @@ impl ChemistryScratch {
         self.cells.fill(CellNumbers::poisoned());
         let nothing = Sensed { value: f64::NAN, gradient: Vec3::repeat(f64::NAN) };
         self.sensed.iter_mut().for_each(|cells| cells.fill(nothing));
-    }
-
-    /// Keeps what the stages of chemistry change.
-    pub(super) fn remember(&mut self, state: &State) {
-        self.before.copy_from(&state.chemistry);
-        self.rest_volumes.resize_with(state.kinds.len(), Vec::new);
-        for (to, kind) in self.rest_volumes.iter_mut().zip(&state.kinds) {
-            to.clone_from(&kind.rest_volumes);
-        }
-    }
-
-    /// Brings it back.
-    pub(super) fn restore(&self, state: &mut State) {
-        state.chemistry.copy_from(&self.before);
-        for (kind, from) in state.kinds.iter_mut().zip(&self.rest_volumes) {
-            kind.rest_volumes.clone_from(from);
-        }
     }
 
     /// Lends the values of all fields to their solvers, or takes them back.

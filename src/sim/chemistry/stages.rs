@@ -1,61 +1,60 @@
 //! The stages of chemistry in a step, and when systems exchange numbers with the model.
 
 use super::super::constraints::enforce_constraints;
-use super::super::contact::find_contacts;
+use super::super::contact::locate_contacts;
 use super::super::model::Model;
 use super::super::state::{State, vector};
 use super::super::targets::measure_volumes;
 use super::super::trouble::Trouble;
+use super::super::velocity::measure_velocities;
 use super::super::workspace::Workspace;
 use super::carry::carry_links;
 use super::model::{Members, Reactor};
 use crate::error::Error;
 use crate::ode::{Eventful, OdeTrouble};
 
-/// Lets the links carry the numbers of the start, once, and executes the events of the start.
+/// Lets the links carry the numbers of the start, and executes the events of the start, in `state`; after an error that holds
+/// anything.
 pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
-    if model.chemistry.is_empty() || state.chemistry.carried {
-        return Ok(());
-    }
     let time = state.time;
     // Links read what touches; no step has looked for it yet.
-    find_contacts(model, state, ws);
-    ws.chemistry.remember(state);
+    locate_contacts(model, state, ws);
     ws.chemistry.exchange_values(&mut state.chemistry, time);
-    let result = carry_links(model, time, 0.0, true, state, ws).and_then(|()| {
-        // What events change at the start goes through the links at once, so that the start shows it.
-        let changed = begin_events(model, state)?;
-        if changed { carry_links(model, time, 0.0, true, state, ws) } else { Ok(()) }
-    });
-    ws.chemistry.exchange_values(&mut state.chemistry, time);
-    if result.is_err() {
-        ws.chemistry.restore(state);
+    carry_links(model, time, true, state, ws)?;
+    // What events change at the start goes through the links at once, so that the start shows it.
+    if begin_events(model, state)? {
+        carry_links(model, time, true, state, ws)?;
     }
-    result?;
+    ws.chemistry.exchange_values(&mut state.chemistry, time);
     state.chemistry.carried = true;
     impose(model, time, state, ws)
 }
 
-/// Chemistry over a step of mechanics that has just been made, `dt` long: intracellular and scene systems, secretion, fields, then
-/// the links. After an error chemistry is as it was before.
-pub fn advance_chemistry(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+/// Chemistry over a step of mechanics that has just been made, `dt` long and from one state to another: intracellular and scene systems,
+/// secretion, fields, then the links. After an error `to` holds anything.
+pub fn advance_chemistry(
+    model: &Model,
+    dt: f64,
+    from: &State,
+    to: &mut State,
+    ws: &mut Workspace,
+) -> Result<(), Trouble> {
+    to.chemistry.copy_from(&from.chemistry);
     if model.chemistry.is_empty() {
         return Ok(());
     }
-    ws.chemistry.remember(state);
-    let (start, end) = (state.time, state.time + dt);
-    ws.chemistry.exchange_values(&mut state.chemistry, start);
-    let result = advance_systems(model, end, state).and_then(|()| {
-        deposit_secretion(model, dt, state, ws);
-        advance_fields(model, dt, state, ws)?;
-        carry_links(model, end, dt, false, state, ws)
-    });
-    ws.chemistry.exchange_values(&mut state.chemistry, end);
-    let result = result.and_then(|()| impose(model, end, state, ws));
-    if result.is_err() {
-        ws.chemistry.restore(state);
+    let (start, end) = (from.time, from.time + dt);
+    ws.chemistry.exchange_values(&mut to.chemistry, start);
+    advance_systems(model, end, to)?;
+    deposit_secretion(model, dt, to, ws);
+    advance_fields(model, dt, to, ws)?;
+    carry_links(model, end, false, to, ws)?;
+    ws.chemistry.exchange_values(&mut to.chemistry, end);
+    impose(model, end, to, ws)?;
+    if model.chemistry.imposes_atoms {
+        measure_velocities(model, dt, from, to);
     }
-    result
+    Ok(())
 }
 
 /// The next time after `time` at which a system exchanges numbers with the model, s; a step ends there.
@@ -172,5 +171,5 @@ fn impose(model: &Model, time: f64, state: &mut State, ws: &mut Workspace) -> Re
         return Ok(());
     }
     measure_volumes(model, time, state, ws);
-    enforce_constraints(model, state, ws).map_err(|failure| Trouble::of_volume(model, time, failure))
+    enforce_constraints(model, time, state, ws)
 }

@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::super::controls::Controls;
 use super::super::model::Model;
-use super::model::{Control, Reactor, Target};
+use super::model::{Reactor, Target};
 use crate::field::Fields;
 use crate::ode::{EventMemory, Population};
 
@@ -35,25 +36,6 @@ pub struct FieldState {
     pub inputs: Vec<f64>,
 }
 
-/// What links set for mechanics, one number a cell in the order of all cells. A list that no link writes is empty.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Controls {
-    /// Speed of the walk, µm/s; NaN where the type's own speed stands.
-    pub speed: Vec<f64>,
-    /// Velocity added to the walk, µm/s.
-    pub bias: Vec<[f64; 3]>,
-    /// Factor of elastic forces.
-    pub stiffness: Vec<f64>,
-    /// Factor of the strength with which a cell sticks; empty without a link to one.
-    pub adhesion: Vec<f64>,
-    /// Factors of loads, one list a load number.
-    pub loads: Vec<Vec<f64>>,
-    /// Activation of fibres, one list a number of fibres; below 0 where their own course stands.
-    pub fibres: Vec<Vec<f64>>,
-    /// Amount released per second, one list for each species secreted.
-    pub secretion: Vec<Vec<f64>>,
-}
-
 impl ChemistryState {
     /// The start: systems at their initial values, `fields` as they start.
     pub fn new(model: &Model, fields: &[Fields]) -> Self {
@@ -74,7 +56,7 @@ impl ChemistryState {
             events: reactors.iter().map(events).collect(),
             times: vec![0.0; reactors.len()],
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
-            controls: Controls::new(model),
+            controls: controls_of(model),
             carried: false,
         }
     }
@@ -96,6 +78,18 @@ impl ChemistryState {
         self.carried = other.carried;
     }
 
+    /// Writes NaN over all numbers and forgets what is held in lists.
+    pub fn poison(&mut self) {
+        self.populations.clear();
+        self.events.clear();
+        self.times.fill(f64::NAN);
+        for field in &mut self.fields {
+            field.values.fill(f64::NAN);
+            field.inputs.fill(f64::NAN);
+        }
+        self.controls = Controls::default();
+    }
+
     /// Whether a checkpoint has the shape of a fresh start.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let cells = |a: &Population, b: &Population| a.cells() == b.cells() && a.has_shape_of(b);
@@ -111,67 +105,14 @@ impl ChemistryState {
     }
 }
 
-impl Controls {
-    fn new(model: &Model) -> Self {
-        let (mut controls, cells) = (Self::default(), model.cells());
-        controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
-        for link in &model.chemistry.links {
-            match link.to {
-                Target::Cell(_, Control::MotilitySpeed) => controls.speed = vec![f64::NAN; cells],
-                Target::Cell(_, Control::Bias(_)) => controls.bias = vec![[0.0; 3]; cells],
-                Target::Cell(_, Control::Stiffness) => controls.stiffness = vec![1.0; cells],
-                Target::Cell(_, Control::Adhesion) => controls.adhesion = vec![1.0; cells],
-                Target::Cell(_, Control::Load(load)) => {
-                    let loads = controls.loads.len().max(load + 1);
-                    controls.loads.resize(loads, vec![1.0; cells]);
-                }
-                Target::Cell(_, Control::Fibre(fibre)) => {
-                    let fibres = controls.fibres.len().max(fibre + 1);
-                    controls.fibres.resize(fibres, vec![-1.0; cells]);
-                }
-                _ => {}
-            }
+/// The lists that the links of a model write, at numbers that change nothing.
+fn controls_of(model: &Model) -> Controls {
+    let (mut controls, cells) = (Controls::default(), model.cells());
+    controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
+    for link in &model.chemistry.links {
+        if let Target::Cell(_, control) = link.to {
+            controls.admit(control, cells);
         }
-        controls
     }
-
-    fn copy_from(&mut self, other: &Self) {
-        self.speed.clone_from(&other.speed);
-        self.bias.clone_from(&other.bias);
-        self.stiffness.clone_from(&other.stiffness);
-        self.adhesion.clone_from(&other.adhesion);
-        self.loads.clone_from(&other.loads);
-        self.fibres.clone_from(&other.fibres);
-        self.secretion.clone_from(&other.secretion);
-    }
-
-    /// The velocity added to a cell's walk, µm/s.
-    pub fn bias_of(&self, cell: usize) -> [f64; 3] {
-        self.bias.get(cell).copied().unwrap_or_default()
-    }
-
-    /// The speed that a link asks of a cell, µm/s.
-    pub fn speed_of(&self, cell: usize) -> Option<f64> {
-        self.speed.get(cell).copied().filter(|speed| !speed.is_nan())
-    }
-
-    /// Factor of a cell's elastic forces.
-    pub fn stiffness_of(&self, cell: usize) -> f64 {
-        self.stiffness.get(cell).copied().unwrap_or(1.0)
-    }
-
-    /// Factor of the strength with which a cell sticks.
-    pub fn adhesion_of(&self, cell: usize) -> f64 {
-        self.adhesion.get(cell).copied().unwrap_or(1.0)
-    }
-
-    /// Factor of a load of a cell.
-    pub fn load_of(&self, load: usize, cell: usize) -> f64 {
-        self.loads.get(load).and_then(|cells| cells.get(cell)).copied().unwrap_or(1.0)
-    }
-
-    /// The activation that a link asks of fibres of a cell, 0 to 1.
-    pub fn activation_of(&self, fibre: usize, cell: usize) -> Option<f64> {
-        self.fibres.get(fibre).and_then(|cells| cells.get(cell)).copied().filter(|activation| *activation >= 0.0)
-    }
+    controls
 }

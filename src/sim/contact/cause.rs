@@ -1,16 +1,37 @@
 //! Why contacts could not keep two cells apart, from what the cells look like.
 
-use super::gather::gather_places;
+use super::gather::gather_positions;
 use super::model::ContactModel;
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
 use crate::geometry::{Flap, Topology};
 use crate::sim::model::{Kind, Model};
 use crate::sim::state::State;
+use crate::sim::trouble::Trouble;
+
+/// What to do about trouble, in the light of the state that it came from.
+pub fn help_at(trouble: &Trouble, model: &Model, state: &State) -> &'static str {
+    let (Trouble::Contact { cells, .. } | Trouble::Pressed { cells, .. }) = trouble else { return trouble.help() };
+    match cause_of(model, state, cells) {
+        Cause::Crowded => {
+            "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
+             let run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
+        }
+        Cause::Folded => {
+            "the surface of one of these cells is folded: it is too soft for what moves it. Raise its stiffness \
+             (shape_memory, or shear, area and bending of its membrane), pull or press it more gently, or let \
+             run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
+        }
+        Cause::Open => {
+            "nothing presses these cells together from around; they move or yield faster than contacts follow: let \
+             run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance), pull \
+             more gently, or raise their stiffness"
+        }
+    }
+}
 
 /// What kept contacts from holding.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cause {
+enum Cause {
     /// The surface of a cell is folded.
     Folded,
     /// A cell has others, or planes, on most of its surface.
@@ -27,7 +48,7 @@ const SURROUNDED: f64 = 0.6;
 const FOLDED: f64 = -0.34;
 
 /// The cause for two cells (type and number), or twice the same, in this state.
-pub fn cause_of(model: &Model, state: &State, cells: &[(String, usize); 2]) -> Cause {
+fn cause_of(model: &Model, state: &State, cells: &[(String, usize); 2]) -> Cause {
     let Some(contact) = &model.contact else { return Cause::Open };
     let bodies = cells.each_ref().map(|(name, cell)| {
         let kind = model.kinds.iter().find(|kind| kind.name == *name);
@@ -40,9 +61,9 @@ pub fn cause_of(model: &Model, state: &State, cells: &[(String, usize); 2]) -> C
     if bodies.into_iter().any(is_folded) {
         return Cause::Folded;
     }
-    let (mut places, mut found) = (Vec::new(), Contacts::default());
-    gather_places(model, contact, state, &mut places);
-    Detector::default().detect(&contact.scene, &places, &mut found);
+    let (mut positions, mut found) = (Vec::new(), Contacts::default());
+    gather_positions(model, contact, &state.kinds, &mut positions);
+    Detector::default().detect(&contact.scene, &positions, &mut found);
     let is_surrounded = |body: u32| surrounded(contact, &found, body) > SURROUNDED;
     if bodies.into_iter().any(is_surrounded) { Cause::Crowded } else { Cause::Open }
 }

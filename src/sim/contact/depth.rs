@@ -1,8 +1,9 @@
 //! Whether contacts can be mended where a step begins, and whether cells have passed each other unnoticed.
 
-use super::find::write_bonds;
-use super::gather::gather_places;
-use super::model::{ContactModel, Law};
+use super::find::write_contacts;
+use super::gather::gather_positions;
+use super::law::Law;
+use super::model::ContactModel;
 use super::remember::find_at;
 use crate::contact::{Contacts, Sides, find_deeper, winding_number};
 use crate::sim::model::Model;
@@ -72,14 +73,14 @@ impl Deepened {
 }
 
 /// Finds what touches where a step ends, and says whether cells are deep in each other there. The next step begins with what is
-/// found, and with what contacts carry now, which is written down before.
-pub fn look_for_depth(model: &Model, state: &State, ws: &mut Workspace) -> Option<Deepened> {
+/// found, and with what contacts carry now, which is written before.
+pub fn look_for_depth(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> Option<Deepened> {
     let contact = model.contact.as_ref().filter(|contact| contact.law == Law::Adhesives)?;
     let s = &mut ws.contact;
     let before = Deepest::of(model, contact, &s.found);
-    write_bonds(&s.found, &s.rows, &s.pulls, &mut s.bonds);
-    gather_places(model, contact, state, &mut s.start);
-    find_at(contact, &s.bonds, &s.start, &mut s.detector, &mut s.found);
+    write_contacts(contact, &from.chemistry.controls, &mut to.contact, s);
+    gather_positions(model, contact, &to.kinds, &mut s.start);
+    find_at(contact, &to.contact, &s.start, &mut s.detector, &mut s.found);
     s.has_looked = true;
     let deepest = Deepest::of(model, contact, &s.found)?;
     let before = before.map_or(0.0, |before| before.share);
@@ -146,7 +147,7 @@ pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
     let Some(contact) = &model.contact else { return Ok(()) };
     let scene = &contact.scene;
     let mut places = Vec::new();
-    gather_places(model, contact, state, &mut places);
+    gather_positions(model, contact, &state.kinds, &mut places);
     let edge = |body: u32| model.kinds[contact.kind_of(body)].edge;
     let most = |one: u32, other: u32| match contact.law {
         Law::Adhesives => PROMISED * edge(one).min(edge(other)),

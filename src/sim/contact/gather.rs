@@ -3,7 +3,7 @@
 use super::model::ContactModel;
 use crate::Vec3;
 use crate::sim::model::{Kind, Model};
-use crate::sim::state::{State, index, vector};
+use crate::sim::state::{KindState, index, vector};
 
 /// Takes the vectors of a kind in the order of its cells, and what `make` makes of each.
 pub fn gather<T>(kind: &Kind, values: &[f64], to: &mut [T], make: impl Fn(Vec3) -> T) {
@@ -17,15 +17,15 @@ pub fn gather<T>(kind: &Kind, values: &[f64], to: &mut [T], make: impl Fn(Vec3) 
 }
 
 /// Takes the positions of all atoms in the order of cells. Returns whether they were the same already.
-pub fn gather_places(model: &Model, contact: &ContactModel, state: &State, places: &mut Vec<Vec3>) -> bool {
-    let mut same = places.len() == contact.scene.atoms;
-    places.resize(contact.scene.atoms, Vec3::zeros());
-    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
-        for (cell, places) in places[contact.atoms_of(number)].chunks_exact_mut(kind.atoms()).enumerate() {
-            for (atom, place) in places.iter_mut().enumerate() {
+pub fn gather_positions(model: &Model, contact: &ContactModel, cells: &[KindState], positions: &mut Vec<Vec3>) -> bool {
+    let mut same = positions.len() == contact.scene.atoms;
+    positions.resize(contact.scene.atoms, Vec3::zeros());
+    for (number, (kind, now)) in model.kinds.iter().zip(cells).enumerate() {
+        for (cell, positions) in positions[contact.atoms_of(number)].chunks_exact_mut(kind.atoms()).enumerate() {
+            for (atom, position) in positions.iter_mut().enumerate() {
                 let now = vector(kind, &now.positions, cell, atom);
-                same &= *place == now;
-                *place = now;
+                same &= *position == now;
+                *position = now;
             }
         }
     }

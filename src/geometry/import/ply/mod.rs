@@ -14,7 +14,7 @@ use values::{Trouble, Values};
 /// Reads a PLY file. Nothing is allocated on the word of the header: the lists grow with what the file holds.
 ///
 /// # Errors
-/// The first fault; in a header and in an ASCII file with its place.
+/// The first fault; in a header and in an ASCII file with its location.
 pub(super) fn parse(name: &str, bytes: &[u8]) -> Result<Surface, Vec<Fault>> {
     read(name, bytes).map_err(|fault| vec![fault])
 }
@@ -50,7 +50,7 @@ fn header_length(bytes: &[u8]) -> Option<usize> {
     None
 }
 
-/// Checks that the header promises vertices with coordinates and faces with a list; gives the number of vertices.
+/// Checks that the header promises vertices with coordinates and faces with a list; returns the number of vertices.
 fn check_header(name: &str, header: &Header) -> Result<u64, Fault> {
     let lacks =
         |what: &str, help: &str| Fault::new(format!("mesh file `{name}`: its PLY header has no {what}")).help(help);
@@ -78,7 +78,7 @@ fn read_elements(name: &str, header: &Header, vertices: u64, mut values: Values)
     let mut corners = Vec::new();
     for element in &header.elements {
         if element.properties.is_empty() {
-            continue; // whatever its count, it takes no room in the file
+            continue; // whatever its count, it takes no space in the file
         }
         for item in 0..element.count {
             let outcome = match element.name.as_str() {

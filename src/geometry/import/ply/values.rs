@@ -65,7 +65,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// A fault of the value read last: with its place in a text.
+    /// A fault of the value read last: with its location in a text.
     pub fn fault(&self, file: &str, message: String, help: &str) -> Fault {
         match self {
             Self::Words { text, last, .. } => text.fault(*last, message, "here", help),

@@ -1,0 +1,131 @@
+//! What a run does after each step of its simulation: records, saves, reports.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use super::progress::Report;
+use crate::error::{Error, Result};
+use crate::experiment::Schedule;
+use crate::output::ResultWriter;
+use crate::sim::contact::{check_passed, help_at};
+use crate::sim::{State, StepReport, Trouble};
+use crate::simulation::{Recorder, Simulation, passed};
+
+/// Looks on while a simulation goes.
+pub struct Recording<'a> {
+    pub writer: ResultWriter,
+    recorder: Recorder,
+    schedule: Schedule,
+    result: &'a Path,
+    report: &'a mut dyn Report,
+    /// Time at the end of the step before, s.
+    time: f64,
+    /// Steps made when a frame was recorded last.
+    recorded: u64,
+    /// Steps that contacts shortened.
+    pub limited: u64,
+    /// Where cells were last known to be outside each other; none where they cannot touch.
+    good: Option<State>,
+}
+
+/// Why a run ended before its end, though its steps could be made.
+pub enum Stop {
+    /// The file could not be written.
+    Machine(Error),
+    /// Cells have passed through each other since they were looked at last.
+    Passed(Trouble),
+}
+
+impl<'a> Recording<'a> {
+    pub fn new(
+        simulation: &Simulation,
+        writer: ResultWriter,
+        schedule: Schedule,
+        result: &'a Path,
+        report: &'a mut dyn Report,
+    ) -> Self {
+        let recorder = Recorder::new(simulation.model());
+        Self {
+            writer,
+            recorder: if schedule.forces { recorder.with_forces(simulation.model()) } else { recorder },
+            schedule,
+            result,
+            report,
+            time: simulation.time(),
+            recorded: simulation.steps(),
+            limited: 0,
+            good: None,
+        }
+    }
+
+    /// Records the start.
+    pub fn record_start(&mut self, simulation: &mut Simulation) -> Result<()> {
+        self.writer.append(&simulation.record(&mut self.recorder))?;
+        self.save(simulation)
+    }
+
+    /// Steps begin.
+    pub fn begin(&mut self, simulation: &Simulation) {
+        self.remember_good(simulation);
+        self.report.begin(simulation.time(), simulation.end());
+    }
+
+    /// After a step.
+    pub fn look(&mut self, simulation: &mut Simulation, made: &StepReport) -> ControlFlow<Stop> {
+        let (before, after) = (std::mem::replace(&mut self.time, simulation.time()), simulation.time());
+        let last = after >= simulation.end();
+        self.limited += u64::from(made.limited);
+        if last || passed(before, after, self.schedule.every) {
+            if let Err(trouble) = check_passed(simulation.model(), simulation.state()) {
+                return ControlFlow::Break(Stop::Passed(trouble));
+            }
+            self.remember_good(simulation);
+            or_stop(self.writer.append(&simulation.record(&mut self.recorder)))?;
+            self.recorded = simulation.steps();
+        }
+        if passed(before, after, self.schedule.checkpoint) && !last {
+            or_stop(self.save(simulation))?;
+        }
+        self.report.step(after, simulation.steps());
+        ControlFlow::Continue(())
+    }
+
+    /// No more steps are made.
+    pub fn end(&mut self) {
+        self.report.end();
+    }
+
+    /// Saves the state to resume from.
+    pub fn save(&mut self, simulation: &Simulation) -> Result<()> {
+        self.writer.save_checkpoint(simulation.steps(), simulation.time(), &simulation.checkpoint())
+    }
+
+    /// Keeps the last good state, as a frame and to resume from: it is what the user wants to look at.
+    pub fn keep_last(&mut self, trouble: &Trouble, simulation: &mut Simulation) -> Error {
+        let unseen = simulation.steps() > self.recorded;
+        let frame = if unseen { self.writer.append(&simulation.record(&mut self.recorder)) } else { Ok(()) };
+        let kept = frame.and_then(|()| self.save(simulation));
+        self.failed(trouble, simulation, kept)
+    }
+
+    /// Keeps the state in which cells were last outside each other, to resume from.
+    pub fn keep_good(&mut self, trouble: &Trouble, simulation: &Simulation) -> Error {
+        let good = self.good.as_ref().unwrap_or(simulation.state());
+        let kept = self.writer.save_checkpoint(good.step, good.time, &simulation.checkpoint_of(good));
+        self.failed(trouble, simulation, kept)
+    }
+
+    fn failed(&self, trouble: &Trouble, simulation: &Simulation, kept: Result<()>) -> Error {
+        let kept = kept.is_ok().then(|| self.result.to_path_buf());
+        let help = help_at(trouble, simulation.model(), simulation.state());
+        Error::Numbers { message: trouble.to_string(), help: help.to_owned(), kept }
+    }
+
+    fn remember_good(&mut self, simulation: &Simulation) {
+        self.good = simulation.model().contact.is_some().then(|| simulation.state().clone());
+    }
+}
+
+fn or_stop(written: Result<()>) -> ControlFlow<Stop> {
+    written.map_or_else(|error| ControlFlow::Break(Stop::Machine(error)), ControlFlow::Continue)
+}

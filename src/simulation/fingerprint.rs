@@ -1,0 +1,70 @@
+//! A number that models differ in which do not lead a state along the same course.
+
+use std::fmt::{Debug, Write};
+
+use crate::sim::contact::ContactModel;
+use crate::sim::{Chemistry, Kind, Model};
+
+/// FNV-1a in 64 bits over whatever is written to it.
+struct Fnv(u64);
+
+impl Fnv {
+    fn bytes(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    /// Takes in a value as `Debug` writes it, which tells numbers of all bits apart. 0xff, which never occurs in UTF-8, parts
+    /// it from the next.
+    fn value(&mut self, value: &dyn Debug) {
+        // Nothing here can fail.
+        let _ = write!(self, "{value:?}");
+        self.bytes(&[0xff]);
+    }
+}
+
+impl Write for Fnv {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        self.bytes(text.as_bytes());
+        Ok(())
+    }
+}
+
+/// The fingerprint of a model: of all that decides the course of a state, and of nothing that follows from the rest or that
+/// a program changes while a simulation runs.
+pub fn fingerprint(model: &Model) -> u64 {
+    let Model { seed, kinds, planes, contact, chemistry, integrator, until, kinks: _ } = model;
+    let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
+    hash.value(&(seed, integrator, until, planes));
+    kinds.iter().for_each(|kind| add_kind(&mut hash, kind));
+    if let Some(contact) = contact {
+        add_contact(&mut hash, contact);
+    }
+    add_chemistry(&mut hash, chemistry);
+    hash.0
+}
+
+fn add_kind(hash: &mut Fnv, kind: &Kind) {
+    hash.value(&(&kind.name, kind.cells, &kind.rest.positions, &kind.rest.facets));
+    hash.value(&kind.forces);
+    hash.value(&(kind.drag, kind.mass, &kind.held, &kind.volume));
+    hash.value(&kind.brownian);
+}
+
+fn add_contact(hash: &mut Fnv, contact: &ContactModel) {
+    let ContactModel { scene, law, between, on_planes, tolerance, most_sweeps, .. } = contact;
+    hash.value(&(scene.reach, law, between, on_planes, tolerance, most_sweeps));
+}
+
+fn add_chemistry(hash: &mut Fnv, chemistry: &Chemistry) {
+    for reactor in &chemistry.reactors {
+        hash.value(&(&reactor.name, &reactor.program, &reactor.events, reactor.members.len()));
+        hash.value(&(reactor.seconds, reactor.method, reactor.tolerances, reactor.exchange));
+    }
+    for field in &chemistry.fields {
+        hash.value(&(&field.name, field.system.equations(), field.system.grid(), field.system.species()));
+        hash.value(&(field.system.inputs(), field.stepping, &field.constants));
+    }
+    chemistry.links.iter().for_each(|link| hash.value(link));
+}

@@ -1,0 +1,54 @@
+//! Whether a state is one of a model: as many numbers of everything as the model asks for.
+
+use super::error::SimulationError;
+use crate::sim::chemistry::{ChemistryState, FieldState};
+use crate::sim::controls::Controls;
+use crate::sim::{KindState, Model, State};
+
+/// Checks that all arrays of a state have the lengths that a model asks for.
+///
+/// # Errors
+/// [`SimulationError::Mismatch`] with the first that has not.
+pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
+    let mismatch = |what: String| Err(SimulationError::Mismatch(what));
+    if state.kinds.len() != model.kinds.len() {
+        return mismatch(format!("it has {} types of cells, not {}", state.kinds.len(), model.kinds.len()));
+    }
+    let inertial = model.integrator.method.is_inertial();
+    for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+        let (positions, cells) = (kind.blocks() * kind.block_len(), kind.blocks() * kind.lanes);
+        let KindState { positions: x, velocities, rest_volumes, stiffness_shape, mean_velocities } = now;
+        let fits = x.len() == positions
+            && mean_velocities.len() == kind.cells
+            && velocities.len() == if inertial { positions } else { 0 }
+            && rest_volumes.len() == cells
+            && mean_velocities.len() == kind.cells
+            && (stiffness_shape.is_empty() || stiffness_shape.len() == positions);
+        if !fits {
+            return mismatch(format!("the cells of type `{}` are others, or of another number", kind.name));
+        }
+    }
+    let walks: usize = model.kinds.iter().filter(|kind| kind.brownian.is_some()).map(|kind| kind.cells).sum();
+    if state.walks.len() != walks {
+        return mismatch(format!("{} cells of it walk, not {walks}", state.walks.len()));
+    }
+    let fields = model.chemistry.fields.iter().map(|field| FieldState {
+        values: vec![0.0; field.system.species().len() * field.system.grid().len()],
+        ..FieldState::default()
+    });
+    let fresh = ChemistryState { fields: fields.collect(), ..ChemistryState::new(model, &[]) };
+    if !fresh.has_shape_of(&state.chemistry) {
+        return mismatch("its systems or fields are others".to_owned());
+    }
+    check_controls(model.cells(), &state.chemistry.controls)
+}
+
+/// A list of controls is empty or has one number a cell.
+fn check_controls(cells: usize, controls: &Controls) -> Result<(), SimulationError> {
+    let Controls { speed, bias, stiffness, adhesion, forces, secretion } = controls;
+    let lists = [speed, stiffness, adhesion].into_iter().chain(forces.iter().flatten()).chain(secretion);
+    match lists.map(Vec::len).chain([bias.len()]).find(|length| ![0, cells].contains(length)) {
+        None => Ok(()),
+        Some(length) => Err(SimulationError::Mismatch(format!("something is set of {length} cells, not {cells}"))),
+    }
+}

@@ -1,0 +1,176 @@
+//! Looks at the state and writes down what the result file keeps. Observers never change the state.
+
+use super::touch::{Touch, recorded_by};
+use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
+use crate::recorded::contact_quantities;
+use crate::sim::chemistry::Members;
+use crate::sim::contact::find_contacts;
+use crate::sim::model::Kind;
+use crate::sim::observe::{mean_velocities, measure_cells};
+use crate::sim::state::vector;
+use crate::sim::{Model, State, Workspace, forces};
+
+/// Types of cells, names and planes of a model, as the result file lists them.
+pub fn layout_of(model: &Model) -> Layout {
+    let mut layout = outline_of(model);
+    for (known, kind) in layout.types.iter_mut().zip(&model.kinds) {
+        (known.facets, known.links) = (kind.rest.facets.clone(), kind.drawn_links.clone());
+    }
+    layout
+}
+
+/// The same without facets and links, which take most of the memory: enough to know the series of a frame.
+pub fn outline_of(model: &Model) -> Layout {
+    let kind = |kind: &Kind| CellType { name: kind.name.clone(), atoms: kind.atoms() as u32, ..CellType::default() };
+    let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
+    layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
+    layout.contacts = model.contact.is_some();
+    let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(recorded_by(&contact.law)));
+    layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));
+    let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
+    layout.planes = model.planes.iter().map(plane).collect();
+    add_chemistry(model, &mut layout);
+    layout
+}
+
+/// Grids of fields, and quantities of systems.
+fn add_chemistry(model: &Model, layout: &mut Layout) {
+    for field in &model.chemistry.fields {
+        let (grid, units) = (field.system.grid(), field.system.units());
+        let names = field.system.species().iter().map(|species| species.name.clone());
+        layout.fields.push(FieldLayout {
+            name: field.name.clone(),
+            species: names.zip(units.iter().cloned()).collect(),
+            cells: grid.cells,
+            spacing: grid.spacing,
+            origin: grid.origin.into(),
+        });
+    }
+    for reactor in &model.chemistry.reactors {
+        layout.systems.push(SystemLayout {
+            name: reactor.name.clone(),
+            scope: match &reactor.members {
+                Members::Scene => SystemScope::Scene,
+                Members::Cells(_) => SystemScope::Cells,
+            },
+            quantities: reactor.recorded.iter().map(|(_, id, unit)| (id.clone(), unit.clone())).collect(),
+        });
+    }
+}
+
+/// Values of fields and systems at this instant.
+fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
+    let now = &state.chemistry;
+    for (reactor, field) in model.chemistry.fields.iter().zip(&now.fields) {
+        let species = field.values.chunks_exact(reactor.system.grid().len());
+        frame.fields.push(species.map(<[f64]>::to_vec).collect());
+    }
+    for ((reactor, population), time) in model.chemistry.reactors.iter().zip(&now.populations).zip(&now.times) {
+        let values = reactor.recorded.iter().map(|(quantity, ..)| {
+            let mut values = vec![0.0; population.cells()];
+            population.observe(&reactor.program, *quantity, time / reactor.seconds, &mut values);
+            match &reactor.members {
+                Members::Scene => values,
+                Members::Cells(cells) => {
+                    let mut of_all = vec![f64::NAN; frame.cells.len()];
+                    cells.iter().zip(values).for_each(|(cell, value)| of_all[*cell as usize] = value);
+                    of_all
+                }
+            }
+        });
+        let values = values.collect();
+        frame.systems.push(values);
+    }
+}
+
+/// Series name, kind and number of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
+fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
+    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads().any(|load| load.name == name)).count();
+    let mut names: Vec<(String, usize, usize)> = Vec::new();
+    for (k, kind) in model.kinds.iter().enumerate() {
+        for (l, load) in kind.loads().enumerate() {
+            let owner = if owners(&load.name) > 1 { format!("{}.", kind.name) } else { String::new() };
+            names.push((format!("load.{owner}{}", load.name), k, l));
+        }
+    }
+    names
+}
+
+/// Makes frames; has scratch of its own, so that looking changes nothing.
+pub struct Recorder {
+    loads: Vec<(String, usize, usize)>,
+    touch: Touch,
+    force_scratch: Option<Workspace>,
+}
+
+impl Recorder {
+    /// A recorder of everything but forces.
+    pub fn new(model: &Model) -> Self {
+        Self { loads: load_names(model), touch: Touch::default(), force_scratch: None }
+    }
+
+    /// The same that records the force on every atom, too.
+    pub fn with_forces(self, model: &Model) -> Self {
+        Self { force_scratch: Some(Workspace::new(model)), ..self }
+    }
+
+    /// The frame of this instant; takes the ended runs from the state, since they are recorded now.
+    pub fn record(&mut self, model: &Model, state: &mut State, ws: &Workspace, dt: f64) -> Frame {
+        let frame = self.look(model, state, ws, dt);
+        let ended = std::mem::take(&mut state.ended_runs);
+        let runs = ended.into_iter().map(|(cell, end, duration)| (u64::from(cell), end, duration)).collect();
+        Frame { runs, ..frame }
+    }
+
+    /// The frame of this instant without the runs that ended; `dt` is the size of the last step, s.
+    pub fn look(&mut self, model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
+        let mut frame = frame_of(model, state);
+        let at = |&(_, kind, number): &(String, usize, usize)| model.kinds[kind].loads().nth(number);
+        frame.scene = self.loads.iter().filter_map(at).map(|load| load.force.at(state.time)).collect();
+        if let Some(contact) = &model.contact {
+            self.touch.look(model, contact, state, ws, dt, &mut frame);
+        }
+        if let Some(scratch) = &mut self.force_scratch {
+            // What contacts carry is part of the state, and is read from there.
+            find_contacts(model, state, scratch);
+            forces::add_forces(model, state.time, state, scratch);
+            for (kind, w) in model.kinds.iter().zip(&scratch.kinds) {
+                for cell in 0..kind.cells {
+                    frame.forces.extend((0..kind.atoms()).map(|a| <[f64; 3]>::from(vector(kind, &w.force, cell, a))));
+                }
+            }
+        }
+        frame
+    }
+}
+
+/// The cells that there are, in the order of all arrays of a frame.
+fn cells_of(model: &Model, _: &State) -> Vec<Cell> {
+    let kinds = (0..).zip(&model.kinds).flat_map(|(number, kind)| std::iter::repeat_n(number, kind.cells));
+    (0..).zip(kinds).map(|(id, kind)| Cell { id, kind, parent: None }).collect()
+}
+
+/// Positions and measures of all cells at this instant, as if they did not touch.
+fn frame_of(model: &Model, state: &State) -> Frame {
+    let velocities = mean_velocities(state);
+    let mut frame = Frame { time: state.time, step: state.step, cells: cells_of(model, state), ..Frame::default() };
+    for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
+        frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));
+        frame.records.push(CellRecord {
+            position: cell.centre.into(),
+            velocity: velocity.into(),
+            volume: cell.volume,
+            volume_error: cell.volume_error,
+            area: cell.area,
+            energy: cell.energy,
+            size: cell.size.into(),
+            principal: cell.principal,
+            smallest_facet: cell.smallest_facet,
+            smallest_cosine: cell.smallest_cosine,
+            contact_share: 0.0,
+            aggregate: frame.cells[number].id as f64,
+        });
+    }
+    record_chemistry(model, state, &mut frame);
+    frame
+}

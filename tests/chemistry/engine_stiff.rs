@@ -1,0 +1,117 @@
+//! The test set of stiff and other hard problems, against its published answers, and a published oscillator.
+
+use std::path::PathBuf;
+
+use crate::ode_problems::{martiel_goldbeter, system};
+use pseudopod::ode::{Method, Scheme, SolveOptions, Work, solve};
+use serde_json::Value;
+
+fn shared(path: &str) -> Option<Value> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        eprintln!("SKIPPED: needs ../shared");
+        return None;
+    };
+    Some(serde_json::from_str(&text).expect("the data is JSON"))
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().expect("a list").iter().map(|number| number.as_f64().expect("a number")).collect()
+}
+
+/// Fewest correct digits of all variables (relative to each), and the work.
+fn digits(name: &str, scheme: Scheme, relative: f64, absolute: f64) -> Option<(f64, Work)> {
+    let data = shared(&format!("ivp-testset/{name}.json"))?;
+    let names: Vec<&str> = data["vars"].as_array()?.iter().filter_map(Value::as_str).collect();
+    let (initial, times, wanted) = (numbers(&data["y0"]), numbers(&data["t"]), numbers(&data["ref"]));
+    let rate = |name: &str| data["rhs"][name].as_str().expect("a rate for each variable");
+    let variables: Vec<(&str, f64, &str)> =
+        names.iter().zip(&initial).map(|(name, value)| (*name, *value, rate(name))).collect();
+    let parameters: Vec<(&str, f64)> = data["par"]
+        .as_object()?
+        .iter()
+        .map(|(name, value)| (name.as_str(), value.as_f64().unwrap_or(f64::NAN)))
+        .collect();
+    let system = system(name, &variables, &parameters);
+    let options = SolveOptions { scheme, relative, absolute, ..SolveOptions::default() };
+    let solution =
+        solve(&system, times[0], times[1], &[times[1]], &options).unwrap_or_else(|trouble| panic!("{trouble}"));
+    let error = wanted.iter().zip(&solution.values[0]).map(|(wanted, found)| (found / wanted - 1.0).abs());
+    Some((-error.fold(0.0, f64::max).log10(), solution.work))
+}
+
+const ROSENBROCK: Scheme = Scheme::OneStep(Method::Rosenbrock);
+const RK45: Scheme = Scheme::OneStep(Method::Rk45);
+const RK65: Scheme = Scheme::OneStep(Method::Rk65);
+/// The default. Small enough for the smallest answer that is followed for itself, 2e-8 in Robertson's problem.
+const ABSOLUTE: f64 = 1e-14;
+
+#[test]
+fn hard_problems_are_solved_to_six_digits_and_their_work_is_known() {
+    let mut table = String::from("problem   method      steps  refused  rates  factorisations\n");
+    for (name, label, scheme) in [
+        ("vdpol", "Rosenbrock", ROSENBROCK),
+        ("rober", "Rosenbrock", ROSENBROCK),
+        ("pleiades", "Rosenbrock", ROSENBROCK),
+        ("pleiades", "RK45", RK45),
+        ("pleiades", "RK65", RK65),
+    ] {
+        let Some((digits, work)) = digits(name, scheme, 1e-8, ABSOLUTE) else { return };
+        println!("{name} {label} {digits:.2}");
+        assert!(digits >= 6.0, "{name} with {label}: {digits:.2} digits");
+        let Work { steps, rejected, rates, jacobians, .. } = work;
+        // No function of the system's library is called, so that the counts are the same on every machine.
+        table += &format!("{name:<9} {label:<10} {steps:>6} {rejected:>8} {rates:>6} {jacobians:>15}\n");
+    }
+    insta::assert_snapshot!(table, @"
+    problem   method      steps  refused  rates  factorisations
+    vdpol     Rosenbrock   6280       19  37795            6299
+    rober     Rosenbrock   1730        1  10387            1731
+    pleiades  Rosenbrock   3712       53  22591            3765
+    pleiades  RK45          683       24   4243               0
+    pleiades  RK65          474       42   4129               0
+    ");
+}
+
+#[test]
+fn the_solvers_of_diffsol_agree_on_the_hard_problems() {
+    for (name, scheme, least) in [
+        ("vdpol", Scheme::Bdf, 6.0),
+        ("rober", Scheme::Bdf, 5.5),
+        ("vdpol", Scheme::Esdirk34, 5.0),
+        ("pleiades", Scheme::Tsit45, 5.5),
+    ] {
+        let absolute = if scheme == Scheme::Esdirk34 { 1e-8 } else { ABSOLUTE };
+        let Some((digits, work)) = digits(name, scheme, 1e-8, absolute) else { return };
+        assert!(digits >= least && work.rates > work.steps, "{name} with {scheme:?}: {digits:.2} digits, {work:?}");
+    }
+}
+
+#[test]
+fn the_cyclic_amp_oscillator_keeps_its_published_run() {
+    let Some(data) = shared("martiel-goldbeter/reference.json") else { return };
+    let times = numbers(&data["t"]);
+    let fine: Vec<f64> = (0..=60_000).map(|n| 0.002 * f64::from(n)).collect();
+    for scheme in [ROSENBROCK, RK45, RK65] {
+        let options = SolveOptions { scheme, relative: 1e-9, absolute: 1e-11, ..SolveOptions::default() };
+        let solution = solve(&martiel_goldbeter(), 0.0, 120.0, &fine, &options).expect("an oscillator");
+        for (number, name) in ["rho", "beta", "gamma"].iter().enumerate() {
+            let (wanted, row) = (numbers(&data[*name]), |time: f64| (time / 0.002).round() as usize);
+            let size = wanted.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            for (time, wanted) in times.iter().zip(&wanted) {
+                let found = solution.values[row(*time)][number];
+                assert!((found - wanted).abs() < 1e-4 * size, "{name} at {time}: {found} instead of {wanted}");
+            }
+        }
+        // Upward passages of gamma through 1.
+        let gamma: Vec<f64> = solution.values.iter().map(|values| values[2]).collect();
+        let rises: Vec<f64> = (1..gamma.len())
+            .filter(|&n| gamma[n - 1] < 1.0 && gamma[n] >= 1.0)
+            .map(|n| fine[n - 1] + 0.002 * (1.0 - gamma[n - 1]) / (gamma[n] - gamma[n - 1]))
+            .collect();
+        let period = (rises[rises.len() - 1] - rises[2]) / (rises.len() - 3) as f64;
+        let wanted = data["period_min"].as_f64().expect("a period");
+        // The reference was read off a grid of about 1e-3.
+        assert!((period - wanted).abs() < 2e-3, "{period} instead of {wanted}");
+    }
+}

@@ -1,0 +1,20 @@
+//! Equations, the engine that solves them, and fields.
+
+mod eml;
+mod eml_write;
+mod engine_events;
+mod engine_order;
+mod engine_program;
+mod engine_stiff;
+mod field_system;
+mod fields;
+mod fields_analytic;
+mod sbml;
+mod sbml_features;
+
+#[path = "../support/every_function.rs"]
+mod every_function;
+#[path = "../support/ode_problems.rs"]
+mod ode_problems;
+#[path = "../support/sbml_suite.rs"]
+mod sbml_suite;

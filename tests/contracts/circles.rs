@@ -1,0 +1,83 @@
+//! Files that use each other in a circle can only be read, changed and tested together. This test finds the circles among the files of
+//! `src` and holds the list of those that are there, which may only shrink.
+
+mod imports;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use imports::Library;
+
+/// The circles that are there, each with its files in order. Whoever cuts one takes it off this list; none may be added.
+const ALLOWED: &[&[&str]] = &[
+    &["analysis/chemistry.rs", "analysis/gaps.rs", "analysis/measure.rs", "analysis/sorting.rs"],
+    &["equations/sbml/math.rs", "equations/sbml/operators.rs"],
+    &["experiment/document.rs", "experiment/semantics.rs"],
+    &["experiment/tree.rs", "experiment/tree/set.rs"],
+    &[
+        "field/broken.rs",
+        "field/layout.rs",
+        "field/lines.rs",
+        "field/positions.rs",
+        "field/profiles.rs",
+        "field/reactor.rs",
+        "field/system.rs",
+    ],
+    &["field/sense.rs", "field/stencil.rs", "field/touch.rs"],
+    &["field/shared.rs", "field/sweep.rs"],
+    &["field/state.rs", "field/step.rs"],
+    &["ode/block.rs", "ode/fixed.rs"],
+    &["ode/multistep.rs", "ode/solve.rs"],
+    &["output/field_column.rs", "output/fields.rs"],
+    &["output/contacts.rs", "output/reader.rs"],
+    &["picture/field_plots.rs", "picture/from_file.rs", "picture/plots.rs"],
+    &["sim/chemistry/carry.rs", "sim/chemistry/stages.rs"],
+    &["sim/contact/model.rs", "sim/model.rs"],
+];
+
+/// The largest sets of files each of which uses every other by some course, files alone left out.
+fn circles<'a>(arrows: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> Vec<Vec<&'a str>> {
+    let reached = |from: &'a str| -> BTreeSet<&'a str> {
+        let (mut seen, mut next) = (BTreeSet::new(), vec![from]);
+        while let Some(file) = next.pop() {
+            next.extend(arrows.get(file).into_iter().flatten().filter(|other| seen.insert(**other)));
+        }
+        seen
+    };
+    let reach: BTreeMap<&str, BTreeSet<&str>> = arrows.keys().map(|&file| (file, reached(file))).collect();
+    let circle = |file: &str| -> Vec<&'a str> {
+        reach[file].iter().copied().filter(|other| reach.get(other).is_some_and(|set| set.contains(file))).collect()
+    };
+    let found: BTreeSet<Vec<&str>> = arrows.keys().map(|file| circle(file)).filter(|circle| circle.len() > 1).collect();
+    found.into_iter().collect()
+}
+
+#[test]
+fn circles_are_found_through_several_files() {
+    let arrows = [("a", vec!["b"]), ("b", vec!["c"]), ("c", vec!["a", "d"]), ("d", vec!["e"]), ("e", vec![])];
+    let arrows = arrows.into_iter().map(|(file, used)| (file, used.into_iter().collect())).collect();
+    assert_eq!(circles(&arrows), [["a", "b", "c"]]);
+}
+
+#[test]
+fn no_files_use_each_other_in_a_circle_but_those_on_the_list() {
+    let library = Library::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    let arrows = library.arrows();
+    assert!(arrows.values().map(BTreeSet::len).sum::<usize>() > 500, "the imports of the house were not found");
+    let found = circles(&arrows);
+    let told = |circle: &[&str]| -> String {
+        let within =
+            |file: &&str| arrows[file].iter().filter(|other| circle.contains(other)).copied().collect::<Vec<_>>();
+        let lines = circle.iter().map(|file| format!("    {file} -> {}", within(file).join(", ")));
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    let is_allowed = |circle: &&Vec<&str>| ALLOWED.contains(&&circle[..]);
+    let new: Vec<String> = found.iter().filter(|circle| !is_allowed(circle)).map(|circle| told(circle)).collect();
+    let cut: Vec<_> = ALLOWED.iter().filter(|circle| !found.iter().any(|found| found == *circle)).collect();
+    assert!(
+        new.is_empty(),
+        "move what both need into a file below, or take a circle that became smaller off the list:\n{}",
+        new.join("\n\n")
+    );
+    assert!(cut.is_empty(), "these circles are cut; take them off the list: {cut:?}");
+}

@@ -1,0 +1,15 @@
+//! What holds whatever is simulated, and for the source itself.
+
+mod book;
+mod circles;
+mod examples;
+mod layering;
+mod run;
+mod simulation;
+mod transaction;
+mod volume;
+
+#[path = "../support/everything.rs"]
+mod everything;
+#[path = "../support/turns.rs"]
+mod turns;

@@ -1,0 +1,5 @@
+//! The experiment document: what is understood, and where it makes a run start.
+
+mod contact;
+mod meaning;
+mod start;

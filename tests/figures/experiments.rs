@@ -1,0 +1,177 @@
+//! Every experiment that ships runs, and keeps what its `expected.toml` claims.
+
+use pseudopod::analysis::claims;
+use pseudopod::experiment::Document;
+use pseudopod::output::ResultFile;
+use pseudopod::run::{Quiet, RunOptions, run};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Runs a document and checks the claims beside it; prints each with what was found.
+fn experiment_keeps_its_word(folder: &str, document: &str) {
+    let experiments = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments");
+    let (name, folder) = (document, experiments.join(folder));
+    let experiment = folder.join(document);
+    let document = Document::read(&experiment, &[]).unwrap();
+    let scratch = tempfile::tempdir().unwrap();
+    let result = scratch.path().join("result.h5");
+    let options = RunOptions::new(&result);
+    run(&document, &options, &mut Quiet).unwrap();
+    let measures: BTreeMap<String, f64> = ResultFile::open(&result)
+        .unwrap()
+        .summary()
+        .unwrap()
+        .into_iter()
+        .map(|measure| (measure.name, measure.value))
+        .collect();
+    let mut claims = claims::read(&folder.join("expected.toml")).unwrap();
+    claims.retain(|claim| claim.is_about(name));
+    assert!(!claims.is_empty());
+    let results = claims::check_claims(&claims, &measures);
+    results.iter().for_each(|result| println!("{result}"));
+    assert!(results.iter().all(claims::ClaimResult::holds), "a claim does not hold; see above");
+    let made = pseudopod::picture::make_defaults(&result).unwrap();
+    assert!(made.iter().all(|path| path.metadata().is_ok_and(|file| file.len() > 1000)), "{made:?}");
+    for (_, made, shown) in SHOWN.iter().filter(|(about, ..)| experiments.join(about) == experiment) {
+        let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/pictures").join(shown);
+        let apart = mean_difference(&scratch.path().join(made), &shown);
+        assert!(apart < 0.5, "{} is not what the command makes: levels {apart:.2} apart", shown.display());
+    }
+}
+
+/// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
+const SHOWN: [(&str, &str, &str); 3] = [
+    ("optical_tweezers/red_cell.toml", "result.png", "red_cell.png"),
+    ("optical_tweezers/red_cell.toml", "result.force_diameter.png", "force_diameter.png"),
+    ("sphere_under_gravity/experiment.toml", "result.png", "spheres.png"),
+];
+
+/// How far the colours of two pictures of one size are apart, in levels of 255; round-off may move an edge by a pixel here and there.
+fn mean_difference(one: &Path, other: &Path) -> f64 {
+    let pixels = |path: &Path| {
+        let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        (info.width, info.height, pixels)
+    };
+    let ((width, height, one), (other_width, other_height, other)) = (pixels(one), pixels(other));
+    assert_eq!((width, height, one.len()), (other_width, other_height, other.len()));
+    let sum: u64 = one.iter().zip(&other).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / one.len() as f64
+}
+
+#[test]
+fn a_red_cell_stretches_as_mills_measured() {
+    experiment_keeps_its_word("optical_tweezers", "red_cell.toml");
+}
+
+#[test]
+fn a_spherical_membrane_stretches_as_henon_derived() {
+    experiment_keeps_its_word("optical_tweezers", "sphere.toml");
+}
+
+#[test]
+fn shape_memory_stretches_like_a_membrane_after_one_calibrated_number() {
+    experiment_keeps_its_word("optical_tweezers", "shape_memory.toml");
+}
+
+#[test]
+fn two_thousand_cells_wander_as_furth_says() {
+    experiment_keeps_its_word("random_walk", "experiment.toml");
+}
+
+#[test]
+fn linked_types_clump_in_one_aggregate_where_they_are_drawn_together() {
+    experiment_keeps_its_word("links_36", "experiment.toml");
+}
+
+#[test]
+fn linked_cells_that_are_hardly_drawn_together_make_small_aggregates() {
+    experiment_keeps_its_word("links_36", "weak.toml");
+}
+
+#[test]
+fn links_stiffen_a_compressed_cell() {
+    experiment_keeps_its_word("compression", "experiment.toml");
+}
+
+#[test]
+fn softer_spheres_lie_flatter() {
+    experiment_keeps_its_word("sphere_under_gravity", "experiment.toml");
+}
+
+#[test]
+fn shape_memory_bears_a_step_that_springs_do_not() {
+    experiment_keeps_its_word("stability_limits", "experiment.toml");
+}
+
+#[test]
+fn three_times_what_decays_moves_an_atom() {
+    experiment_keeps_its_word("decay_transfer", "experiment.toml");
+}
+
+#[test]
+fn four_cells_climb_the_attractant_they_sense() {
+    experiment_keeps_its_word("chemotaxis_field", "experiment.toml");
+}
+
+#[test]
+fn cells_relay_waves_of_camp() {
+    experiment_keeps_its_word("cAMP_waves", "experiment.toml");
+}
+
+#[test]
+fn a_brusselator_takes_its_wavelength() {
+    experiment_keeps_its_word("turing", "experiment.toml");
+}
+
+#[test]
+fn twenty_five_cells_become_one_aggregate() {
+    experiment_keeps_its_word("aggregation", "experiment.toml");
+}
+
+#[test]
+fn no_facet_folds_in_a_packed_aggregate_stirred_for_1000_s() {
+    experiment_keeps_its_word("aggregation", "stirred.toml");
+}
+
+#[test]
+fn a_strong_pair_holds_where_a_weak_one_parts() {
+    experiment_keeps_its_word("sticky_pair", "experiment.toml");
+}
+
+#[test]
+fn six_spheres_come_to_rest_in_the_dent_they_make() {
+    experiment_keeps_its_word("falling_spheres", "experiment.toml");
+}
+
+#[test]
+fn a_ball_rolls_down_a_sheet_where_shear_holds_it() {
+    experiment_keeps_its_word("rolling_ball", "experiment.toml");
+}
+
+#[test]
+fn a_ball_rolls_down_a_plane_as_fast_as_drag_allows() {
+    experiment_keeps_its_word("rolling_ball", "plane.toml");
+}
+
+#[test]
+fn a_squeezed_drop_takes_its_exact_shape() {
+    experiment_keeps_its_word("squeezed_drop", "experiment.toml");
+}
+
+#[test]
+fn drops_that_stick_meet_at_the_angle_of_young_and_dupre() {
+    experiment_keeps_its_word("doublet", "experiment.toml");
+}
+
+#[test]
+fn four_bunnies_fall_between_each_others_ears() {
+    experiment_keeps_its_word("four_bunnies", "experiment.toml");
+}
+
+#[test]
+fn two_types_of_cells_sort() {
+    experiment_keeps_its_word("sorting", "experiment.toml");
+}

@@ -1,0 +1,73 @@
+//! Twenty seeds of the experiment `sorting`: types that stick to themselves only are segregated, beyond what chance makes of
+//! the same contacts, and types that stick alike are not.
+
+use pseudopod::experiment::Document;
+use pseudopod::output::ResultFile;
+use pseudopod::run::{Quiet, RunOptions, run};
+use std::path::Path;
+
+const SEEDS: std::ops::RangeInclusive<u32> = 1..=20;
+
+/// Index and p value at the end of one run.
+fn segregation(seed: u32, sets: &[&str]) -> [f64; 2] {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/sorting/experiment.toml");
+    let seed_set = format!("seed={seed}");
+    // Only the end counts here.
+    let sets: Vec<String> =
+        sets.iter().copied().chain([seed_set.as_str(), "output.every=60 s"]).map(str::to_owned).collect();
+    let document = Document::read(&path, &sets).expect("a good document");
+    let scratch = tempfile::tempdir().expect("a folder");
+    let result = scratch.path().join("result.h5");
+    let options = RunOptions::new(&result);
+    run(&document, &options, &mut Quiet).expect("a run");
+    let measures = ResultFile::open(&result).expect("a result").summary().expect("measures");
+    let value = |name: &str| measures.iter().find(|measure| measure.name == name).expect("a measure").value;
+    [value("segregation"), value("p_value")]
+}
+
+/// The probability that the product of as many independent p values is as small by chance (Fisher 1925): −2 Σ ln p is
+/// distributed as χ² with two degrees of freedom for each.
+fn together(p_values: &[f64]) -> f64 {
+    let half = -p_values.iter().map(|p| p.ln()).sum::<f64>();
+    let mut term = (-half).exp();
+    let mut sum = term;
+    for k in 1..p_values.len() {
+        term *= half / k as f64;
+        sum += term;
+    }
+    sum
+}
+
+/// All seeds; prints each, and returns the mean index and the probability of all together.
+fn all_seeds(sets: &[&str]) -> (f64, f64) {
+    let found: Vec<[f64; 2]> = SEEDS.map(|seed| segregation(seed, sets)).collect();
+    for (run, [index, p]) in (1..).zip(&found) {
+        println!("run {run}: segregation {index:.3}, p {p:.4}");
+    }
+    let mean = found.iter().map(|[index, _]| index).sum::<f64>() / found.len() as f64;
+    let p = together(&found.iter().map(|[_, p]| *p).collect::<Vec<_>>());
+    println!("mean segregation {mean:.3}, all together p = {p:.2e}");
+    (mean, p)
+}
+
+#[test]
+fn fishers_probability_is_that_of_chi_squared() {
+    assert!((together(&[0.05]) - 0.05).abs() < 1e-15);
+    // 1 − F(−2 ln 0.01; 4) by hand: 0.01 (1 − ln 0.01).
+    assert!((together(&[0.1, 0.1]) - 0.01 * (1.0 - 0.01_f64.ln())).abs() < 1e-15);
+}
+
+#[test]
+#[ignore = "slow: twenty runs of 10 to 20 s each"]
+fn types_that_stick_to_themselves_only_are_segregated() {
+    let (mean, p) = all_seeds(&[]);
+    assert!(mean > 0.0 && p < 1e-3);
+}
+
+#[test]
+#[ignore = "slow: twenty runs of 10 to 20 s each"]
+fn types_that_stick_alike_are_mixed_at_random() {
+    let (_, p) = all_seeds(&["contact.between[2].strength=0.3 pN/um^2"]);
+    // Types are exchangeable here, so that one in twenty sets of seeds would be below by chance.
+    assert!(p > 0.05);
+}

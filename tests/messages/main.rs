@@ -1,0 +1,14 @@
+//! What is said about bad input: each text is kept beside the input that causes it.
+//!
+//! `PSEUDOPOD_BLESS=1 cargo test --release --test messages` writes the texts anew; read the difference before committing it.
+
+mod documents;
+mod eml;
+mod experiments;
+mod fields;
+mod meshes;
+mod runs;
+mod sbml;
+
+#[path = "../support/turns.rs"]
+mod turns;

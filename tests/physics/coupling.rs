@@ -1,0 +1,328 @@
+//! What chemistry does to cells, and cells to chemistry, against what can be worked out by hand.
+
+use crate::coupled_scene::{Scene, crowd, one_cell, scene};
+use pseudopod::Vec3;
+use pseudopod::sim::chemistry::next_exchange;
+use pseudopod::sim::{State, Trouble};
+
+#[test]
+fn an_atom_goes_where_its_system_puts_it_and_the_volume_stays() {
+    let eml = r#"<eml name="own" level="cell"><parameter id="k" value="0.1"/>
+        <variable id="U" initial="1" rate="-k*U"/><input id="seen" default="0"/>
+        <solver scheme="rosenbrock" rtol="1e-12" atol="1e-14"/>
+        <link from="system.U" to="cell.atom[4].y" transfer="3*value"/>
+        <link from="cell.atom[4].y" to="system.seen"/></eml>"#;
+    let mut scene = scene(&[("own", eml)], &one_cell("10 s", "0.1 s"));
+    scene.begin();
+    while scene.state().time < 10.0 {
+        let kind = &scene.compiled.model.kinds[0];
+        let y = scene.state().kinds[0].cell(kind, 0)[4].y;
+        let exact = 3.0 * (-0.1 * scene.state().time).exp();
+        // The tolerance asked of the solver is 1e-12.
+        assert!((y - exact).abs() < 1e-11, "{y} against {exact} at {}", scene.state().time);
+        assert_eq!(scene.value(0, "seen", 0), y, "what is read is what was set");
+        let surface = pseudopod::geometry::Surface {
+            positions: scene.state().kinds[0].cell(kind, 0),
+            facets: kind.rest.facets.clone(),
+        };
+        let volume = pseudopod::geometry::volume(&surface) / pseudopod::geometry::volume(&kind.rest);
+        assert!((volume - 1.0).abs() < 1e-10, "{volume}");
+        scene.step().unwrap();
+    }
+}
+
+#[test]
+fn a_cell_that_swims_by_its_own_position_follows_the_exponential_to_first_order() {
+    // x' = −k x through position → input → bias; the coupling holds what is read over a step.
+    let eml = r#"<eml name="own" level="cell"><input id="x" default="0"/><define id="v">-0.2*x</define>
+        <link from="cell.position.x" to="system.x"/><link from="system.v" to="cell.motility.bias.x"/></eml>"#;
+    let error = |step: &str| {
+        let mut text = one_cell("5 s", step);
+        text += "placement = { at = [[\"10 um\", \"0 um\", \"0 um\"]] }\n";
+        let mut scene = scene(&[("own", eml)], &text);
+        scene.run();
+        (scene.place(0, 0) - 10.0 * (-1.0_f64).exp()).abs()
+    };
+    let (coarse, fine) = (error("0.2 s"), error("0.1 s"));
+    let order = (coarse / fine).log2();
+    assert!((0.9..1.1).contains(&order), "order {order}: {coarse}, {fine}");
+}
+
+#[test]
+fn what_a_cell_secretes_is_what_the_field_gains() {
+    let field = r#"<eml name="field"><grid dimension="2" spacing="2" origin="-40 -40" size="80 80"/>
+        <field id="c" diffusion="30" initial="0"/></eml>"#;
+    let own = r#"<eml name="own" level="cell"><variable id="rate" initial="2" rate="0.5"/>
+        <link from="system.rate" to="cell.secretion[c]" gain="3"/></eml>"#;
+    let mut scene = scene(&[("field", field), ("own", own)], &one_cell("4 s", "0.1 s"));
+    scene.run();
+    let values = &scene.state().chemistry.fields[0].values;
+    let amount = values.iter().sum::<f64>() * 4.0;
+    // Each step releases the rate at its start: the left sum of 3 (2 + t/2) over 40 steps of 0.1 s.
+    let released: f64 = (0..40).map(|n| 0.1 * 3.0 * (2.0 + 0.05 * f64::from(n))).sum();
+    assert!((amount / released - 1.0).abs() < 1e-12, "{amount} against {released}");
+    assert!(values.iter().all(|value| *value >= 0.0));
+}
+
+#[test]
+fn a_linear_field_is_sensed_exactly() {
+    for (dimension, size, z, gz) in [(2, "80 80", "0", 0.0), (3, "80 80 80", "0.25*z", 0.25)] {
+        let field = format!(
+            r#"<eml name="field"><grid dimension="{dimension}" spacing="4" origin="-40 -40 -40" size="{size}"/>
+            <field id="c" initial="200 + 2*x - 0.5*y + {z}"/></eml>"#
+        );
+        let field = if dimension == 2 { field.replace("-40 -40 -40", "-40 -40") } else { field };
+        let own = r#"<eml name="own" level="cell"><input id="c" default="0"/><input id="gx" default="0"/>
+            <input id="gy" default="0"/><input id="gz" default="0"/><input id="s" default="0"/><input id="a" default="0"/>
+            <variable id="idle" initial="0" rate="0"/>
+            <link from="field[c]" to="system.c"/><link from="cell.field[c].gradient.x" to="system.gx"/>
+            <link from="field[c].gradient.y" to="system.gy"/><link from="field[c].gradient.z" to="system.gz"/>
+            <link from="field[c].steepness" to="system.s"/><link from="cell.atom[7].field[c]" to="system.a"/></eml>"#;
+        let text = one_cell("1 s", "0.5 s") + "placement = { at = [[\"7 um\", \"-3 um\", \"4 um\"]] }\n";
+        let mut scene = scene(&[("field", &field), ("own", own)], &text);
+        scene.begin();
+        let atom = scene.state().kinds[0].cell(&scene.compiled.model.kinds[0], 0)[7];
+        let value = |x: f64, y: f64, z: f64| 200.0 + 2.0 * x - 0.5 * y + gz * z;
+        let expected = [
+            ("c", value(7.0, -3.0, 4.0)),
+            ("gx", 2.0),
+            ("gy", -0.5),
+            ("gz", gz),
+            ("s", (4.25 + gz * gz).sqrt()),
+            ("a", value(atom.x, atom.y, atom.z)),
+        ];
+        for (quantity, expected) in expected {
+            let found = scene.value(0, quantity, 0);
+            assert!((found - expected).abs() < 1e-9, "{dimension}-D {quantity}: {found} against {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_stiffness_set_by_chemistry_is_the_stiffness_of_a_stiffer_cell() {
+    let own = r#"<eml name="own" level="cell"><parameter id="f" value="FACTOR"/>
+        <link from="system.f" to="cell.stiffness"/></eml>"#;
+    let load = "loads = [{ name = \"pull\", cap = { direction = [0, 0, 1], number = 3 }, direction = [0, 0, 1], \
+                force = \"8 pN\" }]\n";
+    let lengths = |factor: &str, modulus: &str| {
+        let text = one_cell("20 s", "0.05 s").replace("10 pN/um", modulus) + load;
+        let mut scene = scene(&[("own", &own.replace("FACTOR", factor))], &text);
+        scene.run();
+        scene.state().kinds[0].cell(&scene.compiled.model.kinds[0], 0)
+    };
+    let distance = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    let unlinked = lengths("1", "10 pN/um");
+    for (factor, modulus) in [("4", "40 pN/um"), ("0.5", "5 pN/um")] {
+        let (linked, plain) = (lengths(factor, "10 pN/um"), lengths("1", modulus));
+        let (apart, moved) = (distance(&linked, &plain), distance(&linked, &unlinked));
+        // Both are the same problem; K differs by the power of two that covers the factor, so that steps of second
+        // order differ by their errors. The factor itself moves atoms much further.
+        assert!(apart < 2e-3, "factor {factor}: {apart} um apart");
+        assert!(moved > 20.0 * 2e-3, "factor {factor}: only {moved} um from a cell of factor 1");
+    }
+}
+
+#[test]
+fn walks_loads_and_volumes_obey() {
+    let own = r#"<eml name="own" level="cell"><parameter id="speed" value="0.25"/><parameter id="ratio" value="1.2"/>
+        <parameter id="push" value="0"/><input id="volume" default="0"/><input id="strain" default="0"/>
+        <link from="system.speed" to="cell.motility.speed"/><link from="system.ratio" to="cell.rest_volume_ratio"/>
+        <link from="system.push" to="cell.load[push]"/>
+        <link from="cell.volume" to="system.volume"/><link from="cell.volume_strain" to="system.strain"/></eml>"#;
+    let text = one_cell("3 s", "0.1 s")
+        + "motility = { brownian = { speed = \"7 um/s\", persistence = \"1000 min\" } }\n\
+           loads = [{ name = \"push\", all = true, direction = [0, 0, 1], force = \"1 nN\" }]\n";
+    let mut scene = scene(&[("own", own)], &text);
+    scene.run();
+    let way = scene.place(0, 0).hypot(scene.place(0, 1));
+    assert!((way - 0.75).abs() < 1e-9, "0.25 um/s for 3 s, straight: {way}");
+    assert!(scene.place(0, 2).abs() < 1e-9, "a load of factor 0 does nothing: {}", scene.place(0, 2));
+    assert!((scene.value(0, "strain", 0) - 0.2).abs() < 1e-9);
+    let rest = pseudopod::geometry::volume(&scene.compiled.model.kinds[0].rest);
+    assert!((scene.value(0, "volume", 0) / rest - 1.2).abs() < 1e-10);
+}
+
+#[test]
+fn systems_exchange_when_they_want_to_and_steps_end_there() {
+    let own = r#"<eml name="own" level="cell" time_unit="min"><variable id="t" initial="0" rate="1"/>
+        <input id="clock" default="0"/><solver step="0.02"/>
+        <link from="scene.time" to="system.clock"/></eml>"#;
+    let mut scene = scene(&[("own", own)], &one_cell("6 s", "0.7 s").replace("every = \"6 s\"", "every = \"3 s\""));
+    let mut seen = Vec::new();
+    while scene.state().time < 6.0 {
+        let next = next_exchange(&scene.compiled.model, scene.state().time);
+        scene.step().unwrap();
+        assert!(scene.state().time <= next, "a step never runs over an exchange");
+        let clock = scene.value(0, "clock", 0);
+        // t is in minutes, and has run exactly until the last exchange.
+        assert!((60.0 * scene.value(0, "t", 0) - clock).abs() < 1e-9);
+        if seen.last() != Some(&clock) {
+            seen.push(clock);
+        }
+    }
+    assert_eq!(seen.len(), 6, "at 0, 1.2, … 6 s: {seen:?}");
+    assert!(seen.iter().enumerate().all(|(n, t)| (t - 1.2 * n as f64).abs() < 1e-9), "{seen:?}");
+}
+
+#[test]
+fn systems_read_each_other_and_the_means_of_types() {
+    let a = r#"<eml name="own" level="cell"><variable id="u" initial="2" rate="0"/>
+        <input id="x" default="0"/><link from="cell.position.x" to="system.x"/></eml>"#;
+    let b = r#"<eml name="whole"><input id="from_cells" default="0"/><input id="mean_x" default="0"/>
+        <define id="twice">2*from_cells</define>
+        <link from="type[cell].chemistry[own].u" to="system.from_cells"/><link from="type[cell].position.x" to="system.mean_x"/>
+        <link from="system.twice" to="type[cell].motility.bias.y" gain="0.1"/></eml>"#;
+    let text = one_cell("2 s", "0.1 s")
+        + "placement = { at = [[\"10 um\", \"0 um\", \"0 um\"], [\"30 um\", \"0 um\", \"0 um\"]] }\n";
+    let mut scene = scene(&[("own", a), ("whole", b)], &text);
+    scene.run();
+    assert_eq!(scene.value(1, "twice", 0), 4.0);
+    assert!((scene.value(1, "mean_x", 0) - 20.0).abs() < 1e-9);
+    for cell in 0..2 {
+        assert!((scene.place(cell, 1) - 0.8).abs() < 1e-9, "0.4 um/s for 2 s");
+    }
+}
+
+#[test]
+fn a_system_that_blows_up_is_named_and_the_state_stays() {
+    let own = r#"<eml name="own" level="cell"><input id="x" default="0"/>
+        <variable id="U" initial="1" rate="U^2*x"/><link from="cell.position.x" to="system.x"/></eml>"#;
+    let text = one_cell("30 s", "0.5 s")
+        + "placement = { at = [[\"0 um\", \"0 um\", \"0 um\"], [\"0.1 um\", \"0 um\", \"0 um\"]] }\n";
+    let mut scene = scene(&[("own", own)], &text);
+    let trouble = scene.until_trouble();
+    // U = 1/(1 − 0.1 t) for the second cell.
+    let Trouble::System { system, owner, time, variable, .. } = &trouble else { panic!("{trouble}") };
+    assert_eq!((system.as_str(), owner.clone()), ("own", Some(("cell".to_owned(), 1))));
+    assert_eq!(variable.as_deref(), Some("U"));
+    // The pole is met as exactly as the tolerance of 1e-6 lets the solution be.
+    assert!((time - 10.0).abs() < 1e-3, "{time}");
+}
+
+#[test]
+fn a_link_that_carries_nonsense_is_named() {
+    let own = r#"<eml name="own" level="cell"><variable id="r" initial="1" rate="-0.01"/>
+        <link from="system.r" to="cell.rest_volume_ratio" transfer="piecewise(value, value gt 0.98, -1)"/></eml>"#;
+    let mut scene = scene(&[("own", own)], &one_cell("5 s", "0.25 s"));
+    let trouble = loop {
+        if let Err(trouble) = scene.step() {
+            break trouble;
+        }
+    };
+    let text = trouble.to_string();
+    assert!(
+        text.contains("from system.r to cell.rest_volume_ratio") && text.contains("cell 0 of type `cell`"),
+        "{text}"
+    );
+}
+
+/// Cells that secrete and climb what they secrete, after 20 steps; the field has boxes enough that threads share its reactions.
+fn crowd_after(threads: usize, before: impl Fn(&mut Scene) + Sync) -> State {
+    let field = r#"<eml name="field"><grid dimension="2" spacing="1.5" origin="-60 -60" size="120 120"/>
+        <field id="c" diffusion="40" decay="0.05" initial="1 + 0.01*x"><reaction>-0.02*c^2</reaction></field></eml>"#;
+    let own = r#"<eml name="own" level="cell"><input id="c" default="0"/><input id="gx" default="0"/>
+        <variable id="u" initial="1" rate="c - u"/><variable id="w" initial="0" rate="u - w^3"/>
+        <solver scheme="rk45" rtol="1e-6"/>
+        <link from="field[c]" to="system.c"/><link from="field[c].gradient.x" to="system.gx"/>
+        <link from="system.gx" to="cell.motility.bias.x" gain="5"/><link from="system.w" to="cell.secretion[c]" gain="10"/>
+        <link from="system.u" to="cell.stiffness" transfer="1 + 0.5*tanh(value)"/></eml>"#;
+    crowd(threads, &[("field", field), ("own", own)], 20, before).compiled.state
+}
+
+#[test]
+fn an_experiment_chooses_the_scheme_of_a_fields_reactions() {
+    let field = r#"<eml name="field"><grid dimension="2" spacing="4" origin="-20 -20" size="40 40"/>
+        <field id="c" diffusion="10" initial="2 + 0.02*x"><reaction>-0.5*c^2</reaction></field>
+        <solver scheme="rk4" inner_step="0.1"/></eml>"#;
+    let end = |scheme: &str| {
+        let text = one_cell("2 s", "0.1 s") + "[chemistry.field]\ndocument = \"field.eml\"\nrtol = 1e-6\n" + scheme;
+        let idle = r#"<eml name="own" level="cell"><variable id="idle" initial="0" rate="0"/></eml>"#;
+        let mut scene = scene(&[("field", field), ("own", idle)], &text);
+        scene.run();
+        scene.state().chemistry.fields[0].values.clone()
+    };
+    let own = end("");
+    for scheme in ["rk45", "rk65", "rosenbrock"] {
+        let other = end(&format!("scheme = \"{scheme}\"\n"));
+        assert_ne!(own, other, "{scheme} takes other steps");
+        let apart = own.iter().zip(&other).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+        // A hundred tolerances.
+        assert!(apart < 1e-4, "{scheme}: {apart:e}");
+    }
+}
+
+#[test]
+fn threads_and_scratch_do_not_matter_to_chemistry() {
+    let plain = crowd_after(1, |_| ());
+    let field = &plain.chemistry.fields[0].values;
+    assert!(field.iter().all(|value| value.is_finite()) && field.len() == 6400);
+    assert!(plain.chemistry.controls.stiffness.iter().all(|factor| (*factor - 1.0).abs() > 0.01), "links have acted");
+    assert_eq!(plain, crowd_after(2, |_| ()), "threads");
+    assert_eq!(plain, crowd_after(1, |scene| scene.ws.poison(&scene.compiled.model)), "scratch");
+}
+
+#[test]
+fn a_run_goes_on_from_its_checkpoint_as_if_it_had_not_stopped() {
+    assert_eq!(crowd_after(1, |_| ()), crowd_after(1, Scene::stop_and_resume));
+}
+
+#[test]
+fn an_sbml_model_stands_where_an_eml_document_can() {
+    let sbml = r#"<?xml version="1.0" encoding="UTF-8"?>
+        <sbml xmlns="http://www.sbml.org/sbml/level3/version1/core" level="3" version="1"><model id="decay">
+        <listOfCompartments><compartment id="c" spatialDimensions="3" size="1" constant="true"/></listOfCompartments>
+        <listOfSpecies><species id="S" compartment="c" initialAmount="2" hasOnlySubstanceUnits="true" boundaryCondition="false" constant="false"/></listOfSpecies>
+        <listOfParameters><parameter id="k" value="7" constant="true"/></listOfParameters>
+        <listOfReactions><reaction id="r" reversible="false" fast="false"><listOfReactants><speciesReference species="S" stoichiometry="1" constant="true"/></listOfReactants>
+        <kineticLaw><math xmlns="http://www.w3.org/1998/Math/MathML"><apply><times/><ci>k</ci><ci>S</ci></apply></math></kineticLaw></reaction></listOfReactions>
+        </model></sbml>"#;
+    let text = one_cell("4 s", "0.1 s")
+        + "[chemistry.own]\ndocument = \"own.eml\"\nrtol = 1e-9\natol = 1e-12\nlinks = [\n\
+           { from = \"scene.time\", to = \"system.k\", transfer = \"0.5 + 0*value\" },\n\
+           { from = \"system.S\", to = \"cell.motility.bias.x\", gain = 0.1 },\n]\n";
+    let mut scene = scene(&[("own", sbml)], &text);
+    scene.run();
+    let exact = |t: f64| 2.0 * (-0.5 * t).exp();
+    assert!((scene.value(0, "S", 0) / exact(4.0) - 1.0).abs() < 1e-7, "the link has set the model's parameter");
+    // Each step is made with the amount at its start.
+    let way: f64 = (0..40).map(|n| 0.1 * 0.1 * exact(0.1 * f64::from(n))).sum();
+    assert!((scene.place(0, 0) - way).abs() < 1e-7, "{} against {way}", scene.place(0, 0));
+}
+
+#[test]
+fn cells_let_go_when_chemistry_takes_their_adhesion_away() {
+    // Two cells are pressed together, then pulled with less than what holds them; at 40 s each loses its adhesion.
+    let own = r#"<eml name="own" level="cell"><variable id="a" initial="1" rate="0"/>
+        <event id="off" when="time ge 40"><set id="a">0</set></event><link from="system.a" to="cell.adhesion"/></eml>"#;
+    let cell = |name: &str, side: f64| {
+        format!(
+            r#"
+[cells.{name}]
+mesh = {{ shape = "icosphere", radius = "5 um", level = 1 }}
+placement = {{ at = [["{} um", "0 um", "0 um"]] }}
+mechanics = {{ drag = "20 pN s/um", shape_memory = {{ shape_modulus = "5 pN/um" }} }}
+loads = [{{ name = "pull", all = true, direction = [{side}, 0, 0], force = [["0 s", "-10 pN"], ["20 s", "-10 pN"], ["21 s", "2.5 pN"], ["100 s", "2.5 pN"]] }}]
+chemistry = ["own"]
+"#,
+            5.1 * side
+        )
+    };
+    let text = format!(
+        r#"[run]
+until = "60 s"
+integrator = {{ max_step = "0.2 s" }}
+[output]
+every = "1 s"
+{}{}
+[contact]
+strength = "0.5 pN/um^2"
+"#,
+        cell("left", -1.0),
+        cell("right", 1.0)
+    );
+    let mut scene = scene(&[("own", own)], &text);
+    let rows = scene.rows_until(60.0, |scene| scene.state().contact.atoms.len());
+    let at = |time: f64| rows.iter().rfind(|(when, _)| *when <= time).unwrap().1;
+    assert!(at(39.9) > 0, "they hold against the pull");
+    assert_eq!(at(60.0), 0, "they are apart");
+}

@@ -1,0 +1,27 @@
+//! Cells move, stick and feel chemistry as the equations of the book say.
+
+mod contact;
+mod contact_fuzz;
+mod contact_models;
+mod coupling;
+mod events;
+mod fibres;
+mod forces;
+mod inertial;
+mod modulus;
+mod motility;
+mod ordering;
+mod sphere;
+mod stability_limits;
+mod step;
+mod virtual_adhesives;
+mod walk;
+
+#[path = "../support/contact_scenes.rs"]
+mod contact_scenes;
+#[path = "../support/coupled_scene.rs"]
+mod coupled_scene;
+#[path = "../support/same_bits.rs"]
+mod same_bits;
+#[path = "../support/sbml_suite.rs"]
+mod sbml_suite;

@@ -1,0 +1,6 @@
+//! What pictures, charts and exports show of a result.
+
+mod cells;
+mod example;
+mod fields;
+mod plots;
