@@ -395,6 +395,61 @@ fn chemistry_feels_other_cells_the_same_with_every_scratch() {
     }
 }
 
+#[test]
+fn links_read_the_share_in_contact_that_is_recorded_and_planes_have_a_share_of_their_own() {
+    let eml = r#"<eml name="touch" level="cell"><input id="share" default="0"/><input id="ground" default="0"/>
+        <variable id="sum" initial="0" rate="share + ground"/>
+        <link from="cell.contact_share" to="system.share"/><link from="cell.plane_share" to="system.ground"/></eml>"#;
+    let planes = "[[planes]]\nname = \"floor\"\npoint = [0, 0, \"15 um\"]\nnormal = [0, 0, 1]\n";
+    let before = ROW.split_once("[output]").expect("the output").0;
+    let with_system = before.replace("mechanics =", "chemistry = [\"touch\"]\nmechanics =");
+    let text = format!("{with_system}{planes}[chemistry.touch]\ndocument = \"touch.eml\"\n");
+    let beside = BTreeMap::from([("touch.eml".to_owned(), eml.to_owned())]);
+    let document = Document::parse_beside("row.toml", &text, Path::new("."), &[], beside).expect("a good document");
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = folder.path().join("row.vtkhdf");
+    let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+    run(&document, &options, &mut Quiet).expect("a run");
+    let file = ResultFile::open(&result).expect("a result");
+    let series = |name: &str| file.cell_series(name).expect("a series");
+    let (recorded, read, ground) = (series("contact_share"), series("touch.share"), series("touch.ground"));
+    assert!(recorded.iter().any(|share| *share > 0.0) && recorded == read, "{recorded} {read}");
+    assert!(ground.iter().all(|share| *share > 0.0), "all stand on the floor: {ground}");
+}
+
+/// Two cells drawn to one point.
+const DRAWN: &str = r#"
+title = "Drawn together"
+[run]
+until = "20 s"
+[cells.red]
+mesh = { shape = "icosphere", radius = "5 um", level = 1 }
+placement = { grid = [2, 1, 1], spacing = "11 um" }
+number = 2
+mechanics = { drag = "20 pN s/um", shape_memory = { stiffness = "1 pN/um" } }
+motility = { attraction = { to = [0, 0, 0], stiffness = "0.5 pN/um" } }
+[contact]
+"#;
+
+#[test]
+fn explicit_steps_that_nobody_names_are_as_short_as_contacts_need() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let end = |method: &str| {
+        let sets = [format!("run.integrator.method={method}")];
+        let document = Document::parse("drawn.toml", DRAWN, Path::new("."), &sets).expect("a good document");
+        let result = folder.path().join(format!("{method}.vtkhdf"));
+        let options = RunOptions { result: result.clone(), overwrite: Overwrite::Refuse, threads: Some(1) };
+        let outcome = run(&document, &options, &mut Quiet).expect("a run that comes to its end");
+        let file = ResultFile::open(&result).expect("a result");
+        let at = file.cell_series("position_x").expect("a series").row(file.frames() - 1).to_vec();
+        (outcome, at)
+    };
+    let ((explicit, one), (_, other)) = (end("explicit"), end("implicit"));
+    assert!(explicit.limited > 0, "the stable step is too long for contacts: {explicit:?}");
+    let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+    assert!(apart < 0.1, "the same place by both methods, to 1 % of a diameter: {one:?} {other:?}");
+}
+
 /// Two cells that loads press together; closed surfaces have no elastic force as a whole.
 const PRESSED: &str = r#"
 title = "Pressed"

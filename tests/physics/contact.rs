@@ -11,7 +11,7 @@ use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::random::{Purpose, Stream};
-use pseudopod::sim::contact::{ContactModel, Pull, Row, Strength, check_passed};
+use pseudopod::sim::contact::{ContactModel, Pull, Row, Strength, check_passed, help_at};
 use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::{Kind, Model, State, Trouble, VolumeRule, Workspace, step};
 
@@ -399,12 +399,36 @@ fn contacts_that_do_not_come_to_rest_end_a_run_name_the_cells_and_leave_the_stat
     named.sort_unstable();
     assert_eq!((named, *sweeps), (vec!["left", "right"], 1));
     assert!(*left > 0.0);
-    assert_eq!(trouble.help().split(':').next(), Some("cells are pressed together harder than their volumes allow"));
+    let help = help_at(&trouble, &model, &state);
+    assert!(help.starts_with("nothing presses these cells together from around"), "two cells in the open: {help}");
     let cells = [("left", 0), ("right", 0)].map(|(kind, cell)| (kind.to_owned(), cell));
     let words = Trouble::Contact { cells, time: 1.5, left: 2e-4, sweeps: 200 }.to_string();
     let expected = "contacts and volumes do not come to rest at t = 1.500000 s: after 200 sweeps atoms of cell 0 of type `left` \
                     and of cell 0 of type `right`, which touch, still move by 2.0e-4 um";
     assert_eq!(words, expected);
+}
+
+#[test]
+fn the_help_for_contacts_that_fail_fits_what_the_cells_look_like() {
+    let advice = |model: &Model, state: &State| {
+        let cells = [("left".to_owned(), 0), ("right".to_owned(), 0)];
+        help_at(&Trouble::Pressed { cells, time: 0.0, depth: 0.1 }, model, state)
+    };
+    let kinds = || vec![cell("left", 5.0), cell("right", 5.0)];
+    let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
+    let model = model(kinds(), adaptive(0.1), 10.0, Strength::default());
+    let apart = |centres: &[Vec3]| [0, 1].map(|i| places(&model.kinds[i], &centres[i..=i]));
+    let open = advice(&model, &State::new(&model, &apart(&centres)));
+    assert!(open.contains("move or yield faster than contacts follow"), "{open}");
+    // An atom is pushed through to the other side of its cell.
+    let mut folded = apart(&centres);
+    folded[1][0][0] = 2.0 * centres[1] - folded[1][0][0];
+    let folded = State::new(&model, &folded);
+    let folded = advice(&model, &folded);
+    assert!(folded.starts_with("the surface of one of these cells is folded"), "{folded}");
+    // Nearly at the same place each has the other everywhere.
+    let crowded = advice(&model, &State::new(&model, &apart(&[Vec3::zeros(), Vec3::new(0.05, 0.0, 0.0)])));
+    assert!(crowded.starts_with("cells are pressed together harder than their volumes allow"), "{crowded}");
 }
 
 #[test]

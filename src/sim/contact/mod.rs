@@ -9,6 +9,7 @@
 
 mod adhesives;
 mod assemble;
+mod cause;
 mod depth;
 mod find;
 mod gather;
@@ -35,6 +36,7 @@ mod sweep_tests;
 mod zones;
 
 pub use adhesives::AdhesiveScratch;
+pub use cause::help_at;
 pub use depth::{Deepened, check_added, check_depth, check_passed, look_for_depth};
 pub use find::{
     add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, locate_contacts, pull_contacts,
