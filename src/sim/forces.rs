@@ -119,7 +119,7 @@ fn context<'a>(kind: &Kind, controls: &'a Controls, block: usize, time: f64) -> 
 }
 
 fn add_drive(kind: &Kind, drive: &[[f64; 3]], block: usize, f: &mut [f64]) {
-    if kind.brownian.is_none() && !kind.biased {
+    if kind.behaviours.is_empty() {
         return;
     }
     for (lane, velocity) in drive.iter().skip(block * kind.lanes).take(kind.lanes).enumerate() {

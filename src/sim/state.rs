@@ -6,7 +6,7 @@ use super::chemistry::ChemistryState;
 use super::contact::ContactState;
 use super::model::{Kind, Model};
 use crate::Vec3;
-use crate::cell::motility::Walk;
+use crate::cell::{Behaviour, BehaviourState};
 
 /// Everything that changes and is needed to go on.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -19,8 +19,6 @@ pub struct State {
     pub next_step: f64,
     /// One entry a kind.
     pub kinds: Vec<KindState>,
-    /// One walk for every cell of a kind with Brownian motility, in the order of cells.
-    pub walks: Vec<Walk>,
     /// Motility runs that ended and are not recorded yet: (cell, end s, duration s).
     pub ended_runs: Vec<(u32, f64, f64)>,
     /// Systems and fields; empty in a model without chemistry.
@@ -43,6 +41,13 @@ pub struct KindState {
     pub stiffness_shape: Vec<f64>,
     /// Mean velocity of the atoms of every cell over the last step, µm/s; zero before the first.
     pub mean_velocities: Vec<[f64; 3]>,
+    /// What every cell remembers of each behaviour of the kind: `[behaviour][cell]`.
+    pub behaviours: Vec<Vec<BehaviourState>>,
+}
+
+/// What every cell of a kind remembers of a behaviour where it begins.
+pub fn start_of(kind: &Kind, behaviour: Behaviour, seed: u64) -> Vec<BehaviourState> {
+    (0..kind.cells).map(|cell| behaviour.start(seed, (kind.first_cell + cell) as u64)).collect()
 }
 
 /// Index of a number in a block array.
@@ -57,8 +62,8 @@ pub fn vector(kind: &Kind, values: &[f64], cell: usize, atom: usize) -> Vec3 {
 }
 
 impl KindState {
-    /// Places cells; `places[cell]` are the positions of a cell's atoms.
-    pub fn new(kind: &Kind, places: &[Vec<Vec3>], inertial: Inertia) -> Self {
+    /// Places cells; `places[cell]` are the positions of a cell's atoms. Behaviours begin as the seed says.
+    pub fn new(kind: &Kind, places: &[Vec<Vec3>], inertial: Inertia, seed: u64) -> Self {
         let mut positions = vec![0.0; kind.blocks() * kind.block_len()];
         for slot in 0..kind.blocks() * kind.lanes {
             let place = &places[slot.min(places.len() - 1)];
@@ -79,6 +84,7 @@ impl KindState {
             rest_volumes: vec![volume; kind.blocks() * kind.lanes],
             stiffness_shape: Vec::new(),
             mean_velocities: vec![[0.0; 3]; kind.cells],
+            behaviours: kind.behaviours.iter().map(|behaviour| start_of(kind, *behaviour, seed)).collect(),
         }
     }
 
@@ -96,6 +102,7 @@ impl KindState {
             array.fill(f64::NAN);
         }
         self.mean_velocities.fill([f64::NAN; 3]);
+        self.behaviours.iter_mut().for_each(Vec::clear);
     }
 
     /// Moves a cell as a whole, µm.
@@ -129,16 +136,11 @@ impl State {
     /// [`ChemistryState::new`] for a model that has some.
     pub fn new(model: &Model, places: &[Vec<Vec<Vec3>>]) -> Self {
         let inertia = if model.integrator.method.is_inertial() { Inertia::Inertial } else { Inertia::OverDamped };
-        let kinds = model.kinds.iter().zip(places).map(|(kind, cells)| KindState::new(kind, cells, inertia)).collect();
-        let mut walks = Vec::new();
-        for kind in &model.kinds {
-            if let Some(motility) = &kind.brownian {
-                walks.extend((0..kind.cells).map(|cell| motility.start(model.seed, (kind.first_cell + cell) as u64)));
-            }
-        }
+        let state = |(kind, cells): (&Kind, &Vec<_>)| KindState::new(kind, cells, inertia, model.seed);
+        let kinds = model.kinds.iter().zip(places).map(state).collect();
         let chemistry = ChemistryState::new(model, &[]);
         let contact = ContactState::default();
-        Self { time: 0.0, step: 0, next_step: 0.0, kinds, walks, ended_runs: Vec::new(), chemistry, contact }
+        Self { time: 0.0, step: 0, next_step: 0.0, kinds, ended_runs: Vec::new(), chemistry, contact }
     }
 
     /// Makes this state, which may hold anything, the one that a step from another leads to, as far as that is known before it: where
@@ -154,7 +156,6 @@ impl State {
     pub fn poison(&mut self) {
         (self.time, self.step, self.next_step) = (f64::NAN, u64::MAX, f64::NAN);
         self.kinds.iter_mut().for_each(KindState::poison);
-        self.walks.clear();
         self.ended_runs.clear();
         self.chemistry.poison();
         self.contact = ContactState::default();

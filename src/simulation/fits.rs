@@ -1,6 +1,7 @@
 //! Whether a state is one of a model: as many numbers of everything as the model asks for.
 
 use super::error::SimulationError;
+use crate::cell::{Behaviour, BehaviourState};
 use crate::sim::chemistry::{ChemistryState, FieldState};
 use crate::sim::controls::Controls;
 use crate::sim::{KindState, Model, State};
@@ -17,7 +18,7 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
     let inertial = model.integrator.method.is_inertial();
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
         let (positions, cells) = (kind.blocks() * kind.block_len(), kind.blocks() * kind.lanes);
-        let KindState { positions: x, velocities, rest_volumes, stiffness_shape, mean_velocities } = now;
+        let KindState { positions: x, velocities, rest_volumes, stiffness_shape, mean_velocities, behaviours } = now;
         let fits = x.len() == positions
             && mean_velocities.len() == kind.cells
             && velocities.len() == if inertial { positions } else { 0 }
@@ -27,10 +28,12 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
         if !fits {
             return mismatch(format!("the cells of type `{}` are others, or of another number", kind.name));
         }
-    }
-    let walks: usize = model.kinds.iter().filter(|kind| kind.brownian.is_some()).map(|kind| kind.cells).sum();
-    if state.walks.len() != walks {
-        return mismatch(format!("{} cells of it walk, not {walks}", state.walks.len()));
+        let own = |(behaviour, states): (&Behaviour, &Vec<BehaviourState>)| {
+            states.len() == kind.cells && states.iter().all(|state| behaviour.owns(state))
+        };
+        if behaviours.len() != kind.behaviours.len() || !kind.behaviours.iter().zip(behaviours).all(own) {
+            return mismatch(format!("the cells of type `{}` do something else by themselves", kind.name));
+        }
     }
     let fields = model.chemistry.fields.iter().map(|field| FieldState {
         values: vec![0.0; field.system.species().len() * field.system.grid().len()],

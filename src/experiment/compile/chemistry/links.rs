@@ -90,7 +90,7 @@ fn act(link: &Link, chemistry: &mut Chemistry, kinds: &mut [Kind]) {
     for kind in cells {
         let kind = &mut kinds[kind];
         match control {
-            Control::Bias(_) => kind.biased = true,
+            Control::Bias(_) => kind.set_biased(true),
             Control::Atom(atom, axis) => {
                 chemistry.imposes_atoms = true;
                 let held =
