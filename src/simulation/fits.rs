@@ -23,7 +23,6 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
             && mean_velocities.len() == kind.cells
             && velocities.len() == if inertial { positions } else { 0 }
             && rest_volumes.len() == cells
-            && mean_velocities.len() == kind.cells
             && (stiffness_shape.is_empty() || stiffness_shape.len() == positions);
         if !fits {
             return mismatch(format!("the cells of type `{}` are others, or of another number", kind.name));
