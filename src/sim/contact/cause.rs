@@ -1,11 +1,12 @@
 //! Why contacts could not keep two cells apart, from what the cells look like.
 
 use super::gather::gather_positions;
-use super::model::ContactModel;
+use super::scene::ContactScene;
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
 use crate::geometry::{Flap, Topology};
-use crate::sim::model::{Kind, Model};
+use crate::sim::kind::Kind;
+use crate::sim::model::Model;
 use crate::sim::state::State;
 use crate::sim::trouble::Trouble;
 
@@ -51,16 +52,17 @@ const FOLDED: f64 = -0.34;
 fn cause_of(model: &Model, state: &State, cells: &[(String, usize); 2]) -> Cause {
     let Some(contact) = &model.contact else { return Cause::Open };
     let bodies = cells.each_ref().map(|(name, cell)| {
-        let kind = model.kinds.iter().find(|kind| kind.name == *name);
-        (kind.map_or(0, |kind| kind.first_cell) + cell) as u32
+        let kind = model.kinds.iter().position(|kind| kind.name == *name);
+        (kind.map_or(0, |kind| state.kinds[kind].first_cell) + cell) as u32
     });
     let is_folded = |body: u32| {
-        let (kind, cell) = model.kind_of(body as usize);
+        let (kind, cell) = state.kind_of(body as usize);
         folds(&model.kinds[kind], &state.kinds[kind].cell(&model.kinds[kind], cell))
     };
     if bodies.into_iter().any(is_folded) {
         return Cause::Folded;
     }
+    let contact = &contact.scene_of(&state.kinds);
     let (mut positions, mut found) = (Vec::new(), Contacts::default());
     gather_positions(model, contact, &state.kinds, &mut positions);
     Detector::default().detect(&contact.scene, &positions, &mut found);
@@ -69,7 +71,7 @@ fn cause_of(model: &Model, state: &State, cells: &[(String, usize); 2]) -> Cause
 }
 
 /// The part of a cell's atoms that touch another cell or a plane.
-fn surrounded(contact: &ContactModel, found: &Contacts, body: u32) -> f64 {
+fn surrounded(contact: &ContactScene, found: &Contacts, body: u32) -> f64 {
     let scene = &contact.scene;
     let others = found.atoms.iter().filter(|near| near.body(scene) != body).map(|near| near.atom);
     let mut touching: Vec<u32> = others.chain(found.planes.iter().map(|near| near.atom)).collect();
