@@ -1,6 +1,10 @@
 //! Memory is part of the design: nothing is allocated in a step after the first, and an atom at rest costs few bytes.
 //! A file of its own, because the allocator of a test program counts for all its tests; one test after the other.
 
+#[path = "support/everything.rs"]
+mod everything;
+
+use everything::{Steps, after, everything};
 use pseudopod::Vec3;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::geometry::{Topology, icosphere};
@@ -108,6 +112,27 @@ fn allocations(method: Method, acting: Acting, threads: usize) -> usize {
     })
 }
 
+/// Allocations of twenty steps in the scene that has everything: contacts, walks, fields, systems with events, links. Walks do not turn, for
+/// each run that ends is kept for the result.
+fn allocations_of_everything() -> usize {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .start_handler(|_| WORKS.set(true))
+        .exit_handler(|_| WORKS.set(false))
+        .build()
+        .unwrap();
+    let (model, start) = everything(Steps::Fixed, "1000 h");
+    pool.install(|| {
+        // Until the cells lie where they stay, and lists of contacts are as long as they become.
+        let (mut state, mut ws) = after(&model, start, 100);
+        let before = CALLS.load(Ordering::Relaxed);
+        for _ in 0..20 {
+            step(&model, &mut state, &mut ws).unwrap();
+        }
+        CALLS.load(Ordering::Relaxed) - before
+    })
+}
+
 #[test]
 fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
     let methods = [
@@ -127,6 +152,7 @@ fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
         let shared = allocations(method, Acting::Loads, 2);
         assert!(shared < 20, "{method:?} on two threads: {shared}");
     }
+    assert_eq!(allocations_of_everything(), 0, "where there is everything");
     let before = BYTES.load(Ordering::Relaxed);
     let model = scene(Method::Implicit { order: Order::Second }, Acting::Elastic, 100_000);
     let places = vec![model.kinds[0].rest.positions.clone(); 100_000];

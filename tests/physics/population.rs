@@ -1,6 +1,6 @@
 //! Cells come and go between steps: what stays goes on as if nothing else had been there, and nothing is known of what is gone.
 
-use crate::everything::{Steps, everything};
+use crate::everything::{Steps, after, everything};
 use pseudopod::Vec3;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::geometry::{self, Surface, Topology, icosphere};
@@ -9,7 +9,7 @@ use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::{
     Change, Kind, Model, NewCell, PopulationChange, PopulationTrouble, Removal, State, VolumeRule, Workspace,
-    add_cells, apply_due_changes, begin_chemistry, remove_cells, step,
+    add_cells, apply_due_changes, remove_cells, step,
 };
 
 const STEP: StepSize = StepSize::Fixed(0.05);
@@ -47,9 +47,8 @@ fn run(model: &Model, state: &mut State, ws: &mut Workspace, steps: usize) {
 
 /// The scene that has everything, begun, with fixed steps.
 fn begun() -> (Model, State, Workspace) {
-    let (model, mut state) = everything(Steps::Fixed, "0.3 s");
-    let mut ws = Workspace::new(&model);
-    begin_chemistry(&model, &mut state, &mut ws).unwrap();
+    let (model, start) = everything(Steps::Fixed, "0.3 s");
+    let (state, ws) = after(&model, start, 0);
     (model, state, ws)
 }
 
@@ -182,9 +181,8 @@ fn contacts_of_the_cells_that_stay_go_on() {
 fn course(threads: usize, between: impl Fn(&mut State, &mut Workspace) + Sync) -> Vec<u8> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
-        let (model, mut state) = everything(Steps::Adaptive, "0.3 s");
-        let mut ws = Workspace::new(&model);
-        begin_chemistry(&model, &mut state, &mut ws).unwrap();
+        let (model, start) = everything(Steps::Adaptive, "0.3 s");
+        let (mut state, mut ws) = after(&model, start, 0);
         for round in 0..24u32 {
             between(&mut state, &mut ws);
             match round {
