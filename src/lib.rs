@@ -24,6 +24,7 @@ pub mod ode;
 pub mod output;
 pub mod picture;
 pub mod random;
+pub mod recorded;
 pub mod run;
 pub mod sim;
 pub mod simulation;

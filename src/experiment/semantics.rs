@@ -5,15 +5,8 @@ use super::contact::{ADHESIVE_SERIES, CONTACT_SERIES, ContactModel, LINK_SERIES,
 use super::document::{Document, near_file};
 use crate::error::Fault;
 use crate::error::words;
+use crate::recorded::cell_series;
 use std::path::Path;
-
-/// Series of every cell that the result holds, besides those of the scene (`load.NAME`, `time`).
-#[rustfmt::skip] // a table
-const CELL_SERIES: [&str; 21] = [
-    "position_x", "position_y", "position_z", "velocity_x", "velocity_y", "velocity_z", "speed", "volume",
-    "volume_error", "area", "energy", "size_x", "size_y", "size_z", "principal_1", "principal_2", "principal_3",
-    "smallest_facet", "smallest_cosine", "contact_share", "aggregate",
-];
 
 mod cells;
 mod chemistry;
@@ -108,7 +101,7 @@ impl Check<'_> {
     }
 
     fn series(&mut self, path: &str, text: &str) {
-        let pairs = self.series_of_pairs();
+        let (pairs, of_cells) = (self.series_of_pairs(), cell_series().collect::<Vec<String>>());
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> = cells.flat_map(|cell| &cell.loads).map(|load| format!("load.{}", load.name)).collect();
         let contacts = self.document.experiment.contact.is_some();
@@ -119,7 +112,7 @@ impl Check<'_> {
         let of_contacts = CONTACT_SERIES.into_iter().filter(|_| contacts).chain(of_links).chain(of_adhesives);
         let of_pairs = pairs.iter().filter(|_| contacts);
         let known = || {
-            let own = CELL_SERIES.into_iter().chain(of_contacts.clone()).chain(["time"]);
+            let own = of_cells.iter().map(String::as_str).chain(of_contacts.clone()).chain(["time"]);
             own.chain(loads.iter().chain(of_pairs.clone()).map(String::as_str))
         };
         if known().any(|name| name == text) {

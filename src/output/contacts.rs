@@ -3,16 +3,18 @@
 
 use super::catalogue::List;
 use super::changes::counts_of_changes;
-use super::{Layout, ResultFile};
+use super::{Cell, Layout, ResultFile};
 use crate::error::{Error, Fault, Result};
+use ndarray::ArrayView1;
+use std::collections::{HashMap, HashSet};
 
 /// A cell that touches another, or a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Touching {
-    /// The cell; of two the one with the smaller number.
-    pub cell: u32,
-    /// The other cell, or the plane, by its number in [`Layout::planes`].
-    pub other: u32,
+    /// Id of the cell; of two the smaller one.
+    pub cell: u64,
+    /// Id of the other cell, or the plane, by its number in [`Layout::planes`].
+    pub other: u64,
     /// Area of contact, µm², eq. (adhesion.8).
     pub area: f64,
 }
@@ -50,16 +52,20 @@ impl ResultFile {
         let numbers = |name: &str| self.read(name, |data| data.read_slice_1d::<i64, _>(rows.clone()));
         let (cells, numbers) = (numbers(names[0])?, numbers(names[1])?);
         let areas = self.read(list.column(), |data| data.read_slice_1d::<f64, _>(rows.clone()))?;
-        let number = |number: &i64| u32::try_from(*number).unwrap_or(u32::MAX);
-        let known = |touching: &Touching| (touching.cell as usize) < self.layout().cells.len();
+        let number = |number: &i64| u64::try_from(*number).unwrap_or(u64::MAX);
+        let ids: HashSet<u64> = self.cells(frame).iter().map(|cell| cell.id).collect();
+        let is_known = |touching: &Touching| {
+            let planes = self.layout().planes.len() as u64;
+            let other = if list == List::Pairs { ids.contains(&touching.other) } else { touching.other < planes };
+            other && ids.contains(&touching.cell)
+        };
         let rows = cells.iter().zip(&numbers).zip(&areas).map(|((cell, other), area)| Touching {
             cell: number(cell),
             other: number(other),
             area: *area,
         });
         let found: Vec<Touching> = rows.collect();
-        let others = if list == List::Pairs { self.layout().cells.len() } else { self.layout().planes.len() };
-        match found.iter().all(|touching| known(touching) && (touching.other as usize) < others) {
+        match found.iter().all(is_known) {
             true => Ok(found),
             false => Err(super::container::damaged(self.path(), &format!("{} names no cell", names[0]))),
         }
@@ -169,7 +175,8 @@ pub(super) fn series_of_frame(layout: &Layout) -> Vec<(String, &'static str)> {
     if !layout.contacts {
         return Vec::new();
     }
-    let types = &layout.types;
+    let types = layout.type_names();
+    let types = types.as_slice();
     let pairs = || pairs_of(types.len()).map(|[one, other]| format!("{}.{}", types[one], types[other]));
     let of_planes = types.iter().flat_map(|kind| layout.planes.iter().map(move |plane| format!("{kind}.{}", plane.0)));
     let mut names: Vec<(String, &str)> =
@@ -193,10 +200,10 @@ fn pairs_of(types: usize) -> impl Iterator<Item = [usize; 2]> {
 /// A damaged file.
 pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
     let mut all = vec![Vec::new(); series_of_frame(result.layout()).len()];
-    let surfaces = result.cell_series("area")?;
     for frame in 0..result.frames() {
-        let surface = surfaces.row(frame).sum();
-        let values = values_of_frame(result.layout(), surface, &result.pairs(frame)?, &result.on_planes(frame)?);
+        let surface = ArrayView1::from(&result.cell_values("area", frame)?).sum();
+        let (cells, pairs, on_planes) = (result.cells(frame), result.pairs(frame)?, result.on_planes(frame)?);
+        let values = values_of_frame(result.layout(), &cells, surface, &pairs, &on_planes);
         all.iter_mut().zip(values).for_each(|(series, value)| series.push(value));
     }
     all.extend(counts_of_changes(result.cell_series("aggregate")?.view()));
@@ -206,27 +213,29 @@ pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
 /// The values of [`series_of_frame`] in a frame in which the cells have this surface, µm².
 pub(super) fn values_of_frame(
     layout: &Layout,
+    cells: &[Cell],
     surface: f64,
     touching: &[Touching],
     on_planes: &[Touching],
 ) -> Vec<f64> {
-    let types: Vec<u32> = layout.cells.iter().map(|cell| cell.kind).collect();
+    let types: Vec<u32> = cells.iter().map(|cell| cell.kind).collect();
     let (number, planes) = (layout.types.len(), layout.planes.len());
+    let indices: HashMap<u64, u32> = (0..).zip(cells).map(|(index, cell)| (cell.id, index)).collect();
     let kind = |cell: u32| types[cell as usize] as usize;
     let mut areas = vec![0.0; number * number];
     let mut counts = vec![0_u32; number * number];
     for pair in touching {
-        let (one, other) = (kind(pair.cell), kind(pair.other));
-        let place = one.min(other) * number + one.max(other);
-        areas[place] += pair.area;
-        counts[place] += 1;
+        let (one, other) = (kind(indices[&pair.cell]), kind(indices[&pair.other]));
+        let index = one.min(other) * number + one.max(other);
+        areas[index] += pair.area;
+        counts[index] += 1;
     }
     let mut on = vec![0.0; number * planes];
-    on_planes.iter().for_each(|touch| on[kind(touch.cell) * planes + touch.other as usize] += touch.area);
+    on_planes.iter().for_each(|touch| on[kind(indices[&touch.cell]) * planes + touch.other as usize] += touch.area);
     let whole: f64 = areas.iter().sum();
     let alike: f64 = (0..number).map(|one| areas[one * number + one]).sum();
 
-    let pairs: Vec<[u32; 2]> = touching.iter().map(|pair| [pair.cell, pair.other]).collect();
+    let pairs: Vec<[u32; 2]> = touching.iter().map(|pair| [indices[&pair.cell], indices[&pair.other]]).collect();
     let like = pairs.iter().copied().filter(|[one, other]| kind(*one) == kind(*other));
     let mut sizes = vec![0_u32; types.len()];
     clusters(types.len(), like).iter().for_each(|first| sizes[*first as usize] += 1);

@@ -11,26 +11,13 @@ use crate::analysis::table::Table;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Over, Plot, PlotKind, PlotTable};
 use crate::output::ResultFile;
+use crate::recorded::cell_label;
 
 /// Colour of measured points.
 const MEASURED: Colour = Colour([0x33, 0x33, 0x33]);
 
-/// Names of series as a reader would say them.
-const READABLE: [(&str, &str); 26] = [
-    ("size_x", "extent along x"),
-    ("size_y", "extent along y"),
-    ("size_z", "extent along z"),
-    ("principal_1", "longest extent"),
-    ("principal_2", "middle extent"),
-    ("principal_3", "shortest extent"),
-    ("position_x", "position x"),
-    ("position_y", "position y"),
-    ("position_z", "position z"),
-    ("volume_error", "volume error"),
-    ("smallest_facet", "smallest facet over rest"),
-    ("energy", "elastic energy"),
-    ("smallest_cosine", "smallest cosine of normal and radius"),
-    ("contact_share", "share of atoms in contact"),
+/// Names of series of the scene as a reader would say them.
+const READABLE: [(&str, &str); 12] = [
     ("largest_aggregate", "cells of the largest aggregate"),
     ("contact.births", "births of aggregates"),
     ("contact.merges", "merges of aggregates"),
@@ -63,8 +50,9 @@ pub fn label_of(result: &ResultFile, series: &str) -> String {
 }
 
 fn readable(series: &str) -> String {
-    if let Some((_, text)) = READABLE.iter().find(|(name, _)| *name == series) {
-        return (*text).to_owned();
+    let of_scene = READABLE.iter().find(|(name, _)| *name == series).map(|(_, text)| *text);
+    if let Some(text) = cell_label(series).or(of_scene) {
+        return text.to_owned();
     }
     let of_contacts = OF_CONTACTS.iter().find_map(|(stem, text)| Some((series.strip_prefix(stem)?, text)));
     of_contacts
@@ -105,7 +93,7 @@ pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result
 
 /// The types that a plot shows, each as a curve of its own.
 fn types_of(result: &ResultFile, plot: &Plot) -> Vec<String> {
-    plot.cells.as_ref().map_or_else(|| result.layout().types.clone(), |name| vec![name.clone()])
+    plot.cells.as_ref().map_or_else(|| result.layout().type_names(), |name| vec![name.clone()])
 }
 
 fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Result<Chart> {
@@ -172,8 +160,9 @@ fn lines_of_cells(result: &ResultFile, plot: &Plot, series: &[String]) -> Result
             let colour = Colour::of_palette(number).mixed(Colour([0xff; 3]), 0.62);
             let mut drawn = false;
             for cell in cells {
-                let points: Vec<[f64; 2]> =
-                    recording.times.iter().zip(values.column(cell)).map(|(t, v)| [*t, *v]).collect();
+                let of_cell = recording.times.iter().zip(values.column(cell)).enumerate();
+                let there = of_cell.filter(|(frame, _)| recording.is_there(*frame, cell));
+                let points: Vec<[f64; 2]> = there.map(|(_, (t, v))| [*t, *v]).collect();
                 if points.iter().any(|point| !point[1].is_nan()) {
                     drawn = true;
                     let (label, stroke, width) = (String::new(), Stroke::Solid, 0.9);
@@ -193,7 +182,11 @@ fn tracks(result: &ResultFile, plot: &Plot) -> Result<Chart> {
     for kind in types_of(result, plot) {
         let positions = recording.positions(&recording.cells_of(Some(&kind))?)?;
         let (frames, cells, _) = positions.dim();
-        let path = |cell: usize| (0..frames).map(|f| [positions[[f, cell, 0]], positions[[f, cell, 1]]]).collect();
+        // A cell that comes late or leaves has a track where it is.
+        let path = |cell: usize| {
+            let points = (0..frames).map(|f| [positions[[f, cell, 0]], positions[[f, cell, 1]]]);
+            points.filter(|point| !point[0].is_nan()).collect()
+        };
         chart.series.push(Series::tracks((0..cells).map(path).collect()));
     }
     Ok(chart)

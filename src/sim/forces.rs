@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::chemistry::Controls;
 use super::contact::{ContactForces, add_contact_forces, pull_contacts};
+use super::controls::Controls;
 use super::model::{Kind, Model, VolumeRule};
 use super::rooms::{Rooms, each_or_none};
 use super::state::{KindState, State};

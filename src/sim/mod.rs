@@ -3,6 +3,7 @@
 pub mod chemistry;
 pub mod constraints;
 pub mod contact;
+pub mod controls;
 mod finite;
 pub mod forces;
 mod gain;

@@ -1,7 +1,8 @@
 //! Whether a state is one of a model: as many numbers of everything as the model asks for.
 
 use super::error::SimulationError;
-use crate::sim::chemistry::{ChemistryState, Controls, FieldState};
+use crate::sim::chemistry::{ChemistryState, FieldState};
+use crate::sim::controls::Controls;
 use crate::sim::{KindState, Model, State};
 
 /// Checks that all arrays of a state have the lengths that a model asks for.
@@ -16,10 +17,12 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
     let inertial = model.integrator.method.is_inertial();
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
         let (positions, cells) = (kind.blocks() * kind.block_len(), kind.blocks() * kind.lanes);
-        let KindState { positions: x, velocities, rest_volumes, stiffness_shape } = now;
+        let KindState { positions: x, velocities, rest_volumes, stiffness_shape, mean_velocities } = now;
         let fits = x.len() == positions
+            && mean_velocities.len() == kind.cells
             && velocities.len() == if inertial { positions } else { 0 }
             && rest_volumes.len() == cells
+            && mean_velocities.len() == kind.cells
             && (stiffness_shape.is_empty() || stiffness_shape.len() == positions);
         if !fits {
             return mismatch(format!("the cells of type `{}` are others, or of another number", kind.name));

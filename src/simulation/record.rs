@@ -2,37 +2,27 @@
 
 use super::touch::Touch;
 use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES};
-use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
+use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
 use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::{Law, find_contacts};
+use crate::sim::model::Kind;
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
 use crate::sim::{Model, State, Workspace, forces};
 
-/// Names, cells, facets and planes of a model, as the result file lists them.
+/// Types of cells, names and planes of a model, as the result file lists them.
 pub fn layout_of(model: &Model) -> Layout {
     let mut layout = outline_of(model);
-    for cell in &layout.cells {
-        let kind = &model.kinds[cell.kind as usize];
-        layout.facets.extend(kind.rest.facets.iter().map(|facet| facet.map(|atom| atom + cell.first_atom)));
-        layout.links.extend(kind.drawn_links.iter().map(|pair| pair.map(|atom| atom + cell.first_atom)));
+    for (known, kind) in layout.types.iter_mut().zip(&model.kinds) {
+        (known.facets, known.links) = (kind.rest.facets.clone(), kind.drawn_links.clone());
     }
     layout
 }
 
 /// The same without facets and links, which take most of the memory: enough to know the series of a frame.
 pub fn outline_of(model: &Model) -> Layout {
-    let mut layout = Layout::default();
-    let (mut first_atom, mut first_facet) = (0u32, 0u32);
-    for (number, kind) in model.kinds.iter().enumerate() {
-        layout.types.push(kind.name.clone());
-        for _ in 0..kind.cells {
-            let (atoms, facets) = (kind.atoms() as u32, kind.rest.facets.len() as u32);
-            layout.cells.push(CellLayout { kind: number as u32, first_atom, atoms, first_facet, facets });
-            first_atom += atoms;
-            first_facet += facets;
-        }
-    }
+    let kind = |kind: &Kind| CellType { name: kind.name.clone(), atoms: kind.atoms() as u32, ..CellType::default() };
+    let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     layout.contacts = model.contact.is_some();
     if layout.contacts {
@@ -69,9 +59,7 @@ fn add_chemistry(model: &Model, layout: &mut Layout) {
             name: reactor.name.clone(),
             scope: match &reactor.members {
                 Members::Scene => SystemScope::Scene,
-                Members::Kinds(_) => {
-                    SystemScope::Cells(member_cells(model, &reactor.members).map(|cell| cell as u32).collect())
-                }
+                Members::Kinds(_) => SystemScope::Cells,
             },
             quantities: reactor.recorded.iter().map(|(_, id, unit)| (id.clone(), unit.clone())).collect(),
         });
@@ -89,9 +77,18 @@ fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
         let values = reactor.recorded.iter().map(|(quantity, ..)| {
             let mut values = vec![0.0; population.cells()];
             population.observe(&reactor.program, *quantity, time / reactor.seconds, &mut values);
-            values
+            match &reactor.members {
+                Members::Scene => values,
+                Members::Kinds(_) => {
+                    let mut of_all = vec![f64::NAN; frame.cells.len()];
+                    let cells = member_cells(model, &reactor.members);
+                    cells.zip(values).for_each(|(cell, value)| of_all[cell] = value);
+                    of_all
+                }
+            }
         });
-        frame.systems.push(values.collect());
+        let values = values.collect();
+        frame.systems.push(values);
     }
 }
 
@@ -129,7 +126,9 @@ impl Recorder {
     /// The frame of this instant; takes the ended runs from the state, since they are recorded now.
     pub fn record(&mut self, model: &Model, state: &mut State, ws: &Workspace, dt: f64) -> Frame {
         let frame = self.look(model, state, ws, dt);
-        Frame { runs: std::mem::take(&mut state.ended_runs), ..frame }
+        let ended = std::mem::take(&mut state.ended_runs);
+        let runs = ended.into_iter().map(|(cell, end, duration)| (u64::from(cell), end, duration)).collect();
+        Frame { runs, ..frame }
     }
 
     /// The frame of this instant without the runs that ended; `dt` is the size of the last step, s.
@@ -153,13 +152,19 @@ impl Recorder {
     }
 }
 
+/// The cells that there are, in the order of all arrays of a frame.
+fn cells_of(model: &Model, _: &State) -> Vec<Cell> {
+    let kinds = (0..).zip(&model.kinds).flat_map(|(number, kind)| std::iter::repeat_n(number, kind.cells));
+    (0..).zip(kinds).map(|(id, kind)| Cell { id, kind, parent: None }).collect()
+}
+
 /// Positions and measures of all cells at this instant, as if they did not touch.
 fn frame_of(model: &Model, state: &State) -> Frame {
     let velocities = mean_velocities(state);
-    let mut frame = Frame { time: state.time, step: state.step, ..Frame::default() };
+    let mut frame = Frame { time: state.time, step: state.step, cells: cells_of(model, state), ..Frame::default() };
     for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
         frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));
-        frame.cells.push(CellRecord {
+        frame.records.push(CellRecord {
             position: cell.centre.into(),
             velocity: velocity.into(),
             volume: cell.volume,
@@ -171,7 +176,7 @@ fn frame_of(model: &Model, state: &State) -> Frame {
             smallest_facet: cell.smallest_facet,
             smallest_cosine: cell.smallest_cosine,
             contact_share: 0.0,
-            aggregate: number as f64,
+            aggregate: frame.cells[number].id as f64,
         });
     }
     record_chemistry(model, state, &mut frame);

@@ -49,11 +49,16 @@ impl Touch {
         // Where links bind, cells that merely touch do not belong together.
         let first = match contact.law {
             Law::Links(_) => clusters(bodies, self.links.iter().map(|link| link.bodies)),
-            _ => clusters(bodies, frame.pairs.iter().map(|pair| [pair.cell, pair.other])),
+            _ => clusters(bodies, self.areas.iter().filter(|area| area.1 < bodies as u32).map(|area| [area.0, area.1])),
         };
-        for (cell, record) in frame.cells.iter_mut().enumerate() {
+        let mut smallest: Vec<u64> = frame.cells.iter().map(|cell| cell.id).collect();
+        for (cell, first) in frame.cells.iter().zip(&first) {
+            let known = &mut smallest[*first as usize];
+            *known = (*known).min(cell.id);
+        }
+        for (cell, record) in frame.records.iter_mut().enumerate() {
             record.contact_share = f64::from(touching[cell]) / contact.scene.shape(cell as u32).atoms as f64;
-            record.aggregate = f64::from(first[cell]);
+            record.aggregate = smallest[first[cell] as usize] as f64;
         }
         let mut sizes = vec![0_u32; first.len()];
         first.iter().for_each(|first| sizes[*first as usize] += 1);
@@ -106,12 +111,21 @@ impl Touch {
             self.found.edges.iter().map(|near| near.bodies(&contact.scene)).filter(|[one, other]| one != other);
         self.areas.extend(of_edges.map(|[one, other]| (one.min(other), one.max(other), 0.0)));
         self.areas.sort_by_key(|area| (area.0, area.1));
+        let ids: Vec<u64> = frame.cells.iter().map(|cell| cell.id).collect();
+        let id = |cell: u32| ids[cell as usize];
         for alike in self.areas.chunk_by(|one, other| (one.0, one.1) == (other.0, other.1)) {
             let (cell, other, area) = (alike[0].0, alike[0].1, alike.iter().map(|one| one.2).sum());
             match other.checked_sub(bodies) {
-                None => frame.pairs.push(Touching { cell, other, area }),
-                Some(plane) => frame.on_planes.push(Touching { cell, other: plane, area }),
+                None => {
+                    let (one, other) = (id(cell), id(other));
+                    frame.pairs.push(Touching { cell: one.min(other), other: one.max(other), area });
+                }
+                Some(plane) => {
+                    frame.on_planes.push(Touching { cell: id(cell), other: u64::from(plane), area });
+                }
             }
         }
+        frame.pairs.sort_by_key(|pair| (pair.cell, pair.other));
+        frame.on_planes.sort_by_key(|touching| (touching.cell, touching.other));
     }
 }

@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// A room and the rooms that it may use. Every room may use itself and those that see nothing else: `error`, `units`,
-/// `random`, and the crate's own `Vec3`.
+/// `random`, `recorded`, and the crate's own `Vec3`.
 const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("units", &[]),
     ("random", &[]),
+    ("recorded", &[]),
     ("geometry", &[]),
     ("mechanics", &["geometry"]),
     ("equations", &[]),
@@ -45,7 +46,7 @@ const TABLE: &[(&str, &[&str])] = &[
 ];
 
 /// What every room may use.
-const GROUND: [&str; 3] = ["error", "units", "random"];
+const GROUND: [&str; 4] = ["error", "units", "random", "recorded"];
 
 /// Rooms that must not touch files or clocks, and the words that would show it.
 const PURE: [&str; 7] = ["geometry", "mechanics", "contact", "cell", "sim", "units", "random"];

@@ -208,7 +208,7 @@ loads = [{{ name = "{name}_pull", all = true, direction = [{direction}, 0, 0], f
     let file = ResultFile::open(&result).expect("a result");
     let events = changes(file.cell_series("aggregate").expect("a series").view());
     println!("{events:?}");
-    let first: Vec<(Change, &[u32], &[u32])> =
+    let first: Vec<(Change, &[u64], &[u64])> =
         events.iter().map(|event| (event.change, &event.before[..], &event.after[..])).take(2).collect();
     assert_eq!(first, [(Change::Merge, &[0, 2][..], &[0][..]), (Change::Split, &[0][..], &[0, 2][..])]);
 }
@@ -256,7 +256,8 @@ fn aggregates_and_shares_of_contact_are_recorded() {
     let summary = file.summary().expect("measures");
     assert_eq!(summary.iter().find(|measure| measure.name == "together").map(|measure| measure.value), Some(3.0));
     for frame in 0..frames {
-        let pairs: Vec<[u32; 2]> = file.pairs(frame).unwrap().iter().map(|pair| [pair.cell, pair.other]).collect();
+        let pairs: Vec<[u32; 2]> =
+            file.pairs(frame).unwrap().iter().map(|pair| [pair.cell as u32, pair.other as u32]).collect();
         assert_eq!(pairs, [[0, 3], [1, 3]], "in frame {frame}");
     }
     // Two red cells and a white one touch: by chance a pair is alike with probability 1/3, and none is. There are three
@@ -335,7 +336,8 @@ fn sheets_that_lie_on_each_other_touch_with_all_their_area() {
         // Round-off of sums over 30 atoms.
         assert!((area(name) - wanted).abs() < 1e-11, "{name}: {} µm² in place of {wanted}", area(name));
     }
-    let pairs: Vec<[u32; 2]> = file.pairs(0).unwrap().iter().map(|pair| [pair.cell, pair.other]).collect();
+    let pairs: Vec<[u32; 2]> =
+        file.pairs(0).unwrap().iter().map(|pair| [pair.cell as u32, pair.other as u32]).collect();
     assert_eq!(pairs, [[0, 1], [1, 2]]);
     let values = |name: &str| file.summary().unwrap().into_iter().find(|measure| measure.name == name).unwrap().value;
     assert!(values("none") == 0.0 && values("pair") > 39.9 && values("floor") > 39.9);

@@ -10,10 +10,10 @@ use pseudopod::mechanics::course::Course;
 use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
-use pseudopod::sim::chemistry::Controls;
 use pseudopod::sim::contact::{
     ContactModel, Law, Link, LinkTable, Penalty, Row, Strength, links_at, press, pull_links,
 };
+use pseudopod::sim::controls::Controls;
 use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::{Kind, Load, Model, State, VolumeRule, Workspace, step};
 

@@ -24,4 +24,4 @@ pub use links::{Control, Link, LinkObservations, Observation, Observations, Owne
 pub use model::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
 pub use scratch::ChemistryScratch;
 pub use stages::{advance_chemistry, begin_chemistry};
-pub use state::{ChemistryState, Controls, FieldState};
+pub use state::{ChemistryState, FieldState};

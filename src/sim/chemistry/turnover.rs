@@ -1,7 +1,8 @@
 //! Cells come and go between steps: what chemistry knows of each comes and goes with it, and stands in the order of the cells.
 
+use super::super::controls::retain;
 use super::model::{Chemistry, Members};
-use super::state::{ChemistryState, Controls};
+use super::state::{ChemistryState, admit_links};
 
 impl ChemistryState {
     /// A cell comes: every system of its kind gets a member at the system's start, and no link has set anything of it. It stands before
@@ -21,6 +22,7 @@ impl ChemistryState {
             }
         }
         self.controls.insert_cell(cells[..kind].iter().sum::<usize>() + local);
+        admit_links(&mut self.controls, chemistry, cells.iter().sum::<usize>() + 1);
     }
 
     /// Cells go: those of which `keep` (of a kind, and a number among its cells) says no. `cells` says how many each kind has before.
@@ -35,37 +37,4 @@ impl ChemistryState {
         let stays: Vec<bool> = (0..cells.len()).flat_map(all).map(|(kind, at)| keep(kind, at)).collect();
         self.controls.retain_cells(&stays);
     }
-}
-
-impl Controls {
-    /// Adds a cell to all lists that are there, with numbers that change nothing.
-    fn insert_cell(&mut self, at: usize) {
-        let insert = |list: &mut Vec<f64>, nothing: f64| {
-            if !list.is_empty() {
-                list.insert(at, nothing);
-            }
-        };
-        insert(&mut self.speed, f64::NAN);
-        insert(&mut self.stiffness, 1.0);
-        insert(&mut self.adhesion, 1.0);
-        self.loads.iter_mut().for_each(|list| insert(list, 1.0));
-        self.fibres.iter_mut().for_each(|list| insert(list, -1.0));
-        self.secretion.iter_mut().for_each(|list| insert(list, 0.0));
-        if !self.bias.is_empty() {
-            self.bias.insert(at, [0.0; 3]);
-        }
-    }
-
-    fn retain_cells(&mut self, stays: &[bool]) {
-        let single = [&mut self.speed, &mut self.stiffness, &mut self.adhesion];
-        let many = self.loads.iter_mut().chain(&mut self.fibres).chain(&mut self.secretion);
-        single.into_iter().chain(many).for_each(|list| retain(list, stays));
-        retain(&mut self.bias, stays);
-    }
-}
-
-/// Keeps what stays of a list with one thing a cell; an empty one stays so.
-fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
-    let mut stays = stays.iter();
-    list.retain(|_| stays.next().copied().unwrap_or(false));
 }

@@ -2,7 +2,8 @@
 
 use super::find::write_contacts;
 use super::gather::gather_positions;
-use super::model::{ContactModel, Law};
+use super::law::Law;
+use super::model::ContactModel;
 use super::remember::find_at;
 use crate::contact::{Contacts, Sides, find_deeper, winding_number};
 use crate::sim::model::Model;

@@ -1,18 +1,20 @@
 //! What touches where a step begins, and what it carried in the step before.
 
+use super::assemble::write_rows;
 use super::gather::gather_positions;
 use super::give::given_after;
+use super::law::Law;
 use super::links::{links_at, pull_links};
-use super::model::{ContactModel, Law};
+use super::model::ContactModel;
 use super::penalty::press;
 use super::remember::find_at;
-use super::rows::{Pull, Row, write_rows};
+use super::rows::{Pull, Row};
 use super::scratch::{ContactForces, ContactScratch, empty_for};
 use super::spread::{add_spreading, releases_energy};
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
 use crate::contact::{AtomContact, Contacts, PlaneContact};
-use crate::sim::chemistry::Controls;
+use crate::sim::controls::Controls;
 use crate::sim::model::Model;
 use crate::sim::state::{KindState, State};
 use crate::sim::workspace::Workspace;

@@ -2,7 +2,8 @@
 
 use super::gather::{gather, scatter};
 use super::give::set_give;
-use super::model::{ContactModel, Law};
+use super::law::Law;
+use super::model::ContactModel;
 use super::momentum::go_on;
 use super::rows::{Pull, Row};
 use super::scratch::{ContactScratch, SweepRules};

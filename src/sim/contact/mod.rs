@@ -7,11 +7,14 @@
 //! Three other models are there to compare with: springs that link facets in place of strengths, penalties in place of the
 //! projection, whose forces are those of where the atoms are in each stage of a step, and zones of contact that are rigid.
 
+mod adhesives;
+mod assemble;
 mod depth;
 mod find;
 mod gather;
 mod give;
 mod hold;
+mod law;
 mod links;
 mod model;
 mod momentum;
@@ -29,17 +32,18 @@ mod sweep;
 mod sweep_tests;
 mod zones;
 
+pub use adhesives::AdhesiveScratch;
 pub use depth::{Deepened, check_depth, check_passed, look_for_depth};
 pub use find::{
     add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, locate_contacts, pull_contacts,
 };
 pub use give::energy_of_give;
 pub use hold::{hold_contacts, travel};
-pub use links::{Link, LinkTable, links_at, pull_links};
-pub use model::{ContactModel, Law, Strength};
-pub use penalty::{Penalty, press};
+pub use law::{AdhesiveTable, Law, LinkTable, Penalty, Strength, Zones};
+pub use links::{links_at, pull_links};
+pub use model::ContactModel;
+pub use penalty::press;
 pub use rows::{Pairing, Pull, Row};
 pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
-pub use state::{AtomBond, ContactState, EdgeBond, PlaneBond};
-pub use zones::{AdhesiveAtom, AdhesiveScratch, AdhesiveTable, Zones};
+pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Link, PlaneBond};

@@ -1,38 +1,11 @@
 //! Who can touch whom, and how strongly they stick.
 
-use super::links::LinkTable;
-use super::penalty::Penalty;
-use super::zones::AdhesiveTable;
+use super::law::{Law, LinkTable, Strength};
 use crate::contact::{self, Reach, Scene, Shape, Sides};
 use crate::geometry;
 use crate::mechanics::integrator::StepSize;
-use crate::sim::chemistry::Controls;
+use crate::sim::controls::Controls;
 use crate::sim::model::{Kind, Plane};
-
-/// How strongly two surfaces stick, eq. (adhesion.2). It depends neither on the step nor on the mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Strength {
-    /// The pull at which they part, pN/µm².
-    pub tensile: f64,
-    /// The shear at which they slide, pN/µm².
-    pub shear: f64,
-    /// What an area of contact releases, pN/µm, eq. (adhesion.9): contacts spread against the tension of the surfaces.
-    pub energy: f64,
-}
-
-/// What surfaces do that touch.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub enum Law {
-    /// Contacts bear any push, and a pull and a shear, [`Strength`].
-    #[default]
-    Adhesives,
-    /// Contacts bear any push; springs hold the atoms of facets that collided.
-    Links(LinkTable),
-    /// Contacts push by their depth, and pull within the proximity.
-    Penalty(Penalty),
-    /// Contacts bear any push; atoms that touch move in rigid zones.
-    VirtualAdhesives(AdhesiveTable),
-}
 
 /// Contacts of a model.
 #[derive(Debug, Clone)]

@@ -1,10 +1,11 @@
 //! Recruits atoms to virtual adhesives: who touches what sticks is cloned, and joins what it touches and its neighbours.
 
-use super::model::{ContactModel, Law};
+use super::adhesives::{AdhesiveScratch, NONE, Role};
+use super::law::{AdhesiveTable, Law, Zones};
+use super::model::ContactModel;
 use super::state::ContactState;
-use super::zones::{AdhesiveScratch, AdhesiveTable, NONE, Role, Zones};
 use crate::contact::{AtomContact, Contacts};
-use crate::sim::chemistry::Controls;
+use crate::sim::controls::Controls;
 
 /// How well surfaces are glued, with the factors that chemistry sets.
 pub(super) struct Glue<'a> {

@@ -1,10 +1,10 @@
 //! Scratch of the contacts.
 
-use super::links::Link;
+use super::adhesives::AdhesiveScratch;
 use super::momentum::Momentum;
 use super::rows::{Pull, Row};
+use super::state::Link;
 use super::sweep::{V4, VolumeRow};
-use super::zones::AdhesiveScratch;
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
 

@@ -1,11 +1,12 @@
 //! The energy of adhesion: surfaces in contact release energy with their area, which spreads contacts until surfaces under
 //! tension meet at the angle of eq. (adhesion.10).
 
-use super::model::{ContactModel, Strength};
-use super::rows::SHARE;
+use super::assemble::SHARE;
+use super::law::Strength;
+use super::model::ContactModel;
 use crate::Vec3;
 use crate::contact::Contacts;
-use crate::sim::chemistry::Controls;
+use crate::sim::controls::Controls;
 
 /// Whether any surfaces in contact release energy.
 pub fn releases_energy(model: &ContactModel) -> bool {

@@ -1,93 +1,16 @@
 //! Virtual adhesives (Carra, Martiel and Promayon 2007): atoms of cells that touch are cloned into rigid bodies, which recruit,
 //! merge, lose atoms and die.
 
-use serde::{Deserialize, Serialize};
-
+use super::adhesives::{AdhesiveScratch, NONE, Role};
 use super::model::ContactModel;
 use super::recruit::{Glue, reset, root};
 use super::rigid::Rigid;
 use super::rows::{Pairing, Pull, Row};
-use super::state::ContactState;
+use super::state::{AdhesiveAtom, ContactState};
 use crate::Vec3;
 use crate::contact::Contacts;
-use crate::sim::chemistry::Controls;
+use crate::sim::controls::Controls;
 use crate::sim::model::Kind;
-
-/// Which surfaces are glued, and how well.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AdhesiveTable {
-    /// What an atom's own displacement in a step may differ from that of its adhesive, µm: `between[kind * kinds + other]`,
-    /// symmetric; 0 glues nothing.
-    pub between: Vec<f64>,
-    /// The same for kinds and planes: `on_planes[kind * planes + plane]`.
-    pub on_planes: Vec<f64>,
-    /// Which adhesives merge.
-    pub zones: Zones,
-}
-
-/// Which adhesives grow together where their atoms are neighbours on the mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Zones {
-    /// All, as printed.
-    #[default]
-    Merged,
-    /// Those of the same two objects; an atom that touches several belongs to the nearest.
-    Pairs,
-}
-
-/// An atom in an adhesive.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct AdhesiveAtom {
-    /// The adhesive: the number of the least of its atoms.
-    pub adhesive: u32,
-    /// The atom, numbered through all cells.
-    pub atom: u32,
-    /// When it was cloned, s.
-    pub since: f64,
-    /// Force of the adhesive on it, pN; those of an adhesive have neither sum nor torque.
-    pub force: [f64; 3],
-}
-
-/// No number.
-pub(super) const NONE: u32 = u32::MAX;
-
-/// What an atom is in a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
-    /// It touches nothing that sticks.
-    Far,
-    /// It touches, but was released and not pressed since.
-    Released,
-    /// It has a clone.
-    Cloned,
-}
-
-/// The adhesives of a step, and what is needed to find them; empty under other laws.
-#[derive(Debug, Clone, Default)]
-pub struct AdhesiveScratch {
-    /// Their atoms, adhesive by adhesive, with the forces that they carried where the step began.
-    pub atoms: Vec<AdhesiveAtom>,
-    /// The adhesives as rigid bodies.
-    pub(super) bodies: Vec<Rigid>,
-    /// Drag of each of their atoms, pN·s/µm.
-    pub(super) drags: Vec<f64>,
-    /// Force on each now, pN.
-    pub(super) forces: Vec<Vec3>,
-    /// What the last sweep changed of it.
-    pub(super) changes: Vec<Vec3>,
-    /// The direction that speeds the sweeps up.
-    pub(super) ways: Vec<Vec3>,
-    /// For all atoms: where they stand in `atoms`, or `NONE`.
-    pub(super) place: Vec<u32>,
-    pub(super) roles: Vec<Role>,
-    pub(super) kappa: Vec<f64>,
-    /// An atom of the same adhesive; the least one in the end.
-    pub(super) parent: Vec<u32>,
-    /// The nearest two objects, and how near.
-    pub(super) pair: Vec<([u32; 2], f64)>,
-    /// Atoms that touch a plane that sticks.
-    pub(super) grounded: Vec<bool>,
-}
 
 impl AdhesiveScratch {
     /// Finds the adhesives of a step: those before, with what touches now.
@@ -219,11 +142,6 @@ impl AdhesiveScratch {
         kept.released.extend((0..).zip(roles).filter(|(_, role)| **role == Role::Released).map(|(atom, _)| atom));
         kept.adhesives.extend(self.atoms.iter().filter(|one| roles[one.atom as usize] == Role::Cloned));
         keep_living(&mut kept.adhesives, |atom| self.grounded[atom as usize]);
-    }
-
-    /// Forgets everything.
-    pub(super) fn poison(&mut self) {
-        *self = Self::default();
     }
 }
 

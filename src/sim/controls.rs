@@ -1,0 +1,119 @@
+//! What chemistry sets for mechanics.
+
+use serde::{Deserialize, Serialize};
+
+use super::chemistry::Control;
+
+/// What links set for mechanics, one number a cell in the order of all cells. A list that no link writes is empty.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Controls {
+    /// Speed of the walk, µm/s; NaN where the type's own speed stands.
+    pub speed: Vec<f64>,
+    /// Velocity added to the walk, µm/s.
+    pub bias: Vec<[f64; 3]>,
+    /// Factor of elastic forces.
+    pub stiffness: Vec<f64>,
+    /// Factor of the strength with which a cell sticks; empty without a link to one.
+    pub adhesion: Vec<f64>,
+    /// Factors of loads, one list a load number.
+    pub loads: Vec<Vec<f64>>,
+    /// Activation of fibres, one list a number of fibres; below 0 where their own course stands.
+    pub fibres: Vec<Vec<f64>>,
+    /// Amount released per second, one list for each species secreted.
+    pub secretion: Vec<Vec<f64>>,
+}
+
+impl Controls {
+    /// Makes the list that a control is written to, with one number for each of `cells`, where there is none: numbers that
+    /// change nothing until they are set.
+    pub fn admit(&mut self, control: Control, cells: usize) {
+        let lists = |lists: &mut Vec<Vec<f64>>, number: usize, value: f64| {
+            lists.resize(lists.len().max(number + 1), vec![value; cells]);
+        };
+        let list = |list: &mut Vec<f64>, value: f64| list.resize(cells, value);
+        match control {
+            Control::MotilitySpeed => list(&mut self.speed, f64::NAN),
+            Control::Bias(_) => self.bias.resize(cells, [0.0; 3]),
+            Control::Stiffness => list(&mut self.stiffness, 1.0),
+            Control::Adhesion => list(&mut self.adhesion, 1.0),
+            Control::Load(number) => lists(&mut self.loads, number, 1.0),
+            Control::Fibre(number) => lists(&mut self.fibres, number, -1.0),
+            Control::Secretion(channel) => lists(&mut self.secretion, channel, 0.0),
+            Control::RestVolume | Control::RestVolumeRatio | Control::Atom(..) => {}
+        }
+    }
+
+    /// Copies another without allocating where it is as large.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.speed.clone_from(&other.speed);
+        self.bias.clone_from(&other.bias);
+        self.stiffness.clone_from(&other.stiffness);
+        self.adhesion.clone_from(&other.adhesion);
+        self.loads.clone_from(&other.loads);
+        self.fibres.clone_from(&other.fibres);
+        self.secretion.clone_from(&other.secretion);
+    }
+
+    /// Adds a cell to all lists that are there, with numbers that change nothing. Lists that have lost their last cell are made anew by
+    /// [`Self::admit`].
+    pub fn insert_cell(&mut self, at: usize) {
+        let insert = |list: &mut Vec<f64>, nothing: f64| {
+            if !list.is_empty() {
+                list.insert(at, nothing);
+            }
+        };
+        insert(&mut self.speed, f64::NAN);
+        insert(&mut self.stiffness, 1.0);
+        insert(&mut self.adhesion, 1.0);
+        self.loads.iter_mut().for_each(|list| list.insert(at, 1.0));
+        self.fibres.iter_mut().for_each(|list| list.insert(at, -1.0));
+        self.secretion.iter_mut().for_each(|list| list.insert(at, 0.0));
+        if !self.bias.is_empty() {
+            self.bias.insert(at, [0.0; 3]);
+        }
+    }
+
+    /// Keeps the cells that stay, one answer a cell.
+    pub fn retain_cells(&mut self, stays: &[bool]) {
+        let single = [&mut self.speed, &mut self.stiffness, &mut self.adhesion];
+        let many = self.loads.iter_mut().chain(&mut self.fibres).chain(&mut self.secretion);
+        single.into_iter().chain(many).for_each(|list| retain(list, stays));
+        retain(&mut self.bias, stays);
+    }
+
+    /// The velocity added to a cell's walk, µm/s.
+    pub fn bias_of(&self, cell: usize) -> [f64; 3] {
+        self.bias.get(cell).copied().unwrap_or_default()
+    }
+
+    /// The speed that a link asks of a cell, µm/s.
+    pub fn speed_of(&self, cell: usize) -> Option<f64> {
+        self.speed.get(cell).copied().filter(|speed| !speed.is_nan())
+    }
+
+    /// Factor of a cell's elastic forces.
+    pub fn stiffness_of(&self, cell: usize) -> f64 {
+        self.stiffness.get(cell).copied().unwrap_or(1.0)
+    }
+
+    /// Factor of the strength with which a cell sticks.
+    pub fn adhesion_of(&self, cell: usize) -> f64 {
+        self.adhesion.get(cell).copied().unwrap_or(1.0)
+    }
+
+    /// Factor of a load of a cell.
+    pub fn load_of(&self, load: usize, cell: usize) -> f64 {
+        self.loads.get(load).and_then(|cells| cells.get(cell)).copied().unwrap_or(1.0)
+    }
+
+    /// The activation that a link asks of fibres of a cell, 0 to 1.
+    pub fn activation_of(&self, fibre: usize, cell: usize) -> Option<f64> {
+        self.fibres.get(fibre).and_then(|cells| cells.get(cell)).copied().filter(|activation| *activation >= 0.0)
+    }
+}
+
+/// Keeps what stays of a list with one thing a cell; an empty one stays so.
+pub(super) fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
+    let mut stays = stays.iter();
+    list.retain(|_| stays.next().copied().unwrap_or(false));
+}
