@@ -9,12 +9,13 @@ use std::time::Instant;
 use pseudopod::Vec3;
 use pseudopod::contact::{Contacts, Detector, Reach};
 use pseudopod::geometry::{Topology, icosphere, mean_edge_length};
+use pseudopod::mechanics::Force;
+use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
-use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::contact::{ContactModel, Strength, find_contacts};
-use pseudopod::sim::{Attraction, Kind, Model, State, Workspace, step};
+use pseudopod::sim::{Kind, Model, State, Workspace, step};
 
 /// Bytes held now.
 static HELD: AtomicUsize = AtomicUsize::new(0);
@@ -46,16 +47,13 @@ fn population(cells: usize, largest: f64) -> (Model, State) {
     let topology = Topology::of(&rest);
     let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
     let energy = 5.0 * mean_edge_length(&rest).powi(2);
-    let elasticity = Elasticity {
-        shape_memory: vec![ShapeMemory::new(&rest.positions, &rings, 5.0, Reaction::Exact)],
-        barrier: vec![Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy))],
-        ..Elasticity::default()
-    };
-    let mut kind = Kind::new("cell", rest.clone(), elasticity);
+    let memory = ShapeMemory::new(&rest.positions, &rings, 5.0, Reaction::Exact);
+    let barrier = Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy));
+    let mut kind = Kind::new("cell", rest.clone(), vec![Force::ShapeMemory(memory), Force::Barrier(barrier)]);
     kind.drag = 20.0 / 42.0;
     // The same pressure in the middle, however many there are.
     let stiffness = 0.05 * (25.0 / cells as f64).powf(2.0 / 3.0);
-    kind.attraction = Some(Attraction { to: Vec3::zeros(), stiffness });
+    kind.forces.push(Force::Attraction(Attraction { to: Vec3::zeros(), stiffness }));
     kind.largest_stiffness = kind.measure_largest_stiffness();
     let mut kind = kind.with_cells(0, cells);
     kind.bound_stiffness();

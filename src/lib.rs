@@ -29,6 +29,7 @@ pub mod run;
 pub mod sim;
 pub mod simulation;
 pub mod units;
+pub mod xml;
 
 pub use simulation::{CancelToken, Simulation, SimulationError};
 

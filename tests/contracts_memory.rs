@@ -4,11 +4,12 @@
 use pseudopod::Vec3;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::geometry::{Topology, icosphere};
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
-use pseudopod::sim::{Kind, Load, Model, Plane, State, Workspace, step};
+use pseudopod::sim::{Kind, Model, Plane, State, Workspace, step};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -56,12 +57,12 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
     let surface = icosphere(5.0, 1);
     let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
     let memory = ShapeMemory::new(&surface.positions, &rings, 10.0, Reaction::Exact);
-    let mut kind = Kind::new("cell", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    let mut kind = Kind::new("cell", surface, vec![Force::ShapeMemory(memory)]);
     kind.bound_stiffness();
     let mut planes = Vec::new();
     match acting {
         Acting::Elastic => {}
-        Acting::Loads => kind.loads = vec![pull(Vec3::z(), 0), pull(-Vec3::z(), 7)],
+        Acting::Loads => kind.forces.extend([pull(Vec3::z(), 0), pull(-Vec3::z(), 7)]),
         Acting::Planes => {
             let plane = |name: &str, side: f64| Plane {
                 name: name.to_owned(),
@@ -79,8 +80,8 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
     Model { planes, ..Model::of(vec![kind.with_cells(0, cells)], integrator, 1e9) }
 }
 
-fn pull(direction: Vec3, atom: u32) -> Load {
-    Load { name: "pull".to_owned(), atoms: vec![(atom, 1.0)], direction, force: Course::constant(1.0) }
+fn pull(direction: Vec3, atom: u32) -> Force {
+    Force::Load(Load::new("pull", vec![(atom, 1.0)], direction, Course::constant(1.0)))
 }
 
 /// Allocations of twenty steps, after a few that may size scratch for what they meet.

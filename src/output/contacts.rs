@@ -2,9 +2,10 @@
 //! of the scene that follow from them. The file holds the pairs alone.
 
 use super::catalogue::List;
-use super::changes::counts_of_changes;
+use super::changes::{Change, counts_of_changes};
 use super::{Cell, Layout, ResultFile};
 use crate::error::{Error, Fault, Result};
+use crate::recorded::Touch;
 use ndarray::ArrayView1;
 use std::collections::{HashMap, HashSet};
 
@@ -153,45 +154,48 @@ pub fn segregation(types: &[u32], pairs: &[[u32; 2]]) -> f64 {
     found.index(found.alike)
 }
 
-/// Series of a result with contacts that are one for all types: the part of the surface of all cells that touches another cell, the part
-/// of that area between types, and the segregation index.
-const SHARES: [&str; 3] = ["contact.area_share", "contact.heterotypic_share", "contact.segregation"];
+/// The series of a result with contacts that follow from who touches whom, in the order of [`all_series`]; none without.
+fn touches(layout: &Layout) -> Vec<Touch> {
+    match layout.contacts {
+        true => Touch::all(layout.types.len(), layout.planes.len()),
+        false => Vec::new(),
+    }
+}
 
-/// Names and units of the series of a result with contacts, in the order of [`all_series`]; a pair of types has the order
-/// of the document.
+/// Names and units of the series of a result with contacts, in the order of [`all_series`].
 pub(super) fn series(layout: &Layout) -> Vec<(String, &'static str)> {
-    if !layout.contacts {
-        return Vec::new();
-    }
-    let changes = CHANGES.iter().map(|name| ((*name).to_owned(), "1"));
-    series_of_frame(layout).into_iter().chain(changes).collect()
+    let (types, planes) = names_of(layout);
+    touches(layout).into_iter().map(|series| (series.name(&types, &planes), series.unit())).collect()
 }
 
-/// Series of how many aggregates were born, merged, split and died since the frame before.
-const CHANGES: [&str; 4] = ["contact.births", "contact.merges", "contact.splits", "contact.deaths"];
+/// What charts call a series of a result with contacts.
+pub(super) fn label(layout: &Layout, name: &str) -> Option<String> {
+    let (types, planes) = names_of(layout);
+    let found = touches(layout).into_iter().find(|series| series.name(&types, &planes) == name);
+    found.map(|series| series.label(&types, &planes))
+}
 
-/// Those of [`series`] whose values follow from a frame alone; none in a result without contacts.
+fn names_of(layout: &Layout) -> (Vec<&str>, Vec<&str>) {
+    let types = layout.types.iter().map(|kind| kind.name.as_str()).collect();
+    (types, layout.planes.iter().map(|plane| plane.0.as_str()).collect())
+}
+
+/// Names and units of those whose values follow from a frame alone; none in a result without contacts.
 pub(super) fn series_of_frame(layout: &Layout) -> Vec<(String, &'static str)> {
-    if !layout.contacts {
-        return Vec::new();
-    }
-    let types = layout.type_names();
-    let types = types.as_slice();
-    let pairs = || pairs_of(types.len()).map(|[one, other]| format!("{}.{}", types[one], types[other]));
-    let of_planes = types.iter().flat_map(|kind| layout.planes.iter().map(move |plane| format!("{kind}.{}", plane.0)));
-    let mut names: Vec<(String, &str)> =
-        pairs().chain(of_planes).map(|pair| (format!("contact.area.{pair}"), "um^2")).collect();
-    names.extend(pairs().map(|pair| (format!("contact.pairs.{pair}"), "1")));
-    names.extend(SHARES.map(|name| (name.to_owned(), "1")));
-    for stem in ["contact.clusters", "contact.largest_cluster"] {
-        names.extend(types.iter().map(|kind| (format!("{stem}.{kind}"), "1")));
-    }
-    names
+    let (types, planes) = names_of(layout);
+    let of_frame = touches(layout).into_iter().filter(|series| change_of(*series).is_none());
+    of_frame.map(|series| (series.name(&types, &planes), series.unit())).collect()
 }
 
-/// Pairs of types, the smaller number first.
-fn pairs_of(types: usize) -> impl Iterator<Item = [usize; 2]> {
-    (0..types).flat_map(move |one| (one..types).map(move |other| [one, other]))
+/// The change of aggregates that a series counts.
+fn change_of(series: Touch) -> Option<Change> {
+    match series {
+        Touch::Births => Some(Change::Birth),
+        Touch::Merges => Some(Change::Merge),
+        Touch::Splits => Some(Change::Split),
+        Touch::Deaths => Some(Change::Death),
+        _ => None,
+    }
 }
 
 /// The values of all [`series`] in all frames, by series.
@@ -199,15 +203,22 @@ fn pairs_of(types: usize) -> impl Iterator<Item = [usize; 2]> {
 /// # Errors
 /// A damaged file.
 pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
-    let mut all = vec![Vec::new(); series_of_frame(result.layout()).len()];
+    let all = touches(result.layout());
+    let of_frame: Vec<Touch> = all.iter().copied().filter(|series| change_of(*series).is_none()).collect();
+    let mut found = vec![Vec::new(); of_frame.len()];
     for frame in 0..result.frames() {
         let surface = ArrayView1::from(&result.cell_values("area", frame)?).sum();
         let (cells, pairs, on_planes) = (result.cells(frame), result.pairs(frame)?, result.on_planes(frame)?);
-        let values = values_of_frame(result.layout(), &cells, surface, &pairs, &on_planes);
-        all.iter_mut().zip(values).for_each(|(series, value)| series.push(value));
+        let touched = Touched::of(result.layout(), &cells, surface, &pairs, &on_planes);
+        found.iter_mut().zip(&of_frame).for_each(|(values, series)| values.push(touched.value(*series)));
     }
-    all.extend(counts_of_changes(result.cell_series("aggregate")?.view()));
-    Ok(all)
+    let counts = counts_of_changes(result.cell_series("aggregate")?.view());
+    let mut found = found.into_iter();
+    let of = |series: &Touch| match change_of(*series) {
+        Some(change) => counts[change as usize].clone(),
+        None => found.next().unwrap_or_default(),
+    };
+    Ok(all.iter().map(of).collect())
 }
 
 /// The values of [`series_of_frame`] in a frame in which the cells have this surface, µm².
@@ -218,39 +229,78 @@ pub(super) fn values_of_frame(
     touching: &[Touching],
     on_planes: &[Touching],
 ) -> Vec<f64> {
-    let types: Vec<u32> = cells.iter().map(|cell| cell.kind).collect();
-    let (number, planes) = (layout.types.len(), layout.planes.len());
-    let indices: HashMap<u64, u32> = (0..).zip(cells).map(|(index, cell)| (cell.id, index)).collect();
-    let kind = |cell: u32| types[cell as usize] as usize;
-    let mut areas = vec![0.0; number * number];
-    let mut counts = vec![0_u32; number * number];
-    for pair in touching {
-        let (one, other) = (kind(indices[&pair.cell]), kind(indices[&pair.other]));
-        let index = one.min(other) * number + one.max(other);
-        areas[index] += pair.area;
-        counts[index] += 1;
+    let touched = Touched::of(layout, cells, surface, touching, on_planes);
+    let of_frame = touches(layout).into_iter().filter(|series| change_of(*series).is_none());
+    of_frame.map(|series| touched.value(series)).collect()
+}
+
+/// What is counted of a frame, by types and planes.
+struct Touched {
+    types: usize,
+    planes: usize,
+    /// Surface of all cells, µm².
+    surface: f64,
+    /// Areas and numbers of pairs, `one * types + other` with the smaller type first.
+    areas: Vec<f64>,
+    pairs: Vec<u32>,
+    /// Areas on planes, `kind * planes + plane`.
+    on_planes: Vec<f64>,
+    segregation: f64,
+    /// Type and size of every cluster.
+    clusters: Vec<(usize, u32)>,
+}
+
+impl Touched {
+    fn of(layout: &Layout, cells: &[Cell], surface: f64, touching: &[Touching], on_planes: &[Touching]) -> Self {
+        let kinds: Vec<u32> = cells.iter().map(|cell| cell.kind).collect();
+        let (types, planes) = (layout.types.len(), layout.planes.len());
+        let indices: HashMap<u64, u32> = (0..).zip(cells).map(|(index, cell)| (cell.id, index)).collect();
+        let kind = |cell: u32| kinds[cell as usize] as usize;
+        let (mut areas, mut counts) = (vec![0.0; types * types], vec![0_u32; types * types]);
+        for pair in touching {
+            let (one, other) = (kind(indices[&pair.cell]), kind(indices[&pair.other]));
+            let index = one.min(other) * types + one.max(other);
+            areas[index] += pair.area;
+            counts[index] += 1;
+        }
+        let mut on = vec![0.0; types * planes];
+        on_planes.iter().for_each(|touch| on[kind(indices[&touch.cell]) * planes + touch.other as usize] += touch.area);
+        let pairs: Vec<[u32; 2]> = touching.iter().map(|pair| [indices[&pair.cell], indices[&pair.other]]).collect();
+        let like = pairs.iter().copied().filter(|[one, other]| kind(*one) == kind(*other));
+        let mut sizes = vec![0_u32; kinds.len()];
+        clusters(kinds.len(), like).iter().for_each(|first| sizes[*first as usize] += 1);
+        let of_size = (0..).zip(sizes).filter(|(_, size)| *size > 0);
+        Self {
+            types,
+            planes,
+            surface,
+            areas,
+            pairs: counts,
+            on_planes: on,
+            segregation: segregation(&kinds, &pairs),
+            clusters: of_size.map(|(cell, size)| (kind(cell), size)).collect(),
+        }
     }
-    let mut on = vec![0.0; number * planes];
-    on_planes.iter().for_each(|touch| on[kind(indices[&touch.cell]) * planes + touch.other as usize] += touch.area);
-    let whole: f64 = areas.iter().sum();
-    let alike: f64 = (0..number).map(|one| areas[one * number + one]).sum();
 
-    let pairs: Vec<[u32; 2]> = touching.iter().map(|pair| [indices[&pair.cell], indices[&pair.other]]).collect();
-    let like = pairs.iter().copied().filter(|[one, other]| kind(*one) == kind(*other));
-    let mut sizes = vec![0_u32; types.len()];
-    clusters(types.len(), like).iter().for_each(|first| sizes[*first as usize] += 1);
-    let sizes_of = |wanted: usize| {
-        (0..types.len() as u32).filter(move |cell| kind(*cell) == wanted).map(|cell| sizes[cell as usize])
-    };
-
-    let mut values: Vec<f64> = pairs_of(number).map(|[one, other]| areas[one * number + other]).collect();
-    values.extend(on);
-    values.extend(pairs_of(number).map(|[one, other]| f64::from(counts[one * number + other])));
-    // An area of contact is one of both cells.
-    values.extend([2.0 * whole / surface, (whole - alike) / whole, segregation(&types, &pairs)]);
-    values.extend((0..number).map(|kind| sizes_of(kind).filter(|size| *size > 0).count() as f64));
-    values.extend((0..number).map(|kind| f64::from(sizes_of(kind).max().unwrap_or(0))));
-    values
+    /// The value of a series that follows from a frame alone; NaN for changes.
+    fn value(&self, series: Touch) -> f64 {
+        let whole: f64 = self.areas.iter().sum();
+        let alike: f64 = (0..self.types).map(|one| self.areas[one * self.types + one]).sum();
+        let sizes =
+            |wanted: usize| self.clusters.iter().filter(move |(kind, _)| *kind == wanted).map(|(_, size)| *size);
+        match series {
+            Touch::Area([one, other]) => self.areas[one * self.types + other],
+            Touch::AreaOnPlane(kind, plane) => self.on_planes[kind * self.planes + plane],
+            Touch::Pairs([one, other]) => f64::from(self.pairs[one * self.types + other]),
+            // An area of contact is one of both cells.
+            Touch::AreaShare => 2.0 * whole / self.surface,
+            Touch::HeterotypicShare => (whole - alike) / whole,
+            Touch::Segregation => self.segregation,
+            Touch::Clusters(kind) => sizes(kind).count() as f64,
+            Touch::LargestCluster(kind) => f64::from(sizes(kind).max().unwrap_or(0)),
+            Touch::Births | Touch::Merges | Touch::Splits | Touch::Deaths => f64::NAN,
+        }
+    }
 }
 
 #[cfg(test)]

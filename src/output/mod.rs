@@ -8,6 +8,7 @@ pub mod catalogue;
 mod cell_column;
 mod cells;
 mod cells_reader;
+mod census;
 mod changes;
 mod checkpoint;
 mod column;

@@ -8,7 +8,7 @@ use hdf5::{Dataset, File};
 
 use super::Layout;
 use super::catalogue::{FORCE, List, Run};
-use super::cells_reader::Census;
+use super::census::Census;
 use super::contacts;
 use super::container::{self, Access, damaged, text};
 use super::header::{Header, Measure};
@@ -16,7 +16,7 @@ use super::layout_io::{read_header, read_layout};
 use super::systems::SystemScope;
 use super::whole::whole_frames;
 use crate::error::{Error, Fault, Result};
-use crate::recorded::{cell_series, cell_unit};
+use crate::recorded::{CONTACTS, cell_label, cell_series, cell_unit};
 
 /// A result file opened for reading. Arrays are read when they are asked for.
 pub struct ResultFile {
@@ -206,6 +206,13 @@ impl ResultFile {
             return Ok(super::catalogue::entry("/time").unit.to_string());
         }
         cell_unit(name).map(str::to_owned).ok_or_else(|| self.unknown(name))
+    }
+
+    /// What a chart calls a series, without its unit.
+    pub fn label(&self, name: &str) -> String {
+        let recorded = || CONTACTS.iter().find(|row| row.name == name).map(|row| row.label.to_owned());
+        let known = cell_label(name).map(str::to_owned).or_else(recorded);
+        known.or_else(|| contacts::label(&self.layout, name)).unwrap_or_else(|| name.replace("load.", "load "))
     }
 
     /// Motility runs that ended up to the last frame.

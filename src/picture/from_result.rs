@@ -421,7 +421,8 @@ mod tests {
         let look = Look::default();
         let stamp = |time: f64| {
             let (positions, values) = (&positions, Values::Type);
-            let snapshot = Snapshot { layout: &layout, positions, time, values, arrows: &[], field: None };
+            let snapshot =
+                Snapshot { layout: &layout, cells: &CELLS, positions, time, values, arrows: &[], field: None };
             // A picture of one frame alone: the others have not been seen.
             let mut framing = Framing::new(&look).lasting(600.0);
             framing.include(&snapshot);

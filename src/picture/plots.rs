@@ -11,34 +11,9 @@ use crate::analysis::table::Table;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Over, Plot, PlotKind, PlotTable};
 use crate::output::ResultFile;
-use crate::recorded::cell_label;
 
 /// Colour of measured points.
 const MEASURED: Colour = Colour([0x33, 0x33, 0x33]);
-
-/// Names of series of the scene as a reader would say them.
-const READABLE: [(&str, &str); 12] = [
-    ("largest_aggregate", "cells of the largest aggregate"),
-    ("contact.births", "births of aggregates"),
-    ("contact.merges", "merges of aggregates"),
-    ("contact.splits", "splits of aggregates"),
-    ("contact.deaths", "deaths of aggregates"),
-    ("contact.count", "contacts"),
-    ("contact.deepest", "deepest penetration over edge"),
-    ("contact.energy", "energy in contacts"),
-    ("contact.sweeps", "sweeps over contacts"),
-    ("contact.area_share", "share of surface in contact"),
-    ("contact.heterotypic_share", "heterotypic share of contact area"),
-    ("contact.segregation", "segregation index"),
-];
-
-/// What series of contacts by types begin with, as a reader would say it before the types.
-const OF_CONTACTS: [(&str, &str); 4] = [
-    ("contact.area.", "area of contact"),
-    ("contact.pairs.", "pairs in contact"),
-    ("contact.clusters.", "clusters of"),
-    ("contact.largest_cluster.", "cells of the largest cluster of"),
-];
 
 /// A series' name as a reader would say it, with its unit.
 pub fn label_of(result: &ResultFile, series: &str) -> String {
@@ -46,17 +21,7 @@ pub fn label_of(result: &ResultFile, series: &str) -> String {
         return "time (s)".into();
     }
     let unit = result.units(series).unwrap_or_default();
-    with_unit(&readable(series), &unit)
-}
-
-fn readable(series: &str) -> String {
-    let of_scene = READABLE.iter().find(|(name, _)| *name == series).map(|(_, text)| *text);
-    if let Some(text) = cell_label(series).or(of_scene) {
-        return text.to_owned();
-    }
-    let of_contacts = OF_CONTACTS.iter().find_map(|(stem, text)| Some((series.strip_prefix(stem)?, text)));
-    of_contacts
-        .map_or_else(|| series.replace("load.", "load "), |(names, text)| format!("{text} {}", names.replace('.', "–")))
+    with_unit(&result.label(series), &unit)
 }
 
 /// The chart that a plot asks for.
@@ -124,7 +89,7 @@ fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Resul
             } else {
                 curve(&recording, x, y, Some(kind))?.points().collect()
             };
-            let named = if alike { readable(y) } else { label_of(result, y) };
+            let named = if alike { result.label(y) } else { label_of(result, y) };
             let label = match (series.len(), types.len()) {
                 (1, _) if shared => String::new(),
                 (1, 1) => String::new(),

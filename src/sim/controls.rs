@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::chemistry::Control;
+use crate::mechanics::CONTROLLED;
 
 /// What links set for mechanics, one number a cell in the order of all cells. A list that no link writes is empty.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -15,10 +16,8 @@ pub struct Controls {
     pub stiffness: Vec<f64>,
     /// Factor of the strength with which a cell sticks; empty without a link to one.
     pub adhesion: Vec<f64>,
-    /// Factors of loads, one list a load number.
-    pub loads: Vec<Vec<f64>>,
-    /// Activation of fibres, one list a number of fibres; below 0 where their own course stands.
-    pub fibres: Vec<Vec<f64>>,
+    /// What is set of forces: for each handle of [`CONTROLLED`] one list for each such force of a kind, in its order.
+    pub forces: Vec<Vec<Vec<f64>>>,
     /// Amount released per second, one list for each species secreted.
     pub secretion: Vec<Vec<f64>>,
 }
@@ -36,8 +35,10 @@ impl Controls {
             Control::Bias(_) => self.bias.resize(cells, [0.0; 3]),
             Control::Stiffness => list(&mut self.stiffness, 1.0),
             Control::Adhesion => list(&mut self.adhesion, 1.0),
-            Control::Load(number) => lists(&mut self.loads, number, 1.0),
-            Control::Fibre(number) => lists(&mut self.fibres, number, -1.0),
+            Control::Force(handle, number) => {
+                self.forces.resize(CONTROLLED.len(), Vec::new());
+                lists(&mut self.forces[handle], number, CONTROLLED[handle].unset);
+            }
             Control::Secretion(channel) => lists(&mut self.secretion, channel, 0.0),
             Control::RestVolume | Control::RestVolumeRatio | Control::Atom(..) => {}
         }
@@ -49,8 +50,7 @@ impl Controls {
         self.bias.clone_from(&other.bias);
         self.stiffness.clone_from(&other.stiffness);
         self.adhesion.clone_from(&other.adhesion);
-        self.loads.clone_from(&other.loads);
-        self.fibres.clone_from(&other.fibres);
+        self.forces.clone_from(&other.forces);
         self.secretion.clone_from(&other.secretion);
     }
 
@@ -65,8 +65,9 @@ impl Controls {
         insert(&mut self.speed, f64::NAN);
         insert(&mut self.stiffness, 1.0);
         insert(&mut self.adhesion, 1.0);
-        self.loads.iter_mut().for_each(|list| list.insert(at, 1.0));
-        self.fibres.iter_mut().for_each(|list| list.insert(at, -1.0));
+        for (lists, handle) in self.forces.iter_mut().zip(&CONTROLLED) {
+            lists.iter_mut().for_each(|list| list.insert(at, handle.unset));
+        }
         self.secretion.iter_mut().for_each(|list| list.insert(at, 0.0));
         if !self.bias.is_empty() {
             self.bias.insert(at, [0.0; 3]);
@@ -76,7 +77,7 @@ impl Controls {
     /// Keeps the cells that stay, one answer a cell.
     pub fn retain_cells(&mut self, stays: &[bool]) {
         let single = [&mut self.speed, &mut self.stiffness, &mut self.adhesion];
-        let many = self.loads.iter_mut().chain(&mut self.fibres).chain(&mut self.secretion);
+        let many = self.forces.iter_mut().flatten().chain(&mut self.secretion);
         single.into_iter().chain(many).for_each(|list| retain(list, stays));
         retain(&mut self.bias, stays);
     }
@@ -99,16 +100,6 @@ impl Controls {
     /// Factor of the strength with which a cell sticks.
     pub fn adhesion_of(&self, cell: usize) -> f64 {
         self.adhesion.get(cell).copied().unwrap_or(1.0)
-    }
-
-    /// Factor of a load of a cell.
-    pub fn load_of(&self, load: usize, cell: usize) -> f64 {
-        self.loads.get(load).and_then(|cells| cells.get(cell)).copied().unwrap_or(1.0)
-    }
-
-    /// The activation that a link asks of fibres of a cell, 0 to 1.
-    pub fn activation_of(&self, fibre: usize, cell: usize) -> Option<f64> {
-        self.fibres.get(fibre).and_then(|cells| cells.get(cell)).copied().filter(|activation| *activation >= 0.0)
     }
 }
 

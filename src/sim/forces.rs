@@ -8,7 +8,9 @@ use super::model::{Kind, Model, VolumeRule};
 use super::rooms::{Rooms, each_or_none};
 use super::state::{KindState, State};
 use super::workspace::{KindScratch, Workspace};
+use crate::mechanics::control::Context;
 use crate::mechanics::lanes::LANES;
+use crate::mechanics::sum::{measure_elastic, measure_forces};
 use crate::mechanics::volume;
 
 /// All forces on the cells of a kind, drag not included. Motility enters as the drag that its velocity
@@ -40,14 +42,7 @@ impl Forces<'_> {
     ) {
         let &Self { model, number, controls, drive, contact } = self;
         let kind = &model.kinds[number];
-        f.fill(0.0);
-        energy.fill(0.0);
-        kind.elasticity.add_forces(kind.lanes, x, f, energy);
-        scale_elasticity(kind, controls, block, f, energy);
-        add_loads(kind, controls, block, time, f);
-        add_fibres(kind, controls, block, time, x, f, energy);
-        add_gravity(model, kind, f);
-        add_attraction(kind, x, f, energy);
+        measure_forces(&kind.forces, &context(kind, controls, block, time), kind.lanes, x, f, energy);
         add_drive(kind, &drive[kind.first_cell..kind.first_cell + kind.cells], block, f);
         add_pressure(kind, time, x, rest, spare, f, energy);
         add_contact_forces(model, number, block, contact, f);
@@ -110,77 +105,17 @@ pub fn elastic_energy(kind: &Kind, positions: &[f64]) -> Vec<f64> {
     let mut energy = vec![0.0; kind.blocks() * kind.lanes];
     let mut force = vec![0.0; kind.block_len()];
     for (x, energy) in positions.chunks_exact(kind.block_len()).zip(energy.chunks_exact_mut(kind.lanes)) {
-        kind.elasticity.add_forces(kind.lanes, x, &mut force, energy);
+        measure_elastic(&kind.forces, kind.lanes, x, &mut force, energy);
     }
     energy.truncate(kind.cells);
     energy
 }
 
-/// What chemistry makes of the elastic forces, the only ones in `f` so far.
-fn scale_elasticity(kind: &Kind, controls: &Controls, block: usize, f: &mut [f64], energy: &mut [f64]) {
-    if controls.stiffness.is_empty() {
-        return;
-    }
-    let mut factors = [1.0; LANES];
-    for (lane, factor) in factors.iter_mut().enumerate().take(kind.lanes) {
-        if let Some(cell) = kind.cell_at(block, lane) {
-            *factor = controls.stiffness_of(cell);
-        }
-    }
-    for row in f.chunks_exact_mut(kind.lanes).chain([energy]) {
-        row.iter_mut().zip(&factors).for_each(|(slot, factor)| *slot *= factor);
-    }
-}
-
-fn add_loads(kind: &Kind, controls: &Controls, block: usize, time: f64, f: &mut [f64]) {
-    for (number, load) in kind.loads.iter().enumerate() {
-        let force = load.force.at(time);
-        let mut forces = [force; LANES];
-        if controls.loads.get(number).is_some() {
-            for (lane, force) in forces.iter_mut().enumerate().take(kind.lanes) {
-                *force *= kind.cell_at(block, lane).map_or(1.0, |cell| controls.load_of(number, cell));
-            }
-        }
-        for &(atom, share) in &load.atoms {
-            for axis in 0..3 {
-                let along = share * load.direction[axis];
-                let at = (3 * atom as usize + axis) * kind.lanes;
-                f[at..at + kind.lanes].iter_mut().zip(&forces).for_each(|(slot, force)| *slot += force * along);
-            }
-        }
-    }
-}
-
-/// Fibres pull with the activation that chemistry sets, or else with that of their course.
-fn add_fibres(kind: &Kind, controls: &Controls, block: usize, time: f64, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
-    for (number, fibres) in kind.fibres.iter().enumerate() {
-        let mut activation = [fibres.activation.at(time); LANES];
-        for (lane, activation) in activation.iter_mut().enumerate().take(kind.lanes) {
-            let set = kind.cell_at(block, lane).and_then(|cell| controls.activation_of(number, cell));
-            *activation = set.unwrap_or(*activation);
-        }
-        fibres.add_forces(kind.lanes, &activation, x, f, energy);
-    }
-}
-
-fn add_gravity(model: &Model, kind: &Kind, f: &mut [f64]) {
-    let weight = model.gravity * kind.mass;
-    if weight.norm_squared() > 0.0 {
-        for (i, row) in f.chunks_exact_mut(kind.lanes).enumerate() {
-            row.iter_mut().for_each(|slot| *slot += weight[i % 3]);
-        }
-    }
-}
-
-fn add_attraction(kind: &Kind, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
-    let Some(attraction) = &kind.attraction else { return };
-    for (i, (row, place)) in f.chunks_exact_mut(kind.lanes).zip(x.chunks_exact(kind.lanes)).enumerate() {
-        for ((slot, here), energy) in row.iter_mut().zip(place).zip(energy.iter_mut()) {
-            let away = here - attraction.to[i % 3];
-            *slot -= attraction.stiffness * away;
-            *energy += 0.5 * attraction.stiffness * away * away;
-        }
-    }
+/// What forces on a block depend on beside positions.
+fn context<'a>(kind: &Kind, controls: &'a Controls, block: usize, time: f64) -> Context<'a> {
+    let first = kind.first_cell + block * kind.lanes;
+    let cells = first..(first + kind.lanes).min(kind.first_cell + kind.cells);
+    Context { time, mass: kind.mass, cells, stiffness: &controls.stiffness, controls: &controls.forces }
 }
 
 fn add_drive(kind: &Kind, drive: &[[f64; 3]], block: usize, f: &mut [f64]) {

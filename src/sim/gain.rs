@@ -46,21 +46,13 @@ fn is_left_alone(model: &Model) -> bool {
         contact.law == Law::default() && strengths.into_iter().all(|strength| strength.energy == 0.0)
     };
     let is_alone = |kind: &Kind| {
-        let steady = match &kind.volume {
-            VolumeRule::Free => true,
-            VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.kinks().next().is_none(),
-        };
-        let driven = !kind.fibres.is_empty()
-            || kind.brownian.is_some()
-            || kind.biased
-            || kind.attraction.is_some()
-            || !kind.loads.is_empty();
-        steady && !driven && kind.elasticity.is_conservative()
+        let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
+        let moves = kind.brownian.is_some() || kind.biased;
+        steady && !moves && kind.forces.iter().all(|force| force.is_elastic() && force.is_conservative())
     };
     matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)
         && model.contact.as_ref().is_some_and(sticks_only)
         && model.chemistry.is_empty()
-        && model.gravity.norm_squared() == 0.0
         && model.kinds.iter().all(is_alone)
 }
 

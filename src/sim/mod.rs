@@ -28,7 +28,7 @@ mod velocity;
 pub mod workspace;
 
 pub use chemistry::Chemistry;
-pub use model::{Attraction, Kind, Load, Model, Plane, VolumeRule};
+pub use model::{Kind, Model, Plane, VolumeRule};
 pub use plan::StepReport;
 pub use state::{Inertia, KindState, State};
 pub use step::{begin_chemistry, step};

@@ -1,17 +1,18 @@
-//! What an experiment means: kinds of cells, loads and planes in µm, s and pN. Nothing here changes during a run.
+//! What an experiment means: kinds of cells, forces and planes in µm, s and pN. Nothing here changes during a run.
 
 use super::chemistry::Chemistry;
 use super::contact::ContactModel;
 use crate::Vec3;
 use crate::cell::motility::BrownianMotility;
 use crate::geometry::{self, Surface, Topology};
+use crate::mechanics::Force;
 use crate::mechanics::course::Course;
-use crate::mechanics::elasticity::Elasticity;
-use crate::mechanics::fibres::Fibres;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::integrator::Integrator;
 use crate::mechanics::lanes::LANES;
+use crate::mechanics::load::Load;
 use crate::mechanics::stiffness::StiffnessMatrix;
+use crate::mechanics::sum::{measure_elastic, stiffness};
 
 /// Rounds of the power iteration for the largest stiffness.
 const POWER_ROUNDS: usize = 150;
@@ -30,8 +31,6 @@ pub struct Model {
     pub planes: Vec<Plane>,
     /// Contacts between cells, with themselves and with planes; none where cells pass through each other.
     pub contact: Option<ContactModel>,
-    /// Acceleration of gravity, µm/s².
-    pub gravity: Vec3,
     /// Systems of equations, fields, and what joins them to cells.
     pub chemistry: Chemistry,
     /// Scheme and step.
@@ -62,8 +61,8 @@ pub struct Kind {
     pub rest: Surface,
     /// Whether the surface encloses a volume.
     pub closed: bool,
-    /// Elastic forces.
-    pub elasticity: Elasticity,
+    /// All forces on its atoms but those of motility, contacts and the rule of its volume, in the order in which they are added up.
+    pub forces: Vec<Force>,
     /// The constant linear part of all forces, pN/µm.
     pub stiffness: StiffnessMatrix,
     /// Largest eigenvalue of the true stiffness at rest, pN/µm.
@@ -76,18 +75,12 @@ pub struct Kind {
     pub held: Vec<f64>,
     /// What the volume does.
     pub volume: VolumeRule,
-    /// Loads.
-    pub loads: Vec<Load>,
-    /// Contractile fibres.
-    pub fibres: Vec<Fibres>,
     /// Pairs of atoms whose links and fibres are drawn.
     pub drawn_links: Vec<[u32; 2]>,
     /// Brownian persistence.
     pub brownian: Option<BrownianMotility>,
     /// Whether chemistry adds a velocity to the walk.
     pub biased: bool,
-    /// Central attraction.
-    pub attraction: Option<Attraction>,
     /// Number of the first cell in the order of all cells.
     pub first_cell: usize,
     /// Number of cells.
@@ -114,50 +107,35 @@ pub enum VolumeRule {
     },
 }
 
-/// A force with a course in time, spread over some atoms of every cell of a kind.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Load {
-    /// Its name; the series is `load.<name>`.
-    pub name: String,
-    /// Atoms and their shares, which sum to one.
-    pub atoms: Vec<(u32, f64)>,
-    /// Unit direction.
-    pub direction: Vec3,
-    /// Total force, pN.
-    pub force: Course,
-}
-
-/// A linear pull of every atom to a point, a stand-in for a diffusing attractant.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Attraction {
-    /// The point, µm.
-    pub to: Vec3,
-    /// Stiffness an atom, pN/µm.
-    pub stiffness: f64,
+impl VolumeRule {
+    /// The course of the rest volumes' factor; none where nothing keeps the volume.
+    pub fn course(&self) -> Option<&Course> {
+        match self {
+            Self::Free => None,
+            Self::Exact(course) | Self::Compressible { course, .. } => Some(course),
+        }
+    }
 }
 
 impl Kind {
-    /// One cell of a mesh and its elastic forces, without loads or motility: drag and mass of an atom 1, exact volume
-    /// where the mesh is closed.
-    pub fn new(name: &str, rest: Surface, elasticity: Elasticity) -> Self {
+    /// One cell of a mesh and the forces on it, without motility: drag and mass of an atom 1, exact volume where the mesh is
+    /// closed. The stiffness is that of the elastic forces as they are; see [`Kind::bound_stiffness`].
+    pub fn new(name: &str, rest: Surface, forces: Vec<Force>) -> Self {
         let closed = !rest.facets.is_empty() && Topology::of(&rest).is_closed();
-        let stiffness = elasticity.stiffness(&rest.positions, &rest.positions);
+        let stiffness = stiffness(&forces, true, &rest.positions, &rest.positions);
         Self {
             name: name.to_owned(),
             closed,
             largest_stiffness: stiffness.largest(),
             stiffness,
-            elasticity,
+            forces,
             drag: 1.0,
             mass: 1.0,
             held: Vec::new(),
             volume: if closed { VolumeRule::Exact(Course::constant(1.0)) } else { VolumeRule::Free },
-            loads: Vec::new(),
-            fibres: Vec::new(),
             drawn_links: Vec::new(),
             brownian: None,
             biased: false,
-            attraction: None,
             first_cell: 0,
             cells: 1,
             lanes: 1,
@@ -172,13 +150,12 @@ impl Kind {
         self
     }
 
-    /// Largest eigenvalue of the true stiffness at rest, attraction and active fibres included, pN/µm, by power iteration on differences
-    /// of the force; what explicit schemes need to know.
+    /// Largest eigenvalue of the true stiffness at rest, pN/µm: of elastic forces by power iteration on differences, of all others
+    /// (fibres at full activation) by a bound; what explicit schemes need to know.
     pub fn measure_largest_stiffness(&self) -> f64 {
         // Power iteration approaches from below; two percent cover what is left after the last round.
-        let largest = self.power_iteration(&self.rest.positions, |_| ());
-        let of_fibres: f64 = self.fibres.iter().map(Fibres::largest_stiffness).sum();
-        1.02 * largest + of_fibres + self.attraction.map_or(0.0, |attraction| attraction.stiffness)
+        let rest = &self.rest.positions;
+        1.02 * self.power_iteration(rest, |_| ()) + stiffness(&self.forces, false, rest, rest).largest()
     }
 
     /// Sets the stiffness K of the implicit step to the one that fits the rest shape; see [`Kind::stiffness_at`].
@@ -186,24 +163,22 @@ impl Kind {
         self.stiffness = self.stiffness_at(&self.rest.positions);
     }
 
-    /// The stiffness K of the implicit step for a cell in the shape `x` (µm): the linear part of its forces there,
+    /// The stiffness K of the implicit step for a cell in the shape `x` (µm): the linear part of its elastic forces there,
     /// raised until the true stiffness J there is nowhere more than [`LARGEST_RATIO`] times as large, since the scheme
-    /// bears a K that is too small by two and cells go on deforming.
+    /// bears a K that is too small by two and cells go on deforming; then that of all other forces.
     pub fn stiffness_at(&self, x: &[Vec3]) -> StiffnessMatrix {
-        let mut stiffness = self.elasticity.stiffness(&self.rest.positions, x);
+        let mut matrix = stiffness(&self.forces, true, &self.rest.positions, x);
         let free = vec![false; self.atoms()];
         // A whiff of the identity makes K invertible; J does not resist what K does not resist.
-        let inverse = Factor::new(&stiffness, 1e-5 * stiffness.largest().max(f64::MIN_POSITIVE), 1.0, &free);
+        let inverse = Factor::new(&matrix, 1e-5 * matrix.largest().max(f64::MIN_POSITIVE), 1.0, &free);
         let mut scratch = vec![0.0; 3 * self.atoms()];
         let ratio = self.power_iteration(x, |v| inverse.solve(3, v, &mut scratch));
         if ratio > LARGEST_RATIO {
-            stiffness.scale(ratio / LARGEST_RATIO);
+            matrix.scale(ratio / LARGEST_RATIO);
         }
-        self.fibres.iter().for_each(|fibres| fibres.add_stiffness(&mut stiffness));
-        if let Some(attraction) = self.attraction {
-            (0..self.atoms()).for_each(|atom| stiffness.add(atom, atom, attraction.stiffness));
-        }
-        stiffness
+        let others = self.forces.iter().filter(|force| !force.is_elastic());
+        others.for_each(|force| force.add_stiffness(&self.rest.positions, x, &mut matrix));
+        matrix
     }
 
     /// The largest eigenvalue of P J, J the stiffness in the shape `x` and P the change that `precondition` makes in place.
@@ -223,7 +198,7 @@ impl Kind {
             let force = |sign: f64| {
                 let moved: Vec<f64> = x.iter().zip(&v).map(|(x, v)| x + sign * epsilon * v).collect();
                 let mut f = vec![0.0; x.len()];
-                self.elasticity.add_forces(1, &moved, &mut f, &mut [0.0]);
+                measure_elastic(&self.forces, 1, &moved, &mut f, &mut [0.0]);
                 f
             };
             let (plus, minus) = (force(1.0), force(-1.0));
@@ -237,6 +212,20 @@ impl Kind {
             }
         }
         largest
+    }
+
+    /// Its loads.
+    pub fn loads(&self) -> impl Iterator<Item = &Load> {
+        self.forces.iter().filter_map(|force| match force {
+            Force::Load(load) => Some(load),
+            _ => None,
+        })
+    }
+
+    /// Names of its forces with a handle, by the number of the handle in [`CONTROLLED`](crate::mechanics::CONTROLLED).
+    pub fn controlled(&self, handle: usize) -> impl Iterator<Item = &str> {
+        let handles = self.forces.iter().filter_map(Force::handle);
+        handles.filter(move |(number, _)| *number == handle).map(|(_, name)| name)
     }
 
     /// The cell in a lane of a block, in the order of all cells; none in lanes beyond the last.
@@ -268,18 +257,17 @@ impl Kind {
 }
 
 impl Model {
-    /// A model of these kinds alone: no planes, gravity, chemistry or bends.
+    /// A model of these kinds alone: no planes, contacts or chemistry.
     pub fn of(kinds: Vec<Kind>, integrator: Integrator, until: f64) -> Self {
         Self {
             seed: 1,
+            kinks: kinks(&kinds),
             kinds,
             planes: Vec::new(),
             contact: None,
-            gravity: Vec3::zeros(),
             chemistry: Chemistry::default(),
             integrator,
             until,
-            kinks: Vec::new(),
         }
     }
 
@@ -297,4 +285,16 @@ impl Model {
     pub fn atoms(&self) -> usize {
         self.kinds.iter().map(|kind| kind.cells * kind.atoms()).sum()
     }
+}
+
+/// All times after the start at which a course of some kind bends, rising.
+pub fn kinks(kinds: &[Kind]) -> Vec<f64> {
+    let of_kind = |kind: &Kind| -> Vec<f64> {
+        let volume = kind.volume.course().into_iter().flat_map(Course::kinks);
+        kind.forces.iter().flat_map(Force::kinks).chain(volume).collect()
+    };
+    let mut kinks: Vec<f64> = kinds.iter().flat_map(of_kind).filter(|kink| *kink > 0.0).collect();
+    kinks.sort_by(f64::total_cmp);
+    kinks.dedup();
+    kinks
 }

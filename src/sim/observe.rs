@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::forces::elastic_energy;
-use super::model::{Kind, Model, VolumeRule};
+use super::model::{Kind, Model};
 use super::state::State;
 use crate::Vec3;
 use crate::geometry::{self, Surface};
@@ -42,10 +42,7 @@ pub fn measure_cells(model: &Model, state: &State) -> Vec<CellMeasure> {
             *energy *= state.chemistry.controls.stiffness_of(kind.first_cell + cell);
         }
         let rest_areas = geometry::facet_areas(&kind.rest);
-        let factor = match &kind.volume {
-            VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.at(state.time),
-            VolumeRule::Free => 1.0,
-        };
+        let factor = kind.volume.course().map_or(1.0, |course| course.at(state.time));
         let measured: Vec<CellMeasure> = (0..kind.cells)
             .into_par_iter()
             .map(|cell| {

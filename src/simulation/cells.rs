@@ -3,6 +3,7 @@
 use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
+use crate::mechanics::Force;
 use crate::sim::state::index;
 use crate::sim::{Kind, KindState};
 
@@ -44,13 +45,16 @@ impl<'a> TypeView<'a> {
     }
 
     /// Names of its loads.
-    pub fn loads(&self) -> impl ExactSizeIterator<Item = &'a str> + use<'a> {
-        self.kind.loads.iter().map(|load| load.name.as_str())
+    pub fn loads(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        self.kind.loads().map(|load| load.name.as_str())
     }
 
     /// Names of its fibres.
-    pub fn fibres(&self) -> impl ExactSizeIterator<Item = &'a str> + use<'a> {
-        self.kind.fibres.iter().map(|fibres| fibres.name.as_str())
+    pub fn fibres(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        self.kind.forces.iter().filter_map(|force| match force {
+            Force::Fibres(fibres) => Some(fibres.name.as_str()),
+            _ => None,
+        })
     }
 
     /// Its cells, in order.

@@ -22,7 +22,6 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
             && mean_velocities.len() == kind.cells
             && velocities.len() == if inertial { positions } else { 0 }
             && rest_volumes.len() == cells
-            && mean_velocities.len() == kind.cells
             && (stiffness_shape.is_empty() || stiffness_shape.len() == positions);
         if !fits {
             return mismatch(format!("the cells of type `{}` are others, or of another number", kind.name));
@@ -45,8 +44,8 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
 
 /// A list of controls is empty or has one number a cell.
 fn check_controls(cells: usize, controls: &Controls) -> Result<(), SimulationError> {
-    let Controls { speed, bias, stiffness, adhesion, loads, fibres, secretion } = controls;
-    let lists = [speed, stiffness, adhesion].into_iter().chain(loads).chain(fibres).chain(secretion);
+    let Controls { speed, bias, stiffness, adhesion, forces, secretion } = controls;
+    let lists = [speed, stiffness, adhesion].into_iter().chain(forces.iter().flatten()).chain(secretion);
     match lists.map(Vec::len).chain([bias.len()]).find(|length| ![0, cells].contains(length)) {
         None => Ok(()),
         Some(length) => Err(SimulationError::Mismatch(format!("something is set of {length} cells, not {cells}"))),

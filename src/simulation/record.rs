@@ -1,10 +1,10 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
-use super::touch::Touch;
-use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES};
+use super::touch::{Touch, recorded_by};
 use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
+use crate::recorded::contact_quantities;
 use crate::sim::chemistry::{Members, member_cells};
-use crate::sim::contact::{Law, find_contacts};
+use crate::sim::contact::find_contacts;
 use crate::sim::model::Kind;
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
@@ -25,16 +25,8 @@ pub fn outline_of(model: &Model) -> Layout {
     let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     layout.contacts = model.contact.is_some();
-    if layout.contacts {
-        let unit = |name: &str| if name == "contact.energy" { "pN um" } else { "1" }.to_owned();
-        layout.scene_series.extend(CONTACT_SERIES.map(|name| (name.to_owned(), unit(name))));
-    }
-    let of_law: &[&str] = match model.contact.as_ref().map(|contact| &contact.law) {
-        Some(Law::Links(_)) => &[LINK_SERIES],
-        Some(Law::VirtualAdhesives(_)) => &ADHESIVE_SERIES,
-        _ => &[],
-    };
-    layout.scene_series.extend(of_law.iter().map(|name| ((*name).to_owned(), "1".to_owned())));
+    let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(recorded_by(&contact.law)));
+    layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
     layout.planes = model.planes.iter().map(plane).collect();
     add_chemistry(model, &mut layout);
@@ -92,12 +84,12 @@ fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
     }
 }
 
-/// Series name, kind and load of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
+/// Series name, kind and number of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
 fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
-    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads.iter().any(|load| load.name == name)).count();
+    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads().any(|load| load.name == name)).count();
     let mut names: Vec<(String, usize, usize)> = Vec::new();
     for (k, kind) in model.kinds.iter().enumerate() {
-        for (l, load) in kind.loads.iter().enumerate() {
+        for (l, load) in kind.loads().enumerate() {
             let owner = if owners(&load.name) > 1 { format!("{}.", kind.name) } else { String::new() };
             names.push((format!("load.{owner}{}", load.name), k, l));
         }
@@ -134,7 +126,8 @@ impl Recorder {
     /// The frame of this instant without the runs that ended; `dt` is the size of the last step, s.
     pub fn look(&mut self, model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
         let mut frame = frame_of(model, state);
-        frame.scene = self.loads.iter().map(|&(_, k, l)| model.kinds[k].loads[l].force.at(state.time)).collect();
+        let at = |&(_, kind, number): &(String, usize, usize)| model.kinds[kind].loads().nth(number);
+        frame.scene = self.loads.iter().filter_map(at).map(|load| load.force.at(state.time)).collect();
         if let Some(contact) = &model.contact {
             self.touch.look(model, contact, state, ws, dt, &mut frame);
         }

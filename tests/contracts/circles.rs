@@ -18,7 +18,7 @@ const ALLOWED: &[&[&str]] = &[
     &["field/shared.rs", "field/sweep.rs"],
     &["ode/block.rs", "ode/fixed.rs"],
     &["ode/multistep.rs", "ode/solve.rs"],
-    &["output/columns.rs", "output/field_column.rs", "output/fields.rs", "output/systems.rs"],
+    &["output/field_column.rs", "output/fields.rs"],
     &["output/contacts.rs", "output/reader.rs"],
     &["picture/field_plots.rs", "picture/from_file.rs", "picture/plots.rs"],
     &["sim/contact/model.rs", "sim/model.rs"],

@@ -2,8 +2,9 @@
 
 use pseudopod::Vec3;
 use pseudopod::analysis::aggregates::{Change, changes};
-use pseudopod::experiment::{CONTACT_SERIES, Compiled, Document, PushedApart, compile, pair_series, settle_start};
+use pseudopod::experiment::{Compiled, Document, PushedApart, compile, settle_start};
 use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::recorded::{CONTACTS, Touch};
 use pseudopod::run::{Quiet, RunOptions, run};
 use pseudopod::sim::contact::Strength;
 use pseudopod::sim::{Workspace, begin_chemistry, step};
@@ -266,11 +267,11 @@ fn aggregates_and_shares_of_contact_are_recorded() {
     assert!((measure("mixed") + 0.5).abs() < 1e-15 && measure("p") == 1.0);
     assert_eq!(file.scene_series("contact.segregation").expect("a series")[0], measure("mixed"));
     assert_eq!(file.scene_series("contact.heterotypic_share").expect("a series"), vec![1.0; frames]);
-    let names = pair_series(&["red", "white"], &[]);
+    let names = Touch::all(2, 0).into_iter().map(|series| series.name(&["red", "white"], &[])).collect::<Vec<_>>();
     let of_file = file
         .scene_names()
         .into_iter()
-        .filter(|name| name.starts_with("contact.") && !CONTACT_SERIES.contains(&name.as_str()));
+        .filter(|name| name.starts_with("contact.") && !CONTACTS.iter().any(|row| row.name == *name));
     assert_eq!(of_file.collect::<Vec<_>>(), names);
     let page = pseudopod::output::describe(&file).expect("a page");
     assert!(page.contains("2 aggregates in the last frame, the largest of 3"), "{page}");

@@ -11,10 +11,12 @@ use crate::contact_scenes::{Purposed, Scene};
 use pseudopod::Vec3;
 use pseudopod::contact::{Sides, closest_on_facet, winding_number};
 use pseudopod::geometry::{atom_areas, bounding_box};
+use pseudopod::mechanics::Force;
+use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::integrator::StepSize;
 use pseudopod::sim::contact::{Pairing, check_passed, find_contacts};
 use pseudopod::sim::observe::{CellMeasure, measure_cells};
-use pseudopod::sim::{Attraction, Model, State, Trouble, VolumeRule, Workspace, step};
+use pseudopod::sim::{Model, State, Trouble, VolumeRule, Workspace, step};
 
 /// The deepest that one cell may be in another, over the mean edge.
 const DEEPEST: f64 = 0.02;
@@ -167,7 +169,8 @@ fn press(scene: &Scene, model: &Model, start: &State) -> Result<State, Failure> 
     let (mut model, mut state) = (model.clone(), start.clone());
     if scene.pressed > 0.0 {
         for kind in &mut model.kinds {
-            kind.attraction = Some(Attraction { to: Vec3::zeros(), stiffness: scene.pressed });
+            kind.forces.retain(|force| !matches!(force, Force::Attraction(_)));
+            kind.forces.push(Force::Attraction(Attraction { to: Vec3::zeros(), stiffness: scene.pressed }));
             kind.bound_stiffness();
         }
         let mut ws = Workspace::new(&model);

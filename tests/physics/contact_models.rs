@@ -5,17 +5,18 @@ use crate::same_bits::{go_on, through_a_checkpoint};
 use pseudopod::Vec3;
 use pseudopod::contact::{Contacts, Detector, Reach};
 use pseudopod::geometry::{Topology, icosphere, mean_edge_length};
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::contact::{
     ContactModel, Law, Link, LinkTable, Penalty, Row, Strength, links_at, press, pull_links,
 };
 use pseudopod::sim::controls::Controls;
 use pseudopod::sim::observe::measure_cells;
-use pseudopod::sim::{Kind, Load, Model, State, VolumeRule, Workspace, step};
+use pseudopod::sim::{Kind, Model, State, VolumeRule, Workspace, step};
 
 /// Radius of the cells, µm.
 const RADIUS: f64 = 5.0;
@@ -29,12 +30,9 @@ fn cell(name: &str) -> Kind {
     let topology = Topology::of(&rest);
     let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
     let energy = 6.0 * mean_edge_length(&rest).powi(2);
-    let elasticity = Elasticity {
-        shape_memory: vec![ShapeMemory::new(&rest.positions, &rings, 6.0, Reaction::Exact)],
-        barrier: vec![Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy))],
-        ..Elasticity::default()
-    };
-    let mut kind = Kind::new(name, rest, elasticity);
+    let memory = ShapeMemory::new(&rest.positions, &rings, 6.0, Reaction::Exact);
+    let barrier = Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy));
+    let mut kind = Kind::new(name, rest, vec![Force::ShapeMemory(memory), Force::Barrier(barrier)]);
     kind.drag = 20.0 / 12.0;
     kind
 }
@@ -58,13 +56,11 @@ fn model(mut kinds: Vec<Kind>, until: f64, binds: impl Fn(usize, usize) -> bool)
         }
     }
     contact.law = Law::Links(table);
-    let mut kinks: Vec<f64> = kinds.iter().flat_map(|kind| &kind.loads).flat_map(|load| load.force.kinks()).collect();
-    kinks.retain(|kink| *kink > 0.0);
     let integrator = Integrator {
         method: Method::Implicit { order: Order::Second },
         size: StepSize::Adaptive { tolerance: 1e-3, largest: 0.5 },
     };
-    Model { contact: Some(contact), kinks, ..Model::of(kinds, integrator, until) }
+    Model { contact: Some(contact), ..Model::of(kinds, integrator, until) }
 }
 
 /// The atoms of a cell of a kind around a centre, turned a little so that nothing is symmetric.
@@ -218,7 +214,7 @@ fn hung(force: f64, until: f64) -> (Model, State) {
     let mut soft = cell("soft");
     let atoms = (0..12).map(|atom| (atom, 1.0 / 12.0)).collect();
     let course = Course::through(vec![(0.0, 0.0), (20.0, 0.0), (21.0, force), (until, force)]).expect("rising times");
-    soft.loads = vec![Load { name: "load".into(), atoms, direction: Vec3::x(), force: course }];
+    soft.forces.push(Force::Load(Load::new("load", atoms, Vec3::x(), course)));
     let model = model(vec![rigid, soft], until, |one, other| one != other);
     let state = pair(&model);
     (model, state)
@@ -298,7 +294,7 @@ fn press_together(model: &mut Model) {
     let atoms: Vec<(u32, f64)> = (0..12).map(|atom| (atom, 1.0 / 12.0)).collect();
     let course = || Course::through(vec![(0.0, 5.0), (40.0, 5.0), (41.0, 0.0), (100.0, 0.0)]).unwrap();
     for (kind, direction) in model.kinds.iter_mut().zip([Vec3::x(), -Vec3::x()]) {
-        kind.loads = vec![Load { name: "press".into(), atoms: atoms.clone(), direction, force: course() }];
+        kind.forces.push(Force::Load(Load::new("press", atoms.clone(), direction, course())));
     }
     model.kinks = vec![40.0, 41.0, 100.0];
 }

@@ -2,18 +2,20 @@
 
 use pseudopod::Vec3;
 use pseudopod::geometry::{self, Topology, icosphere};
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::gravity::Gravity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
-use pseudopod::sim::{Kind, Load, Model, Plane, State, VolumeRule, Workspace, step};
+use pseudopod::sim::{Kind, Model, Plane, State, VolumeRule, Workspace, step};
 
 fn sphere_kind(level: u32, stiffness: f64) -> Kind {
     let surface = icosphere(5.0, level);
     let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
     let memory = ShapeMemory::new(&surface.positions, &rings, stiffness, Reaction::Exact);
-    let mut kind = Kind::new("sphere", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    let mut kind = Kind::new("sphere", surface, vec![Force::ShapeMemory(memory)]);
     kind.bound_stiffness();
     kind
 }
@@ -100,8 +102,8 @@ fn each_scheme_converges_with_its_order() {
 fn a_constant_force_moves_a_cell_rigidly_at_force_over_drag() {
     let mut kind = sphere_kind(1, 10.0);
     kind.mass = 2.0;
-    let mut model = model_of(kind, SECOND, StepSize::Fixed(3.0), 30.0);
-    model.gravity = Vec3::new(0.1, 0.0, -0.3);
+    kind.forces.push(Force::Gravity(Gravity { acceleration: Vec3::new(0.1, 0.0, -0.3) }));
+    let model = model_of(kind, SECOND, StepSize::Fixed(3.0), 30.0);
     let places = model.kinds[0].rest.positions.clone();
     let (mut state, mut ws) = start(&model, vec![places.clone()]);
     run_until_end(&model, &mut state, &mut ws);
@@ -121,14 +123,11 @@ fn steps_of_a_long_pull(cells: usize) -> (u32, f64) {
         near.iter().map(|&atom| (atom, 1.0 / near.len() as f64)).collect()
     };
     let force = Course::through(vec![(0.0, 0.0), (1.0, 300.0)]).unwrap();
-    let pull =
-        |side: f64| Load { name: String::new(), atoms: poles(side), direction: side * Vec3::z(), force: force.clone() };
+    let pull = |side: f64| Force::Load(Load::new("", poles(side), side * Vec3::z(), force.clone()));
     let (up, down) = (pull(1.0), pull(-1.0));
-    let elasticity = Elasticity { membrane: vec![membrane], ..Default::default() };
-    let mut kind = Kind::new("sphere", surface, elasticity).with_cells(0, cells);
+    let mut kind = Kind::new("sphere", surface, vec![Force::Membrane(membrane), up, down]).with_cells(0, cells);
     kind.bound_stiffness();
     kind.drag = 0.01;
-    kind.loads = vec![up, down];
     let model = model_of(kind, SECOND, ADAPTIVE, 2.0);
     let places = model.kinds[0].rest.positions.clone();
     let (mut state, mut ws) = start(&model, vec![places; cells]);
@@ -204,8 +203,8 @@ fn a_cell_on_a_plane_rests_in_balance_whatever_the_step() {
     for size in [StepSize::Fixed(0.5), StepSize::Fixed(4.0), ADAPTIVE] {
         let mut kind = sphere_kind(2, 40.0);
         kind.mass = 0.1;
+        kind.forces.push(Force::Gravity(Gravity { acceleration: -Vec3::z() }));
         let mut model = model_of(kind, SECOND, size, 400.0);
-        model.gravity = Vec3::new(0.0, 0.0, -1.0);
         let normal = Vec3::z();
         model.planes = vec![Plane { name: "ground".into(), point: Vec3::zeros(), normal }];
         let places = model.kinds[0].rest.positions.iter().map(|p| p + Vec3::new(0.0, 0.0, 5.0)).collect();

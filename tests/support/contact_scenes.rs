@@ -6,18 +6,21 @@ use pseudopod::Vec3;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::contact::Reach;
 use pseudopod::geometry::{self, Surface, Topology};
+use pseudopod::mechanics::Force;
+use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
 use pseudopod::mechanics::bending::{Bending, RestAngle};
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::gravity::Gravity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::mechanics::springs::Springs;
 use pseudopod::mechanics::stability::{Body, largest_stable_step};
+use pseudopod::mechanics::sum;
 use pseudopod::random::{Purpose, Stream};
 use pseudopod::sim::contact::{ContactModel, Strength};
-use pseudopod::sim::{Attraction, Kind, Model, Plane, State, VolumeRule};
+use pseudopod::sim::{Kind, Model, Plane, State, VolumeRule};
 
 /// What a scene is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -316,6 +319,14 @@ impl Scene {
                 normal: turn * normal,
             })
             .collect();
+        if self.weight > 0.0 {
+            let weight = Gravity { acceleration: turn * Vec3::new(0.0, 0.0, -self.weight) };
+            for kind in &mut kinds {
+                // Before the pull to the middle, as documents have it.
+                let driven = kind.forces.iter().position(|force| !force.is_elastic());
+                kind.forces.insert(driven.unwrap_or(kind.forces.len()), Force::Gravity(weight));
+            }
+        }
         let edge = kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
         let near = self.proximity * edge;
         let mut contact = ContactModel::new(&kinds, &planes, Reach { proximity: near, depth: near, margin: near });
@@ -338,13 +349,8 @@ impl Scene {
             contact = contact.suited_to(size);
         }
         let integrator = Integrator { method: self.method, size };
-        let model = Model {
-            seed: self.seed,
-            contact: Some(contact),
-            gravity: turn * Vec3::new(0.0, 0.0, -self.weight),
-            planes,
-            ..Model::of(kinds, integrator, self.until)
-        };
+        let model =
+            Model { seed: self.seed, contact: Some(contact), planes, ..Model::of(kinds, integrator, self.until) };
         let state = State::new(&model, &places);
         (model, state)
     }
@@ -357,26 +363,27 @@ impl Scene {
         let is_sheet = matches!(of.mesh, Mesh::Sheet { .. });
         let topology = Topology::of(&rest);
         let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
-        let mut elasticity = Elasticity::default();
+        let mut forces = Vec::new();
         if of.skin == Skin::ShapeMemory || is_sheet {
             let memory = ShapeMemory::new(&rest.positions, &rings, of.stiffness, Reaction::Exact);
-            elasticity.shape_memory.push(memory);
+            forces.push(Force::ShapeMemory(memory));
         }
         if of.skin == Skin::Membrane {
             let law = MembraneLaw::Skalak { shear: of.stiffness, area: 3.0 * of.stiffness };
-            elasticity.membrane.push(Membrane::new(&rest.positions, &rest.facets, law));
+            forces.push(Force::Membrane(Membrane::new(&rest.positions, &rest.facets, law)));
             let rigidity = 0.1 * of.stiffness * geometry::mean_edge_length(&rest).powi(2);
-            elasticity.bending.push(Bending::new(&rest.positions, &topology.flaps, rigidity, RestAngle::Remembered));
+            let bending = Bending::new(&rest.positions, &topology.flaps, rigidity, RestAngle::Remembered);
+            forces.push(Force::Bending(bending));
         }
         if is_sheet {
-            elasticity.springs.push(Springs::on_edges(&rest.positions, &topology.edges, of.stiffness));
+            forces.push(Force::Springs(Springs::on_edges(&rest.positions, &topology.edges, of.stiffness)));
         }
         let edge = geometry::mean_edge_length(&rest);
-        let matrix = elasticity.stiffness(&rest.positions, &rest.positions);
+        let matrix = sum::stiffness(&forces, true, &rest.positions, &rest.positions);
         let stiffest = (0..rest.positions.len()).map(|atom| matrix.diagonal(atom)).fold(0.0, f64::max);
         let rules = BarrierRules::with_energy(0.1 * stiffest * edge * edge);
-        elasticity.barrier.push(Barrier::new(&rest.positions, &rest.facets, &topology.flaps, rules));
-        let mut kind = Kind::new(&format!("type {number}"), rest, elasticity);
+        forces.push(Force::Barrier(Barrier::new(&rest.positions, &rest.facets, &topology.flaps, rules)));
+        let mut kind = Kind::new(&format!("type {number}"), rest, forces);
         kind.drag = of.drag;
         kind.volume = match of.volume {
             Volume::Free => VolumeRule::Free,
@@ -393,7 +400,8 @@ impl Scene {
             }
             kind.held = held;
         }
-        kind.attraction = (of.pull > 0.0).then_some(Attraction { to: Vec3::zeros(), stiffness: of.pull });
+        let pull = Force::Attraction(Attraction { to: Vec3::zeros(), stiffness: of.pull });
+        kind.forces.extend((of.pull > 0.0).then_some(pull));
         kind.brownian =
             (of.speed > 0.0).then_some(BrownianMotility { speed: of.speed, persistence: 10.0, space: Space::Volume });
         kind.largest_stiffness = kind.measure_largest_stiffness();

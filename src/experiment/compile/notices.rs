@@ -4,8 +4,8 @@ use super::super::{Document, Mesh};
 use super::Prepared;
 use crate::Vec3;
 use crate::geometry::bounding_box;
-use crate::mechanics::course::Course;
-use crate::sim::{Kind, Model, VolumeRule};
+use crate::mechanics::Force;
+use crate::sim::{Kind, Model};
 use crate::units::{Dimension, pretty};
 
 /// The widths of cells, µm: from the smallest bacterium to the largest egg of a frog and more.
@@ -75,13 +75,9 @@ fn may_meet(model: &Model, centres: &[Vec<Vec3>]) -> bool {
 
 /// How far cells of a kind may come in the run, µm; none where forces move them or change their size.
 fn reach(model: &Model, kind: &Kind) -> Option<f64> {
-    let keeps = |course: &Course| course.kinks().next().is_none();
-    let steady = match &kind.volume {
-        VolumeRule::Free => true,
-        VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => keeps(course),
-    };
-    let driven = kind.biased || kind.attraction.is_some() || !kind.loads.is_empty() || !kind.fibres.is_empty();
-    let still = steady && !driven && model.chemistry.is_empty() && model.gravity.norm_squared() == 0.0;
+    let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
+    let driven = kind.biased || !kind.forces.iter().all(Force::is_elastic);
+    let still = steady && !driven && model.chemistry.is_empty();
     let walks = kind.brownian.map_or(0.0, |brownian| brownian.speed * model.until);
     still.then_some(walks)
 }

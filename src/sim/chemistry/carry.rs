@@ -12,6 +12,7 @@ use super::observe::{observe, read_cell};
 use super::scratch::ChemistryScratch;
 use crate::equations::eml::LinkDescription;
 use crate::field::Sensed;
+use crate::mechanics::CONTROLLED;
 
 /// Carries the numbers of all links whose system exchanges with the model at `time`.
 /// The values of the fields must be with their solvers. At the start every system exchanges.
@@ -134,7 +135,9 @@ pub fn missed(target: Target, value: f64) -> Option<&'static str> {
         Target::Cell(_, Control::MotilitySpeed | Control::Stiffness | Control::Adhesion) if value < 0.0 => {
             Some("a number not below 0")
         }
-        Target::Cell(_, Control::Fibre(_)) if !(0.0..=1.0).contains(&value) => Some("a number from 0 to 1"),
+        Target::Cell(_, Control::Force(handle, _)) if !CONTROLLED[handle].allows(value) => {
+            Some(CONTROLLED[handle].expected)
+        }
         Target::Cell(_, Control::RestVolume | Control::RestVolumeRatio) if value <= 0.0 => Some("a number above 0"),
         _ => None,
     }
@@ -148,8 +151,7 @@ pub fn set_control(model: &Model, cell: usize, control: Control, value: f64, sta
         Control::Bias(axis) => controls.bias[cell][axis] = value,
         Control::Stiffness => controls.stiffness[cell] = value,
         Control::Adhesion => controls.adhesion[cell] = value,
-        Control::Load(load) => controls.loads[load][cell] = value,
-        Control::Fibre(fibre) => controls.fibres[fibre][cell] = value,
+        Control::Force(handle, number) => controls.forces[handle][number][cell] = value,
         Control::Secretion(channel) => controls.secretion[channel][cell] = value,
         Control::RestVolume | Control::RestVolumeRatio => {
             let (kind, local) = model.kind_of(cell);

@@ -170,10 +170,9 @@ pub enum Control {
     RestVolume,
     /// Rest volume over that of the mesh at rest.
     RestVolumeRatio,
-    /// Factor of the load with this number in the kind's list.
-    Load(usize),
-    /// Activation of the fibres with this number in the kind's list.
-    Fibre(usize),
+    /// What may be set of a force: the number of its handle in [`CONTROLLED`](crate::mechanics::CONTROLLED), and its own among those
+    /// of the kind that have this handle.
+    Force(usize, usize),
     /// A component of an atom's position, µm.
     Atom(usize, usize),
     /// Amount released per second into a channel of [`Chemistry::secreted`].

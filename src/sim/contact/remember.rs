@@ -67,14 +67,13 @@ mod tests {
     use super::*;
     use crate::contact::Reach;
     use crate::geometry::{Surface, icosphere, sheet};
-    use crate::mechanics::elasticity::Elasticity;
     use crate::sim::model::Kind;
 
     const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
 
     fn scene(surfaces: Vec<Surface>) -> (ContactModel, Vec<Vec3>) {
         let kinds: Vec<Kind> = (surfaces.into_iter().enumerate())
-            .map(|(number, rest)| Kind::new("body", rest, Elasticity::default()).with_cells(number, 1))
+            .map(|(number, rest)| Kind::new("body", rest, Vec::new()).with_cells(number, 1))
             .collect();
         let positions = kinds.iter().flat_map(|kind| kind.rest.positions.clone()).collect();
         (ContactModel::new(&kinds, &[], REACH), positions)

@@ -5,6 +5,8 @@ use crate::cell::ends::{self, Reading, Sense, Setting};
 use crate::equations::eml::{Endpoint, Index, LinkDescription, Root, Step};
 use crate::error::words;
 use crate::error::{Fault, short};
+use crate::mechanics::CONTROLLED;
+use crate::mechanics::control::Handle;
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, Control, Source, Target, Whole, Whose};
 
@@ -123,8 +125,10 @@ impl Ends<'_, '_> {
         let whose = self.whose(end, Side::To)?;
         let Some(setting) = ends::setting(&end.path) else {
             let message = format!("`{}` is nothing that can be set", end.text);
-            let help = format!("of a cell can be set {}", words::all_of(ends::SETTABLE));
-            return Err(within(&end.place, &meant(end, ends::SETTABLE), message, help));
+            let known = ends::settable();
+            let known = || known.iter().map(String::as_str);
+            let help = format!("of a cell can be set {}", words::all_of(known()));
+            return Err(within(&end.place, &meant(end, known()), message, help));
         };
         self.check_setting(end, whose, &setting)?;
         let control = match setting {
@@ -135,14 +139,7 @@ impl Ends<'_, '_> {
             Setting::RestVolume => Control::RestVolume,
             Setting::RestVolumeRatio => Control::RestVolumeRatio,
             Setting::Atom(atom, axis) => Control::Atom(atom, axis),
-            Setting::Load(name) => {
-                let loads = |kind: &Kind| kind.loads.iter().map(|load| load.name.clone()).collect();
-                Control::Load(self.named(end, whose, ["load", "loads"], &name, loads)?)
-            }
-            Setting::Fibre(name) => {
-                let fibres = |kind: &Kind| kind.fibres.iter().map(|fibres| fibres.name.clone()).collect();
-                Control::Fibre(self.named(end, whose, ["fibre", "fibres"], &name, fibres)?)
-            }
+            Setting::Force(handle, name) => Control::Force(handle, self.numbered(end, whose, handle, &name)?),
             Setting::Secretion(name) => {
                 let channel = self.species(end, &Index::Name(name))?;
                 let secreted = &mut self.chemistry.secreted;
@@ -185,24 +182,18 @@ impl Ends<'_, '_> {
         Ok(())
     }
 
-    /// The number of a load or of fibres by their name, the same in all kinds concerned; `words` are one and many of them.
-    fn named(
-        &self,
-        end: &Endpoint,
-        whose: Whose,
-        [one, many]: [&str; 2],
-        name: &str,
-        names: impl Fn(&Kind) -> Vec<String>,
-    ) -> Result<usize, Fault> {
+    /// The number of a force by its name among those with a handle, the same in all kinds concerned.
+    fn numbered(&self, end: &Endpoint, whose: Whose, handle: usize, name: &str) -> Result<usize, Fault> {
+        let Handle { word: one, key: many, .. } = CONTROLLED[handle];
         let mut found = None;
         for kind in self.kinds_of(whose) {
             let kind = &self.kinds[kind];
-            let known = names(kind);
-            let Some(number) = known.iter().position(|known| known == name) else {
+            let known: Vec<&str> = kind.controlled(handle).collect();
+            let Some(number) = known.iter().position(|known| *known == name) else {
                 let message = format!("type `{}` has no {one} `{name}`", kind.name);
                 let help = match known.is_empty() {
                     true => format!("add [[cells.{}.{many}]] with that name to the experiment", kind.name),
-                    false => format!("its {many} are {}", words::all_of(known.iter().map(String::as_str))),
+                    false => format!("its {many} are {}", words::all_of(known)),
                 };
                 return Err(within(&end.place, &format!("no such {one}"), message, help));
             };
@@ -392,7 +383,7 @@ fn unknown_of_field(end: &Endpoint) -> Fault {
 }
 
 /// The word that was meant by the path of an end.
-fn meant<const N: usize>(end: &Endpoint, known: [&'static str; N]) -> String {
+fn meant<'a>(end: &Endpoint, known: impl IntoIterator<Item = &'a str>) -> String {
     let path = end.text.split_once('.').map_or("", |(_, path)| path);
     words::meant(path, known).map_or("not known".to_owned(), |near| format!("did you mean `{near}`?"))
 }
