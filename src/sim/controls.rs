@@ -54,34 +54,6 @@ impl Controls {
         self.secretion.clone_from(&other.secretion);
     }
 
-    /// Adds a cell to all lists that are there, with numbers that change nothing. Lists that have lost their last cell are made anew by
-    /// [`Self::admit`].
-    pub fn insert_cell(&mut self, at: usize) {
-        let insert = |list: &mut Vec<f64>, nothing: f64| {
-            if !list.is_empty() {
-                list.insert(at, nothing);
-            }
-        };
-        insert(&mut self.speed, f64::NAN);
-        insert(&mut self.stiffness, 1.0);
-        insert(&mut self.adhesion, 1.0);
-        for (lists, handle) in self.forces.iter_mut().zip(&CONTROLLED) {
-            lists.iter_mut().for_each(|list| list.insert(at, handle.unset));
-        }
-        self.secretion.iter_mut().for_each(|list| list.insert(at, 0.0));
-        if !self.bias.is_empty() {
-            self.bias.insert(at, [0.0; 3]);
-        }
-    }
-
-    /// Keeps the cells that stay, one answer a cell.
-    pub fn retain_cells(&mut self, stays: &[bool]) {
-        let single = [&mut self.speed, &mut self.stiffness, &mut self.adhesion];
-        let many = self.forces.iter_mut().flatten().chain(&mut self.secretion);
-        single.into_iter().chain(many).for_each(|list| retain(list, stays));
-        retain(&mut self.bias, stays);
-    }
-
     /// The velocity added to a cell's walk, µm/s.
     pub fn bias_of(&self, cell: usize) -> [f64; 3] {
         self.bias.get(cell).copied().unwrap_or_default()
@@ -101,10 +73,4 @@ impl Controls {
     pub fn adhesion_of(&self, cell: usize) -> f64 {
         self.adhesion.get(cell).copied().unwrap_or(1.0)
     }
-}
-
-/// Keeps what stays of a list with one thing a cell; an empty one stays so.
-pub(super) fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
-    let mut stays = stays.iter();
-    list.retain(|_| stays.next().copied().unwrap_or(false));
 }

@@ -47,7 +47,7 @@ impl Simulation {
         if let Some(expected) = missed(Target::Cell(Whose::Own, control), value) {
             return Err(SimulationError::Value { what: of_cell(what, cell), value, expected });
         }
-        let (number, cells) = (self.position_of(cell)?, self.model.cells());
+        let (number, cells) = (self.position_of(cell)?, self.state.cells());
         self.state.chemistry.controls.admit(control, cells);
         match control {
             Control::Bias(_) => self.model.kinds[kind].biased = true,

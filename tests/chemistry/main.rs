@@ -12,6 +12,7 @@ mod fields;
 mod fields_analytic;
 mod sbml;
 mod sbml_features;
+mod xml;
 
 #[path = "../support/every_function.rs"]
 mod every_function;

@@ -21,7 +21,6 @@ const ALLOWED: &[&[&str]] = &[
     &["output/field_column.rs", "output/fields.rs"],
     &["output/contacts.rs", "output/reader.rs"],
     &["picture/field_plots.rs", "picture/from_file.rs", "picture/plots.rs"],
-    &["sim/contact/model.rs", "sim/model.rs"],
 ];
 
 /// The largest sets of files each of which uses every other by some course, files alone left out.

@@ -4,7 +4,7 @@ use super::super::model::Model;
 use super::super::state::{State, index, vector};
 use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
-use super::census::{cell_of_member, cells_of, member_of_cell};
+use super::census::{cell_of_member, cells_of, member_of_cell, names_nobody};
 use super::exchange::is_due;
 use super::links::{Control, Observation, Owner, Target};
 use super::measure::measure_cells;
@@ -28,7 +28,8 @@ pub(super) fn carry_links(
 ) -> Result<(), Trouble> {
     let chemistry = &model.chemistry;
     if chemistry.measures_cells {
-        measure_cells(model, state, &ws.contact.found.atoms, &mut ws.chemistry.cells);
+        let contact = ws.contact.scene(model, &state.kinds);
+        measure_cells(model, state, contact.as_ref(), &ws.contact.found.atoms, &mut ws.chemistry.cells);
     }
     sense_fields(model, state, &mut ws.chemistry);
     ws.chemistry.observed.forget(&chemistry.observations);
@@ -49,7 +50,7 @@ fn sense_fields(model: &Model, state: &State, scratch: &mut ChemistryScratch) {
     for (&(field, species), cells) in model.chemistry.sensed.iter().zip(&mut scratch.sensed) {
         for (kind, now) in model.kinds.iter().zip(&state.kinds) {
             let atoms = kind.atoms();
-            for cell in 0..kind.cells {
+            for cell in 0..now.cells() {
                 scratch.places.clear();
                 scratch.places.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
                 scratch.senses.resize(atoms, Sensed::default());
@@ -59,13 +60,13 @@ fn sense_fields(model: &Model, state: &State, scratch: &mut ChemistryScratch) {
                     gradient: sum.gradient + one.gradient,
                 });
                 let share = 1.0 / atoms as f64;
-                cells[kind.first_cell + cell] = Sensed { value: sum.value * share, gradient: sum.gradient * share };
+                cells[now.first_cell + cell] = Sensed { value: sum.value * share, gradient: sum.gradient * share };
             }
         }
     }
 }
 
-/// Carries the numbers of one link, for every member of its system.
+/// Carries the numbers of one link, for every member of its system; nothing where it reads cells that are no more.
 fn carry(
     model: &Model,
     number: usize,
@@ -73,6 +74,9 @@ fn carry(
     state: &mut State,
     scratch: &mut ChemistryScratch,
 ) -> Result<(), Trouble> {
+    if model.chemistry.links[number].from.whose().is_some_and(|whose| names_nobody(state, whose)) {
+        return Ok(());
+    }
     observe(model, number, time, state, scratch);
     let chemistry = &model.chemistry;
     let (link, seen) = (&chemistry.links[number], &chemistry.observations.links[number]);
@@ -82,7 +86,7 @@ fn carry(
     };
     let seconds = reactor.map_or(1.0, |reactor| reactor.seconds);
     for member in 0..members {
-        let own = reactor.and_then(|reactor| cell_of_member(model, &reactor.members, member));
+        let own = reactor.and_then(|reactor| cell_of_member(&state.kinds, &reactor.members, member));
         let used = |quantity: u32| match link.owner {
             Owner::Field(field) => chemistry.fields[field].constants[quantity as usize],
             Owner::Reactor(_) => {
@@ -96,7 +100,7 @@ fn carry(
             Observation::Cell => own.map_or(f64::NAN, |cell| read_cell(model, &link.from, cell, state, scratch)),
             Observation::OfOwnCell(slot) => {
                 let members = &chemistry.reactors[chemistry.observations.quantities[slot].0].members;
-                let other = own.and_then(|cell| member_of_cell(model, members, cell));
+                let other = own.and_then(|cell| member_of_cell(&state.kinds, members, cell));
                 other.map_or(f64::NAN, |other| scratch.observed.quantity(slot, other))
             }
         };
@@ -105,7 +109,7 @@ fn carry(
         });
         let carried = link.gain * carried;
         if let Some(expected) = missed(link.to, carried) {
-            let owner = own.map(|cell| model.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
+            let owner = own.map(|cell| state.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
             return Err(Trouble::Link { link: link.text.clone(), owner, value: carried, expected, time });
         }
         match (link.to, link.owner) {
@@ -114,7 +118,7 @@ fn carry(
             }
             (Target::Own(input), Owner::Field(field)) => state.chemistry.fields[field].inputs[input] = carried,
             (Target::Cell(whose, control), _) => {
-                for cell in cells_of(model, whose, own) {
+                for cell in cells_of(state, whose, own) {
                     set_control(model, cell, control, carried, state);
                 }
             }
@@ -154,12 +158,12 @@ pub fn set_control(model: &Model, cell: usize, control: Control, value: f64, sta
         Control::Force(handle, number) => controls.forces[handle][number][cell] = value,
         Control::Secretion(channel) => controls.secretion[channel][cell] = value,
         Control::RestVolume | Control::RestVolumeRatio => {
-            let (kind, local) = model.kind_of(cell);
+            let (kind, local) = state.kind_of(cell);
             let unit = if control == Control::RestVolume { 1.0 } else { model.chemistry.rest[kind][0] };
             state.kinds[kind].rest_volumes[local] = value * unit;
         }
         Control::Atom(atom, axis) => {
-            let (kind, local) = model.kind_of(cell);
+            let (kind, local) = state.kind_of(cell);
             let at = index(&model.kinds[kind], local, atom, axis);
             state.kinds[kind].positions[at] = value;
         }

@@ -36,8 +36,8 @@ pub enum Owner {
 pub enum Whose {
     /// The cell that has the system.
     Own,
-    /// This cell, in the order of all cells.
-    Cell(usize),
+    /// The cell with this id.
+    Cell(u64),
     /// All cells of a kind: their mean where it is read, each of them where it is set.
     Kind(usize),
 }
@@ -59,6 +59,18 @@ pub enum Source {
     Whole(usize, usize, Whole),
     /// A quantity of another system: (reactor, quantity, whose copy); the scene's only one for systems of the scene.
     Other(usize, QuantityId, Whose),
+}
+
+impl Source {
+    /// The cells that it names; none where it names none.
+    pub fn whose(&self) -> Option<Whose> {
+        match *self {
+            Self::Cell(whose, _) | Self::Sensed(whose, ..) | Self::AtAtom(whose, ..) | Self::Other(.., whose) => {
+                Some(whose)
+            }
+            Self::Own(_) | Self::Time | Self::Whole(..) => None,
+        }
+    }
 }
 
 /// What links read, each thing once: however many links and members read it, it is observed once an exchange.
@@ -153,6 +165,16 @@ pub enum Target {
     Own(usize),
     /// Something that mechanics reads of a cell.
     Cell(Whose, Control),
+}
+
+impl Target {
+    /// What it sets of cells; none where it sets a quantity of its owner.
+    pub fn control(&self) -> Option<Control> {
+        match *self {
+            Self::Own(_) => None,
+            Self::Cell(_, control) => Some(control),
+        }
+    }
 }
 
 /// What mechanics reads of a cell.

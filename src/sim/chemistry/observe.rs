@@ -56,19 +56,19 @@ fn shared(model: &Model, from: &Source, time: f64, state: &State, scratch: &mut 
         Source::Time => time,
         Source::Whole(field, species, what) => whole(&scratch.fields[field], species, what, &mut scratch.observed.sums),
         Source::Cell(whose, _) | Source::Sensed(whose, ..) | Source::AtAtom(whose, ..) => {
-            mean(cells_of(model, whose, None), |cell| read_cell(model, from, cell, state, scratch))
+            mean(cells_of(state, whose, None), |cell| read_cell(model, from, cell, state, scratch))
         }
         Source::Other(number, quantity, whose) => {
             let list = &model.chemistry.observations.quantities;
             let slot = list.iter().position(|known| *known == (number, quantity)).expect("listed with the link");
             let members = &model.chemistry.reactors[number].members;
             let of = |cell| {
-                let member = member_of_cell(model, members, cell);
+                let member = member_of_cell(&state.kinds, members, cell);
                 member.map_or(f64::NAN, |member| scratch.observed.quantity(slot, member))
             };
             match members {
                 Members::Scene => scratch.observed.quantity(slot, 0),
-                Members::Kinds(_) => mean(cells_of(model, whose, None), of),
+                Members::Kinds(_) => mean(cells_of(state, whose, None), of),
             }
         }
     }
@@ -82,7 +82,7 @@ fn mean(cells: std::ops::Range<usize>, one: impl Fn(usize) -> f64) -> f64 {
 /// What a source says of one cell.
 pub(super) fn read_cell(model: &Model, from: &Source, cell: usize, state: &State, scratch: &ChemistryScratch) -> f64 {
     let place = |atom: usize| {
-        let (kind, local) = model.kind_of(cell);
+        let (kind, local) = state.kind_of(cell);
         vector(&model.kinds[kind], &state.kinds[kind].positions, local, atom)
     };
     match *from {

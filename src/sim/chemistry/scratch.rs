@@ -1,6 +1,7 @@
 //! Scratch paper of chemistry: sized once, never saved, never read before it is written.
 
 use super::super::model::Model;
+use super::super::state::State;
 use super::measure::CellNumbers;
 use super::observed::Observed;
 use super::state::ChemistryState;
@@ -38,19 +39,26 @@ impl ChemistryScratch {
         Self {
             fields: fields.collect(),
             populations: chemistry.reactors.iter().map(|_| PopulationScratch::default()).collect(),
-            cells: vec![CellNumbers::default(); if chemistry.measures_cells { model.cells() } else { 0 }],
-            sensed: vec![vec![Sensed::default(); model.cells()]; chemistry.sensed.len()],
+            sensed: vec![Vec::new(); chemistry.sensed.len()],
             ..Self::default()
         }
     }
 
+    /// Makes lists as long as the cells need that there are.
+    pub fn suit(&mut self, model: &Model, state: &State) {
+        let measured = if model.chemistry.measures_cells { state.cells() } else { 0 };
+        self.cells.resize(measured, CellNumbers::default());
+        self.sensed.iter_mut().for_each(|cells| cells.resize(state.cells(), Sensed::default()));
+    }
+
     /// Writes NaN over all scratch numbers: a step must not notice.
     pub fn poison(&mut self, model: &Model) {
-        *self = Self::new(model);
-        self.fields.iter_mut().for_each(Fields::poison);
-        self.cells.fill(CellNumbers::poisoned());
         let nothing = Sensed { value: f64::NAN, gradient: Vec3::repeat(f64::NAN) };
+        self.cells.fill(CellNumbers::poisoned());
         self.sensed.iter_mut().for_each(|cells| cells.fill(nothing));
+        let (cells, sensed) = (std::mem::take(&mut self.cells), std::mem::take(&mut self.sensed));
+        *self = Self { cells, sensed, ..Self::new(model) };
+        self.fields.iter_mut().for_each(Fields::poison);
     }
 
     /// How many blocks of cells have had their equations evaluated for links to read quantities of systems, ever: the cost of links.

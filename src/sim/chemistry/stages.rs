@@ -19,6 +19,7 @@ use crate::ode::{Eventful, OdeTrouble, PopulationScratch};
 /// anything.
 pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
     let time = state.time;
+    ws.suit(model, state);
     // Links read what touches; no step has looked for it yet.
     locate_contacts(model, state, ws);
     ws.chemistry.exchange_values(&mut state.chemistry, time);
@@ -66,8 +67,8 @@ fn advance_systems(
     state: &mut State,
     scratch: &mut [PopulationScratch],
 ) -> Result<(), Trouble> {
-    let chemistry = &mut state.chemistry;
     for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
+        let chemistry = &mut state.chemistry;
         let from = chemistry.times[number];
         if !is_due(reactor, end) || from >= end {
             continue;
@@ -81,21 +82,21 @@ fn advance_systems(
                 eventful(model, reactor).advance(population, events, window.0, window.1, scratch)
             }
         };
-        advanced.map_err(|trouble| system_trouble(model, reactor, &trouble))?;
-        chemistry.times[number] = end;
+        advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?;
+        state.chemistry.times[number] = end;
     }
     Ok(())
 }
 
 /// Executes the events of the start. Returns whether there were any.
 fn begin_events(model: &Model, state: &mut State, scratch: &mut [PopulationScratch]) -> Result<bool, Trouble> {
-    let chemistry = &mut state.chemistry;
     let mut any = false;
     for (number, reactor) in model.chemistry.reactors.iter().enumerate().filter(|(_, r)| !r.events.is_empty()) {
+        let chemistry = &mut state.chemistry;
         let now = chemistry.times[number] / reactor.seconds;
         let (population, memories) = (&mut chemistry.populations[number], &mut chemistry.events[number]);
         let advanced = eventful(model, reactor).advance(population, memories, now, now, &mut scratch[number]);
-        any |= advanced.map_err(|trouble| system_trouble(model, reactor, &trouble))?.events > 0;
+        any |= advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?.events > 0;
     }
     Ok(any)
 }
@@ -107,9 +108,9 @@ fn eventful<'a>(model: &Model, reactor: &'a Reactor) -> Eventful<'a> {
 }
 
 /// Which cell of which type, when and in which variable.
-fn system_trouble(model: &Model, reactor: &Reactor, trouble: &OdeTrouble) -> Trouble {
-    let cell = trouble.cell.and_then(|member| cell_of_member(model, &reactor.members, member));
-    let owner = cell.map(|cell| model.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
+fn system_trouble(model: &Model, state: &State, reactor: &Reactor, trouble: &OdeTrouble) -> Trouble {
+    let cell = trouble.cell.and_then(|member| cell_of_member(&state.kinds, &reactor.members, member));
+    let owner = cell.map(|cell| state.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
     Trouble::System {
         system: reactor.name.clone(),
         owner,
@@ -128,8 +129,8 @@ fn deposit_secretion(model: &Model, dt: f64, state: &State, ws: &mut Workspace) 
             let atoms = kind.atoms();
             scratch.amounts.clear();
             scratch.places.clear();
-            for cell in 0..kind.cells {
-                let rate = rates[kind.first_cell + cell];
+            for cell in 0..now.cells() {
+                let rate = rates[now.first_cell + cell];
                 if rate != 0.0 {
                     scratch.places.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
                     scratch.amounts.resize(scratch.places.len(), rate * dt / atoms as f64);

@@ -4,8 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::controls::Controls;
 use super::super::model::Model;
-use super::links::Target;
-use super::model::{Chemistry, Reactor};
+use super::model::Reactor;
 use crate::field::Fields;
 use crate::ode::{EventMemory, Population};
 
@@ -38,11 +37,11 @@ pub struct FieldState {
 }
 
 impl ChemistryState {
-    /// The start: systems at their initial values, `fields` as they start.
-    pub fn new(model: &Model, fields: &[Fields]) -> Self {
+    /// The start of so many cells of each kind: systems at their initial values, `fields` as they start.
+    pub fn new(model: &Model, cells: &[usize], fields: &[Fields]) -> Self {
         let chemistry = &model.chemistry;
         let reactors = &chemistry.reactors;
-        let members = |reactor: &Reactor| reactor.members.count(|kind| model.kinds[kind].cells);
+        let members = |reactor: &Reactor| reactor.members.count(|kind| cells[kind]);
         let populations = reactors.iter().map(|r| Population::new(&r.program, members(r), r.method));
         let events = |reactor: &Reactor| match reactor.events.is_empty() {
             true => Vec::new(),
@@ -58,7 +57,7 @@ impl ChemistryState {
             events: reactors.iter().map(events).collect(),
             times: vec![0.0; reactors.len()],
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
-            controls: controls_of(model),
+            controls: controls_of(model, cells.iter().sum()),
             carried: false,
         }
     }
@@ -115,18 +114,10 @@ fn copy_each<T: Clone>(to: &mut Vec<T>, from: &[T], copy: impl Fn(&mut T, &T)) {
 }
 
 /// The lists that the links of a model write, at numbers that change nothing.
-fn controls_of(model: &Model) -> Controls {
-    let secretion = vec![vec![0.0; model.cells()]; model.chemistry.secreted.len()];
-    let mut controls = Controls { secretion, ..Controls::default() };
-    admit_links(&mut controls, &model.chemistry, model.cells());
+fn controls_of(model: &Model, cells: usize) -> Controls {
+    let mut controls = Controls::default();
+    controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
+    let set = model.chemistry.links.iter().filter_map(|link| link.to.control());
+    set.for_each(|control| controls.admit(control, cells));
     controls
-}
-
-/// Makes the lists that links write, where there are none.
-pub(super) fn admit_links(controls: &mut Controls, chemistry: &Chemistry, cells: usize) {
-    for link in &chemistry.links {
-        if let Target::Cell(_, control) = link.to {
-            controls.admit(control, cells);
-        }
-    }
 }

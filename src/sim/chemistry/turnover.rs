@@ -1,8 +1,9 @@
 //! Cells come and go between steps: what chemistry knows of each comes and goes with it, and stands in the order of the cells.
 
-use super::super::controls::retain;
+use super::super::controls::Controls;
 use super::model::{Chemistry, Members};
-use super::state::{ChemistryState, admit_links};
+use super::state::ChemistryState;
+use crate::mechanics::CONTROLLED;
 
 impl ChemistryState {
     /// A cell comes: every system of its kind gets a member at the system's start, and no link has set anything of it. It stands before
@@ -22,7 +23,13 @@ impl ChemistryState {
             }
         }
         self.controls.insert_cell(cells[..kind].iter().sum::<usize>() + local);
-        admit_links(&mut self.controls, chemistry, cells.iter().sum::<usize>() + 1);
+        // Where there was no cell before, lists that links write were as empty as those that none does.
+        let all = cells.iter().sum::<usize>() + 1;
+        chemistry
+            .links
+            .iter()
+            .filter_map(|link| link.to.control())
+            .for_each(|control| self.controls.admit(control, all));
     }
 
     /// Cells go: those of which `keep` (of a kind, and a number among its cells) says no. `cells` says how many each kind has before.
@@ -37,4 +44,35 @@ impl ChemistryState {
         let stays: Vec<bool> = (0..cells.len()).flat_map(all).map(|(kind, at)| keep(kind, at)).collect();
         self.controls.retain_cells(&stays);
     }
+}
+
+impl Controls {
+    /// Adds a cell to all lists that are there, with numbers that change nothing.
+    fn insert_cell(&mut self, at: usize) {
+        for (list, nothing) in [(&mut self.speed, f64::NAN), (&mut self.stiffness, 1.0), (&mut self.adhesion, 1.0)] {
+            if !list.is_empty() {
+                list.insert(at, nothing);
+            }
+        }
+        if !self.bias.is_empty() {
+            self.bias.insert(at, [0.0; 3]);
+        }
+        for (lists, handle) in self.forces.iter_mut().zip(CONTROLLED) {
+            lists.iter_mut().for_each(|list| list.insert(at, handle.unset));
+        }
+        self.secretion.iter_mut().for_each(|list| list.insert(at, 0.0));
+    }
+
+    fn retain_cells(&mut self, stays: &[bool]) {
+        let single = [&mut self.speed, &mut self.stiffness, &mut self.adhesion];
+        let many = self.forces.iter_mut().flatten().chain(&mut self.secretion);
+        single.into_iter().chain(many).for_each(|list| retain(list, stays));
+        retain(&mut self.bias, stays);
+    }
+}
+
+/// Keeps what stays of a list with one thing a cell; an empty one stays so.
+fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
+    let mut stays = stays.iter();
+    list.retain(|_| stays.next().copied().unwrap_or(false));
 }

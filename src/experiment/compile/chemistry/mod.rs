@@ -44,8 +44,14 @@ impl Part<'_> {
     }
 }
 
-/// The chemistry of an experiment, and the fields as they start. Marks the kinds that links act on.
-pub fn chemistry(document: &Document, kinds: &mut [Kind], faults: &mut Vec<Fault>) -> (Chemistry, Vec<Fields>) {
+/// The chemistry of an experiment that starts with so many cells of each kind, and the fields as they start. Marks the kinds that links
+/// act on.
+pub fn chemistry(
+    document: &Document,
+    counts: &[usize],
+    kinds: &mut [Kind],
+    faults: &mut Vec<Fault>,
+) -> (Chemistry, Vec<Fields>) {
     let before = faults.len();
     let mut chemistry = Chemistry::default();
     if document.experiment.chemistry.is_empty() {
@@ -75,7 +81,7 @@ pub fn chemistry(document: &Document, kinds: &mut [Kind], faults: &mut Vec<Fault
     }
     // Ends of links name systems and fields by their numbers, which stand only when all are there.
     if faults.len() == before {
-        links::links(document, &parts, kinds, &mut chemistry, faults);
+        links::links(document, &parts, counts, kinds, &mut chemistry, faults);
         names::check(document, &chemistry, faults);
     }
     (chemistry, fields)
