@@ -13,6 +13,7 @@ mod explicit;
 mod fixed;
 mod lu;
 mod mask;
+#[cfg(feature = "diffsol")]
 mod multistep;
 mod narrow;
 mod population;
