@@ -2,7 +2,7 @@
 
 use divan::Bencher;
 use divan::counter::BytesCount;
-use pseudopod::output::{CellLayout, CellRecord, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter};
+use pseudopod::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter};
 
 const ATOMS: usize = 42;
 const FACETS: usize = 80;
@@ -11,24 +11,11 @@ fn main() {
     divan::main();
 }
 
-fn layout(cells: usize) -> Layout {
-    let facet = |facet: usize| [facet % ATOMS, (facet + 1) % ATOMS, (facet + 7) % ATOMS];
-    Layout {
-        types: vec!["cell".into()],
-        cells: (0..cells)
-            .map(|cell| CellLayout {
-                kind: 0,
-                first_atom: (ATOMS * cell) as u32,
-                atoms: ATOMS as u32,
-                first_facet: (FACETS * cell) as u32,
-                facets: FACETS as u32,
-            })
-            .collect(),
-        facets: (0..cells * FACETS)
-            .map(|i| facet(i % FACETS).map(|atom| (ATOMS * (i / FACETS) + atom) as u32))
-            .collect(),
-        ..Layout::default()
-    }
+fn layout() -> Layout {
+    let facet = |facet: usize| [facet % ATOMS, (facet + 1) % ATOMS, (facet + 7) % ATOMS].map(|atom| atom as u32);
+    let facets = (0..FACETS).map(facet).collect();
+    let kind = CellType { name: "cell".into(), atoms: ATOMS as u32, facets, links: Vec::new() };
+    Layout { types: vec![kind], ..Layout::default() }
 }
 
 fn frame(cells: usize) -> Frame {
@@ -52,7 +39,8 @@ fn frame(cells: usize) -> Frame {
     Frame {
         positions: vectors(10.0).collect(),
         forces: vectors(0.1).collect(),
-        cells: (0..cells).map(record).collect(),
+        cells: (0..cells as u64).map(|id| Cell { id, ..Cell::default() }).collect(),
+        records: (0..cells).map(record).collect(),
         ..Frame::default()
     }
 }
@@ -62,7 +50,7 @@ fn append(bencher: Bencher, cells: usize) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.vtkhdf");
     let header = Header::now("bench.toml", "Bench", "", &[], 1);
-    let mut writer = ResultWriter::create(&path, &header, &layout(cells), Overwrite::Refuse).unwrap();
+    let mut writer = ResultWriter::create(&path, &header, &layout(), Overwrite::Refuse).unwrap();
     let mut frame = frame(cells);
     bencher.counter(BytesCount::new(cells * (2 * ATOMS * 24 + std::mem::size_of::<CellRecord>()))).bench_local(|| {
         frame.step += 1;
@@ -84,7 +72,7 @@ fn append_field(bencher: Bencher, side: usize) {
     let species = ["U", "V"].map(|name| (name.to_owned(), "uM".to_owned())).to_vec();
     let grid =
         FieldLayout { name: "field".into(), species, cells: [side, side, 1], spacing: [1.0; 3], origin: [0.0; 3] };
-    let layout = Layout { fields: vec![grid], ..layout(1) };
+    let layout = Layout { fields: vec![grid], ..layout() };
     let path = folder.path().join("run.vtkhdf");
     let mut writer = ResultWriter::create(&path, &header, &layout, Overwrite::Refuse).unwrap();
     let value = |i: usize| 1.0 + (0.01 * (i % side) as f64).sin() * (0.02 * (i / side) as f64).cos();

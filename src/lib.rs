@@ -26,10 +26,12 @@ pub mod output;
 #[cfg(feature = "pictures")]
 pub mod picture;
 pub mod random;
+pub mod recorded;
 pub mod run;
 pub mod sim;
 pub mod simulation;
 pub mod units;
+pub mod xml;
 
 pub use simulation::{CancelToken, Simulation, SimulationError};
 

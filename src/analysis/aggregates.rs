@@ -5,7 +5,7 @@ use crate::output::ResultFile;
 pub use crate::output::{Change, Event, changes};
 use std::fmt::Write;
 
-/// The changes in a result as comma-separated text, a line of names with units first; aggregates by their numbers, with
+/// The changes in a result as comma-separated text, a line of names with units first; aggregates by their ids, with
 /// spaces between several.
 ///
 /// # Errors
@@ -15,7 +15,7 @@ pub fn table_of_changes(result: &ResultFile) -> Result<String> {
     result.pairs(0)?;
     let times = result.times()?;
     let mut text = String::from("frame,time (s),event,before,after,cells\n");
-    let list = |numbers: &[u32]| numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
+    let list = |ids: &[u64]| ids.iter().map(u64::to_string).collect::<Vec<_>>().join(" ");
     for Event { frame, change, before, after, cells } in changes(result.cell_series("aggregate")?.view()) {
         // Writing to a text cannot fail.
         let _ = writeln!(text, "{frame},{},{change},{},{},{cells}", times[frame], list(&before), list(&after));

@@ -78,6 +78,10 @@ pub(super) fn chemotactic_index(wanted: &ChemotacticIndex, recording: &Recording
         (0..axes).map(|axis| (positions[[frame, cell, axis]] - to(axis)).powi(2)).sum::<f64>().sqrt()
     };
     let index = |cell: usize| {
+        // Of cells that come later or leave earlier the part of the path that they make.
+        let mut there = (first..end).filter(|frame| recording.is_there(*frame, cells[cell]));
+        let first = there.next()?;
+        let end = there.last()? + 1;
         let step = |frame: usize| distance(frame, cell, &|axis| positions[[frame - 1, cell, axis]]);
         let nearer = distance(first, cell, &|axis| towards[axis]) - distance(end - 1, cell, &|axis| towards[axis]);
         let path: f64 = (first + 1..end).map(step).sum();
@@ -124,7 +128,7 @@ pub(super) fn period(wanted: &Period, recording: &Recording) -> Result<f64> {
     let mut cells = recording.cells_with(&wanted.series, wanted.cells.as_deref())?;
     if let Some(cell) = wanted.cell {
         let number = cells.len();
-        cells.retain(|known| *known == cell as usize);
+        cells.retain(|known| recording.number_of(u64::from(cell)) == Some(*known));
         if cells.is_empty() {
             let found =
                 format!("cell {cell} is not among the {number} cells that have values of \"{}\"", wanted.series);
@@ -135,8 +139,15 @@ pub(super) fn period(wanted: &Period, recording: &Recording) -> Result<f64> {
     let mut periods = Vec::new();
     for cell in cells {
         let values: Vec<f64> = series.column(cell).iter().skip(first).copied().collect();
-        let found = waves::period(times, &values);
-        periods.push(found.map_err(|rises| few(format!("\"{}\" of cell {cell}", wanted.series), rises))?);
+        match waves::period(times, &values) {
+            Ok(period) => periods.push(period),
+            // One that came later or left earlier had no time for more.
+            Err(_) if !(first..recording.times.len()).all(|frame| recording.is_there(frame, cell)) => {}
+            Err(rises) => return Err(few(format!("\"{}\" of cell {}", wanted.series, recording.ids[cell]), rises)),
+        }
+    }
+    if periods.is_empty() {
+        return Err(few(format!("\"{}\" of any cell", wanted.series), 0));
     }
     describe(wanted.statistic, &periods)
 }

@@ -3,7 +3,7 @@
 use super::super::measure_result;
 use crate::experiment::Document;
 use crate::output::{
-    CellLayout, CellRecord, FieldLayout, Frame, Header, Layout, Overwrite, ResultFile, ResultWriter, SystemLayout,
+    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Overwrite, ResultFile, ResultWriter, SystemLayout,
     SystemScope,
 };
 use std::f64::consts::TAU;
@@ -50,7 +50,8 @@ fn front(layout: &FieldLayout, time: f64) -> Vec<f64> {
 
 /// A hundred and one frames, a second apart.
 fn recorded(path: &Path) -> ResultFile {
-    let cell = |number: u32| CellLayout { kind: number / 6, first_atom: number, atoms: 1, first_facet: 0, facets: 0 };
+    let cell = |number: u32| Cell { id: u64::from(number), kind: number / 6, parent: None };
+    let kind = |name: &str| CellType { name: name.into(), atoms: 1, ..CellType::default() };
     let species = |names: &[&str]| names.iter().map(|name| (name.to_string(), "uM".to_owned())).collect::<Vec<_>>();
     let field = |name: &str, names: &[&str], cells, spacing| FieldLayout {
         name: name.into(),
@@ -59,10 +60,9 @@ fn recorded(path: &Path) -> ResultFile {
         spacing,
         origin: [0.0; 3],
     };
-    let systems = [("oscillator", SystemScope::Cells((0..6).collect()), "cAMP"), ("clock", SystemScope::Scene, "tick")];
+    let systems = [("oscillator", SystemScope::Cells, "cAMP"), ("clock", SystemScope::Scene, "tick")];
     let layout = Layout {
-        types: vec!["amoeba".into(), "rock".into()],
-        cells: (0..8).map(cell).collect(),
+        types: vec![kind("amoeba"), kind("rock")],
         fields: vec![
             field("front", &["front", "back"], [30, 20, 1], [1.0, 0.5, 1.0]),
             field("medium", &["attractant"], [4, 3, 2], [2.0, 1.0, 3.0]),
@@ -83,13 +83,14 @@ fn recorded(path: &Path) -> ResultFile {
             time,
             step: frame as u64,
             positions: vec![[0.0; 3]; 8],
-            cells: (0..8).map(record).collect(),
+            cells: (0..8).map(cell).collect(),
+            records: (0..8).map(record).collect(),
             fields: vec![
                 vec![front(&layout.fields[0], time), (0..600).map(stripes).collect()],
                 vec![(0..24).map(|at| at as f64 + time).collect()],
             ],
             systems: vec![
-                vec![(0..6).map(|cell| inside(cell, time)).collect()],
+                vec![(0..8).map(|cell| if cell < 6 { inside(cell, time) } else { f64::NAN }).collect()],
                 vec![vec![(TAU * time / 12.5).sin() * (1.0 + time)]],
             ],
             ..Frame::default()

@@ -165,18 +165,16 @@ pub(super) fn gaps(wanted: &Gaps, recording: &Recording, file: Option<&ResultFil
         return Err(Error::input(fault.help("measure the result of a run")));
     };
     let frame = frame_at(wanted.time, &recording.times);
-    let aggregate = file.cell_series("aggregate")?;
-    let aggregate: Vec<u64> = aggregate.row(frame).iter().map(|first| *first as u64).collect();
+    let aggregate: Vec<u64> = file.cell_values("aggregate", frame)?.iter().map(|first| *first as u64).collect();
     let size = |first: u64| aggregate.iter().filter(|other| **other == first).count();
     let largest = aggregate.iter().copied().min_by_key(|first| (std::cmp::Reverse(size(*first)), *first));
-    let (positions, layout) = (file.positions(frame)?, file.layout());
-    let of_largest = layout.cells.iter().zip(&aggregate).filter(|(_, first)| Some(**first) == largest);
+    let (positions, layout, cells) = (file.positions(frame)?, file.layout(), file.cells(frame));
+    let of_largest = cells.iter().zip(layout.atoms_of(&cells)).zip(&aggregate);
     let bodies: Vec<Body> = of_largest
-        .map(|(cell, _)| {
-            let atoms = &positions[cell.first_atom as usize..][..cell.atoms as usize];
-            let facets = &layout.facets[cell.first_facet as usize..][..cell.facets as usize];
-            let facets = facets.iter().map(|facet| facet.map(|atom| atom - cell.first_atom)).collect();
-            Body::new(atoms.iter().map(|place| Vec3::from(*place)).collect(), facets)
+        .filter(|(_, first)| Some(**first) == largest)
+        .map(|((cell, atoms), _)| {
+            let atoms = positions[atoms].iter().map(|position| Vec3::from(*position)).collect();
+            Body::new(atoms, layout.types[cell.kind as usize].facets.clone())
         })
         .collect();
     let Some(empty) = find_empty(&bodies) else {

@@ -70,6 +70,7 @@ pub fn evaluate(
             let value = reduce(*time, &recording.times, &recording.series(series, cells.as_deref(), *over)?)?;
             match value.is_nan() && series.starts_with("contact.") {
                 true => Err(nobody_touches(series)),
+                false if value.is_nan() && !recording.lives.is_empty() => Err(nobody_there(series, cells.as_deref())),
                 false => Ok(value),
             }
         }
@@ -109,6 +110,13 @@ pub fn evaluate(
 fn nobody_touches(series: &str) -> Error {
     let fault = Fault::new(format!("\"{series}\" has no value where no two cells touch, or none of different types"));
     Error::input(fault.help("give a time at which such cells touch"))
+}
+
+/// That there is no cell to measure where a series is asked for.
+fn nobody_there(series: &str, kind: Option<&str>) -> Error {
+    let which = kind.map_or("no cell".to_owned(), |kind| format!("no cell of the type \"{kind}\""));
+    let fault = Fault::new(format!("\"{series}\" has no value: {which} is there at a time at which it is asked for"));
+    Error::input(fault.help("give a time at which there are such cells, or take `min` or `max`"))
 }
 
 /// Makes one of the values at several instants.
@@ -233,7 +241,7 @@ fn run_length_p(recording: &Recording, kind: Option<&str>, persistence: f64) -> 
         .runs
         .iter()
         .filter(|(cell, end, duration)| {
-            cells.binary_search(&(*cell as usize)).is_ok() && *duration <= longest && end - duration <= last - longest
+            cells.binary_search(cell).is_ok() && *duration <= longest && end - duration <= last - longest
         })
         .map(|(_, _, duration)| *duration)
         .collect();

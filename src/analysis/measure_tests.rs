@@ -171,7 +171,7 @@ fn walkers(number: u32) -> Recording {
             place = [place[0] + cosine * duration, place[1] + sine * duration];
             begin += duration;
             if begin <= times[FRAMES - 1] {
-                runs.push((cell, begin, duration));
+                runs.push((cell as usize, begin, duration));
             }
         }
     }

@@ -16,12 +16,13 @@ pub struct Displacement {
     pub error: f64,
 }
 
-/// The mean over cells of the squared distance from the first frame, eq. (analysis.4).
+/// The mean over cells of the squared distance from the first frame, eq. (analysis.4). Cells that are not there in the
+/// first frame, or not at a lag, do not count at that lag.
 ///
 /// Cells that wander independently make independent squares, so the error is their standard deviation over √cells.
 /// Frames need not be at equal intervals.
 ///
-/// * `positions` – µm, [frame, cell, axis].
+/// * `positions` – µm, [frame, cell, axis]; NaN where a cell is not there.
 /// * `times` – of the frames, s.
 /// * `frames` – those to measure at.
 ///
@@ -32,7 +33,8 @@ pub fn from_the_start(positions: ArrayView3<f64>, times: &[f64], frames: &[usize
     frames
         .iter()
         .map(|&frame| {
-            let squares: Vec<f64> = (0..cells).map(|cell| squared_distance(&positions, cell, 0, frame)).collect();
+            let squares = (0..cells).map(|cell| squared_distance(&positions, cell, 0, frame));
+            let squares: Vec<f64> = squares.filter(|square| !square.is_nan()).collect();
             Displacement { lag: times[frame] - times[0], msd: mean(&squares), error: standard_error(&squares) }
         })
         .collect()
@@ -43,7 +45,7 @@ pub fn from_the_start(positions: ArrayView3<f64>, times: &[f64], frames: &[usize
 /// Displacements of one cell from neighbouring origins overlap, so each cell is first reduced to its own mean, and the
 /// error is the standard error of these over the cells. Narrower than [`from_the_start`] at short lags.
 ///
-/// * `positions` – µm, [frame, cell, axis], frames at equal intervals.
+/// * `positions` – µm, [frame, cell, axis], frames at equal intervals; NaN where a cell is not there.
 /// * `interval` – time between frames, s.
 /// * `lags` – in frames.
 ///
@@ -56,10 +58,10 @@ pub fn over_origins(positions: ArrayView3<f64>, interval: f64, lags: &[usize]) -
             assert!(lag < frames, "a lag of {lag} frames needs more than the {frames} frames given");
             let means: Vec<f64> = (0..cells)
                 .map(|cell| {
-                    let origins = frames - lag;
-                    let squares = (0..origins).map(|origin| squared_distance(&positions, cell, origin, lag));
-                    squares.sum::<f64>() / origins as f64
+                    let squares = (0..frames - lag).map(|origin| squared_distance(&positions, cell, origin, lag));
+                    mean(&squares.filter(|square| !square.is_nan()).collect::<Vec<_>>())
                 })
+                .filter(|mean| !mean.is_nan())
                 .collect();
             Displacement { lag: lag as f64 * interval, msd: mean(&means), error: standard_error(&means) }
         })

@@ -3,8 +3,9 @@
 use crate::error::{Error, Fault, Result};
 use crate::experiment::Over;
 use crate::output::ResultFile;
-use ndarray::{Array2, Array3};
+use ndarray::{Array2, Array3, ArrayView1};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Series of a finished run: those that the measures at hand need, see [`super::measure::series_of`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -13,14 +14,18 @@ pub struct Recording {
     pub times: Vec<f64>,
     /// Names of the cell types.
     pub types: Vec<String>,
+    /// Ids of all cells that were ever there, ascending: a cell's number in this recording is its position here.
+    pub ids: Vec<u64>,
     /// For each cell the index of its type.
     pub cell_types: Vec<u32>,
-    /// Per-cell series by name, [frame, cell], in base units.
+    /// For each cell from its first frame to the one after its last; empty if all cells are there in all frames.
+    pub lives: Vec<Range<usize>>,
+    /// Per-cell series by name, [frame, cell], in base units; NaN where a cell is not there.
     pub cells: BTreeMap<String, Array2<f64>>,
     /// Series of the whole scene by name, [frame], in base units.
     pub scene: BTreeMap<String, Vec<f64>>,
-    /// Motility runs that ended: cell, time of the end (s), duration (s).
-    pub runs: Vec<(u32, f64, f64)>,
+    /// Motility runs that ended: number of the cell, time of the end (s), duration (s).
+    pub runs: Vec<(usize, f64, f64)>,
     /// Names of all series that the run has, those of chemistry as `SYSTEM.QUANTITY`.
     pub known: Vec<String>,
 }
@@ -28,8 +33,11 @@ pub struct Recording {
 /// What a series of chemistry may begin with, so that a reader of the document knows where it comes from.
 const CHEMISTRY: &str = "chemistry.";
 
-/// Makes one of the values of several cells.
+/// Makes one of the values of several cells; NaN if there is none.
 fn reduce(over: Over, values: &[f64]) -> f64 {
+    if values.is_empty() && over != Over::Sum {
+        return f64::NAN;
+    }
     match over {
         Over::Mean => super::statistics::mean(values),
         Over::Min => values.iter().copied().fold(f64::INFINITY, f64::min),
@@ -47,12 +55,17 @@ impl Recording {
     /// # Errors
     /// A damaged file.
     pub fn read(file: &ResultFile, names: &[&str]) -> Result<Self> {
-        let layout = file.layout();
+        let known = file.known_cells();
+        let lives = known.iter().map(|known| known.frames.clone());
+        // A cell that came and went between two frames is of no known type.
+        let number = |(id, end, duration)| Some((file.column_of(id)? as usize, end, duration));
         let mut recording = Self {
             times: file.times()?,
-            types: layout.types.clone(),
-            cell_types: layout.cells.iter().map(|cell| cell.kind).collect(),
-            runs: file.runs()?,
+            types: file.layout().type_names(),
+            ids: known.iter().map(|known| known.cell.id).collect(),
+            cell_types: known.iter().map(|known| known.cell.kind).collect(),
+            lives: if file.has_one_population() { Vec::new() } else { lives.collect() },
+            runs: file.runs()?.into_iter().filter_map(number).collect(),
             ..Self::default()
         };
         let (of_cells, of_scene) = (file.series_names(), file.scene_names());
@@ -107,11 +120,24 @@ impl Recording {
         let having: Vec<usize> =
             cells.iter().copied().filter(|cell| series.column(*cell).iter().any(|value| !value.is_nan())).collect();
         let cells = if having.is_empty() { cells } else { having };
-        let rows = series.rows().into_iter();
-        Ok(rows.map(|row| reduce(over, &cells.iter().map(|&cell| row[cell]).collect::<Vec<_>>())).collect())
+        let of_frame = |(frame, row): (usize, ArrayView1<f64>)| {
+            let there = cells.iter().filter(|cell| self.is_there(frame, **cell));
+            reduce(over, &there.map(|&cell| row[cell]).collect::<Vec<_>>())
+        };
+        Ok(series.rows().into_iter().enumerate().map(of_frame).collect())
     }
 
-    /// Positions of some cells, µm, [frame, cell, axis], of the series `position_x`, `position_y`, `position_z`.
+    /// Whether a cell is there in a frame.
+    pub fn is_there(&self, frame: usize, cell: usize) -> bool {
+        self.lives.get(cell).is_none_or(|life| life.contains(&frame))
+    }
+
+    /// The number of the cell with an id.
+    pub fn number_of(&self, id: u64) -> Option<usize> {
+        self.ids.binary_search(&id).ok()
+    }
+
+    /// Positions of some cells, µm, [frame, cell, axis], NaN where a cell is not there, of the series `position_x`, `position_y`, `position_z`.
     ///
     /// # Errors
     /// When these were not recorded.

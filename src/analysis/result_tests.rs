@@ -2,7 +2,7 @@
 
 use super::{check_result, claims, measure_result};
 use crate::experiment::Document;
-use crate::output::{CellLayout, CellRecord, Frame, Header, Layout, Measure, Overwrite, ResultFile, ResultWriter};
+use crate::output::{Cell, CellRecord, CellType, Frame, Header, Layout, Measure, Overwrite, ResultFile, ResultWriter};
 use std::path::Path;
 
 const EXPERIMENT: &str = r#"
@@ -36,10 +36,9 @@ description = "volume half-way"
 
 /// Two cells of one atom whose extents along x are 4 + t and 6 + t/2 while 2t pN pull, from 0 to 3 s.
 fn recorded(path: &Path) -> ResultFile {
-    let cell = |first_atom| CellLayout { kind: 0, first_atom, atoms: 1, first_facet: 0, facets: 0 };
+    let cell = |id| Cell { id, ..Cell::default() };
     let layout = Layout {
-        types: vec!["red".into()],
-        cells: vec![cell(0), cell(1)],
+        types: vec![CellType { name: "red".into(), atoms: 1, ..CellType::default() }],
         scene_series: vec![("load.pull".into(), "pN".into())],
         ..Layout::default()
     };
@@ -52,7 +51,8 @@ fn recorded(path: &Path) -> ResultFile {
             time,
             step: step as u64,
             positions: vec![[0.0; 3]; 2],
-            cells: vec![record(4.0 + time), record(6.0 + time / 2.0)],
+            cells: vec![cell(0), cell(1)],
+            records: vec![record(4.0 + time), record(6.0 + time / 2.0)],
             scene: vec![2.0 * time],
             ..Frame::default()
         };

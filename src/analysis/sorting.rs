@@ -78,7 +78,8 @@ pub(super) fn segregation(wanted: &Segregation, recording: &Recording, file: Opt
         return Err(Error::input(fault.help("measure the result of a run")));
     };
     let frame = chemistry::frame_at(wanted.time, &recording.times);
-    let pairs = file.pairs(frame)?.into_iter().map(|pair| [pair.cell, pair.other]);
+    let pairs = file.pairs(frame)?;
+    let pairs = pairs.iter().filter_map(|pair| Some([file.column_of(pair.cell)?, file.column_of(pair.other)?]));
     let pairs: Vec<[u32; 2]> = pairs.filter(|pair| pair.iter().all(|cell| counts[*cell as usize])).collect();
     let touching = touching_cells(&pairs);
     let time = recording.times[frame];

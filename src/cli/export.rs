@@ -150,19 +150,22 @@ fn table_of(args: &ExportArgs) -> Option<Table> {
     })
 }
 
-/// The surface of one cell or of all cells in a frame.
+/// The surface of one cell, by its id, or of all cells in a frame.
 fn surface_of(result: &ResultFile, frame: usize, cell: Option<usize>) -> Result<Surface> {
-    let layout = result.layout();
-    let mut positions: Vec<Vec3> = result.positions(frame)?.into_iter().map(Vec3::from).collect();
-    let Some(number) = cell else { return Ok(Surface { positions, facets: layout.facets.clone() }) };
-    let Some(cell) = layout.cells.get(number) else {
-        let fault = Fault::new(format!("{} has no cell {number}", result.path().display()))
-            .help(format!("its cells are 0 to {}", layout.cells.len().saturating_sub(1)));
+    let (layout, cells) = (result.layout(), result.cells(frame));
+    let positions: Vec<Vec3> = result.positions(frame)?.into_iter().map(Vec3::from).collect();
+    let Some(id) = cell else { return Ok(Surface { positions, facets: layout.facets_of(&cells).collect() }) };
+    let found = cells.iter().zip(layout.atoms_of(&cells)).find(|(cell, _)| cell.id == id as u64);
+    let Some((cell, atoms)) = found else {
+        let ids = || cells.iter().map(|cell| cell.id);
+        let (first, last) = (ids().min().unwrap_or(0), ids().max().unwrap_or(0));
+        let name = result.path().display();
+        let fault = match result.has_one_population() {
+            true => Fault::new(format!("{name} has no cell {id}")).help(format!("its cells are {first} to {last}")),
+            false => Fault::new(format!("{name} has no cell {id} in frame {frame}"))
+                .help(format!("{} cells from {first} to {last} are there then", cells.len())),
+        };
         return Err(Error::input(fault));
     };
-    let part = |first: u32, count: u32| first as usize..(first + count) as usize;
-    let facets = layout.facets[part(cell.first_facet, cell.facets)].iter();
-    let facets = facets.map(|facet| facet.map(|atom| atom - cell.first_atom)).collect();
-    positions = positions[part(cell.first_atom, cell.atoms)].to_vec();
-    Ok(Surface { positions, facets })
+    Ok(Surface { positions: positions[atoms].to_vec(), facets: layout.types[cell.kind as usize].facets.clone() })
 }

@@ -1,36 +1,9 @@
 //! Contacts between cells: how near is a contact, and how strongly which surfaces stick.
 
+use crate::recorded::Recorded;
 use crate::units::{Length, LineStiffness, Stress};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// Series of the scene that a run with contacts records, in the order of the result: sweeps of the last step over contacts,
-/// the deepest penetration over the smallest mean edge, contacts, aggregates (a cell alone is one), cells of the largest, and
-/// the energy of what contacts that hold have given way, pN·µm.
-pub const CONTACT_SERIES: [&str; 6] =
-    ["contact.sweeps", "contact.deepest", "contact.count", "aggregates", "largest_aggregate", "contact.energy"];
-
-/// The series of the scene that a run with links records besides: links between facets.
-pub const LINK_SERIES: &str = "contact.links";
-
-/// The series of the scene that a run with virtual adhesives records besides: adhesives, atoms of the largest.
-pub const ADHESIVE_SERIES: [&str; 2] = ["contact.adhesives", "contact.largest_adhesive"];
-
-/// Names of the series that a result with contacts has for types of cells, by their order in the document, and planes:
-/// areas and numbers of contacts by pair, shares and clusters.
-pub fn pair_series<'a>(types: &[&'a str], planes: &[&'a str]) -> Vec<String> {
-    let after = |one: usize| types[one..].iter().map(move |other| format!("{}.{other}", types[one]));
-    let pairs = || (0..types.len()).flat_map(after);
-    let on_planes = types.iter().flat_map(|kind| planes.iter().map(move |plane| format!("{kind}.{plane}")));
-    let mut names: Vec<String> = pairs().chain(on_planes).map(|pair| format!("contact.area.{pair}")).collect();
-    names.extend(pairs().map(|pair| format!("contact.pairs.{pair}")));
-    names.extend(["contact.area_share", "contact.heterotypic_share", "contact.segregation"].map(str::to_owned));
-    for stem in ["contact.clusters", "contact.largest_cluster"] {
-        names.extend(types.iter().map(|kind| format!("{stem}.{kind}")));
-    }
-    names.extend(["births", "merges", "splits", "deaths"].map(|change| format!("contact.{change}")));
-    names
-}
 
 /// What cells do that touch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -46,6 +19,17 @@ pub enum ContactModel {
     Penalty,
     /// Contacts bear any push, and atoms that touch move as one rigid body until a step would take one farther than `kappa` from it.
     VirtualAdhesives,
+}
+
+impl ContactModel {
+    /// Which series it records besides those of all contacts.
+    pub fn recorded(self) -> Recorded {
+        match self {
+            Self::Adhesives | Self::Penalty => Recorded::Always,
+            Self::Links => Recorded::WithLinks,
+            Self::VirtualAdhesives => Recorded::WithAdhesives,
+        }
+    }
 }
 
 /// Which virtual adhesives merge where their atoms are neighbours on a mesh.

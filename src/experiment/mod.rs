@@ -49,7 +49,7 @@ mod values;
 pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{Compiled, Prepared, PushedApart, Schedule, compile, notices, prepare, settle_start};
-pub use contact::{ADHESIVE_SERIES, Between, CONTACT_SERIES, Contact, ContactModel, LINK_SERIES, Zones, pair_series};
+pub use contact::{Between, Contact, ContactModel, Zones};
 pub use document::Document;
 #[cfg(feature = "cli")]
 pub(crate) use document::near_file;

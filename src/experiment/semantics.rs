@@ -1,19 +1,11 @@
 //! Checks that need more than one key: what requires, excludes or names what.
 
 use super::check::Reference;
-use super::contact::{ADHESIVE_SERIES, CONTACT_SERIES, ContactModel, LINK_SERIES, pair_series};
 use super::document::{Document, near_file};
 use crate::error::Fault;
 use crate::error::words;
+use crate::recorded::{CONTACTS, ContactQuantity, Recorded, Touch, cell_series, contact_quantities};
 use std::path::Path;
-
-/// Series of every cell that the result holds, besides those of the scene (`load.NAME`, `time`).
-#[rustfmt::skip] // a table
-const CELL_SERIES: [&str; 21] = [
-    "position_x", "position_y", "position_z", "velocity_x", "velocity_y", "velocity_z", "speed", "volume",
-    "volume_error", "area", "energy", "size_x", "size_y", "size_z", "principal_1", "principal_2", "principal_3",
-    "smallest_facet", "smallest_cosine", "contact_share", "aggregate",
-];
 
 mod cells;
 mod chemistry;
@@ -108,30 +100,32 @@ impl Check<'_> {
     }
 
     fn series(&mut self, path: &str, text: &str) {
-        let pairs = self.series_of_pairs();
+        let (pairs, of_cells) = (self.series_of_pairs(), cell_series().collect::<Vec<String>>());
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> = cells.flat_map(|cell| &cell.loads).map(|load| format!("load.{}", load.name)).collect();
-        let contacts = self.document.experiment.contact.is_some();
-        let law = |law: ContactModel| self.document.experiment.contact.as_ref().is_some_and(|found| found.model == law);
-        let (links, adhesives) = (law(ContactModel::Links), law(ContactModel::VirtualAdhesives));
-        let of_links = [LINK_SERIES].into_iter().filter(|_| links);
-        let of_adhesives = ADHESIVE_SERIES.into_iter().filter(|_| adhesives);
-        let of_contacts = CONTACT_SERIES.into_iter().filter(|_| contacts).chain(of_links).chain(of_adhesives);
+        let model = self.document.experiment.contact.as_ref().map(|contact| contact.model);
+        let contacts = model.is_some();
+        let of_model = model.into_iter().flat_map(|model| contact_quantities(model.recorded()));
+        let of_contacts: Vec<&str> = of_model.map(|row| row.name).collect();
         let of_pairs = pairs.iter().filter(|_| contacts);
         let known = || {
-            let own = CELL_SERIES.into_iter().chain(of_contacts.clone()).chain(["time"]);
+            let own = of_cells.iter().map(String::as_str).chain(of_contacts.iter().copied()).chain(["time"]);
             own.chain(loads.iter().chain(of_pairs.clone()).map(String::as_str))
         };
         if known().any(|name| name == text) {
             return;
         }
-        let is_of_law = text == LINK_SERIES || ADHESIVE_SERIES.contains(&text);
-        if contacts && is_of_law {
+        let row: Option<&ContactQuantity> = CONTACTS.iter().find(|row| row.name == text);
+        let model = row.and_then(|row| match row.recorded {
+            Recorded::Always => None,
+            Recorded::WithLinks => Some("links"),
+            Recorded::WithAdhesives => Some("virtual_adhesives"),
+        });
+        if let (true, Some(model)) = (contacts, model) {
             let message = format!("`{path}`: there is no series \"{text}\" in this contact model");
-            let model = if text == LINK_SERIES { "links" } else { "virtual_adhesives" };
             return self.fault(path, "not recorded", message, format!("add model = \"{model}\" to [contact]"));
         }
-        let is_of_contacts = is_of_law || CONTACT_SERIES.contains(&text) || pairs.iter().any(|name| name == text);
+        let is_of_contacts = row.is_some() || pairs.iter().any(|name| name == text);
         if is_of_contacts && !self.document.experiment.chemistry.contains_key("contact") {
             let message = format!("`{path}`: there is no series \"{text}\" without contacts");
             return self.fault(path, "not recorded", message, "add [contact] to the document");
@@ -162,7 +156,7 @@ impl Check<'_> {
     fn series_of_pairs(&self) -> Vec<String> {
         let types: Vec<&str> = self.document.experiment.cells.keys().map(String::as_str).collect();
         let planes: Vec<&str> = self.document.experiment.planes.iter().map(|plane| plane.name.as_str()).collect();
-        pair_series(&types, &planes)
+        Touch::all(types.len(), planes.len()).into_iter().map(|series| series.name(&types, &planes)).collect()
     }
 
     /// Whether a text is `contact.SOMETHING.NAME` or `contact.SOMETHING.NAME.NAME` and not one of the series `pairs`: a

@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::reactor::WIDTH;
-use super::system::{POSITION, Scales};
+use super::scales::{POSITION, Scales};
 use crate::equations::program::code::Code;
 use crate::equations::program::{Lanes, Program};
 

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::control::Tolerances;
-use super::course::{Course, LONGEST_SHARE};
-use super::events::{EventPlan, Events};
+use super::course::{Course, CourseBuffers, LONGEST_SHARE};
+use super::events::{EventBuffers, EventPlan, Events};
 #[cfg(feature = "diffsol")]
 use super::multistep;
 use super::stepper::Stepper;
@@ -150,11 +150,12 @@ pub fn solve_each(
     match options.scheme {
         Scheme::OneStep(method) => {
             let mut stepper = Stepper::new(&program, method, tolerances, from);
-            let mut events = Events::new(&plan, plan.before_start());
+            let (mut memory, mut buffers) = (plan.before_start(), EventBuffers::default());
+            let mut events = Events::new(&plan, &mut memory, &mut buffers);
             if !plan.is_empty() {
                 stepper.longest = LONGEST_SHARE * (until - from);
             }
-            Course::new(&mut stepper, &mut events, until, points, each).run()?;
+            Course::new(&mut stepper, &mut events, until, points, each, &mut CourseBuffers::default()).run()?;
             Ok(stepper.work)
         }
         _ if program.size() == 0 => {

@@ -1,14 +1,18 @@
 //! Every dataset of the result file: where it stands, its unit and shape, what it means and where its numbers come
-//! from. A new quantity is one row here; writer, reader and `info` follow.
+//! from. A new quantity is one row here, or, if it is one of cells, in [`recorded`](crate::recorded); writer, reader and
+//! `info` follow.
 //!
-//! Shapes are in words: `frame` counts recorded instants, `atom`, `cell`, `facet` and `link` the parts of the
-//! [`Layout`](super::Layout). All numbers here take eight bytes: floating point or signed integers. Fields and systems
-//! of chemistry, which differ from run to run, are made by `fields` and `systems`.
+//! Shapes are in words: `frame` counts recorded instants, `type` the types of cells, `population` the lists of cells that
+//! differ from the one of the frame before. `atom`, `facet` and `link` count the parts of all cells of a population, and
+//! `cell` the cells of all frames, one frame after the other. All numbers here take eight bytes: floating point or
+//! signed integers. Fields and systems of chemistry, which differ from run to run, are made by `fields` and `systems`.
 
-use super::{CellRecord, Frame};
+use super::population::{OfShared, Part, Population, Shared};
+use super::{Cell, Frame};
+use crate::recorded::{CELL, Values};
 
-/// One motility run that ended: cell, end (s), duration (s).
-pub type Run = (u32, f64, f64);
+/// One motility run that ended: id of the cell, end (s), duration (s).
+pub type Run = (u64, f64, f64);
 
 /// One row of the catalogue.
 pub struct Entry {
@@ -34,16 +38,22 @@ pub enum Filled {
     OnceTexts,
     /// One floating-point number per frame.
     Frame(fn(&Frame) -> f64),
-    /// The same integer, this many times, per frame.
-    Counter(usize, fn(&Instant) -> i64),
+    /// One integer per frame.
+    Counter(fn(&Instant) -> i64),
+    /// Four integers per frame: of vertices, lines, polygons and strips.
+    Counters(fn(&Instant) -> [i64; 4]),
     /// A second name of another dataset.
     Link(&'static str),
-    /// One vector per atom and frame, all frames one after the other.
+    /// One integer per population.
+    Population(fn(&Population) -> i64),
+    /// A block of integers per population; each begins where a piece of the file does.
+    Shared(Shared),
+    /// One vector per atom and frame, one frame after the other; each begins where a piece of the file does.
     Atoms(fn(&Frame) -> &[[f64; 3]]),
-    /// One number per frame and cell.
-    Cell(fn(&CellRecord) -> f64),
-    /// Three numbers per frame and cell; the endings name the components.
-    CellVector(fn(&CellRecord) -> [f64; 3], [&'static str; 3]),
+    /// One integer per cell and frame.
+    CellInteger(fn(&Cell) -> i64),
+    /// What is recorded of each cell of a frame.
+    Cell(Values),
     /// An integer per row of a list.
     RowInteger(List, fn(&Frame, usize) -> i64),
     /// A floating-point number per row of a list.
@@ -62,12 +72,27 @@ pub enum Filled {
 pub struct Instant<'a> {
     /// The frame being written.
     pub frame: &'a Frame,
-    /// Its number.
-    pub index: usize,
-    /// Atoms of all cells.
-    pub atoms: usize,
     /// Rows of each list up to this frame, its own included.
     pub rows: [usize; List::ALL.len()],
+    /// First row of the frame among the atoms of all frames.
+    pub first_atom: usize,
+    /// First row of the frame among the cells of all frames.
+    pub first_cell: usize,
+    /// Number of its population.
+    pub population: usize,
+    /// Where the blocks of its population begin.
+    pub blocks: OfShared,
+}
+
+impl Instant<'_> {
+    fn block(&self, shared: Shared) -> i64 {
+        self.blocks[shared as usize] as i64
+    }
+
+    /// Where VTK is to look for the offsets of a population: it goes one further for every population before.
+    fn offsets(&self, shared: Shared) -> i64 {
+        self.block(shared) - self.population as i64
+    }
 }
 
 /// What has any number of rows in a frame. All frames stand one after the other; a counter says where each ends.
@@ -113,9 +138,6 @@ impl List {
     }
 }
 
-const XYZ: [&str; 3] = ["x", "y", "z"];
-const LONGEST_FIRST: [&str; 3] = ["1", "2", "3"];
-
 const fn row(
     path: &'static str,
     unit: &'static str,
@@ -127,76 +149,69 @@ const fn row(
 }
 
 use Filled::{
-    Atoms, Bytes, Cell, CellVector, Counter, Frame as PerFrame, Link, OnceFloats, OnceIntegers, OnceTexts, RowFloat,
-    RowInteger,
+    Atoms, Bytes, CellInteger, Counter, Counters, Frame as PerFrame, Link, OnceFloats, OnceIntegers, OnceTexts,
+    Population as PerPopulation, RowFloat, RowInteger, Shared as Block,
 };
 
-/// All datasets, in the order in which they are made, except those of [`CONTACT`] and [`FORCE`].
+/// All datasets, in the order in which they are made, except those of [`cell_entries`], [`CONTACT`] and [`FORCE`].
 #[rustfmt::skip]
 pub const CATALOGUE: &[Entry] = &[
     // The animated surface, in the layout that VTK calls VTKHDF PolyData 2.0.
-    row("/VTKHDF/NumberOfPoints", "1", "1", OnceIntegers, "Atoms of all cells."),
-    row("/VTKHDF/Points", "um", "frame*atom, 3", Atoms(|f| &f.positions), "Positions of the atoms, one frame after the other."),
-    row("/VTKHDF/PointData/cell", "1", "atom", OnceIntegers, "Cell that an atom belongs to."),
-    row("/VTKHDF/PointData/type", "1", "atom", OnceIntegers, "Type of the cell that an atom belongs to, an index into /cells/type_names."),
-    row("/VTKHDF/CellData/cell", "1", "link + facet", OnceIntegers, "Cell that a link or a facet belongs to (first atom of a link)."),
-    row("/VTKHDF/CellData/type", "1", "link + facet", OnceIntegers, "Type of the cell that a link or a facet belongs to."),
+    row("/VTKHDF/NumberOfPoints", "1", "population", PerPopulation(|p| p.count(Part::Atoms) as i64), "Atoms of all cells."),
+    row("/VTKHDF/Points", "um", "atom of all frames, 3", Atoms(|f| &f.positions), "Positions of the atoms, one frame after the other, cell after cell; NaN between frames."),
+    row("/VTKHDF/PointData/cell", "1", "atom", Block(Shared::PointCell), "Id of the cell that an atom belongs to."),
+    row("/VTKHDF/PointData/type", "1", "atom", Block(Shared::PointType), "Type of the cell that an atom belongs to, an index into /cells/type_names."),
+    row("/VTKHDF/CellData/cell", "1", "link + facet", Block(Shared::DrawnCell), "Id of the cell that a link or a facet belongs to."),
+    row("/VTKHDF/CellData/type", "1", "link + facet", Block(Shared::DrawnType), "Type of the cell that a link or a facet belongs to."),
     row("/VTKHDF/Steps/Values", "s", "frame", PerFrame(|f| f.time), "Simulated time of a frame."),
-    row("/VTKHDF/Steps/NumberOfParts", "1", "frame", Counter(1, |_| 1), "Pieces of the surface (VTKHDF); always one."),
-    row("/VTKHDF/Steps/PartOffsets", "1", "frame", Counter(1, |_| 0), "First piece of a frame (VTKHDF); the mesh never changes."),
-    row("/VTKHDF/Steps/PointOffsets", "1", "frame", Counter(1, |i| (i.index * i.atoms) as i64), "First row of a frame in /VTKHDF/Points."),
-    row("/VTKHDF/Steps/CellOffsets", "1", "frame, 4", Counter(4, |_| 0), "First vertex, line, polygon and strip of a frame (VTKHDF)."),
-    row("/VTKHDF/Steps/ConnectivityIdOffsets", "1", "frame, 4", Link("/VTKHDF/Steps/CellOffsets"), "The same for the connectivity (VTKHDF)."),
-    row("/VTKHDF/Steps/PointDataOffsets/cell", "1", "frame", Link("/VTKHDF/Steps/PartOffsets"), "First row of a frame in PointData/cell."),
-    row("/VTKHDF/Steps/PointDataOffsets/type", "1", "frame", Link("/VTKHDF/Steps/PartOffsets"), "First row of a frame in PointData/type."),
-    row("/VTKHDF/Steps/CellDataOffsets/cell", "1", "frame", Link("/VTKHDF/Steps/PartOffsets"), "First row of a frame in CellData/cell."),
-    row("/VTKHDF/Steps/CellDataOffsets/type", "1", "frame", Link("/VTKHDF/Steps/PartOffsets"), "First row of a frame in CellData/type."),
+    row("/VTKHDF/Steps/NumberOfParts", "1", "frame", Counter(|_| 1), "Pieces of the surface (VTKHDF); always one."),
+    row("/VTKHDF/Steps/PartOffsets", "1", "frame", Counter(|i| i.population as i64), "Population of a frame (VTKHDF): frames with the same cells have the same."),
+    row("/VTKHDF/Steps/PointOffsets", "1", "frame", Counter(|i| i.first_atom as i64), "First row of a frame in /VTKHDF/Points."),
+    row("/VTKHDF/Steps/CellOffsets", "1", "frame, 4", Counters(|i| [0, i.offsets(Shared::LinkOffsets), i.offsets(Shared::FacetOffsets), 0]), "First vertex, line, polygon and strip of a frame (VTKHDF): its Offsets begin as many rows later as PartOffsets says."),
+    row("/VTKHDF/Steps/ConnectivityIdOffsets", "1", "frame, 4", Counters(|i| [0, i.block(Shared::LinkAtoms), i.block(Shared::FacetAtoms), 0]), "First row of a frame in the connectivity of vertices, lines, polygons and strips."),
+    row("/VTKHDF/Steps/PointDataOffsets/cell", "1", "frame", Counter(|i| i.block(Shared::PointCell)), "First row of a frame in PointData/cell."),
+    row("/VTKHDF/Steps/PointDataOffsets/type", "1", "frame", Counter(|i| i.block(Shared::PointType)), "First row of a frame in PointData/type."),
+    row("/VTKHDF/Steps/CellDataOffsets/cell", "1", "frame", Counter(|i| i.block(Shared::DrawnCell)), "First row of a frame in CellData/cell."),
+    row("/VTKHDF/Steps/CellDataOffsets/type", "1", "frame", Counter(|i| i.block(Shared::DrawnType)), "First row of a frame in CellData/type."),
     // Topology, once for each kind that VTK knows; only lines and polygons are used.
-    row("/VTKHDF/Vertices/NumberOfConnectivityIds", "1", "1", OnceIntegers, "Unused."),
-    row("/VTKHDF/Vertices/NumberOfCells", "1", "1", OnceIntegers, "Unused."),
-    row("/VTKHDF/Vertices/Offsets", "1", "1", OnceIntegers, "Unused."),
+    row("/VTKHDF/Vertices/NumberOfConnectivityIds", "1", "population", PerPopulation(|_| 0), "Unused."),
+    row("/VTKHDF/Vertices/NumberOfCells", "1", "population", Link("/VTKHDF/Vertices/NumberOfConnectivityIds"), "Unused."),
+    row("/VTKHDF/Vertices/Offsets", "1", "population", Link("/VTKHDF/Vertices/NumberOfConnectivityIds"), "Unused."),
     row("/VTKHDF/Vertices/Connectivity", "1", "0", OnceIntegers, "Unused."),
-    row("/VTKHDF/Lines/NumberOfConnectivityIds", "1", "1", OnceIntegers, "Twice the number of internal links."),
-    row("/VTKHDF/Lines/NumberOfCells", "1", "1", OnceIntegers, "Internal links."),
-    row("/VTKHDF/Lines/Offsets", "1", "link + 1", OnceIntegers, "Where a link begins in Connectivity."),
-    row("/VTKHDF/Lines/Connectivity", "1", "2*link", OnceIntegers, "The two atoms of every internal link."),
-    row("/VTKHDF/Polygons/NumberOfConnectivityIds", "1", "1", OnceIntegers, "Three times the number of facets."),
-    row("/VTKHDF/Polygons/NumberOfCells", "1", "1", OnceIntegers, "Facets."),
-    row("/VTKHDF/Polygons/Offsets", "1", "facet + 1", OnceIntegers, "Where a facet begins in Connectivity."),
-    row("/VTKHDF/Polygons/Connectivity", "1", "3*facet", OnceIntegers, "The three atoms of every facet, outward."),
-    row("/VTKHDF/Strips/NumberOfConnectivityIds", "1", "1", OnceIntegers, "Unused."),
-    row("/VTKHDF/Strips/NumberOfCells", "1", "1", OnceIntegers, "Unused."),
-    row("/VTKHDF/Strips/Offsets", "1", "1", OnceIntegers, "Unused."),
+    row("/VTKHDF/Lines/NumberOfConnectivityIds", "1", "population", PerPopulation(|p| 2 * p.count(Part::Links) as i64), "Twice the number of internal links."),
+    row("/VTKHDF/Lines/NumberOfCells", "1", "population", PerPopulation(|p| p.count(Part::Links) as i64), "Internal links."),
+    row("/VTKHDF/Lines/Offsets", "1", "link + 1", Block(Shared::LinkOffsets), "Where a link begins in Connectivity."),
+    row("/VTKHDF/Lines/Connectivity", "1", "2*link", Block(Shared::LinkAtoms), "The two atoms of every internal link."),
+    row("/VTKHDF/Polygons/NumberOfConnectivityIds", "1", "population", PerPopulation(|p| 3 * p.count(Part::Facets) as i64), "Three times the number of facets."),
+    row("/VTKHDF/Polygons/NumberOfCells", "1", "population", PerPopulation(|p| p.count(Part::Facets) as i64), "Facets."),
+    row("/VTKHDF/Polygons/Offsets", "1", "facet + 1", Block(Shared::FacetOffsets), "Where a facet begins in Connectivity."),
+    row("/VTKHDF/Polygons/Connectivity", "1", "3*facet", Block(Shared::FacetAtoms), "The three atoms of every facet, outward."),
+    row("/VTKHDF/Strips/NumberOfConnectivityIds", "1", "population", Link("/VTKHDF/Vertices/NumberOfConnectivityIds"), "Unused."),
+    row("/VTKHDF/Strips/NumberOfCells", "1", "population", Link("/VTKHDF/Vertices/NumberOfConnectivityIds"), "Unused."),
+    row("/VTKHDF/Strips/Offsets", "1", "population", Link("/VTKHDF/Vertices/NumberOfConnectivityIds"), "Unused."),
     row("/VTKHDF/Strips/Connectivity", "1", "0", OnceIntegers, "Unused."),
     // Time.
     row("/time", "s", "frame", Link("/VTKHDF/Steps/Values"), "Simulated time of a frame."),
-    row("/step", "1", "frame", Counter(1, |i| i.frame.step as i64), "Steps made up to a frame."),
-    // Cells.
+    row("/step", "1", "frame", Counter(|i| i.frame.step as i64), "Steps made up to a frame."),
+    // Types of cells, and the cells of every frame.
     row("/cells/type_names", "1", "type", OnceTexts, "Names of the cell types."),
-    row("/cells/type", "1", "cell", OnceIntegers, "Type of a cell, an index into type_names."),
-    row("/cells/first_atom", "1", "cell", OnceIntegers, "First atom of a cell."),
-    row("/cells/atoms", "1", "cell", OnceIntegers, "Atoms of a cell."),
-    row("/cells/first_facet", "1", "cell", OnceIntegers, "First facet of a cell."),
-    row("/cells/facets", "1", "cell", OnceIntegers, "Facets of a cell."),
-    row("/cells/position", "um", "frame, cell, 3", CellVector(|c| c.position, XYZ), "Centre of volume; mean of the atoms for an open surface."),
-    row("/cells/velocity", "um/s", "frame, cell, 3", CellVector(|c| c.velocity, XYZ), "Mean velocity of the atoms over the last step."),
-    row("/cells/volume", "um^3", "frame, cell", Cell(|c| c.volume), "Enclosed volume; 0 for an open surface."),
-    row("/cells/volume_error", "1", "frame, cell", Cell(|c| c.volume_error), "(volume - target) / target."),
-    row("/cells/area", "um^2", "frame, cell", Cell(|c| c.area), "Area of the surface."),
-    row("/cells/energy", "pN um", "frame, cell", Cell(|c| c.energy), "Elastic energy."),
-    row("/cells/size", "um", "frame, cell, 3", CellVector(|c| c.size, XYZ), "Extents of the box along the axes."),
-    row("/cells/principal", "um", "frame, cell, 3", CellVector(|c| c.principal, LONGEST_FIRST), "Extents along the principal axes of the atoms, longest first."),
-    row("/cells/smallest_facet", "1", "frame, cell", Cell(|c| c.smallest_facet), "Smallest area of a facet over its area at rest."),
-    row("/cells/smallest_cosine", "1", "frame, cell", Cell(|c| c.smallest_cosine), "Smallest cosine between the normal of a facet and the direction from the centre; below 0 where a facet has folded over, 0 for an open surface."),
-    row("/cells/contact_share", "1", "frame, cell", Cell(|c| c.contact_share), "Share of the atoms that are near another cell; 0 without contacts."),
-    row("/cells/aggregate", "1", "frame, cell", Cell(|c| c.aggregate), "Aggregate of a cell: the number of the smallest cell of those that it touches, and that these touch; its own where it is alone."),
+    row("/types/atoms", "1", "type", OnceIntegers, "Atoms of a cell of a type."),
+    row("/types/facets", "1", "type", OnceIntegers, "Facets of a cell of a type."),
+    row("/types/facet_atoms", "1", "3*facet of all types", OnceIntegers, "The three atoms of every facet of a cell, by their numbers in it, type after type."),
+    row("/types/links", "1", "type", OnceIntegers, "Internal links of a cell of a type."),
+    row("/types/link_atoms", "1", "2*link of all types", OnceIntegers, "The two atoms of every link of a cell, by their numbers in it, type after type."),
+    row("/cells/count", "1", "frame", Counter(|i| i.frame.cells.len() as i64), "Cells of a frame."),
+    row("/cells/first", "1", "frame", Counter(|i| i.first_cell as i64), "First row of a frame in the other datasets of cells; it has as many rows as count says."),
+    row("/cells/id", "1", "cell", CellInteger(|c| c.id.cast_signed()), "Id of a cell: no other cell of the run ever has it. -1 between frames."),
+    row("/cells/type", "1", "cell", CellInteger(|c| i64::from(c.kind)), "Type of a cell, an index into type_names."),
+    row("/cells/parent", "1", "cell", CellInteger(|c| c.parent.map_or(-1, u64::cast_signed)), "Id of the cell that a cell was born from; -1 for none."),
     // Rigid planes, for pictures.
     row("/planes/names", "1", "plane", OnceTexts, "Names of the rigid planes."),
     row("/planes/point", "um", "plane, 3", OnceFloats, "A point of a plane."),
     row("/planes/normal", "1", "plane, 3", OnceFloats, "Unit normal, towards the free side."),
     // What happened, and what the experiment as a whole records.
-    row("/events/run_count", "1", "frame", Counter(1, |i| i.rows[List::Runs as usize] as i64), "Motility runs that ended up to a frame."),
-    row("/events/runs/cell", "1", "run", RowInteger(List::Runs, |f, i| i64::from(f.runs[i].0)), "Cell whose motility run ended."),
+    row("/events/run_count", "1", "frame", Counter(|i| i.rows[List::Runs as usize] as i64), "Motility runs that ended up to a frame."),
+    row("/events/runs/cell", "1", "run", RowInteger(List::Runs, |f, i| f.runs[i].0.cast_signed()), "Id of the cell whose motility run ended."),
     row("/events/runs/end_time", "s", "run", RowFloat(List::Runs, |f, i| f.runs[i].1), "When the motility run ended."),
     row("/events/runs/duration", "s", "run", RowFloat(List::Runs, |f, i| f.runs[i].2), "How long the motility run lasted."),
     row("/scene/<name>", "of the series", "frame", Filled::Scene, "A series of the scene as a whole."),
@@ -212,22 +227,30 @@ pub const CATALOGUE: &[Entry] = &[
 /// The datasets of contacts, which exist in a run with contacts.
 #[rustfmt::skip]
 pub const CONTACT: &[Entry] = &[
-    row("/contacts/pair_count", "1", "frame", Counter(1, |i| i.rows[List::Pairs as usize] as i64), "Rows of /contacts/pairs up to the end of a frame."),
-    row("/contacts/pairs/first", "1", "pair", RowInteger(List::Pairs, |f, i| i64::from(f.pairs[i].cell)), "Of two cells that touch the one with the smaller number."),
-    row("/contacts/pairs/second", "1", "pair", RowInteger(List::Pairs, |f, i| i64::from(f.pairs[i].other)), "The other."),
+    row("/contacts/pair_count", "1", "frame", Counter(|i| i.rows[List::Pairs as usize] as i64), "Rows of /contacts/pairs up to the end of a frame."),
+    row("/contacts/pairs/first", "1", "pair", RowInteger(List::Pairs, |f, i| f.pairs[i].cell.cast_signed()), "Of two cells that touch the smaller id."),
+    row("/contacts/pairs/second", "1", "pair", RowInteger(List::Pairs, |f, i| f.pairs[i].other.cast_signed()), "The other."),
     row("/contacts/pairs/area", "um^2", "pair", RowFloat(List::Pairs, |f, i| f.pairs[i].area), "Area of contact: of the atoms of both sides that touch the other, at rest, half of it. 0 where only edges touch."),
-    row("/contacts/plane_count", "1", "frame", Counter(1, |i| i.rows[List::OnPlanes as usize] as i64), "Rows of /contacts/planes up to the end of a frame."),
-    row("/contacts/planes/cell", "1", "cell on plane", RowInteger(List::OnPlanes, |f, i| i64::from(f.on_planes[i].cell)), "A cell that touches a plane."),
-    row("/contacts/planes/plane", "1", "cell on plane", RowInteger(List::OnPlanes, |f, i| i64::from(f.on_planes[i].other)), "The plane, an index into /planes/names."),
+    row("/contacts/plane_count", "1", "frame", Counter(|i| i.rows[List::OnPlanes as usize] as i64), "Rows of /contacts/planes up to the end of a frame."),
+    row("/contacts/planes/cell", "1", "cell on plane", RowInteger(List::OnPlanes, |f, i| f.on_planes[i].cell.cast_signed()), "Id of a cell that touches a plane."),
+    row("/contacts/planes/plane", "1", "cell on plane", RowInteger(List::OnPlanes, |f, i| f.on_planes[i].other.cast_signed()), "The plane, an index into /planes/names."),
     row("/contacts/planes/area", "um^2", "cell on plane", RowFloat(List::OnPlanes, |f, i| f.on_planes[i].area), "Area of contact: of the atoms that touch the plane, at rest."),
 ];
 
 /// The datasets of the forces, which exist when the first frame carries forces.
 #[rustfmt::skip]
 pub const FORCE: &[Entry] = &[
-    row("/VTKHDF/PointData/force", "pN", "frame*atom, 3", Atoms(|f| &f.forces), "Elastic and applied force on the atoms."),
+    row("/VTKHDF/PointData/force", "pN", "atom of all frames, 3", Atoms(|f| &f.forces), "Elastic and applied force on the atoms."),
     row("/VTKHDF/Steps/PointDataOffsets/force", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/force."),
 ];
+
+/// The datasets of the quantities of cells, as [`CELL`] lists them.
+pub fn cell_entries() -> impl Iterator<Item = Entry> {
+    CELL.iter().map(|quantity| {
+        let shape = if matches!(quantity.values, Values::Vector(..)) { "cell, 3" } else { "cell" };
+        row(quantity.dataset, quantity.unit, shape, Filled::Cell(quantity.values), quantity.description)
+    })
+}
 
 /// The row of a path.
 ///
@@ -238,42 +261,19 @@ pub fn entry(path: &str) -> &'static Entry {
     found.unwrap_or_else(|| panic!("{path} is missing from the catalogue of the result file"))
 }
 
-/// Names of the per-cell series, vectors by their components (`position_x`), in the order of the catalogue, and
-/// `speed`.
-pub fn cell_series_names() -> Vec<String> {
-    let mut names = Vec::new();
-    for entry in CATALOGUE {
-        let Some(name) = entry.path.strip_prefix("/cells/") else { continue };
-        match &entry.filled {
-            Cell(_) => names.push(name.to_string()),
-            CellVector(_, endings) => names.extend(endings.iter().map(|ending| format!("{name}_{ending}"))),
-            _ => {}
-        }
-    }
-    names.push("speed".into());
-    names
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn every_path_is_listed_once_and_links_lead_somewhere() {
-        let all: Vec<&Entry> = CATALOGUE.iter().chain(CONTACT).chain(FORCE).collect();
+        let cells: Vec<Entry> = cell_entries().collect();
+        let all: Vec<&Entry> = CATALOGUE.iter().chain(&cells).chain(CONTACT).chain(FORCE).collect();
         for (number, entry) in all.iter().enumerate() {
             assert!(!all[..number].iter().any(|other| other.path == entry.path), "{} is listed twice", entry.path);
             if let Link(target) = entry.filled {
                 assert!(all.iter().any(|other| other.path == target), "{} leads to {target}", entry.path);
             }
-        }
-    }
-
-    #[test]
-    fn vector_series_are_named_by_component() {
-        let names = cell_series_names();
-        for name in ["position_x", "size_z", "principal_1", "velocity_y", "volume", "speed"] {
-            assert!(names.iter().any(|known| known == name), "{name} is missing from {names:?}");
         }
     }
 }

@@ -12,7 +12,7 @@ pub enum Change {
     Merge,
     /// Cells of one are now in two or more.
     Split,
-    /// All cells of one are alone.
+    /// All cells of one are alone, or gone.
     Death,
 }
 
@@ -34,30 +34,34 @@ pub struct Event {
     pub frame: usize,
     /// What happened.
     pub change: Change,
-    /// Numbers of the aggregates that it happened to, as they were in the frame before; none for a birth.
-    pub before: Vec<u32>,
-    /// Numbers of the aggregates that came of it; none for a death.
-    pub after: Vec<u32>,
+    /// Ids of the aggregates that it happened to, as they were in the frame before; none for a birth.
+    pub before: Vec<u64>,
+    /// Ids of the aggregates that came of it; none for a death.
+    pub after: Vec<u64>,
     /// Cells of the one aggregate that was born, merged, split or died.
     pub cells: usize,
 }
 
-/// Finds the changes in a recording of the aggregate of each cell, [frame, cell]. An aggregate goes on in all that have
-/// cells of it; single cells that join or leave it are no change. So the number of aggregates changes by
-/// births − deaths + Σ (parts − 1) of splits − Σ (parts − 1) of merges.
+/// Finds the changes in a recording of the aggregate of each cell, [frame, cell], NaN where a cell is not there. An
+/// aggregate goes on in all that have cells of it; single cells that join or leave it, are born into it or vanish from it
+/// are no change. So the number of aggregates of two cells or more changes by births − deaths + Σ (parts − 1) of splits
+/// − Σ (parts − 1) of merges.
 pub fn changes(aggregates: ArrayView2<f64>) -> Vec<Event> {
-    let numbers = |frame: usize| -> Vec<u32> { aggregates.row(frame).iter().map(|number| *number as u32).collect() };
+    let numbers = |frame: usize| -> Vec<Option<u64>> {
+        aggregates.row(frame).iter().map(|number| (!number.is_nan()).then_some(*number as u64)).collect()
+    };
     let frames = aggregates.nrows();
     (1..frames).flat_map(|frame| changes_between(frame, &numbers(frame - 1), &numbers(frame))).collect()
 }
 
 /// The changes from one frame to the next: deaths and splits, then merges and births.
-fn changes_between(frame: usize, before: &[u32], after: &[u32]) -> Vec<Event> {
+fn changes_between(frame: usize, before: &[Option<u64>], after: &[Option<u64>]) -> Vec<Event> {
     let (sizes_before, sizes_after) = (sizes(before), sizes(after));
-    let size = |sizes: &[(u32, usize)], number: u32| {
-        sizes.binary_search_by_key(&number, |known| known.0).map_or(0, |place| sizes[place].1)
+    let size = |sizes: &[(u64, usize)], number: u64| {
+        sizes.binary_search_by_key(&number, |known| known.0).map_or(0, |index| sizes[index].1)
     };
-    let mut went: Vec<[u32; 2]> = before.iter().zip(after).map(|(before, after)| [*before, *after]).collect();
+    let both = before.iter().zip(after).filter_map(|(before, after)| Some([(*before)?, (*after)?]));
+    let mut went: Vec<[u64; 2]> = both.collect();
     went.retain(|[before, after]| size(&sizes_before, *before) > 1 && size(&sizes_after, *after) > 1);
     went.sort_unstable();
     went.dedup();
@@ -67,7 +71,7 @@ fn changes_between(frame: usize, before: &[u32], after: &[u32]) -> Vec<Event> {
         [(0, &sizes_before, Change::Death, Change::Split), (1, &sizes_after, Change::Birth, Change::Merge)]
     {
         for &(number, cells) in known.iter().filter(|known| known.1 > 1) {
-            let others: Vec<u32> = went.iter().filter(|went| went[side] == number).map(|went| went[1 - side]).collect();
+            let others: Vec<u64> = went.iter().filter(|went| went[side] == number).map(|went| went[1 - side]).collect();
             let change = match others.len() {
                 0 => alone,
                 1 => continue,
@@ -81,8 +85,8 @@ fn changes_between(frame: usize, before: &[u32], after: &[u32]) -> Vec<Event> {
 }
 
 /// The numbers of aggregates, ascending, with their cells.
-fn sizes(aggregates: &[u32]) -> Vec<(u32, usize)> {
-    let mut numbers = aggregates.to_vec();
+fn sizes(aggregates: &[Option<u64>]) -> Vec<(u64, usize)> {
+    let mut numbers: Vec<u64> = aggregates.iter().copied().flatten().collect();
     numbers.sort_unstable();
     numbers.chunk_by(|one, other| one == other).map(|alike| (alike[0], alike.len())).collect()
 }

@@ -15,7 +15,7 @@ fn events<const CELLS: usize>(frames: &[[u32; CELLS]]) -> Vec<Event> {
 fn aggregates_are_born_merge_split_and_die() {
     let found =
         events(&[[0, 1, 2, 3, 4, 5], [0, 0, 2, 2, 4, 5], [0, 0, 0, 0, 4, 5], [0, 1, 0, 1, 4, 5], [0, 1, 0, 3, 4, 5]]);
-    let event = |frame, change, before: &[u32], after: &[u32], cells| Event {
+    let event = |frame, change, before: &[u64], after: &[u64], cells| Event {
         frame,
         change,
         before: before.to_vec(),
@@ -51,13 +51,15 @@ fn the_events_account_for_the_number_of_aggregates() {
     let mut dice = Stream::new(3, Purpose::Permutation, 0, 0);
     let mut next = || dice.uniform_pair()[0];
     for _ in 0..500 {
-        let mut frame = || -> Vec<u32> {
+        let mut frame = || {
             let pairs = (next() * 12.0) as usize;
             let pairs: Vec<[u32; 2]> = (0..pairs).map(|_| [0; 2].map(|_| (next() * 20.0) as u32)).collect();
-            clusters(20, pairs)
+            // Some cells are not there in one of the frames.
+            let there = |first: u32| (next() < 0.9).then_some(u64::from(first));
+            clusters(20, pairs).into_iter().map(there).collect::<Vec<_>>()
         };
         let (before, after) = (frame(), frame());
-        let number = |frame: &[u32]| sizes(frame).iter().filter(|known| known.1 > 1).count() as i64;
+        let number = |frame: &[Option<u64>]| sizes(frame).iter().filter(|known| known.1 > 1).count() as i64;
         let change: i64 = changes_between(1, &before, &after)
             .iter()
             .map(|event| match event.change {
@@ -69,6 +71,28 @@ fn the_events_account_for_the_number_of_aggregates() {
             .sum();
         assert_eq!(number(&after) - number(&before), change, "{before:?} {after:?}");
     }
+}
+
+#[test]
+fn cells_that_come_or_go_change_only_what_they_make_or_end() {
+    let none = f64::NAN;
+    let frames = ndarray::arr2(&[
+        [0.0, none, 2.0, 2.0, none],
+        // A daughter beside its mother makes an aggregate of two; the one of 2 gets a third.
+        [0.0, 0.0, 2.0, 2.0, 2.0],
+        // The first of three is gone: the others go on under another number.
+        [0.0, 0.0, none, 3.0, 3.0],
+        // All of an aggregate are gone.
+        [0.0, 0.0, none, none, none],
+    ]);
+    let event = |frame, change, before: &[u64], after: &[u64]| Event {
+        frame,
+        change,
+        before: before.to_vec(),
+        after: after.to_vec(),
+        cells: 2,
+    };
+    assert_eq!(changes(frames.view()), [event(1, Change::Birth, &[], &[0]), event(3, Change::Death, &[3], &[])]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Datasets that grow with the run, in two kinds: small ones that gather many frames in a piece of the file, and
 //! large ones that take whole compressed pieces per frame.
 //!
+//! Large ones begin every frame with a piece, the last of which is filled up: so a piece belongs to one frame alone.
 //! Neither ever gives space of the file back while it grows. A piece of a small dataset is rewritten where it lies,
 //! its old numbers unchanged; a piece of a large one is written once. So what is on disk after a flush stays true
 //! until the next flush, whenever the program is killed.
@@ -15,8 +16,10 @@ use rayon::prelude::*;
 use super::container::set_text;
 use super::packing::{LEVEL, pack, packer};
 
-/// Numbers in a piece of a small dataset: 8 kB, rewritten at most once a second.
-const SMALL_PIECE: usize = 1024;
+/// Most numbers in a piece of a small dataset: 8 kB, rewritten at most once a second.
+pub(super) const SMALL_PIECE: usize = 1024;
+/// Rows in a piece of a small dataset that gets a row per frame.
+pub(super) const SMALL_ROWS: usize = 256;
 /// Most numbers in a piece of a large dataset: 786 kB, less than the 1 MB that HDF5 readers keep unpacked.
 pub(super) const LARGE_PIECE: usize = 98_304;
 /// Pieces that are packed together, to bound the memory they take.
@@ -99,6 +102,7 @@ pub(super) struct Column {
     dataset: Dataset,
     row: Vec<usize>,
     number: Number,
+    piece_rows: usize,
     rows: usize,
     /// The last piece, whole; what has no row yet holds [`Number::nothing`].
     tail: Vec<u64>,
@@ -106,17 +110,21 @@ pub(super) struct Column {
 }
 
 impl Column {
-    /// Makes the dataset with rows of the shape `row`.
-    pub fn create(file: &Group, plan: &Plan, row: &[usize]) -> hdf5::Result<Self> {
-        let dataset = plan.make(file, None, row, Self::piece_rows(row), Packing::Plain)?;
-        Ok(Self::around(dataset, plan.number, row))
+    /// Makes the dataset with rows of the shape `row`, at most `piece_rows` of them in a piece.
+    pub fn create(file: &Group, plan: &Plan, row: &[usize], piece_rows: usize) -> hdf5::Result<Self> {
+        let most = SMALL_PIECE / row.iter().product::<usize>().max(1);
+        let piece_rows = piece_rows.min(most).max(1);
+        let dataset = plan.make(file, None, row, piece_rows, Packing::Plain)?;
+        Ok(Self::around(dataset, plan.number, row, piece_rows))
     }
 
     /// Opens the dataset and cuts it to its first rows.
     pub fn reopen(file: &Group, path: &str, number: Number, row: &[usize], rows: usize) -> hdf5::Result<Self> {
-        let mut column = Self::around(file.dataset(path)?, number, row);
+        let dataset = file.dataset(path)?;
+        let piece_rows = dataset.chunk().map_or(1, |piece| piece[0]);
+        let mut column = Self::around(dataset, number, row, piece_rows);
         column.resize(rows)?;
-        column.tail_rows = rows % Self::piece_rows(row);
+        column.tail_rows = rows % piece_rows;
         let selection: Vec<SliceOrIndex> =
             std::iter::once((rows - column.tail_rows..rows).into()).chain(row.iter().map(|n| (0..*n).into())).collect();
         let known: Vec<u64> = match number {
@@ -138,25 +146,26 @@ impl Column {
         Ok(column)
     }
 
-    fn around(dataset: Dataset, number: Number, row: &[usize]) -> Self {
-        let length = Self::piece_rows(row) * row.iter().product::<usize>();
-        Self { dataset, row: row.to_vec(), number, rows: 0, tail: vec![number.nothing(); length], tail_rows: 0 }
+    fn around(dataset: Dataset, number: Number, row: &[usize], piece_rows: usize) -> Self {
+        let tail = vec![number.nothing(); piece_rows * row.iter().product::<usize>()];
+        Self { dataset, row: row.to_vec(), number, piece_rows, rows: 0, tail, tail_rows: 0 }
     }
 
-    fn piece_rows(row: &[usize]) -> usize {
-        (SMALL_PIECE / row.iter().product::<usize>().max(1)).clamp(1, 256)
+    /// Rows so far.
+    pub fn rows(&self) -> usize {
+        self.rows
     }
 
     /// Appends a row, given as the bits of its numbers.
     pub fn push(&mut self, values: impl IntoIterator<Item = u64>) -> hdf5::Result<()> {
         let width: usize = self.row.iter().product();
-        let place = &mut self.tail[self.tail_rows * width..(self.tail_rows + 1) * width];
-        for (to, from) in place.iter_mut().zip(values) {
+        let row = &mut self.tail[self.tail_rows * width..(self.tail_rows + 1) * width];
+        for (to, from) in row.iter_mut().zip(values) {
             *to = from;
         }
         self.tail_rows += 1;
         self.rows += 1;
-        if self.tail_rows == Self::piece_rows(&self.row) {
+        if self.tail_rows == self.piece_rows {
             self.write()?;
             self.tail.fill(self.number.nothing());
             self.tail_rows = 0;
@@ -181,10 +190,10 @@ impl Column {
 
     /// See [`PackedColumn::renewed`].
     pub fn renewed(self, file: &Group) -> hdf5::Result<Self> {
-        let Self { dataset, row, number, rows, tail, tail_rows } = self;
+        let Self { dataset, row, number, piece_rows, rows, tail, tail_rows } = self;
         let path = dataset.name();
         drop(dataset);
-        Ok(Self { dataset: file.dataset(&path)?, row, number, rows, tail, tail_rows })
+        Ok(Self { dataset: file.dataset(&path)?, row, number, piece_rows, rows, tail, tail_rows })
     }
 
     /// Sets the number of rows in the file.
@@ -194,73 +203,131 @@ impl Column {
     }
 }
 
-/// A large dataset that grows by a frame at a time, in compressed pieces of which a frame has a whole number.
+/// A large dataset that grows by a block of rows at a time, in compressed pieces: a frame, or what several frames share.
+/// Every block begins with a piece.
 pub(super) struct PackedColumn {
     dataset: Dataset,
     row: Vec<usize>,
-    frame_rows: usize,
+    number: Number,
     piece_rows: usize,
-    frames: usize,
+    /// Rows of all pieces so far.
+    rows: usize,
 }
 
 impl PackedColumn {
-    /// Makes the dataset; a frame has `frame_rows` rows of the shape `row`.
-    pub fn create(file: &Group, plan: &Plan, frame_rows: usize, row: &[usize]) -> hdf5::Result<Self> {
-        let piece_rows = piece_of_frame(frame_rows, row);
+    /// Makes the dataset with this many rows of the shape `row` in a piece.
+    pub fn create(file: &Group, plan: &Plan, row: &[usize], piece_rows: usize) -> hdf5::Result<Self> {
         let dataset = plan.make(file, None, row, piece_rows, Packing::Packed)?;
-        Ok(Self { dataset, row: row.to_vec(), frame_rows, piece_rows, frames: 0 })
+        Ok(Self { dataset, row: row.to_vec(), number: plan.number, piece_rows: piece_rows.max(1), rows: 0 })
     }
 
-    /// Opens the dataset and cuts it to its first frames.
-    pub fn reopen(file: &Group, path: &str, frame_rows: usize, row: &[usize], frames: usize) -> hdf5::Result<Self> {
+    /// Opens the dataset and cuts it to the piece that its first rows end in.
+    pub fn reopen(file: &Group, path: &str, number: Number, row: &[usize], rows: usize) -> hdf5::Result<Self> {
         let dataset = file.dataset(path)?;
-        let piece_rows = dataset.chunk().map_or(frame_rows, |piece| piece[0]);
-        let mut column = Self { dataset, row: row.to_vec(), frame_rows, piece_rows, frames };
-        column.resize(frames)?;
-        Ok(column)
+        let piece_rows = dataset.chunk().map_or(1, |piece| piece[0]);
+        let rows = rows.next_multiple_of(piece_rows);
+        dataset.resize([&[rows], row].concat())?;
+        Ok(Self { dataset, row: row.to_vec(), number, piece_rows, rows })
+    }
+
+    /// Where the next block begins.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Pieces so far.
+    pub fn pieces(&self) -> usize {
+        self.rows / self.piece_rows
+    }
+
+    /// Makes the dataset longer by a block of this many rows. The new size comes first: a piece outside the dataset is
+    /// refused.
+    fn grow(&mut self, rows: usize) -> hdf5::Result<()> {
+        self.rows += rows.next_multiple_of(self.piece_rows);
+        self.dataset.resize([&[self.rows], self.row.as_slice()].concat())
+    }
+
+    /// Appends a block of integers; `fill` fills in those from an index on.
+    pub fn push_integers(&mut self, rows: usize, fill: impl Fn(usize, &mut [i64]) + Sync) -> hdf5::Result<()> {
+        let first = self.rows;
+        self.grow(rows)?;
+        let starts: Vec<usize> = (0..rows).step_by(self.piece_rows).collect();
+        for together in starts.chunks(PACKED_TOGETHER) {
+            let packed: Vec<Vec<u8>> = together
+                .par_iter()
+                .map_init(packer, |packer, start| {
+                    let mut numbers = vec![NO_INTEGER; self.piece_rows];
+                    let inside = (rows - start).min(self.piece_rows);
+                    fill(*start, &mut numbers[..inside]);
+                    pack(packer, numbers.into_iter().map(i64::cast_unsigned))
+                })
+                .collect();
+            for (start, bytes) in together.iter().zip(&packed) {
+                write_piece(&self.dataset, first + start, self.row.len(), bytes.as_ptr().cast(), bytes.len())?;
+            }
+        }
+        Ok(())
     }
 
     /// Closes the dataset and opens it again, so that HDF5 forgets where all its pieces lie: it keeps some 300 bytes
     /// for each. To be called right after a flush, when nothing of it waits to be written.
     pub fn renewed(self, file: &Group) -> hdf5::Result<Self> {
-        let Self { dataset, row, frame_rows, piece_rows, frames } = self;
+        let Self { dataset, row, number, piece_rows, rows } = self;
         let path = dataset.name();
         drop(dataset);
-        Ok(Self { dataset: file.dataset(&path)?, row, frame_rows, piece_rows, frames })
+        Ok(Self { dataset: file.dataset(&path)?, row, number, piece_rows, rows })
+    }
+}
+
+/// The numbers of a block.
+pub(super) enum Numbers<'a> {
+    Floats(Cow<'a, [f64]>),
+    Integers(Vec<i64>),
+}
+
+impl Numbers<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Floats(numbers) => numbers.len(),
+            Self::Integers(numbers) => numbers.len(),
+        }
     }
 
-    /// Sets the number of frames in the file.
-    pub fn resize(&mut self, frames: usize) -> hdf5::Result<()> {
-        self.frames = frames;
-        self.dataset.resize([&[frames * self.frame_rows], self.row.as_slice()].concat())
+    /// The bits of a number.
+    pub fn bits(&self, index: usize) -> u64 {
+        match self {
+            Self::Floats(numbers) => numbers[index].to_bits(),
+            Self::Integers(numbers) => numbers[index].cast_unsigned(),
+        }
     }
 }
 
 /// Appends one frame to several large datasets: packs the pieces on all cores, then hands them to the file.
-pub(super) fn push_frames(frames: &mut [(&mut PackedColumn, Cow<[f64]>)]) -> hdf5::Result<()> {
-    let mut pieces: Vec<(usize, usize, &[f64])> = Vec::new();
-    for (number, (column, values)) in frames.iter().enumerate() {
-        let length = column.piece_rows * column.row.iter().product::<usize>();
-        let first = column.frames * column.frame_rows;
-        let rows = (0..).map(|piece| first + piece * column.piece_rows);
-        pieces.extend(values.chunks(length.max(1)).zip(rows).map(|(piece, row)| (number, row, piece)));
-    }
-    // The new size comes first: a piece outside the dataset is refused.
-    for (column, _) in frames.iter() {
-        let rows = (column.frames + 1) * column.frame_rows;
-        column.dataset.resize([&[rows], column.row.as_slice()].concat())?;
+pub(super) fn push_frames(frames: &mut [(&mut PackedColumn, Numbers)]) -> hdf5::Result<()> {
+    // For each piece: which dataset, its first row there, and its first number in the frame.
+    let mut pieces: Vec<(usize, usize, usize)> = Vec::new();
+    for (number, (column, values)) in frames.iter_mut().enumerate() {
+        let (first, width) = (column.rows, column.row.iter().product::<usize>().max(1));
+        let starts = (0..values.len()).step_by(column.piece_rows * width);
+        pieces.extend(starts.map(|start| (number, first + start / width, start)));
+        column.grow(values.len() / width)?;
     }
     for together in pieces.chunks(PACKED_TOGETHER) {
         let packed: Vec<Vec<u8>> = together
             .par_iter()
-            .map_init(packer, |packer, (_, _, piece)| pack(packer, piece.iter().map(|value| value.to_bits())))
+            .map_init(packer, |packer, (number, _, start)| {
+                let (column, values) = &frames[*number];
+                let length = column.piece_rows * column.row.iter().product::<usize>();
+                let (nothing, end) = (column.number.nothing(), values.len());
+                let bits = |index: usize| if index < end { values.bits(index) } else { nothing };
+                pack(packer, (*start..start + length).map(bits))
+            })
             .collect();
         for ((number, row, _), bytes) in together.iter().zip(&packed) {
             let column = &frames[*number].0;
             write_piece(&column.dataset, *row, column.row.len(), bytes.as_ptr().cast(), bytes.len())?;
         }
     }
-    frames.iter_mut().for_each(|(column, _)| column.frames += 1);
     Ok(())
 }
 
@@ -307,7 +374,7 @@ pub(super) fn write_vectors(file: &Group, plan: &Plan, values: &[[f64; 3]]) -> h
 
 /// Rows in a piece, so that whole pieces make a frame: the largest divisor of the frame that is not too large, and
 /// the frame itself if its divisors are all small.
-fn piece_of_frame(frame_rows: usize, row: &[usize]) -> usize {
+pub(super) fn piece_of_frame(frame_rows: usize, row: &[usize]) -> usize {
     let most = (LARGE_PIECE / row.iter().product::<usize>().max(1)).max(1);
     if frame_rows <= most {
         return frame_rows;

@@ -4,36 +4,29 @@ use std::borrow::Cow;
 
 use hdf5::File;
 
-use super::catalogue::{CATALOGUE, CONTACT, Entry, FORCE, Filled, Instant, List};
-use super::column::{Column, Number, PackedColumn, Plan, push_frames};
+use super::catalogue::{CATALOGUE, CONTACT, Entry, FORCE, Filled, Instant, List, cell_entries};
+use super::cell_column::{CellColumn, CellSource};
+use super::column::{Column, Number, Numbers, PackedColumn, Plan, SMALL_ROWS, push_frames};
 use super::container::set_number;
 use super::fields::FieldColumns;
-use super::systems::{SystemColumns, SystemLayout};
-use super::{CellRecord, Frame, Layout};
+use super::pieces::{Pieces, has_frames};
+use super::population::{Population, Shared};
+use super::systems::{SystemScope, create_groups};
+use super::whole::Ends;
+use super::{Frame, Layout};
 
-/// From this many cells on, a frame of a per-cell series is a compressed piece of its own.
-pub(super) const MANY_CELLS: usize = 1024;
-
-/// Frames after which HDF5 is made to forget where the pieces lie, a few MB.
-const REMEMBERED_FRAMES: usize = 5000;
+/// Frames and pieces of frames after which HDF5 is made to forget where the pieces lie, a few MB.
+const REMEMBERED: usize = 10_000;
+/// Populations in a piece: most runs have one.
+const POPULATION_ROWS: usize = 16;
 
 type FrameNumber = fn(&Frame) -> f64;
-type Counted = fn(&Instant) -> i64;
 type AtomVectors = fn(&Frame) -> &[[f64; 3]];
 
-/// Where a per-cell series comes from.
-enum CellSource {
-    Number(fn(&CellRecord) -> f64),
-    Vector(fn(&CellRecord) -> [f64; 3]),
-}
-
-impl CellSource {
-    fn values(&self, cells: &[CellRecord]) -> Vec<f64> {
-        match self {
-            Self::Number(value) => cells.iter().map(value).collect(),
-            Self::Vector(value) => cells.iter().flat_map(value).collect(),
-        }
-    }
+/// Integers of a frame.
+enum Counted {
+    One(fn(&Instant) -> i64),
+    Four(fn(&Instant) -> [i64; 4]),
 }
 
 /// Where a number per row of a list comes from.
@@ -45,96 +38,136 @@ enum RowSource {
 /// Rows of each list so far.
 pub(super) type Rows = [usize; List::ALL.len()];
 
-/// The datasets by what fills them.
+/// The datasets by what fills them. Until the first frame has come there are none but those of fields and the scene.
 #[derive(Default)]
 pub(super) struct Columns {
-    atoms: usize,
-    cells: usize,
+    layout: Layout,
     frames: usize,
     rows: Rows,
+    /// The cells of the last frame.
+    population: Option<Population>,
+    populations: usize,
     atom_vectors: Vec<(AtomVectors, PackedColumn)>,
-    many_cells: Vec<(CellSource, PackedColumn)>,
-    few_cells: Vec<(CellSource, Column)>,
-    counters: Vec<(usize, Counted, Column)>,
+    cells: Vec<(CellSource, CellColumn)>,
+    blocks: Vec<(Shared, PackedColumn)>,
+    /// Where the blocks of the last population begin.
+    blocks_at: [usize; Shared::ALL.len()],
+    population_numbers: Vec<(fn(&Population) -> i64, Column)>,
+    counters: Vec<(Counted, Column)>,
     frame_numbers: Vec<(FrameNumber, Column)>,
     row_numbers: Vec<(List, RowSource, Column)>,
     scene: Vec<Column>,
+    /// Quantities of systems of the scene: number of the system and of the quantity.
+    scene_systems: Vec<(usize, usize, Column)>,
+    are_made: bool,
     forces: bool,
     fields: FieldColumns,
-    systems: SystemColumns,
-    /// How many there are of each system.
-    members: Vec<usize>,
-    /// Frames at the last [`Columns::forget_history`].
+    /// Frames and their pieces at the last [`Columns::forget_history`].
     forgotten: usize,
+    pieces: usize,
 }
 
 /// Whether datasets are made or opened and cut.
 #[derive(Clone, Copy)]
-enum Start {
-    New,
-    Cut { frames: usize, rows: Rows },
+enum Start<'a> {
+    New(&'a Pieces),
+    Cut(&'a Ends),
 }
 
 impl Columns {
-    /// Makes all datasets, those of the forces if they are wanted: in a new run they come with the first frame that
-    /// has some.
-    pub fn create(file: &File, layout: &Layout, forces: bool) -> hdf5::Result<Self> {
-        let mut columns = Self::start(file, layout, Start::New)?;
+    /// Makes the datasets of the fields; all others come with the first frame, which tells their sizes.
+    pub fn create(file: &File, layout: &Layout) -> hdf5::Result<Self> {
+        let fields = FieldColumns::create(file, layout)?;
+        Ok(Self { layout: layout.clone(), fields, ..Self::default() })
+    }
+
+    /// Makes all datasets, those of the forces if they are wanted.
+    pub fn create_all(file: &File, layout: &Layout, pieces: &Pieces, forces: bool) -> hdf5::Result<Self> {
+        let mut columns = Self::create(file, layout)?;
+        columns.start(file, Start::New(pieces))?;
         if forces {
-            columns.add_forces(file, Start::New)?;
+            columns.add_forces(file, Start::New(pieces))?;
         }
         Ok(columns)
     }
 
-    /// Opens all datasets and cuts them to their first frames and rows.
-    pub fn reopen(file: &File, layout: &Layout, frames: usize, rows: Rows) -> hdf5::Result<Self> {
-        Self::start(file, layout, Start::Cut { frames, rows })
+    /// Opens all datasets and cuts them to their first frames.
+    pub fn reopen(file: &File, layout: &Layout, frames: usize) -> hdf5::Result<Self> {
+        let mut columns = Self { layout: layout.clone(), frames, ..Self::default() };
+        columns.fields = FieldColumns::reopen(file, layout, frames)?;
+        if !has_frames(file) {
+            return Ok(columns);
+        }
+        let ends = Ends::of(file, layout, frames)?;
+        columns.start(file, Start::Cut(&ends))?;
+        if file.dataset(FORCE[0].path).is_ok() {
+            columns.add_forces(file, Start::Cut(&ends))?;
+        }
+        (columns.rows, columns.populations, columns.blocks_at) = (ends.rows, ends.populations, ends.blocks_at);
+        columns.population = ends.population;
+        Ok(columns)
     }
 
-    fn start(file: &File, layout: &Layout, start: Start) -> hdf5::Result<Self> {
-        let mut columns = Self { atoms: layout.atoms(), cells: layout.cells.len(), ..Self::default() };
-        if let Start::Cut { frames, rows } = start {
-            (columns.frames, columns.rows) = (frames, rows);
-        }
-        let contacts = if layout.contacts { CONTACT } else { &[] };
+    fn start(&mut self, file: &File, start: Start) -> hdf5::Result<()> {
+        let contacts = if self.layout.contacts { CONTACT } else { &[] };
         for entry in CATALOGUE.iter().chain(contacts) {
-            columns.add(file, entry, start)?;
+            self.add(file, entry, start)?;
         }
-        for (order, (name, unit)) in (0_i64..).zip(&layout.scene_series) {
-            columns.add_scene(file, name, unit, order, start)?;
+        cell_entries().try_for_each(|entry| self.add(file, &entry, start))?;
+        for (order, (name, unit)) in (0_i64..).zip(&self.layout.scene_series) {
+            let path = format!("/scene/{name}");
+            let description = "A series of the scene as a whole.";
+            let plan = Plan { path: &path, number: Number::Float, unit, description };
+            self.scene.push(per_frame(file, &plan, &[], start)?);
+            let dataset = file.dataset(&path)?;
+            set_number(&dataset, "order", order)?;
         }
-        columns.members = layout.systems.iter().map(SystemLayout::members).collect();
-        (columns.fields, columns.systems) = match start {
-            Start::New => (FieldColumns::create(file, layout)?, SystemColumns::create(file, layout)?),
-            Start::Cut { frames, .. } => {
-                (FieldColumns::reopen(file, layout, frames)?, SystemColumns::reopen(file, layout, frames)?)
-            }
-        };
-        if let Start::Cut { .. } = start
-            && file.dataset(FORCE[0].path).is_ok()
-        {
-            columns.add_forces(file, start)?;
-        }
-        Ok(columns)
+        self.add_systems(file, start)?;
+        self.are_made = true;
+        Ok(())
     }
 
     fn add(&mut self, file: &File, entry: &Entry, start: Start) -> hdf5::Result<()> {
-        let integer = |row: &[usize], rows| small(file, &entry.plan(Number::Integer), row, start, rows);
-        let float = |row: &[usize], rows| small(file, &entry.plan(Number::Float), row, start, rows);
-        let (frames, rows) = (self.frames, self.rows);
+        let (integer, float) = (entry.plan(Number::Integer), entry.plan(Number::Float));
         match entry.filled {
-            Filled::Frame(value) => self.frame_numbers.push((value, float(&[], frames)?)),
-            Filled::Counter(1, value) => self.counters.push((1, value, integer(&[], frames)?)),
-            Filled::Counter(width, value) => self.counters.push((width, value, integer(&[width], frames)?)),
-            Filled::Atoms(value) => self.atom_vectors.push((value, large(file, entry, self.atoms, &[3], start)?)),
-            Filled::Cell(value) => self.add_cells(file, entry, &[], CellSource::Number(value), start)?,
-            Filled::CellVector(value, _) => self.add_cells(file, entry, &[3], CellSource::Vector(value), start)?,
+            Filled::Frame(value) => self.frame_numbers.push((value, per_frame(file, &float, &[], start)?)),
+            Filled::Counter(value) => {
+                self.counters.push((Counted::One(value), per_frame(file, &integer, &[], start)?));
+            }
+            Filled::Counters(value) => {
+                self.counters.push((Counted::Four(value), per_frame(file, &integer, &[4], start)?));
+            }
+            Filled::Population(value) => {
+                let column = match start {
+                    Start::New(_) => Column::create(file, &integer, &[], POPULATION_ROWS)?,
+                    Start::Cut(ends) => Column::reopen(file, entry.path, Number::Integer, &[], ends.populations)?,
+                };
+                self.population_numbers.push((value, column));
+            }
+            Filled::Shared(shared) => {
+                let column = match start {
+                    Start::New(pieces) => PackedColumn::create(file, &integer, &[], pieces.blocks[shared as usize])?,
+                    Start::Cut(ends) => {
+                        PackedColumn::reopen(file, entry.path, Number::Integer, &[], ends.blocks[shared as usize])?
+                    }
+                };
+                self.blocks.push((shared, column));
+            }
+            Filled::Atoms(value) => {
+                let column = match start {
+                    Start::New(pieces) => PackedColumn::create(file, &float, &[3], pieces.atoms)?,
+                    Start::Cut(ends) => PackedColumn::reopen(file, entry.path, Number::Float, &[3], ends.atoms)?,
+                };
+                self.atom_vectors.push((value, column));
+            }
+            Filled::CellInteger(value) => self.add_cells(file, &integer, CellSource::Integer(value), start)?,
+            Filled::Cell(values) => self.add_cells(file, &float, CellSource::Recorded(values), start)?,
             Filled::RowInteger(list, value) => {
-                let column = integer(&[], rows[list as usize])?;
+                let column = of_list(file, &integer, list, start)?;
                 self.row_numbers.push((list, RowSource::Integer(value), column));
             }
             Filled::RowFloat(list, value) => {
-                let column = float(&[], rows[list as usize])?;
+                let column = of_list(file, &float, list, start)?;
                 self.row_numbers.push((list, RowSource::Float(value), column));
             }
             Filled::Link(target) => link(file, target, entry.path)?,
@@ -144,30 +177,36 @@ impl Columns {
         Ok(())
     }
 
-    fn add_cells(
-        &mut self,
-        file: &File,
-        entry: &Entry,
-        vector: &[usize],
-        source: CellSource,
-        start: Start,
-    ) -> hdf5::Result<()> {
-        let row = [&[self.cells], vector].concat();
-        if self.cells >= MANY_CELLS {
-            self.many_cells.push((source, large(file, entry, 1, &row, start)?));
-        } else {
-            self.few_cells.push((source, small(file, &entry.plan(Number::Float), &row, start, self.frames)?));
-        }
+    fn add_cells(&mut self, file: &File, plan: &Plan, source: CellSource, start: Start) -> hdf5::Result<()> {
+        let column = match start {
+            Start::New(pieces) => CellColumn::create(file, plan, source.row(), pieces.cells)?,
+            Start::Cut(ends) => CellColumn::reopen(file, plan, source.row(), ends.cells)?,
+        };
+        self.cells.push((source, column));
         Ok(())
     }
 
-    fn add_scene(&mut self, file: &File, name: &str, unit: &str, order: i64, start: Start) -> hdf5::Result<()> {
-        let path = format!("/scene/{name}");
-        let description = "A series of the scene as a whole.";
-        let plan = Plan { path: &path, number: Number::Float, unit, description };
-        self.scene.push(small(file, &plan, &[], start, self.frames)?);
-        let dataset = file.dataset(&path)?;
-        set_number(&dataset, "order", order)
+    /// The datasets of the systems of chemistry: those inside cells are like other quantities of cells.
+    fn add_systems(&mut self, file: &File, start: Start) -> hdf5::Result<()> {
+        if let Start::New(_) = start {
+            create_groups(file, &self.layout.systems)?;
+        }
+        for (number, system) in self.layout.systems.clone().iter().enumerate() {
+            for (order, (name, unit)) in system.quantities.iter().enumerate() {
+                let path = system.path(name);
+                let description = format!("{name} of the system {}.", system.name);
+                let plan = Plan { path: &path, number: Number::Float, unit, description: &description };
+                match system.scope {
+                    SystemScope::Scene => {
+                        self.scene_systems.push((number, order, per_frame(file, &plan, &[], start)?));
+                    }
+                    SystemScope::Cells => self.add_cells(file, &plan, CellSource::System(number, order), start)?,
+                }
+                let dataset = file.dataset(&path)?;
+                set_number(&dataset, "order", order as i64)?;
+            }
+        }
+        Ok(())
     }
 
     fn add_forces(&mut self, file: &File, start: Start) -> hdf5::Result<()> {
@@ -182,26 +221,92 @@ impl Columns {
 
     /// Appends a frame.
     pub fn append(&mut self, file: &File, frame: &Frame) -> hdf5::Result<()> {
-        if self.frames == 0 && !self.forces && !frame.forces.is_empty() {
-            self.add_forces(file, Start::New)?;
+        let new = !self.population.as_ref().is_some_and(|known| known.is(&frame.cells));
+        let population = new.then(|| Population::of(&self.layout, &frame.cells));
+        if let Some(population) = &population {
+            let pieces = Pieces::of(population);
+            if !self.are_made {
+                self.start(file, Start::New(&pieces))?;
+            }
+            if self.frames == 0 && !self.forces && !frame.forces.is_empty() {
+                let pieces = Pieces::found(file)?.unwrap_or(pieces);
+                self.add_forces(file, Start::New(&pieces))?;
+            }
         }
         self.check_sizes(frame);
-        self.append_large(frame)?;
-        self.fields.append(&frame.fields)?;
-        self.systems.append(&self.members, &frame.systems)?;
+        if let Some(population) = population {
+            self.begin_population(population)?;
+        }
         let rows = List::ALL.map(|list| self.rows[list as usize] + list.rows(frame));
-        let instant = Instant { frame, index: self.frames, atoms: self.atoms, rows };
+        let instant = Instant {
+            frame,
+            rows,
+            first_atom: self.atom_vectors.first().map_or(0, |(_, column)| column.rows()),
+            first_cell: self.cells.first().map_or(0, |(_, column)| column.rows()),
+            population: self.populations - 1,
+            blocks: self.blocks_at,
+        };
+        for (value, column) in &mut self.counters {
+            match value {
+                Counted::One(value) => column.push([value(&instant).cast_unsigned()])?,
+                Counted::Four(value) => column.push(value(&instant).map(i64::cast_unsigned))?,
+            }
+        }
+        self.append_large(frame)?;
+        self.append_small(frame)?;
+        self.fields.append(&frame.fields)?;
+        self.frames += 1;
+        self.rows = rows;
+        Ok(())
+    }
+
+    /// Writes what the frames of a population share.
+    fn begin_population(&mut self, population: Population) -> hdf5::Result<()> {
+        for (shared, column) in &mut self.blocks {
+            self.blocks_at[*shared as usize] = column.rows();
+            let fill = |first: usize, numbers: &mut [i64]| shared.fill(&self.layout, &population, first, numbers);
+            column.push_integers(shared.length(&population), fill)?;
+        }
+        for (value, column) in &mut self.population_numbers {
+            column.push([value(&population).cast_unsigned()])?;
+        }
+        self.populations += 1;
+        self.population = Some(population);
+        Ok(())
+    }
+
+    fn append_large(&mut self, frame: &Frame) -> hdf5::Result<()> {
+        let atoms = self.atom_vectors.iter_mut();
+        let mut large: Vec<(&mut PackedColumn, Numbers)> =
+            atoms.map(|(value, column)| (column, Numbers::Floats(Cow::from(value(frame).as_flattened())))).collect();
+        for (source, column) in &mut self.cells {
+            if let CellColumn::Many(column) = column {
+                large.push((column, source.values(frame)));
+            }
+        }
+        let before: usize = large.iter().map(|(column, _)| column.pieces()).sum();
+        push_frames(&mut large)?;
+        self.pieces += large.iter().map(|(column, _)| column.pieces()).sum::<usize>() - before;
+        Ok(())
+    }
+
+    fn append_small(&mut self, frame: &Frame) -> hdf5::Result<()> {
         for (value, column) in &mut self.frame_numbers {
             column.push([value(frame).to_bits()])?;
         }
-        for (width, value, column) in &mut self.counters {
-            column.push(std::iter::repeat_n(value(&instant).cast_unsigned(), *width))?;
-        }
-        for (source, column) in &mut self.few_cells {
-            column.push(source.values(&frame.cells).into_iter().map(f64::to_bits))?;
+        for (source, column) in &mut self.cells {
+            if let CellColumn::Few(column) = column {
+                let (values, width) = (source.values(frame), source.row().iter().product::<usize>());
+                for cell in 0..frame.cells.len() {
+                    column.push((cell * width..(cell + 1) * width).map(|index| values.bits(index)))?;
+                }
+            }
         }
         for (column, value) in self.scene.iter_mut().zip(&frame.scene) {
             column.push([value.to_bits()])?;
+        }
+        for (system, quantity, column) in &mut self.scene_systems {
+            column.push(frame.systems[*system][*quantity].iter().map(|value| value.to_bits()))?;
         }
         for (list, source, column) in &mut self.row_numbers {
             for row in 0..list.rows(frame) {
@@ -211,67 +316,72 @@ impl Columns {
                 }])?;
             }
         }
-        self.frames += 1;
-        self.rows = rows;
         Ok(())
     }
 
-    fn append_large(&mut self, frame: &Frame) -> hdf5::Result<()> {
-        let atoms =
-            self.atom_vectors.iter_mut().map(|(value, column)| (column, Cow::from(value(frame).as_flattened())));
-        let cells = self.many_cells.iter_mut().map(|(source, column)| (column, Cow::from(source.values(&frame.cells))));
-        push_frames(&mut atoms.chain(cells).collect::<Vec<_>>())
-    }
-
     fn check_sizes(&self, frame: &Frame) {
-        let expected = (self.atoms, if self.forces { self.atoms } else { 0 }, self.cells, self.scene.len());
-        let found = (frame.positions.len(), frame.forces.len(), frame.cells.len(), frame.scene.len());
+        let (atoms, cells) = (self.layout.atoms(&frame.cells), frame.cells.len());
+        let expected = (atoms, if self.forces { atoms } else { 0 }, cells, self.layout.scene_series.len());
+        let found = (frame.positions.len(), frame.forces.len(), frame.records.len(), frame.scene.len());
         assert_eq!(found, expected, "positions, forces, cells and scene values of a frame must fit the layout");
+        assert_eq!(frame.systems.len(), self.layout.systems.len(), "the systems of a frame must fit the layout");
+        for (system, quantities) in self.layout.systems.iter().zip(&frame.systems) {
+            let members = if system.scope == SystemScope::Scene { 1 } else { cells };
+            let fits = quantities.len() == system.quantities.len() && quantities.iter().all(|q| q.len() == members);
+            assert!(fits, "the quantities of {} must fit the layout and the cells of the frame", system.name);
+        }
     }
 
     /// Hands all rows that are still in memory to the file.
     pub fn write(&mut self) -> hdf5::Result<()> {
-        let frames = self.counters.iter_mut().map(|(_, _, column)| column);
-        let frames = frames.chain(self.frame_numbers.iter_mut().map(|(_, column)| column));
-        let frames = frames.chain(self.few_cells.iter_mut().map(|(_, column)| column)).chain(&mut self.scene);
-        let mut all = frames.chain(self.row_numbers.iter_mut().map(|(_, _, column)| column));
+        let frames = self.counters.iter_mut().map(|(_, column)| column);
+        let frames = frames.chain(self.frame_numbers.iter_mut().map(|(_, column)| column)).chain(&mut self.scene);
+        let frames = frames.chain(self.scene_systems.iter_mut().map(|(.., column)| column));
+        let all = frames.chain(self.population_numbers.iter_mut().map(|(_, column)| column));
+        let mut all = all.chain(self.row_numbers.iter_mut().map(|(_, _, column)| column));
         all.try_for_each(Column::write)?;
-        self.systems.write()?;
+        for (_, column) in &mut self.cells {
+            if let CellColumn::Few(column) = column {
+                column.write()?;
+            }
+        }
         self.fields.write_counts(self.frames)
     }
 
     /// Lets go of what HDF5 keeps in memory about the frames so far, when it has become much. To be called right
     /// after a flush.
     pub fn forget_history(&mut self, file: &File) -> hdf5::Result<()> {
-        if self.frames < self.forgotten + REMEMBERED_FRAMES {
+        if self.frames + self.pieces < self.forgotten + REMEMBERED {
             return Ok(());
         }
-        self.forgotten = self.frames;
+        self.forgotten = self.frames + self.pieces;
         for (value, column) in std::mem::take(&mut self.atom_vectors) {
             self.atom_vectors.push((value, column.renewed(file)?));
         }
-        for (source, column) in std::mem::take(&mut self.many_cells) {
-            self.many_cells.push((source, column.renewed(file)?));
+        for (source, column) in std::mem::take(&mut self.cells) {
+            self.cells.push((source, column.renewed(file)?));
+        }
+        for (shared, column) in std::mem::take(&mut self.blocks) {
+            self.blocks.push((shared, column.renewed(file)?));
         }
         for (list, source, column) in std::mem::take(&mut self.row_numbers) {
             self.row_numbers.push((list, source, column.renewed(file)?));
         }
-        self.fields.renew(file)?;
-        self.systems.renew(file)
+        self.fields.renew(file)
     }
 }
 
-fn small(file: &File, plan: &Plan, row: &[usize], start: Start, rows: usize) -> hdf5::Result<Column> {
+fn per_frame(file: &File, plan: &Plan, row: &[usize], start: Start) -> hdf5::Result<Column> {
     match start {
-        Start::New => Column::create(file, plan, row),
-        Start::Cut { .. } => Column::reopen(file, plan.path, plan.number, row, rows),
+        Start::New(_) => Column::create(file, plan, row, SMALL_ROWS),
+        Start::Cut(ends) => Column::reopen(file, plan.path, plan.number, row, ends.frames),
     }
 }
 
-fn large(file: &File, entry: &Entry, frame_rows: usize, row: &[usize], start: Start) -> hdf5::Result<PackedColumn> {
+fn of_list(file: &File, plan: &Plan, list: List, start: Start) -> hdf5::Result<Column> {
     match start {
-        Start::New => PackedColumn::create(file, &entry.plan(Number::Float), frame_rows, row),
-        Start::Cut { frames, .. } => PackedColumn::reopen(file, entry.path, frame_rows, row, frames),
+        Start::New(_) => Column::create(file, plan, &[], SMALL_ROWS),
+        Start::Cut(ends) => Column::reopen(file, plan.path, plan.number, &[], ends.rows[list as usize]),
     }
 }
 

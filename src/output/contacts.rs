@@ -2,17 +2,20 @@
 //! of the scene that follow from them. The file holds the pairs alone.
 
 use super::catalogue::List;
-use super::changes::counts_of_changes;
-use super::{Layout, ResultFile};
+use super::changes::{Change, counts_of_changes};
+use super::{Cell, Layout, ResultFile};
 use crate::error::{Error, Fault, Result};
+use crate::recorded::Touch;
+use ndarray::ArrayView1;
+use std::collections::{HashMap, HashSet};
 
 /// A cell that touches another, or a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Touching {
-    /// The cell; of two the one with the smaller number.
-    pub cell: u32,
-    /// The other cell, or the plane, by its number in [`Layout::planes`].
-    pub other: u32,
+    /// Id of the cell; of two the smaller one.
+    pub cell: u64,
+    /// Id of the other cell, or the plane, by its number in [`Layout::planes`].
+    pub other: u64,
     /// Area of contact, µm², eq. (adhesion.8).
     pub area: f64,
 }
@@ -50,16 +53,20 @@ impl ResultFile {
         let numbers = |name: &str| self.read(name, |data| data.read_slice_1d::<i64, _>(rows.clone()));
         let (cells, numbers) = (numbers(names[0])?, numbers(names[1])?);
         let areas = self.read(list.column(), |data| data.read_slice_1d::<f64, _>(rows.clone()))?;
-        let number = |number: &i64| u32::try_from(*number).unwrap_or(u32::MAX);
-        let known = |touching: &Touching| (touching.cell as usize) < self.layout().cells.len();
+        let number = |number: &i64| u64::try_from(*number).unwrap_or(u64::MAX);
+        let ids: HashSet<u64> = self.cells(frame).iter().map(|cell| cell.id).collect();
+        let is_known = |touching: &Touching| {
+            let planes = self.layout().planes.len() as u64;
+            let other = if list == List::Pairs { ids.contains(&touching.other) } else { touching.other < planes };
+            other && ids.contains(&touching.cell)
+        };
         let rows = cells.iter().zip(&numbers).zip(&areas).map(|((cell, other), area)| Touching {
             cell: number(cell),
             other: number(other),
             area: *area,
         });
         let found: Vec<Touching> = rows.collect();
-        let others = if list == List::Pairs { self.layout().cells.len() } else { self.layout().planes.len() };
-        match found.iter().all(|touching| known(touching) && (touching.other as usize) < others) {
+        match found.iter().all(is_known) {
             true => Ok(found),
             false => Err(super::container::damaged(self.path(), &format!("{} names no cell", names[0]))),
         }
@@ -147,44 +154,48 @@ pub fn segregation(types: &[u32], pairs: &[[u32; 2]]) -> f64 {
     found.index(found.alike)
 }
 
-/// Series of a result with contacts that are one for all types: the part of the surface of all cells that touches another cell, the part
-/// of that area between types, and the segregation index.
-const SHARES: [&str; 3] = ["contact.area_share", "contact.heterotypic_share", "contact.segregation"];
+/// The series of a result with contacts that follow from who touches whom, in the order of [`all_series`]; none without.
+fn touches(layout: &Layout) -> Vec<Touch> {
+    match layout.contacts {
+        true => Touch::all(layout.types.len(), layout.planes.len()),
+        false => Vec::new(),
+    }
+}
 
-/// Names and units of the series of a result with contacts, in the order of [`all_series`]; a pair of types has the order
-/// of the document.
+/// Names and units of the series of a result with contacts, in the order of [`all_series`].
 pub(super) fn series(layout: &Layout) -> Vec<(String, &'static str)> {
-    if !layout.contacts {
-        return Vec::new();
-    }
-    let changes = CHANGES.iter().map(|name| ((*name).to_owned(), "1"));
-    series_of_frame(layout).into_iter().chain(changes).collect()
+    let (types, planes) = names_of(layout);
+    touches(layout).into_iter().map(|series| (series.name(&types, &planes), series.unit())).collect()
 }
 
-/// Series of how many aggregates were born, merged, split and died since the frame before.
-const CHANGES: [&str; 4] = ["contact.births", "contact.merges", "contact.splits", "contact.deaths"];
+/// What charts call a series of a result with contacts.
+pub(super) fn label(layout: &Layout, name: &str) -> Option<String> {
+    let (types, planes) = names_of(layout);
+    let found = touches(layout).into_iter().find(|series| series.name(&types, &planes) == name);
+    found.map(|series| series.label(&types, &planes))
+}
 
-/// Those of [`series`] whose values follow from a frame alone; none in a result without contacts.
+fn names_of(layout: &Layout) -> (Vec<&str>, Vec<&str>) {
+    let types = layout.types.iter().map(|kind| kind.name.as_str()).collect();
+    (types, layout.planes.iter().map(|plane| plane.0.as_str()).collect())
+}
+
+/// Names and units of those whose values follow from a frame alone; none in a result without contacts.
 pub(super) fn series_of_frame(layout: &Layout) -> Vec<(String, &'static str)> {
-    if !layout.contacts {
-        return Vec::new();
-    }
-    let types = &layout.types;
-    let pairs = || pairs_of(types.len()).map(|[one, other]| format!("{}.{}", types[one], types[other]));
-    let of_planes = types.iter().flat_map(|kind| layout.planes.iter().map(move |plane| format!("{kind}.{}", plane.0)));
-    let mut names: Vec<(String, &str)> =
-        pairs().chain(of_planes).map(|pair| (format!("contact.area.{pair}"), "um^2")).collect();
-    names.extend(pairs().map(|pair| (format!("contact.pairs.{pair}"), "1")));
-    names.extend(SHARES.map(|name| (name.to_owned(), "1")));
-    for stem in ["contact.clusters", "contact.largest_cluster"] {
-        names.extend(types.iter().map(|kind| (format!("{stem}.{kind}"), "1")));
-    }
-    names
+    let (types, planes) = names_of(layout);
+    let of_frame = touches(layout).into_iter().filter(|series| change_of(*series).is_none());
+    of_frame.map(|series| (series.name(&types, &planes), series.unit())).collect()
 }
 
-/// Pairs of types, the smaller number first.
-fn pairs_of(types: usize) -> impl Iterator<Item = [usize; 2]> {
-    (0..types).flat_map(move |one| (one..types).map(move |other| [one, other]))
+/// The change of aggregates that a series counts.
+fn change_of(series: Touch) -> Option<Change> {
+    match series {
+        Touch::Births => Some(Change::Birth),
+        Touch::Merges => Some(Change::Merge),
+        Touch::Splits => Some(Change::Split),
+        Touch::Deaths => Some(Change::Death),
+        _ => None,
+    }
 }
 
 /// The values of all [`series`] in all frames, by series.
@@ -192,56 +203,104 @@ fn pairs_of(types: usize) -> impl Iterator<Item = [usize; 2]> {
 /// # Errors
 /// A damaged file.
 pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
-    let mut all = vec![Vec::new(); series_of_frame(result.layout()).len()];
-    let surfaces = result.cell_series("area")?;
+    let all = touches(result.layout());
+    let of_frame: Vec<Touch> = all.iter().copied().filter(|series| change_of(*series).is_none()).collect();
+    let mut found = vec![Vec::new(); of_frame.len()];
     for frame in 0..result.frames() {
-        let surface = surfaces.row(frame).sum();
-        let values = values_of_frame(result.layout(), surface, &result.pairs(frame)?, &result.on_planes(frame)?);
-        all.iter_mut().zip(values).for_each(|(series, value)| series.push(value));
+        let surface = ArrayView1::from(&result.cell_values("area", frame)?).sum();
+        let (cells, pairs, on_planes) = (result.cells(frame), result.pairs(frame)?, result.on_planes(frame)?);
+        let touched = Touched::of(result.layout(), &cells, surface, &pairs, &on_planes);
+        found.iter_mut().zip(&of_frame).for_each(|(values, series)| values.push(touched.value(*series)));
     }
-    all.extend(counts_of_changes(result.cell_series("aggregate")?.view()));
-    Ok(all)
+    let counts = counts_of_changes(result.cell_series("aggregate")?.view());
+    let mut found = found.into_iter();
+    let of = |series: &Touch| match change_of(*series) {
+        Some(change) => counts[change as usize].clone(),
+        None => found.next().unwrap_or_default(),
+    };
+    Ok(all.iter().map(of).collect())
 }
 
 /// The values of [`series_of_frame`] in a frame in which the cells have this surface, µm².
 pub(super) fn values_of_frame(
     layout: &Layout,
+    cells: &[Cell],
     surface: f64,
     touching: &[Touching],
     on_planes: &[Touching],
 ) -> Vec<f64> {
-    let types: Vec<u32> = layout.cells.iter().map(|cell| cell.kind).collect();
-    let (number, planes) = (layout.types.len(), layout.planes.len());
-    let kind = |cell: u32| types[cell as usize] as usize;
-    let mut areas = vec![0.0; number * number];
-    let mut counts = vec![0_u32; number * number];
-    for pair in touching {
-        let (one, other) = (kind(pair.cell), kind(pair.other));
-        let place = one.min(other) * number + one.max(other);
-        areas[place] += pair.area;
-        counts[place] += 1;
+    let touched = Touched::of(layout, cells, surface, touching, on_planes);
+    let of_frame = touches(layout).into_iter().filter(|series| change_of(*series).is_none());
+    of_frame.map(|series| touched.value(series)).collect()
+}
+
+/// What is counted of a frame, by types and planes.
+struct Touched {
+    types: usize,
+    planes: usize,
+    /// Surface of all cells, µm².
+    surface: f64,
+    /// Areas and numbers of pairs, `one * types + other` with the smaller type first.
+    areas: Vec<f64>,
+    pairs: Vec<u32>,
+    /// Areas on planes, `kind * planes + plane`.
+    on_planes: Vec<f64>,
+    segregation: f64,
+    /// Type and size of every cluster.
+    clusters: Vec<(usize, u32)>,
+}
+
+impl Touched {
+    fn of(layout: &Layout, cells: &[Cell], surface: f64, touching: &[Touching], on_planes: &[Touching]) -> Self {
+        let kinds: Vec<u32> = cells.iter().map(|cell| cell.kind).collect();
+        let (types, planes) = (layout.types.len(), layout.planes.len());
+        let indices: HashMap<u64, u32> = (0..).zip(cells).map(|(index, cell)| (cell.id, index)).collect();
+        let kind = |cell: u32| kinds[cell as usize] as usize;
+        let (mut areas, mut counts) = (vec![0.0; types * types], vec![0_u32; types * types]);
+        for pair in touching {
+            let (one, other) = (kind(indices[&pair.cell]), kind(indices[&pair.other]));
+            let index = one.min(other) * types + one.max(other);
+            areas[index] += pair.area;
+            counts[index] += 1;
+        }
+        let mut on = vec![0.0; types * planes];
+        on_planes.iter().for_each(|touch| on[kind(indices[&touch.cell]) * planes + touch.other as usize] += touch.area);
+        let pairs: Vec<[u32; 2]> = touching.iter().map(|pair| [indices[&pair.cell], indices[&pair.other]]).collect();
+        let like = pairs.iter().copied().filter(|[one, other]| kind(*one) == kind(*other));
+        let mut sizes = vec![0_u32; kinds.len()];
+        clusters(kinds.len(), like).iter().for_each(|first| sizes[*first as usize] += 1);
+        let of_size = (0..).zip(sizes).filter(|(_, size)| *size > 0);
+        Self {
+            types,
+            planes,
+            surface,
+            areas,
+            pairs: counts,
+            on_planes: on,
+            segregation: segregation(&kinds, &pairs),
+            clusters: of_size.map(|(cell, size)| (kind(cell), size)).collect(),
+        }
     }
-    let mut on = vec![0.0; number * planes];
-    on_planes.iter().for_each(|touch| on[kind(touch.cell) * planes + touch.other as usize] += touch.area);
-    let whole: f64 = areas.iter().sum();
-    let alike: f64 = (0..number).map(|one| areas[one * number + one]).sum();
 
-    let pairs: Vec<[u32; 2]> = touching.iter().map(|pair| [pair.cell, pair.other]).collect();
-    let like = pairs.iter().copied().filter(|[one, other]| kind(*one) == kind(*other));
-    let mut sizes = vec![0_u32; types.len()];
-    clusters(types.len(), like).iter().for_each(|first| sizes[*first as usize] += 1);
-    let sizes_of = |wanted: usize| {
-        (0..types.len() as u32).filter(move |cell| kind(*cell) == wanted).map(|cell| sizes[cell as usize])
-    };
-
-    let mut values: Vec<f64> = pairs_of(number).map(|[one, other]| areas[one * number + other]).collect();
-    values.extend(on);
-    values.extend(pairs_of(number).map(|[one, other]| f64::from(counts[one * number + other])));
-    // An area of contact is one of both cells.
-    values.extend([2.0 * whole / surface, (whole - alike) / whole, segregation(&types, &pairs)]);
-    values.extend((0..number).map(|kind| sizes_of(kind).filter(|size| *size > 0).count() as f64));
-    values.extend((0..number).map(|kind| f64::from(sizes_of(kind).max().unwrap_or(0))));
-    values
+    /// The value of a series that follows from a frame alone; NaN for changes.
+    fn value(&self, series: Touch) -> f64 {
+        let whole: f64 = self.areas.iter().sum();
+        let alike: f64 = (0..self.types).map(|one| self.areas[one * self.types + one]).sum();
+        let sizes =
+            |wanted: usize| self.clusters.iter().filter(move |(kind, _)| *kind == wanted).map(|(_, size)| *size);
+        match series {
+            Touch::Area([one, other]) => self.areas[one * self.types + other],
+            Touch::AreaOnPlane(kind, plane) => self.on_planes[kind * self.planes + plane],
+            Touch::Pairs([one, other]) => f64::from(self.pairs[one * self.types + other]),
+            // An area of contact is one of both cells.
+            Touch::AreaShare => 2.0 * whole / self.surface,
+            Touch::HeterotypicShare => (whole - alike) / whole,
+            Touch::Segregation => self.segregation,
+            Touch::Clusters(kind) => sizes(kind).count() as f64,
+            Touch::LargestCluster(kind) => f64::from(sizes(kind).max().unwrap_or(0)),
+            Touch::Births | Touch::Merges | Touch::Splits | Touch::Deaths => f64::NAN,
+        }
+    }
 }
 
 #[cfg(test)]

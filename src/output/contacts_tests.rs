@@ -1,30 +1,34 @@
 //! What the series of contacts promise, on pairs made by hand.
 
 use super::*;
-use crate::output::CellLayout;
+use crate::output::{Cell, CellType};
 
-/// Cells of these types above a floor.
-fn layout(kinds: &[u32]) -> Layout {
-    let cell = |kind: &u32| CellLayout { kind: *kind, atoms: 1, ..CellLayout::default() };
+/// Two types above a floor.
+fn layout() -> Layout {
+    let kind = |name: &str| CellType { name: name.into(), atoms: 1, ..CellType::default() };
     Layout {
-        types: ["red", "white"].map(str::to_owned).to_vec(),
-        cells: kinds.iter().map(cell).collect(),
+        types: ["red", "white"].map(kind).to_vec(),
         planes: vec![("floor".into(), [0.0; 3], [0.0, 0.0, 1.0])],
         contacts: true,
         ..Layout::default()
     }
 }
 
-fn touching(rows: &[(u32, u32, f64)]) -> Vec<Touching> {
+/// Cells of these types with ids from ten on.
+fn cells(kinds: &[u32]) -> Vec<Cell> {
+    (10..).zip(kinds).map(|(id, kind)| Cell { id, kind: *kind, parent: None }).collect()
+}
+
+fn touching(rows: &[(u64, u64, f64)]) -> Vec<Touching> {
     rows.iter().map(|&(cell, other, area)| Touching { cell, other, area }).collect()
 }
 
 #[test]
 fn areas_pairs_and_clusters_are_counted_by_types() {
     // A row of cells: red red white white, and a red one alone; the first and the third stand on the floor.
-    let layout = layout(&[0, 0, 1, 1, 0]);
-    let pairs = touching(&[(0, 1, 4.0), (1, 2, 2.0), (2, 3, 3.0)]);
-    let found = values_of_frame(&layout, 90.0, &pairs, &touching(&[(0, 0, 10.0), (2, 0, 20.0)]));
+    let (layout, cells) = (layout(), cells(&[0, 0, 1, 1, 0]));
+    let pairs = touching(&[(10, 11, 4.0), (11, 12, 2.0), (12, 13, 3.0)]);
+    let found = values_of_frame(&layout, &cells, 90.0, &pairs, &touching(&[(10, 0, 10.0), (12, 0, 20.0)]));
     let names = series_of_frame(&layout);
     assert_eq!(names.len(), found.len());
     let value = |wanted: &str| {
@@ -47,8 +51,8 @@ fn areas_pairs_and_clusters_are_counted_by_types() {
 
 #[test]
 fn without_contacts_shares_are_no_numbers_and_every_cell_is_a_cluster() {
-    let layout = layout(&[0, 1, 1]);
-    let found = values_of_frame(&layout, 1.0, &[], &[]);
+    let layout = layout();
+    let found = values_of_frame(&layout, &cells(&[0, 1, 1]), 1.0, &[], &[]);
     let undefined: Vec<String> = series_of_frame(&layout)
         .into_iter()
         .zip(found)

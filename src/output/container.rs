@@ -16,7 +16,7 @@ use crate::error::{Error, Fault, Result};
 const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
 
 /// Version of the arrangement of the file; grows when an old reader would misunderstand a new file.
-pub(super) const FORMAT: i64 = 1;
+pub(super) const FORMAT: i64 = 2;
 
 /// Attribute of the root that says whose file it is.
 pub(super) const FORMAT_ATTRIBUTE: &str = "pseudopod_format";
@@ -75,8 +75,12 @@ pub(super) fn open(path: &Path, access: Access) -> Result<File> {
     match format {
         Ok(FORMAT) => Ok(file),
         Ok(other) => Err(Error::input(
-            Fault::new(format!("{} has format {other}, this program knows format {FORMAT}", path.display()))
-                .help("open it with the version of pseudopod that wrote it, or a newer one"),
+            Fault::new(format!("{} has format {other}, this program knows format {FORMAT}", path.display())).help(
+                match other < FORMAT {
+                    true => "run its experiment again, or read it with the version of pseudopod that wrote it",
+                    false => "open it with the version of pseudopod that wrote it, or a newer one",
+                },
+            ),
         )),
         Err(_) => Err(not_ours(path)),
     }

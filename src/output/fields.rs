@@ -129,16 +129,11 @@ pub(super) fn write_views(result: &Path, layout: &Layout) -> Result<()> {
 /// Names become parts of paths in the file, so not every text will do; and there must be something to record.
 ///
 /// # Errors
-/// An empty name, one with a slash or a zero byte, `.`, or one that is there twice; a field without boxes or species; a
-/// system in no cell.
+/// An empty name, one with a slash or a zero byte, `.`, or one that is there twice; a field without boxes or species.
 pub(super) fn check_layout(layout: &Layout) -> Result<()> {
     if let Some(field) = layout.fields.iter().find(|field| field.is_empty() || field.species.is_empty()) {
         let fault = Fault::new(format!("the field `{}` has no boxes or no species to record", field.name));
         return Err(Error::input(fault.help("give its grid a size and it a species, or leave it out")));
-    }
-    if let Some(system) = layout.systems.iter().find(|system| system.members() == 0) {
-        let fault = Fault::new(format!("the system `{}` lives in no cell", system.name));
-        return Err(Error::input(fault.help("give it to a type that has cells, or leave it out")));
     }
     let mut lists: Vec<(&str, Vec<&str>)> = vec![
         ("field", layout.fields.iter().map(|field| field.name.as_str()).collect()),
@@ -248,7 +243,8 @@ fn create_group(file: &File, field: &FieldLayout, order: i64) -> hdf5::Result<Gr
     group.create_group("CellData")?;
     let steps = group.create_group("Steps")?;
     set_number(&steps, "NSteps", 0_i64)?;
-    file.link_hard("/VTKHDF/Steps/Values", &format!("{}/Steps/Values", path_of(field)))?;
+    // The times themselves are made with the first frame, and the link leads there from then on.
+    file.link_soft("/VTKHDF/Steps/Values", &format!("{}/Steps/Values", path_of(field)))?;
     Ok(group)
 }
 

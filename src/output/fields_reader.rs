@@ -1,7 +1,5 @@
 //! Reads fields and systems of chemistry out of a result file.
 
-use ndarray::Array2;
-
 use super::fields::FieldLayout;
 use super::reader::{ResultFile, listed};
 use super::systems::{SystemLayout, SystemScope};
@@ -74,24 +72,6 @@ impl ResultFile {
             true => "give the experiment a field, or leave the option out".to_owned(),
             false => listed(name, &known, self.layout().fields.iter().flat_map(|f| f.species.iter().map(|s| &s.0))),
         }))
-    }
-
-    /// A quantity of a system, `[frame, member]`: one column for each of its cells, one in all for the scene.
-    ///
-    /// # Errors
-    /// An unknown name, or a damaged file.
-    pub fn quantity_series(&self, system: &str, quantity: &str) -> Result<Array2<f64>> {
-        let known = self.layout().systems.iter().find(|known| known.name == system);
-        let known = known.filter(|known| known.quantities.iter().any(|(name, _)| name == quantity));
-        let Some(known) = known else { return Err(self.unknown(&format!("{system}.{quantity}"))) };
-        let (frames, members) = (self.frames(), known.members());
-        self.read(&known.path(quantity), |dataset| match known.scope {
-            SystemScope::Scene => {
-                let values = dataset.read_slice_1d::<f64, _>(0..frames)?;
-                Ok(values.insert_axis(ndarray::Axis(1)))
-            }
-            SystemScope::Cells(_) => dataset.read_slice_2d::<f64, _>((0..frames, 0..members)),
-        })
     }
 
     /// The system and quantity that a series `SYSTEM.QUANTITY` means.

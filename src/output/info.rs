@@ -9,6 +9,7 @@ use super::container::text;
 use super::fields::FieldLayout;
 use super::reader::ResultFile;
 use super::systems::{SystemLayout, SystemScope};
+use super::{Cell, Layout, Part, Population};
 use crate::error::Result;
 
 /// A page for people: what was simulated, how far it came, what was measured.
@@ -28,21 +29,27 @@ pub fn describe(result: &ResultFile) -> Result<String> {
     for set in &header.sets {
         line("  --set", set.clone());
     }
-    let types = count_types(result).into_iter().map(|(name, count)| format!("{count} {name}"));
-    line("cells", format!("{} ({})", layout.cells.len(), types.collect::<Vec<_>>().join(", ")));
-    line("mesh", format!("{} atoms, {} facets, {} links", layout.atoms(), layout.facets.len(), layout.links.len()));
+    let (cells, population) = (last_cells(result), last_population(result));
+    let types = count_types(layout, &cells).into_iter().map(|(name, count)| format!("{count} {name}"));
+    let types = types.collect::<Vec<_>>().join(", ");
+    line(
+        "cells",
+        match result.has_one_population() {
+            true => format!("{} ({types})", cells.len()),
+            false => format!("{} ({types}) in the last frame, {} in all", cells.len(), result.known_cells().len()),
+        },
+    );
+    let [atoms, facets, links] = [Part::Atoms, Part::Facets, Part::Links].map(|part| population.count(part));
+    line("mesh", format!("{atoms} atoms, {facets} facets, {links} links"));
     for field in &layout.fields {
         line("field", describe_field(field));
     }
     for system in &layout.systems {
-        let (quantities, place) = (
-            described(&system.quantities),
-            match &system.scope {
-                SystemScope::Scene => "the scene".to_owned(),
-                SystemScope::Cells(cells) => format!("{} cells", cells.len()),
-            },
-        );
-        line("chemistry", format!("{} of {place}: {quantities}", system.name));
+        let whose = match members(result, system)? {
+            None => "the scene".to_owned(),
+            Some(cells) => format!("{cells} cells"),
+        };
+        line("chemistry", format!("{} of {whose}: {}", system.name, described(&system.quantities)));
     }
     line(
         "frames",
@@ -95,8 +102,10 @@ pub fn to_json(result: &ResultFile) -> Result<Value> {
         .into_iter()
         .map(|m| (m.name, json!({ "value": m.value, "unit": m.unit, "description": m.description })))
         .collect();
+    let (cells, population) = (last_cells(result), last_population(result));
     let types: Vec<Value> =
-        count_types(result).into_iter().map(|(name, count)| json!({ "name": name, "cells": count })).collect();
+        count_types(layout, &cells).into_iter().map(|(name, count)| json!({ "name": name, "cells": count })).collect();
+    let systems: Vec<Value> = layout.systems.iter().map(|system| system_json(result, system)).collect::<Result<_>>()?;
     let mut datasets = Vec::new();
     list_datasets(result.file(), "", &mut datasets)
         .map_err(|error| super::container::damaged(result.path(), &error.to_string()))?;
@@ -107,13 +116,14 @@ pub fn to_json(result: &ResultFile) -> Result<Value> {
         "finished": ending.finished,
         "wall_time": ending.wall_time,
         "resumed": ending.resumed,
-        "cells": layout.cells.len(),
+        "cells": cells.len(),
+        "cells_in_all": result.known_cells().len(),
         "types": types,
-        "atoms": layout.atoms(),
-        "facets": layout.facets.len(),
-        "links": layout.links.len(),
+        "atoms": population.count(Part::Atoms),
+        "facets": population.count(Part::Facets),
+        "links": population.count(Part::Links),
         "fields": layout.fields.iter().map(field_json).collect::<Vec<_>>(),
-        "chemistry": layout.systems.iter().map(system_json).collect::<Vec<_>>(),
+        "chemistry": systems,
         "planes": layout.planes.iter().map(|plane| &plane.0).collect::<Vec<_>>(),
         "frames": result.frames(),
         "time": { "first": times[0], "last": times[times.len() - 1], "unit": "s" },
@@ -154,19 +164,34 @@ fn field_json(field: &FieldLayout) -> Value {
     })
 }
 
-fn system_json(system: &SystemLayout) -> Value {
-    let cells = match &system.scope {
-        SystemScope::Scene => Value::Null,
-        SystemScope::Cells(cells) => json!(cells.len()),
-    };
-    json!({ "name": system.name, "cells": cells, "quantities": named_json(&system.quantities) })
+fn system_json(result: &ResultFile, system: &SystemLayout) -> Result<Value> {
+    let quantities = named_json(&system.quantities);
+    Ok(json!({ "name": system.name, "cells": members(result, system)?, "quantities": quantities }))
+}
+
+/// Cells that have a system in the last frame; none for a system of the scene. One without quantities leaves no trace.
+fn members(result: &ResultFile, system: &SystemLayout) -> Result<Option<usize>> {
+    if system.scope == SystemScope::Scene {
+        return Ok(None);
+    }
+    let Some((quantity, _)) = system.quantities.first() else { return Ok(Some(0)) };
+    let values = result.cell_values(&format!("{}.{quantity}", system.name), result.frames() - 1)?;
+    Ok(Some(values.iter().filter(|value| !value.is_nan()).count()))
+}
+
+/// The cells of the last frame.
+fn last_cells(result: &ResultFile) -> Vec<Cell> {
+    result.cells(result.frames() - 1)
+}
+
+fn last_population(result: &ResultFile) -> Population {
+    Population::of(result.layout(), &last_cells(result))
 }
 
 /// Cells of every type.
-fn count_types(result: &ResultFile) -> Vec<(String, usize)> {
-    let layout = result.layout();
-    let count = |kind: usize| layout.cells.iter().filter(|cell| cell.kind as usize == kind).count();
-    layout.types.iter().enumerate().map(|(kind, name)| (name.clone(), count(kind))).collect()
+fn count_types(layout: &Layout, cells: &[Cell]) -> Vec<(String, usize)> {
+    let count = |kind: usize| cells.iter().filter(|cell| cell.kind as usize == kind).count();
+    layout.types.iter().enumerate().map(|(number, kind)| (kind.name.clone(), count(number))).collect()
 }
 
 /// Size of the file; 0 if the system does not say.

@@ -1,8 +1,8 @@
 //! The series of a single frame, by the names that a result has for them.
 
-use super::catalogue::{CATALOGUE, Filled, entry};
 use super::contacts::{series_of_frame, values_of_frame};
 use super::{Frame, Layout, SystemScope};
+use crate::recorded::{CELL, SPEED, Values, cell_series, cell_unit};
 
 /// What prefix quantities of chemistry may have.
 const CHEMISTRY: &str = "chemistry.";
@@ -34,21 +34,13 @@ impl Layout {
         let mut all = vec![info("time", "s", SeriesScope::Scene)];
         all.extend(self.scene_series.iter().map(|(name, unit)| info(name, unit, SeriesScope::Scene)));
         all.extend(series_of_frame(self).iter().map(|(name, unit)| info(name, unit, SeriesScope::Scene)));
-        for entry in CATALOGUE {
-            let Some(stem) = entry.path.strip_prefix("/cells/") else { continue };
-            match &entry.filled {
-                Filled::Cell(_) => all.push(info(stem, entry.unit, SeriesScope::Cells)),
-                Filled::CellVector(_, endings) => all.extend(
-                    endings.iter().map(|ending| info(&format!("{stem}_{ending}"), entry.unit, SeriesScope::Cells)),
-                ),
-                _ => {}
-            }
+        for name in cell_series() {
+            all.push(info(&name, cell_unit(&name).unwrap_or("1"), SeriesScope::Cells));
         }
-        all.push(info("speed", entry("/cells/velocity").unit, SeriesScope::Cells));
         for system in &self.systems {
             let scope = match system.scope {
                 SystemScope::Scene => SeriesScope::Scene,
-                SystemScope::Cells(_) => SeriesScope::Cells,
+                SystemScope::Cells => SeriesScope::Cells,
             };
             let named = |(quantity, unit): &(String, String)| info(&format!("{}.{quantity}", system.name), unit, scope);
             all.extend(system.quantities.iter().map(named));
@@ -74,25 +66,21 @@ impl Frame {
 
     fn of_contacts(&self, layout: &Layout, name: &str) -> Option<f64> {
         let number = series_of_frame(layout).iter().position(|(known, _)| known == name)?;
-        let surface = self.cells.iter().map(|cell| cell.area).sum();
-        values_of_frame(layout, surface, &self.pairs, &self.on_planes).get(number).copied()
+        let surface = self.records.iter().map(|cell| cell.area).sum();
+        values_of_frame(layout, &self.cells, surface, &self.pairs, &self.on_planes).get(number).copied()
     }
 
     fn of_cells(&self, name: &str) -> Option<Vec<f64>> {
-        if name == "speed" {
+        if name == SPEED {
             let speed = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
-            return Some(self.cells.iter().map(|cell| speed(cell.velocity)).collect());
+            return Some(self.records.iter().map(|cell| speed(cell.velocity)).collect());
         }
-        CATALOGUE.iter().find_map(|entry| {
-            let stem = entry.path.strip_prefix("/cells/")?;
-            match &entry.filled {
-                Filled::Cell(value) if stem == name => Some(self.cells.iter().map(value).collect()),
-                Filled::CellVector(value, endings) => {
-                    let ending = name.strip_prefix(stem)?.strip_prefix('_')?;
-                    let axis = endings.iter().position(|known| *known == ending)?;
-                    Some(self.cells.iter().map(|cell| value(cell)[axis]).collect())
-                }
-                _ => None,
+        let (values, (component, _)) =
+            CELL.iter().find_map(|quantity| Some((quantity.values, quantity.component(name)?)))?;
+        Some(match (values, component) {
+            (Values::Number(value, _), _) => self.records.iter().map(value).collect(),
+            (Values::Vector(value, _), axis) => {
+                self.records.iter().map(|cell| value(cell)[axis.unwrap_or(0)]).collect()
             }
         })
     }
@@ -102,14 +90,7 @@ impl Frame {
         layout.systems.iter().zip(&self.systems).find_map(|(system, values)| {
             let quantity = name.strip_prefix(&system.name)?.strip_prefix('.')?;
             let number = system.quantities.iter().position(|(known, _)| known == quantity)?;
-            Some(match &system.scope {
-                SystemScope::Scene => values[number].clone(),
-                SystemScope::Cells(cells) => {
-                    let mut all = vec![f64::NAN; layout.cells.len()];
-                    cells.iter().zip(&values[number]).for_each(|(cell, value)| all[*cell as usize] = *value);
-                    all
-                }
-            })
+            values.get(number).cloned()
         })
     }
 }

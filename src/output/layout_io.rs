@@ -8,10 +8,7 @@ use super::column::{Number, Plan, write_integers, write_vectors};
 use super::container::{self, FORMAT, FORMAT_ATTRIBUTE, read_texts, set_number, set_text, text, write_texts};
 use super::header::Header;
 use super::mark::FlushMark;
-use super::{CellLayout, Layout};
-
-/// Kinds of cells that VTK keeps apart in a surface.
-const VTK_KINDS: [&str; 4] = ["Vertices", "Lines", "Polygons", "Strips"];
+use super::{CellType, Layout};
 
 impl Entry {
     /// What the dataset of this row is when it is made.
@@ -89,11 +86,11 @@ pub(super) fn write_layout(file: &File, layout: &Layout) -> hdf5::Result<()> {
     vtk.new_attr::<FixedAscii<8>>().create("Type")?.write_scalar(&kind)?;
     let steps = vtk.create_group("Steps")?;
     set_number(&steps, "NSteps", 0_i64)?;
-    let owners = Owners::of(layout);
     for entry in CATALOGUE.iter().filter(|entry| matches!(entry.filled, Filled::OnceIntegers)) {
-        write_once(file, entry, layout, &owners)?;
+        let numbers = of_types(entry.path, layout);
+        write_integers(file, &entry.plan(Number::Integer), numbers.len(), |i| numbers[i])?;
     }
-    let types: Vec<&str> = layout.types.iter().map(String::as_str).collect();
+    let types: Vec<&str> = layout.types.iter().map(|kind| kind.name.as_str()).collect();
     described(&write_texts(file, "/cells/type_names", &types)?, "/cells/type_names")?;
     let names: Vec<&str> = layout.planes.iter().map(|plane| plane.0.as_str()).collect();
     described(&write_texts(file, "/planes/names", &names)?, "/planes/names")?;
@@ -104,95 +101,67 @@ pub(super) fn write_layout(file: &File, layout: &Layout) -> hdf5::Result<()> {
     Ok(())
 }
 
-/// Which cell every atom and every drawn thing (links, then facets) belongs to.
-struct Owners {
-    atoms: Vec<u32>,
-    drawn: Vec<u32>,
-}
-
-impl Owners {
-    fn of(layout: &Layout) -> Self {
-        let mut atoms = vec![0; layout.atoms()];
-        let mut facets = vec![0; layout.facets.len()];
-        for (number, cell) in (0..).zip(&layout.cells) {
-            atoms[cell.first_atom as usize..][..cell.atoms as usize].fill(number);
-            facets[cell.first_facet as usize..][..cell.facets as usize].fill(number);
-        }
-        let drawn = layout.links.iter().map(|link| atoms[link[0] as usize]).chain(facets).collect();
-        Self { atoms, drawn }
-    }
-}
-
-fn write_once(file: &File, entry: &Entry, layout: &Layout, owners: &Owners) -> hdf5::Result<()> {
-    let plan = entry.plan(Number::Integer);
-    let integers =
-        |count: usize, value: &(dyn Fn(usize) -> i64 + Sync)| write_integers(file, &plan, count, value).map(|_| ());
-    let of_cells =
-        |value: fn(&CellLayout) -> u32| integers(layout.cells.len(), &|i| i64::from(value(&layout.cells[i])));
-    let kind = |cell: u32| i64::from(layout.cells[cell as usize].kind);
-    match entry.path {
-        "/VTKHDF/NumberOfPoints" => integers(1, &|_| owners.atoms.len() as i64),
-        "/VTKHDF/PointData/cell" => integers(owners.atoms.len(), &|i| i64::from(owners.atoms[i])),
-        "/VTKHDF/PointData/type" => integers(owners.atoms.len(), &|i| kind(owners.atoms[i])),
-        "/VTKHDF/CellData/cell" => integers(owners.drawn.len(), &|i| i64::from(owners.drawn[i])),
-        "/VTKHDF/CellData/type" => integers(owners.drawn.len(), &|i| kind(owners.drawn[i])),
-        "/cells/type" => of_cells(|cell| cell.kind),
-        "/cells/first_atom" => of_cells(|cell| cell.first_atom),
-        "/cells/atoms" => of_cells(|cell| cell.atoms),
-        "/cells/first_facet" => of_cells(|cell| cell.first_facet),
-        "/cells/facets" => of_cells(|cell| cell.facets),
-        path => {
-            let name = path.rsplit('/').next().unwrap_or_default();
-            let kind = VTK_KINDS.iter().find(|kind| path.contains(*kind)).expect("all other rows are topology");
-            let (corners, atoms): (usize, &[u32]) = match *kind {
-                "Lines" => (2, layout.links.as_flattened()),
-                "Polygons" => (3, layout.facets.as_flattened()),
-                _ => (1, &[]),
-            };
-            match name {
-                "NumberOfConnectivityIds" => integers(1, &|_| atoms.len() as i64),
-                "NumberOfCells" => integers(1, &|_| (atoms.len() / corners) as i64),
-                "Offsets" => integers(atoms.len() / corners + 1, &|i| (corners * i) as i64),
-                _ => integers(atoms.len(), &|i| i64::from(atoms[i])),
-            }
-        }
+/// The numbers of a dataset of the types of cells; none for what VTK wants and nobody fills.
+fn of_types(path: &str, layout: &Layout) -> Vec<i64> {
+    let types = || layout.types.iter();
+    let numbers = |value: fn(&CellType) -> usize| types().map(|kind| value(kind) as i64).collect();
+    let atoms = |value: fn(&CellType) -> &[u32]| types().flat_map(value).map(|atom| i64::from(*atom)).collect();
+    match path {
+        "/types/atoms" => numbers(|kind| kind.atoms as usize),
+        "/types/facets" => numbers(|kind| kind.facets.len()),
+        "/types/links" => numbers(|kind| kind.links.len()),
+        "/types/facet_atoms" => atoms(|kind| kind.facets.as_flattened()),
+        "/types/link_atoms" => atoms(|kind| kind.links.as_flattened()),
+        _ => Vec::new(),
     }
 }
 
 /// Reads the layout.
 pub(super) fn read_layout(file: &File) -> hdf5::Result<Layout> {
-    let integers = |path: &str| -> hdf5::Result<Vec<u32>> {
-        let numbers = file.dataset(path)?.read_raw::<i64>()?;
-        numbers.into_iter().map(|n| u32::try_from(n).map_err(|_| format!("{path} holds {n}").as_str().into())).collect()
-    };
-    let (kind, first_atom, atoms) =
-        (integers("/cells/type")?, integers("/cells/first_atom")?, integers("/cells/atoms")?);
-    let (first_facet, facets) = (integers("/cells/first_facet")?, integers("/cells/facets")?);
-    if [first_atom.len(), atoms.len(), first_facet.len(), facets.len()].iter().any(|n| *n != kind.len()) {
-        return Err("the datasets of /cells differ in length".into());
-    }
-    let cells = (0..kind.len())
-        .map(|i| CellLayout {
-            kind: kind[i],
-            first_atom: first_atom[i],
-            atoms: atoms[i],
-            first_facet: first_facet[i],
-            facets: facets[i],
-        })
-        .collect();
     let names = read_texts(file, "/planes/names")?;
     let (points, normals) = (vectors(file, "/planes/point")?, vectors(file, "/planes/normal")?);
     Ok(Layout {
-        types: read_texts(file, "/cells/type_names")?,
-        cells,
-        facets: integers("/VTKHDF/Polygons/Connectivity")?.as_chunks::<3>().0.to_vec(),
-        links: integers("/VTKHDF/Lines/Connectivity")?.as_chunks::<2>().0.to_vec(),
+        types: read_types(file)?,
         scene_series: read_scene_names(file)?,
         planes: names.into_iter().zip(points.into_iter().zip(normals)).map(|(name, (p, n))| (name, p, n)).collect(),
         fields: super::fields::read_layouts(file)?,
         systems: super::systems::read_layouts(file)?,
         contacts: file.link_exists("contacts"),
     })
+}
+
+/// Reads the types of cells; the atoms of facets and links are checked, since arrays are looked up by them.
+fn read_types(file: &File) -> hdf5::Result<Vec<CellType>> {
+    let integers = |path: &str| -> hdf5::Result<Vec<u32>> {
+        let numbers = file.dataset(path)?.read_raw::<i64>()?;
+        numbers.into_iter().map(|n| u32::try_from(n).map_err(|_| format!("{path} holds {n}").as_str().into())).collect()
+    };
+    let names = read_texts(file, "/cells/type_names")?;
+    let (atoms, facets, links) = (integers("/types/atoms")?, integers("/types/facets")?, integers("/types/links")?);
+    let (facet_atoms, link_atoms) = (integers("/types/facet_atoms")?, integers("/types/link_atoms")?);
+    let sum = |counts: &[u32]| counts.iter().map(|count| *count as usize).sum::<usize>();
+    if [atoms.len(), facets.len(), links.len()].iter().any(|n| *n != names.len())
+        || (3 * sum(&facets), 2 * sum(&links)) != (facet_atoms.len(), link_atoms.len())
+    {
+        return Err("the datasets of /types differ in length".into());
+    }
+    let (mut facet_atoms, mut link_atoms) = (facet_atoms.as_slice(), link_atoms.as_slice());
+    let mut types = Vec::new();
+    for (number, name) in names.into_iter().enumerate() {
+        let (of_facets, later_facets) = facet_atoms.split_at(3 * facets[number] as usize);
+        let (of_links, later_links) = link_atoms.split_at(2 * links[number] as usize);
+        if of_facets.iter().chain(of_links).any(|atom| *atom >= atoms[number]) {
+            return Err(format!("the mesh of the type {name} names an atom that is not there").as_str().into());
+        }
+        types.push(CellType {
+            name,
+            atoms: atoms[number],
+            facets: of_facets.as_chunks::<3>().0.to_vec(),
+            links: of_links.as_chunks::<2>().0.to_vec(),
+        });
+        (facet_atoms, link_atoms) = (later_facets, later_links);
+    }
+    Ok(types)
 }
 
 /// Names and units of the scene series, in the order of the layout that was written.

@@ -18,7 +18,8 @@ use super::columns::Columns;
 use super::container::{self, Access, damaged, failed, machine_error, set_number};
 use super::header::Header;
 use super::layout_io::{write_header, write_layout};
-use super::reader::whole_frames;
+use super::pieces::Pieces;
+use super::whole::whole_frames;
 use crate::error::{Error, Fault, Result};
 
 /// Puts a whole file with the same frames in the place of a torn one. The torn one stays until the new one is on the
@@ -51,7 +52,8 @@ fn copy_whole(path: &Path, new_path: &Path, header: &Header, layout: &Layout, ne
     let copied = || -> hdf5::Result<()> {
         write_header(&new, header)?;
         write_layout(&new, layout)?;
-        Columns::create(&new, layout, old.dataset(FORCE[0].path).is_ok())?;
+        let pieces = Pieces::found(&old)?.ok_or("it holds no frame")?;
+        Columns::create_all(&new, layout, &pieces, old.dataset(FORCE[0].path).is_ok())?;
         let (from, to) = (old.group("provenance")?, new.group("provenance")?);
         set_number(&to, "resumed", from.attr("resumed")?.read_scalar::<i64>()?)?;
         let mut bytes = fs::File::open(path).map_err(|error| hdf5::Error::from(error.to_string().as_str()))?;
@@ -61,7 +63,7 @@ fn copy_whole(path: &Path, new_path: &Path, header: &Header, layout: &Layout, ne
         new.flush()
     };
     copied().map_err(|error| failed(path, "could not be mended", &error))?;
-    match lost_frames(&old, &new, needed).map_err(|error| damaged(path, &error.to_string()))? {
+    match lost_frames(&old, &new, layout, needed).map_err(|error| damaged(path, &error.to_string()))? {
         0 => Ok(()),
         lost => Err(Error::input(
             Fault::new(format!(
@@ -149,11 +151,11 @@ fn read_piece(dataset: &Dataset, bytes: &mut fs::File, place: &[u64]) -> Option<
 }
 
 /// How many frames up to a step the old file tells of and the new one does not hold.
-fn lost_frames(old: &File, new: &File, needed: u64) -> hdf5::Result<usize> {
+fn lost_frames(old: &File, new: &File, layout: &Layout, needed: u64) -> hdf5::Result<usize> {
     let needed = i64::try_from(needed).unwrap_or(i64::MAX);
     let steps = new.dataset("/step")?.read_raw::<i64>()?;
     let count = |steps: &[i64]| steps.iter().filter(|step| **step <= needed).count();
-    let (kept, mut told) = (count(&steps[..whole_frames(new)?]), count(&steps));
+    let (kept, mut told) = (count(&steps[..whole_frames(new, layout)?]), count(&steps));
     // Where the list of steps is torn itself nobody knows the steps of the frames after it.
     if steps.last().is_none_or(|step| *step < needed) {
         told = told.max(old.dataset("/step")?.shape()[0]);

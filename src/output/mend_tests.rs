@@ -5,14 +5,24 @@ use std::time::Duration;
 
 use super::*;
 use crate::output::mark::FlushMark;
-use crate::output::{Frame, Overwrite, ResultFile, ResultWriter};
+use crate::output::{Cell, Frame, Overwrite, ResultFile, ResultWriter};
 
 #[path = "../../tests/result_file/example.rs"]
 #[allow(dead_code)]
 mod example;
-use example::{frame_with_fields as frame, header, layout_with_fields as layout, stored};
+use example::{cells, frame_with_fields, header, layout_with_fields as layout, stored};
 
-const CELLS: u32 = 5;
+/// The frame of this number: of five cells one vanishes after 110 frames and another is born after 150.
+fn frame(number: usize) -> Frame {
+    let mut cells = cells(5);
+    if number >= 110 {
+        cells.remove(2);
+    }
+    if number >= 150 {
+        cells.push(Cell { id: 5, kind: 1, parent: Some(4) });
+    }
+    frame_with_fields(&cells, number)
+}
 
 /// A flush, as the file was when its last step began, and after it.
 struct Flush {
@@ -24,12 +34,11 @@ impl Flush {
     /// Of a file that holds `first` frames already and gets `more`.
     fn of(folder: &Path, first: usize, more: usize) -> Self {
         let path = folder.join("run.h5");
-        let layout = layout(CELLS);
-        let mut writer = ResultWriter::create(&path, &header(), &layout, Overwrite::Replace).unwrap();
+        let mut writer = ResultWriter::create(&path, &header(), &layout(), Overwrite::Replace).unwrap();
         writer.set_flush_interval(Duration::from_secs(1000));
-        (0..first).for_each(|number| writer.append(&frame(&layout, number)).unwrap());
+        (0..first).for_each(|number| writer.append(&frame(number)).unwrap());
         writer.flush().unwrap();
-        (first..first + more).for_each(|number| writer.append(&frame(&layout, number)).unwrap());
+        (first..first + more).for_each(|number| writer.append(&frame(number)).unwrap());
         let before = {
             writer.hand_over_now();
             std::fs::read(&path).unwrap()
@@ -60,26 +69,26 @@ fn set_mark(path: &Path) {
 
 fn assert_frames(result: &ResultFile, expected: &[Frame]) {
     assert_eq!(result.frames(), expected.len());
-    let energy = result.cell_series("energy").unwrap();
-    let brain = result.quantity_series("brain", "U").unwrap();
     for (number, frame) in expected.iter().enumerate() {
         assert_eq!(result.positions(number).unwrap(), frame.positions);
         assert_eq!(result.forces(number).unwrap().as_ref(), Some(&frame.forces));
         assert_eq!(result.field_frame("medium", "oxygen", number).unwrap(), stored(&frame.fields[1][0]));
         assert_eq!(result.pairs(number).unwrap(), frame.pairs);
-        assert_eq!(brain.row(number).to_vec(), frame.systems[0][0]);
-        assert_eq!(energy[[number, 1]], frame.cells[1].energy);
+        assert_eq!(result.cells(number), frame.cells);
+        let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&result.cell_values("brain.U", number).unwrap()), bits(&frame.systems[0][0]));
+        let energy: Vec<f64> = frame.records.iter().map(|cell| cell.energy).collect();
+        assert_eq!(result.cell_values("energy", number).unwrap(), energy);
     }
 }
 
 /// Resumes after `kept` frames and appends three.
 fn go_on(path: &Path, kept: usize) -> Result<()> {
-    let layout = layout(CELLS);
-    let mut writer = ResultWriter::reopen(path, &header(), &layout, 10 * (kept as u64 - 1))?;
+    let mut writer = ResultWriter::reopen(path, &header(), &layout(), 10 * (kept as u64 - 1))?;
     assert_eq!(writer.frames(), kept);
-    (kept..kept + 3).for_each(|number| writer.append(&frame(&layout, number)).unwrap());
+    (kept..kept + 3).for_each(|number| writer.append(&frame(number)).unwrap());
     writer.finish(1.0).unwrap();
-    let expected: Vec<Frame> = (0..kept + 3).map(|number| frame(&layout, number)).collect();
+    let expected: Vec<Frame> = (0..kept + 3).map(|number| frame(number)).collect();
     let result = ResultFile::open(path).unwrap();
     assert_frames(&result, &expected);
     assert_eq!(result.ending().resumed, 1);
@@ -129,7 +138,7 @@ fn a_torn_file_tells_of_no_frame_that_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let flush = Flush::of(folder.path(), 121, 10);
     let path = folder.path().join("torn.h5");
-    let frames: Vec<Frame> = (0..131).map(|number| frame(&layout(CELLS), number)).collect();
+    let frames: Vec<Frame> = (0..131).map(|number| frame(number)).collect();
     for at in flush.changes().into_iter().step_by(10) {
         flush.torn(at, &path);
         let result = ResultFile::open(&path).unwrap();

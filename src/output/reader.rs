@@ -5,17 +5,18 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use hdf5::{Dataset, File};
-use ndarray::{Array2, s};
 
 use super::Layout;
-use super::catalogue::{CATALOGUE, CONTACT, FORCE, Filled, List, Run, cell_series_names};
+use super::catalogue::{FORCE, List, Run};
+use super::census::Census;
 use super::contacts;
 use super::container::{self, Access, damaged, text};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
-use super::mark::FlushMark;
 use super::systems::SystemScope;
+use super::whole::whole_frames;
 use crate::error::{Error, Fault, Result};
+use crate::recorded::{CONTACTS, cell_label, cell_series, cell_unit};
 
 /// A result file opened for reading. Arrays are read when they are asked for.
 pub struct ResultFile {
@@ -27,6 +28,7 @@ pub struct ResultFile {
     frames: usize,
     /// The series of contacts once they were asked for, by their order.
     of_contacts: OnceLock<Vec<Vec<f64>>>,
+    census: Census,
 }
 
 /// How the run of a file ended.
@@ -56,16 +58,20 @@ impl ResultFile {
                 wall_time: wall_time.is_finite().then_some(wall_time),
                 resumed: group.attr("resumed")?.read_scalar()?,
             };
-            Ok((read_header(&file)?, read_layout(&file)?, ending, whole_frames(&file)?))
+            let layout = read_layout(&file)?;
+            let frames = whole_frames(&file, &layout)?;
+            let census = Census::read(&file, &layout, frames)?;
+            Ok((read_header(&file)?, layout, ending, frames, census))
         };
-        let (header, layout, ending, frames) = read().map_err(|error| damaged(path, &error.to_string()))?;
+        let (header, layout, ending, frames, census) = read().map_err(|error| damaged(path, &error.to_string()))?;
         if frames == 0 {
             return Err(Error::input(
                 Fault::new(format!("{} holds no frame: its run ended before the first one", path.display()))
                     .help("run the experiment again with --force"),
             ));
         }
-        Ok(Self { path: path.to_path_buf(), file, header, layout, ending, frames, of_contacts: OnceLock::new() })
+        let (path, of_contacts) = (path.to_path_buf(), OnceLock::new());
+        Ok(Self { path, file, header, layout, ending, frames, of_contacts, census })
     }
 
     /// The path it was opened by.
@@ -138,19 +144,18 @@ impl ResultFile {
 
     fn atom_vectors(&self, path: &str, frame: usize) -> Result<Vec<[f64; 3]>> {
         assert!(frame < self.frames, "frame {frame} of {}", self.frames);
-        let atoms = self.layout.atoms();
-        if atoms == 0 {
+        let rows = self.census.atoms(frame);
+        if rows.is_empty() {
             return Ok(Vec::new());
         }
-        let first = frame * atoms;
-        let values = self.read(path, |dataset| dataset.read_slice_2d::<f64, _>((first..first + atoms, 0..3)))?;
+        let values = self.read(path, |dataset| dataset.read_slice_2d::<f64, _>((rows, 0..3)))?;
         let (values, _) = values.into_raw_vec_and_offset();
         Ok(values.as_chunks::<3>().0.to_vec())
     }
 
-    /// Names that [`cell_series`](Self::cell_series) knows.
+    /// Names that [`cell_series`](Self::cell_series) knows, those of systems included.
     pub fn series_names(&self) -> Vec<String> {
-        let mut names = cell_series_names();
+        let mut names: Vec<String> = cell_series().collect();
         names.extend(self.cell_quantities());
         names
     }
@@ -161,41 +166,6 @@ impl ResultFile {
         names.extend(contacts::series(&self.layout).into_iter().map(|(name, _)| name));
         names.extend(self.scene_quantities());
         names
-    }
-
-    /// A per-cell series, `[frame, cell]`, in the unit of [`units`](Self::units). Vectors go by component:
-    /// `position_x`, `velocity_z`, `size_y`, `principal_1` (the longest); `speed` is the length of the velocity.
-    /// `SYSTEM.QUANTITY` is a quantity of a system inside cells, NaN for cells without the system.
-    ///
-    /// # Errors
-    /// An unknown name, or a damaged file.
-    pub fn cell_series(&self, name: &str) -> Result<Array2<f64>> {
-        if name == "speed" {
-            let component = |ending: &str| self.cell_series(&format!("velocity_{ending}"));
-            let (x, y, z) = (component("x")?, component("y")?, component("z")?);
-            return Ok((&x * &x + &y * &y + &z * &z).sqrt());
-        }
-        if let Some((system, (quantity, _))) = self.quantity_of(name)
-            && let SystemScope::Cells(cells) = &system.scope
-        {
-            let values = self.quantity_series(&system.name, quantity)?;
-            let mut all = Array2::from_elem((self.frames, self.layout.cells.len()), f64::NAN);
-            for (column, cell) in values.columns().into_iter().zip(cells) {
-                if (*cell as usize) < self.layout.cells.len() {
-                    all.column_mut(*cell as usize).assign(&column);
-                }
-            }
-            return Ok(all);
-        }
-        let (path, component) = find_series(name).ok_or_else(|| self.unknown(name))?;
-        let (frames, cells) = (self.frames, self.layout.cells.len());
-        if cells == 0 {
-            return Ok(Array2::zeros((frames, 0)));
-        }
-        self.read(path, |dataset| match component {
-            None => dataset.read_slice_2d::<f64, _>((0..frames, 0..cells)),
-            Some(i) => dataset.read_slice_2d::<f64, _>((0..frames, 0..cells, i)),
-        })
     }
 
     /// A series of the scene as a whole: one number per frame. `SYSTEM.QUANTITY` is a quantity of a system of the
@@ -211,7 +181,7 @@ impl ResultFile {
             true => self.numbers(&format!("/scene/{name}")),
             false => match self.quantity_of(name) {
                 Some((system, (quantity, _))) if system.scope == SystemScope::Scene => {
-                    Ok(self.quantity_series(&system.name, quantity)?.into_iter().collect())
+                    self.numbers(&system.path(quantity))
                 }
                 _ => Err(self.unknown(name)),
             },
@@ -232,13 +202,17 @@ impl ResultFile {
         if let Some((_, (_, unit))) = self.quantity_of(name) {
             return Ok(unit.clone());
         }
-        let known = match name {
-            "time" => Some(("/time", None)),
-            "speed" => find_series("velocity_x"),
-            _ => find_series(name),
-        };
-        let (path, _) = known.ok_or_else(|| self.unknown(name))?;
-        Ok(super::catalogue::entry(path).unit.to_string())
+        if name == "time" {
+            return Ok(super::catalogue::entry("/time").unit.to_string());
+        }
+        cell_unit(name).map(str::to_owned).ok_or_else(|| self.unknown(name))
+    }
+
+    /// What a chart calls a series, without its unit.
+    pub fn label(&self, name: &str) -> String {
+        let recorded = || CONTACTS.iter().find(|row| row.name == name).map(|row| row.label.to_owned());
+        let known = cell_label(name).map(str::to_owned).or_else(recorded);
+        known.or_else(|| contacts::label(&self.layout, name)).unwrap_or_else(|| name.replace("load.", "load "))
     }
 
     /// Motility runs that ended up to the last frame.
@@ -250,7 +224,7 @@ impl ResultFile {
         let cells = self.read("/events/runs/cell", |dataset| dataset.read_slice_1d::<i64, _>(0..count))?;
         let ends = self.read("/events/runs/end_time", |dataset| dataset.read_slice_1d::<f64, _>(0..count))?;
         let durations = self.read("/events/runs/duration", |dataset| dataset.read_slice_1d::<f64, _>(0..count))?;
-        Ok((0..count).map(|i| (u32::try_from(cells[i]).unwrap_or(u32::MAX), ends[i], durations[i])).collect())
+        Ok((0..count).map(|i| (u64::try_from(cells[i]).unwrap_or(u64::MAX), ends[i], durations[i])).collect())
     }
 
     /// The rows that a list has in some frames.
@@ -292,6 +266,11 @@ impl ResultFile {
         measures.map_err(|error| damaged(&self.path, &error.to_string()))
     }
 
+    /// Which cells there are in every frame.
+    pub(super) fn census(&self) -> &Census {
+        &self.census
+    }
+
     /// The HDF5 file itself, for what only `info` needs.
     pub(super) fn file(&self) -> &File {
         &self.file
@@ -322,106 +301,4 @@ pub(super) fn listed<'a>(name: &str, known: &'a [String], also: impl Iterator<It
         Some((distance, other)) if distance <= 3 => format!("did you mean `{other}`? {help}"),
         _ => help,
     }
-}
-
-/// The dataset of a per-cell series, and which component of a vector it is.
-fn find_series(name: &str) -> Option<(&'static str, Option<usize>)> {
-    CATALOGUE.iter().find_map(|entry| {
-        let stem = entry.path.strip_prefix("/cells/")?;
-        match &entry.filled {
-            Filled::Cell(_) if stem == name => Some((entry.path, None)),
-            Filled::CellVector(_, endings) => {
-                let ending = name.strip_prefix(stem)?.strip_prefix('_')?;
-                Some((entry.path, Some(endings.iter().position(|known| *known == ending)?)))
-            }
-            _ => None,
-        }
-    })
-}
-
-/// Frames that every growing dataset holds. A kill may leave the datasets a frame apart, or a dataset with room for
-/// a frame whose numbers never came; such frames are left out.
-pub(super) fn whole_frames(file: &File) -> hdf5::Result<usize> {
-    let atoms = file.dataset("/VTKHDF/NumberOfPoints")?.read_raw::<i64>()?;
-    let atoms = atoms.first().map_or(0, |atoms| usize::try_from(*atoms).unwrap_or(0));
-    let mut frames = usize::MAX;
-    for entry in CATALOGUE.iter().chain(CONTACT).chain(FORCE) {
-        let rows_per_frame = match entry.filled {
-            Filled::Frame(_) | Filled::Counter(..) | Filled::Cell(_) | Filled::CellVector(..) => 1,
-            Filled::Atoms(_) if atoms > 0 => atoms,
-            _ => continue,
-        };
-        match file.dataset(entry.path) {
-            Ok(dataset) => frames = frames.min(dataset.get_shape()?[0] / rows_per_frame),
-            Err(_) if CONTACT.iter().chain(FORCE).any(|optional| optional.path == entry.path) => {}
-            Err(error) => return Err(error),
-        }
-    }
-    if let Ok(group) = file.group("scene") {
-        for series in group.datasets()? {
-            frames = frames.min(series.get_shape()?[0]);
-        }
-    }
-    let mut fields = Vec::new();
-    if let Ok(group) = file.group("fields") {
-        for field in group.groups()? {
-            for species in field.group("CellData")?.datasets()? {
-                frames = frames.min(species.get_shape()?[0]);
-                fields.push(species);
-            }
-        }
-    }
-    if let Ok(group) = file.group("chemistry") {
-        for system in group.groups()? {
-            for quantity in system.datasets()? {
-                frames = frames.min(quantity.get_shape()?[0]);
-            }
-        }
-    }
-    let (times, points) = (file.dataset("/time")?, file.dataset("/VTKHDF/Points")?);
-    let written = |frame: usize| -> hdf5::Result<bool> {
-        let time = times.read_slice_1d::<f64, _>(frame..frame + 1)?;
-        let mut ends = Vec::new();
-        if atoms > 0 {
-            ends.extend(points.read_slice_1d::<f64, _>(s![frame * atoms, ..])?);
-            ends.extend(points.read_slice_1d::<f64, _>(s![(frame + 1) * atoms - 1, ..])?);
-        }
-        for field in &fields {
-            // The last box of all lies in the last piece of the frame.
-            let last: Vec<usize> = field.get_shape()?[1..].iter().map(|n| n.saturating_sub(1)).collect();
-            let [z, y, x] = last[..] else { return Ok(false) };
-            if field.read_slice_1d::<f32, _>(s![frame, z, y, x..x + 1])?.iter().any(|value| value.is_nan()) {
-                return Ok(false);
-            }
-        }
-        let counted = rows_up_to(file, frame + 1)?;
-        for list in List::ALL {
-            if counted[list as usize] > 0 && file.dataset(list.column())?.get_shape()?[0] < counted[list as usize] {
-                return Ok(false);
-            }
-        }
-        Ok(time.iter().chain(&ends).all(|value| !value.is_nan()))
-    };
-    if FlushMark::is_set(file) {
-        // Torn trees may miss frames anywhere.
-        return Ok((0..frames).take_while(|frame| written(*frame).unwrap_or(false)).count());
-    }
-    while frames > 0 && !written(frames - 1).unwrap_or(false) {
-        frames -= 1;
-    }
-    Ok(frames)
-}
-
-/// Rows that each list has up to a frame, none where there is no such list.
-pub(super) fn rows_up_to(file: &File, frames: usize) -> hdf5::Result<[usize; List::ALL.len()]> {
-    let mut rows = [0; List::ALL.len()];
-    for list in List::ALL {
-        if frames > 0
-            && let Ok(counter) = file.dataset(list.counter())
-        {
-            let count = counter.read_slice_1d::<i64, _>(frames - 1..frames)?;
-            rows[list as usize] = count.first().map_or(0, |count| usize::try_from(*count).unwrap_or(0));
-        }
-    }
-    Ok(rows)
 }

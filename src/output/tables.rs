@@ -10,9 +10,9 @@ use crate::error::Result;
 /// What a table holds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Table {
-    /// A row per frame and cell: these series of the cells, or of the scene. All of them if none is named.
+    /// A row per frame and cell that is there, by its id: these series of the cells, or of the scene. All of them if none is named.
     Series(Vec<String>),
-    /// A row per frame and cell: where its centre is, µm.
+    /// A row per frame and cell that is there: where its centre is, µm.
     Tracks,
     /// A row per motility run that ended: cell, end (s), duration (s).
     Runs,
@@ -81,12 +81,11 @@ fn series(result: &ResultFile, names: &[String]) -> Result<String> {
     }
     text.push('\n');
     for (frame, time) in result.times()?.into_iter().enumerate() {
-        for (cell, known) in layout.cells.iter().enumerate() {
-            let kind = layout.types.get(known.kind as usize).map_or("", String::as_str);
-            text.push_str(&format!("{frame},{time},{cell},{}", field(kind)));
+        for (cell, number) in result.cells(frame).iter().zip(result.columns(frame)) {
+            text.push_str(&format!("{frame},{time},{},{}", cell.id, field(&layout.types[cell.kind as usize].name)));
             for column in &columns {
                 let value = match column {
-                    Column::Cells(values) => values[[frame, cell]],
+                    Column::Cells(values) => values[[frame, *number as usize]],
                     Column::Scene(values) => values[frame],
                 };
                 text.push_str(&format!(",{value}"));
@@ -99,9 +98,9 @@ fn series(result: &ResultFile, names: &[String]) -> Result<String> {
 
 fn contacts(result: &ResultFile) -> Result<String> {
     let layout = result.layout();
-    let kind = |cell: u32| {
-        let kind = layout.cells.get(cell as usize).and_then(|cell| layout.types.get(cell.kind as usize));
-        field(kind.map_or("", String::as_str))
+    let kind = |cell: u64| {
+        let known = result.column_of(cell).map(|column| result.known_cells()[column as usize].cell.kind);
+        field(known.map_or("", |kind| layout.types[kind as usize].name.as_str()))
     };
     let mut text = String::from("frame,time (s),cell,type,other,type or plane,area (um^2)\n");
     for (frame, time) in result.times()?.into_iter().enumerate() {

@@ -13,8 +13,10 @@ use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout, write_header, write_layout};
 use super::mark::FlushMark;
 use super::mend::mend;
-use super::reader::{ResultFile, rows_up_to, whole_frames};
+use super::pieces::has_frames;
+use super::reader::ResultFile;
 use super::room;
+use super::whole::whole_frames;
 use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
 
@@ -49,10 +51,10 @@ impl ResultWriter {
     ///
     /// # Errors
     /// [`Error::Input`] if the file or its checkpoint exists (with [`Overwrite::Refuse`]), its folder does not exist
-    /// or may not be written, the layout has no atoms, or fields or systems that the file cannot hold;
+    /// or may not be written, the layout has neither cells nor chemistry, or fields or systems that the file cannot hold;
     /// [`Error::Machine`] if the disk refuses.
     pub fn create(path: &Path, header: &Header, layout: &Layout, overwrite: Overwrite) -> Result<Self> {
-        if layout.atoms() == 0 && layout.fields.is_empty() && layout.systems.is_empty() {
+        if layout.types.is_empty() && layout.fields.is_empty() && layout.systems.is_empty() {
             let fault =
                 Fault::new("there is nothing to record").help("give the experiment a cell, a field or a system");
             return Err(Error::input(fault));
@@ -67,7 +69,7 @@ impl ResultWriter {
         let file = container::create(path)?;
         let made = write_header(&file, header)
             .and_then(|()| write_layout(&file, layout))
-            .and_then(|()| Columns::create(&file, layout, false));
+            .and_then(|()| Columns::create(&file, layout));
         let columns = made.map_err(|error| failed(path, "could not be made", &error))?;
         write_views(path, layout)?;
         Self::around(path, file, header, columns)
@@ -82,11 +84,14 @@ impl ResultWriter {
         let damaged = |error: hdf5::Error| container::damaged(path, &error.to_string());
         // Opened for reading first: a refusal changes nothing, not even the length of the file.
         let seen = container::open(path, Access::Read)?;
-        let (found, cells) = (read_header(&seen).map_err(damaged)?, read_layout(&seen).map_err(damaged)?);
-        let torn = FlushMark::is_set(&seen);
+        let (found, known) = (read_header(&seen).map_err(damaged)?, read_layout(&seen).map_err(damaged)?);
+        let (torn, begun) = (FlushMark::is_set(&seen), has_frames(&seen));
         drop(seen);
         check_same_run(path, &found, header)?;
-        if cells != *layout {
+        if !begun && !torn {
+            return Self::begin(path, header, layout);
+        }
+        if known != *layout {
             return Err(Error::input(
                 Fault::new(format!("{} holds other cells than this experiment makes", path.display()))
                     .help("resume with the version of pseudopod that began the run"),
@@ -96,14 +101,13 @@ impl ResultWriter {
             mend(path, &found, layout, keep_until_step)?;
         }
         let file = container::open(path, Access::Append)?;
-        let whole = whole_frames(&file).map_err(damaged)?;
+        let whole = whole_frames(&file, layout).map_err(damaged)?;
         let steps = file.dataset("/step").and_then(|steps| steps.read_raw::<i64>()).map_err(damaged)?;
         let last = i64::try_from(keep_until_step).unwrap_or(i64::MAX);
         let keep = steps[..whole].iter().take_while(|step| **step <= last).count();
-        let rows = rows_up_to(&file, keep).map_err(damaged)?;
         let unfinished = remove_end(path, &file);
         let columns = unfinished.and_then(|()| {
-            Columns::reopen(&file, layout, keep, rows).map_err(|error| failed(path, "could not be changed", &error))
+            Columns::reopen(&file, layout, keep).map_err(|error| failed(path, "could not be changed", &error))
         })?;
         write_views(path, layout)?;
         Self::around(path, file, header, columns)
@@ -144,7 +148,7 @@ impl ResultWriter {
     /// [`Error::Machine`] if the disk refuses; the file then keeps the frames of the last flush.
     ///
     /// # Panics
-    /// If the sizes of the frame are not those of the layout.
+    /// If the sizes of the frame are not those of the layout and of its own cells.
     pub fn append(&mut self, frame: &Frame) -> Result<()> {
         self.check_whole()?;
         let appended = self.columns.append(&self.file, frame);

@@ -3,18 +3,18 @@
 use crate::Vec3;
 use crate::error::Result;
 use crate::experiment::{Document, compile};
-use crate::output::Layout;
+use crate::output::{Cell, Layout};
 
 /// The largest arrow measures this part of a typical cell.
 const LONGEST: f64 = 0.35;
 
-/// A load on one cell.
+/// A load on every cell of a type.
 #[derive(Debug, Clone)]
 struct Arrow {
-    /// Atoms in the order of the result, and their shares.
-    atoms: Vec<(usize, f64)>,
-    /// All atoms of the cell.
-    cell: std::ops::Range<usize>,
+    /// Number of the type.
+    kind: u32,
+    /// Atoms by their numbers in the cell, and their shares.
+    atoms: Vec<(u32, f64)>,
     direction: Vec3,
     /// (time s, force pN), rising in time.
     course: Vec<(f64, f64)>,
@@ -29,26 +29,20 @@ pub struct LoadArrows {
 }
 
 impl LoadArrows {
-    /// The loads of a document on the cells of its result.
+    /// The loads of a document.
     ///
     /// # Errors
     /// When the document cannot be compiled any more, because a mesh file is gone, say.
-    pub fn of(document: &Document, layout: &Layout) -> Result<Self> {
+    pub fn of(document: &Document) -> Result<Self> {
         let model = compile(document)?.model;
         let mut arrows = Vec::new();
-        let mut cells = layout.cells.iter();
-        for kind in &model.kinds {
-            for cell in cells.by_ref().take(kind.cells) {
-                for load in &kind.loads {
-                    let atom = |&(atom, share): &(u32, f64)| ((cell.first_atom + atom) as usize, share);
-                    arrows.push(Arrow {
-                        atoms: load.atoms.iter().map(atom).collect(),
-                        cell: cell.first_atom as usize..(cell.first_atom + cell.atoms) as usize,
-                        direction: load.direction,
-                        course: load.force.points().to_vec(),
-                    });
-                }
-            }
+        for (number, kind) in (0..).zip(&model.kinds) {
+            arrows.extend(kind.loads().map(|load| Arrow {
+                kind: number,
+                atoms: load.atoms.clone(),
+                direction: load.direction,
+                course: load.force.points().to_vec(),
+            }));
         }
         let strongest = arrows.iter().flat_map(|arrow| &arrow.course).map(|(_, force)| force.abs()).fold(0.0, f64::max);
         let mut sizes: Vec<f64> = model.kinds.iter().map(|kind| size(&kind.rest.positions)).collect();
@@ -57,30 +51,36 @@ impl LoadArrows {
         Ok(Self { arrows, scale: if strongest > 0.0 { LONGEST * typical / strongest } else { 0.0 } })
     }
 
-    /// The arrows at a time, from tail to tip, µm. A pull leaves the surface, a push ends at it.
-    pub fn at(&self, time: f64, positions: &[[f64; 3]]) -> Vec<[[f64; 3]; 2]> {
-        let mut shown = Vec::new();
-        for arrow in &self.arrows {
-            let along = arrow.direction * (self.scale * force_at(&arrow.course, time));
-            if along.norm() == 0.0 {
-                continue;
-            }
-            let place = |atom: usize| Vec3::from(positions[atom]);
-            let middle: Vec3 = arrow.atoms.iter().map(|&(atom, share)| share * place(atom)).sum();
-            let centre = arrow.cell.clone().map(place).sum::<Vec3>() / arrow.cell.len().max(1) as f64;
-            let way = along.normalize();
-            // Outside the cell: a pull starts at the loaded atoms that stand out most, a push ends there.
-            let reach = |sign: f64| {
-                arrow.atoms.iter().map(|&(atom, _)| sign * (place(atom) - middle).dot(&way)).fold(0.0, f64::max)
-            };
-            let tail = if (middle - centre).dot(&along) >= 0.0 {
-                middle + way * reach(1.0)
-            } else {
-                middle - way * reach(-1.0) - along
-            };
-            shown.push([tail.into(), (tail + along).into()]);
+    /// The arrows at a time on these cells with their positions (µm), from tail to tip, µm. A pull leaves the surface, a
+    /// push ends at it.
+    pub fn at(&self, time: f64, layout: &Layout, cells: &[Cell], positions: &[[f64; 3]]) -> Vec<[[f64; 3]; 2]> {
+        let of_cell = cells.iter().zip(layout.atoms_of(cells));
+        let loaded = of_cell.flat_map(|(cell, atoms)| {
+            self.arrows.iter().filter(|arrow| arrow.kind == cell.kind).map(move |arrow| (arrow, atoms.clone()))
+        });
+        loaded.filter_map(|(arrow, atoms)| self.arrow_at(arrow, time, &positions[atoms])).collect()
+    }
+
+    /// The arrow on a cell; none when there is no force.
+    fn arrow_at(&self, arrow: &Arrow, time: f64, positions: &[[f64; 3]]) -> Option<[[f64; 3]; 2]> {
+        let along = arrow.direction * (self.scale * force_at(&arrow.course, time));
+        if along.norm() == 0.0 {
+            return None;
         }
-        shown
+        let position = |atom: u32| Vec3::from(positions[atom as usize]);
+        let middle: Vec3 = arrow.atoms.iter().map(|&(atom, share)| share * position(atom)).sum();
+        let centre = positions.iter().map(|p| Vec3::from(*p)).sum::<Vec3>() / positions.len().max(1) as f64;
+        let direction = along.normalize();
+        // Outside the cell: a pull starts at the loaded atoms that stand out most, a push ends there.
+        let reach = |sign: f64| {
+            arrow.atoms.iter().map(|&(atom, _)| sign * (position(atom) - middle).dot(&direction)).fold(0.0, f64::max)
+        };
+        let tail = if (middle - centre).dot(&along) >= 0.0 {
+            middle + direction * reach(1.0)
+        } else {
+            middle - direction * reach(-1.0) - along
+        };
+        Some([tail.into(), (tail + along).into()])
     }
 }
 

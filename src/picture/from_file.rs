@@ -11,10 +11,11 @@ use super::render::Sheet;
 use super::{Image, plots};
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Picture, When};
-use crate::output::ResultFile;
+use crate::output::{Cell, ResultFile};
 
 /// What one frame gives to a picture.
 struct Shot {
+    cells: Vec<Cell>,
     positions: Vec<[f64; 3]>,
     values: Vec<f64>,
     arrows: Vec<[[f64; 3]; 2]>,
@@ -109,7 +110,7 @@ impl<'a> Stage<'a> {
         let field = FieldView::of(result, picture)?;
         look.field_range = picture.field_range;
         look.field_label = field.as_ref().map_or_else(String::new, FieldView::label);
-        let arrows = if picture.loads { LoadArrows::of(document, result.layout())? } else { LoadArrows::default() };
+        let arrows = if picture.loads { LoadArrows::of(document)? } else { LoadArrows::default() };
         let until = document.experiment.run.until.value();
         Ok(Self { result, look, shown, arrows, field, times: result.times()?, until })
     }
@@ -120,15 +121,16 @@ impl<'a> Stage<'a> {
     }
 
     fn shot(&self, frame: usize) -> Result<Shot> {
-        let positions = self.result.positions(frame)?;
+        let (cells, positions) = (self.result.cells(frame), self.result.positions(frame)?);
         let values = match &self.shown {
             Shown::Type => Vec::new(),
             Shown::Atoms(quantity) => quantity.of_frame(self.result, frame, &positions)?,
-            Shown::Cells(name) => self.result.cell_series(name)?.row(frame).to_vec(),
+            Shown::Cells(name) => self.result.cell_values(name, frame)?,
         };
         let time = self.times[frame];
         let field = self.field.as_ref().map(|field| field.sheet(self.result, frame, &positions)).transpose()?;
-        Ok(Shot { arrows: self.arrows.at(time, &positions), positions, values, field, time })
+        let arrows = self.arrows.at(time, self.result.layout(), &cells, &positions);
+        Ok(Shot { cells, positions, values, arrows, field, time })
     }
 
     fn snapshot<'b>(&'b self, shot: &'b Shot) -> Snapshot<'b> {
@@ -138,8 +140,8 @@ impl<'a> Stage<'a> {
             Shown::Cells(_) => Values::Cells(&shot.values),
         };
         let layout = self.result.layout();
-        let (positions, arrows, field) = (&shot.positions, &shot.arrows, shot.field.as_ref());
-        Snapshot { layout, positions, time: shot.time, values, arrows, field }
+        let (cells, positions, arrows, field) = (&shot.cells, &shot.positions, &shot.arrows, shot.field.as_ref());
+        Snapshot { layout, cells, positions, time: shot.time, values, arrows, field }
     }
 
     fn draw(&self, shot: &Shot, framing: &Framing, picture: &Picture) -> Image {
@@ -148,7 +150,7 @@ impl<'a> Stage<'a> {
 }
 
 fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &Shown) -> Look {
-    let types = &result.layout().types;
+    let types = result.layout().type_names();
     let palette = |i: usize| super::colour::PALETTE[i % super::colour::PALETTE.len()];
     let colour = |(i, name): (usize, &String)| {
         let given = document.experiment.cells.get(name).and_then(|cell| cell.colour);

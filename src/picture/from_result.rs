@@ -13,13 +13,15 @@ use super::render::{
 };
 use super::ticks::nice_above;
 use crate::Vec3;
-use crate::output::Layout;
+use crate::output::{Cell, CellType, Layout};
 
 /// One recorded instant.
 #[derive(Debug, Clone, Copy)]
 pub struct Snapshot<'a> {
-    /// Cells, facets, links and planes.
+    /// Types of cells with their meshes, and planes.
     pub layout: &'a Layout,
+    /// The cells that there are.
+    pub cells: &'a [Cell],
     /// Positions of all atoms, µm.
     pub positions: &'a [[f64; 3]],
     /// Simulated time, s.
@@ -40,7 +42,7 @@ pub enum Values<'a> {
     Type,
     /// One number per atom, in the order of the positions.
     Atoms(&'a [f64]),
-    /// One number per cell, in the order of the layout.
+    /// One number per cell, in the order of the cells.
     Cells(&'a [f64]),
 }
 
@@ -233,7 +235,7 @@ fn corners_near(sheet: &Sheet, bounds: Option<&Bounds>) -> Vec<[f64; 3]> {
 /// Draws one recorded instant.
 ///
 /// # Panics
-/// When the layout names atoms or facets that are not there; result files are checked when they are read.
+/// When there are fewer positions than the cells have atoms; result files are checked when they are read.
 pub fn picture_of(snapshot: &Snapshot, look: &Look, framing: &Framing, width: usize, height: usize) -> Image {
     let overlay = overlay_of(snapshot, look, framing);
     let camera = framing.camera(look, width as f64 / height.max(1) as f64, overlay.insets());
@@ -246,7 +248,7 @@ pub fn overlay_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Overla
     let key = match snapshot.values {
         Values::Type if snapshot.layout.types.len() < 2 => Key::None,
         Values::Type => {
-            let named = |(kind, name): (usize, &String)| (name.clone(), type_colour(look, kind));
+            let named = |(kind, known): (usize, &CellType)| (known.name.clone(), type_colour(look, kind));
             Key::Names(snapshot.layout.types.iter().enumerate().map(named).collect())
         }
         _ => Key::Bar { map: look.map, low, high, label: look.label.clone() },
@@ -265,12 +267,12 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     let (layout, positions) = (snapshot.layout, snapshot.positions);
     let [low, high] = framing.ends(look);
     let number_colour = |value: f64| look.map.at((value - low) / (high - low));
-    let opacity = look.opacity.unwrap_or(if layout.links.is_empty() { 1.0 } else { 0.35 });
+    let has_links = snapshot.cells.iter().any(|cell| !layout.types[cell.kind as usize].links.is_empty());
+    let opacity = look.opacity.unwrap_or(if has_links { 0.35 } else { 1.0 });
     let mut scene = Scene::default();
-    let mut sizes = Vec::with_capacity(layout.cells.len());
-    for (number, cell) in layout.cells.iter().enumerate() {
-        let atoms = cell.first_atom as usize..(cell.first_atom + cell.atoms) as usize;
-        let facets = &layout.facets[cell.first_facet as usize..(cell.first_facet + cell.facets) as usize];
+    let mut sizes = Vec::with_capacity(snapshot.cells.len());
+    for (number, (cell, atoms)) in snapshot.cells.iter().zip(layout.atoms_of(snapshot.cells)).enumerate() {
+        let facets = layout.types[cell.kind as usize].facets.clone();
         let colour = match snapshot.values {
             Values::Type => SurfaceColour::Uniform(type_colour(look, cell.kind as usize)),
             Values::Cells(values) => {
@@ -280,7 +282,6 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
                 atoms.clone().map(|atom| number_colour(values.get(atom).copied().unwrap_or(f64::NAN))).collect(),
             ),
         };
-        let facets: Vec<[u32; 3]> = facets.iter().map(|facet| facet.map(|atom| atom - cell.first_atom)).collect();
         let own = positions[atoms].to_vec();
         sizes.extend(Bounds::around(&own).map(|bounds| bounds.diagonal()));
         scene.surfaces.push(Surface {
@@ -296,8 +297,15 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     sizes.sort_unstable_by(f64::total_cmp);
     let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(1.0);
     let dark = Colour([0x3a, 0x40, 0x4a]);
-    for [a, b] in &layout.links {
-        scene.add_line(positions[*a as usize], positions[*b as usize], 0.004 * typical, dark);
+    for (cell, atoms) in snapshot.cells.iter().zip(layout.atoms_of(snapshot.cells)) {
+        for [a, b] in &layout.types[cell.kind as usize].links {
+            scene.add_line(
+                positions[atoms.start + *a as usize],
+                positions[atoms.start + *b as usize],
+                0.004 * typical,
+                dark,
+            );
+        }
     }
     for [tail, tip] in snapshot.arrows {
         scene.add_arrow(*tail, *tip, 0.011 * typical, dark);
@@ -363,22 +371,15 @@ fn type_colour(look: &Look, kind: usize) -> Colour {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::CellLayout;
+
+    const CELLS: [Cell; 2] = [Cell { id: 0, kind: 0, parent: None }, Cell { id: 1, kind: 1, parent: None }];
 
     fn two_cells() -> (Layout, Vec<[f64; 3]>) {
         let (mut layout, mut positions) = (Layout::default(), Vec::new());
-        layout.types = vec!["round".into(), "square".into()];
-        for kind in 0..2u32 {
+        for (kind, name) in [(0_u32, "round"), (1, "square")] {
             let cell = crate::picture::render::tests::sphere([12.0 * f64::from(kind), 0.0, 5.0], 5.0, 2);
-            let first_atom = positions.len() as u32;
-            layout.cells.push(CellLayout {
-                kind,
-                first_atom,
-                atoms: cell.positions.len() as u32,
-                first_facet: layout.facets.len() as u32,
-                facets: cell.facets.len() as u32,
-            });
-            layout.facets.extend(cell.facets.iter().map(|facet| facet.map(|atom| atom + first_atom)));
+            let (atoms, facets) = (cell.positions.len() as u32, cell.facets);
+            layout.types.push(CellType { name: name.into(), atoms, facets, links: Vec::new() });
             positions.extend(cell.positions);
         }
         layout.planes =
@@ -391,6 +392,7 @@ mod tests {
         let (layout, positions) = two_cells();
         let mut snapshot = Snapshot {
             layout: &layout,
+            cells: &CELLS,
             positions: &positions,
             time: 3.0,
             values: Values::Type,
@@ -419,7 +421,8 @@ mod tests {
         let look = Look::default();
         let stamp = |time: f64| {
             let (positions, values) = (&positions, Values::Type);
-            let snapshot = Snapshot { layout: &layout, positions, time, values, arrows: &[], field: None };
+            let snapshot =
+                Snapshot { layout: &layout, cells: &CELLS, positions, time, values, arrows: &[], field: None };
             // A picture of one frame alone: the others have not been seen.
             let mut framing = Framing::new(&look).lasting(600.0);
             framing.include(&snapshot);
@@ -436,6 +439,7 @@ mod tests {
         let look = Look::default();
         let still = |positions| Snapshot {
             layout: &layout,
+            cells: &CELLS,
             positions,
             time: 0.0,
             values: Values::Type,
@@ -465,6 +469,7 @@ mod tests {
         let heights: Vec<f64> = positions.iter().map(|p| p[2]).collect();
         let snapshot = |k: usize| Snapshot {
             layout: &layout,
+            cells: &CELLS,
             positions: &frames[k],
             time: k as f64,
             values: Values::Atoms(&heights),

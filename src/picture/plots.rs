@@ -15,60 +15,13 @@ use crate::output::ResultFile;
 /// Colour of measured points.
 const MEASURED: Colour = Colour([0x33, 0x33, 0x33]);
 
-/// Names of series as a reader would say them.
-const READABLE: [(&str, &str); 26] = [
-    ("size_x", "extent along x"),
-    ("size_y", "extent along y"),
-    ("size_z", "extent along z"),
-    ("principal_1", "longest extent"),
-    ("principal_2", "middle extent"),
-    ("principal_3", "shortest extent"),
-    ("position_x", "position x"),
-    ("position_y", "position y"),
-    ("position_z", "position z"),
-    ("volume_error", "volume error"),
-    ("smallest_facet", "smallest facet over rest"),
-    ("energy", "elastic energy"),
-    ("smallest_cosine", "smallest cosine of normal and radius"),
-    ("contact_share", "share of atoms in contact"),
-    ("largest_aggregate", "cells of the largest aggregate"),
-    ("contact.births", "births of aggregates"),
-    ("contact.merges", "merges of aggregates"),
-    ("contact.splits", "splits of aggregates"),
-    ("contact.deaths", "deaths of aggregates"),
-    ("contact.count", "contacts"),
-    ("contact.deepest", "deepest penetration over edge"),
-    ("contact.energy", "energy in contacts"),
-    ("contact.sweeps", "sweeps over contacts"),
-    ("contact.area_share", "share of surface in contact"),
-    ("contact.heterotypic_share", "heterotypic share of contact area"),
-    ("contact.segregation", "segregation index"),
-];
-
-/// What series of contacts by types begin with, as a reader would say it before the types.
-const OF_CONTACTS: [(&str, &str); 4] = [
-    ("contact.area.", "area of contact"),
-    ("contact.pairs.", "pairs in contact"),
-    ("contact.clusters.", "clusters of"),
-    ("contact.largest_cluster.", "cells of the largest cluster of"),
-];
-
 /// A series' name as a reader would say it, with its unit.
 pub fn label_of(result: &ResultFile, series: &str) -> String {
     if series == "time" {
         return "time (s)".into();
     }
     let unit = result.units(series).unwrap_or_default();
-    with_unit(&readable(series), &unit)
-}
-
-fn readable(series: &str) -> String {
-    if let Some((_, text)) = READABLE.iter().find(|(name, _)| *name == series) {
-        return (*text).to_owned();
-    }
-    let of_contacts = OF_CONTACTS.iter().find_map(|(stem, text)| Some((series.strip_prefix(stem)?, text)));
-    of_contacts
-        .map_or_else(|| series.replace("load.", "load "), |(names, text)| format!("{text} {}", names.replace('.', "–")))
+    with_unit(&result.label(series), &unit)
 }
 
 /// The chart that a plot asks for.
@@ -105,7 +58,7 @@ pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result
 
 /// The types that a plot shows, each as a curve of its own.
 fn types_of(result: &ResultFile, plot: &Plot) -> Vec<String> {
-    plot.cells.as_ref().map_or_else(|| result.layout().types.clone(), |name| vec![name.clone()])
+    plot.cells.as_ref().map_or_else(|| result.layout().type_names(), |name| vec![name.clone()])
 }
 
 fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Result<Chart> {
@@ -136,7 +89,7 @@ fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Resul
             } else {
                 curve(&recording, x, y, Some(kind))?.points().collect()
             };
-            let named = if alike { readable(y) } else { label_of(result, y) };
+            let named = if alike { result.label(y) } else { label_of(result, y) };
             let label = match (series.len(), types.len()) {
                 (1, _) if shared => String::new(),
                 (1, 1) => String::new(),
@@ -172,8 +125,9 @@ fn lines_of_cells(result: &ResultFile, plot: &Plot, series: &[String]) -> Result
             let colour = Colour::of_palette(number).mixed(Colour([0xff; 3]), 0.62);
             let mut drawn = false;
             for cell in cells {
-                let points: Vec<[f64; 2]> =
-                    recording.times.iter().zip(values.column(cell)).map(|(t, v)| [*t, *v]).collect();
+                let of_cell = recording.times.iter().zip(values.column(cell)).enumerate();
+                let there = of_cell.filter(|(frame, _)| recording.is_there(*frame, cell));
+                let points: Vec<[f64; 2]> = there.map(|(_, (t, v))| [*t, *v]).collect();
                 if points.iter().any(|point| !point[1].is_nan()) {
                     drawn = true;
                     let (label, stroke, width) = (String::new(), Stroke::Solid, 0.9);
@@ -193,7 +147,11 @@ fn tracks(result: &ResultFile, plot: &Plot) -> Result<Chart> {
     for kind in types_of(result, plot) {
         let positions = recording.positions(&recording.cells_of(Some(&kind))?)?;
         let (frames, cells, _) = positions.dim();
-        let path = |cell: usize| (0..frames).map(|f| [positions[[f, cell, 0]], positions[[f, cell, 1]]]).collect();
+        // A cell that comes late or leaves has a track where it is.
+        let path = |cell: usize| {
+            let points = (0..frames).map(|f| [positions[[f, cell, 0]], positions[[f, cell, 1]]]);
+            points.filter(|point| !point[0].is_nan()).collect()
+        };
         chart.series.push(Series::tracks((0..cells).map(path).collect()));
     }
     Ok(chart)

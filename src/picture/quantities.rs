@@ -4,6 +4,8 @@ use crate::Vec3;
 use crate::error::Result;
 use crate::geometry::{self, Surface};
 use crate::output::ResultFile;
+use std::collections::HashMap;
+use std::ops::Range;
 
 /// A quantity with one number for every atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,7 +14,7 @@ pub enum AtomQuantity {
     Force,
     /// z of the atom, µm.
     Height,
-    /// Distance from where the atom was in the first frame, µm.
+    /// Distance from where the atom was in the first frame with its cell, µm.
     Displacement,
     /// Mean curvature of the surface, 1/µm, positive where it bulges outwards.
     Curvature,
@@ -62,24 +64,42 @@ impl AtomQuantity {
             },
             Self::Height => positions.iter().map(|place| place[2]).collect(),
             Self::Displacement => {
-                let start = result.positions(0)?;
+                let start = first_positions(result, frame)?;
                 positions.iter().zip(start).map(|(now, then)| (Vec3::from(*now) - Vec3::from(then)).norm()).collect()
             }
-            Self::Curvature => curvature(result, positions),
+            Self::Curvature => curvature(result, frame, positions),
         })
     }
 }
 
+/// Where the atoms of a frame were in the first frame with their cell, µm.
+fn first_positions(result: &ResultFile, frame: usize) -> Result<Vec<[f64; 3]>> {
+    let (layout, cells) = (result.layout(), result.cells(frame));
+    let born: Vec<usize> =
+        result.columns(frame).iter().map(|column| result.known_cells()[*column as usize].frames.start).collect();
+    let mut starts = born.clone();
+    starts.sort_unstable();
+    starts.dedup();
+    let mut first = vec![[f64::NAN; 3]; layout.atoms(&cells)];
+    for start in starts {
+        let (then, known) = (result.positions(start)?, result.cells(start));
+        let by_id: HashMap<u64, Range<usize>> = known.iter().map(|cell| cell.id).zip(layout.atoms_of(&known)).collect();
+        let own = cells.iter().zip(layout.atoms_of(&cells)).zip(&born).filter(|(_, born)| **born == start);
+        for ((cell, atoms), _) in own {
+            first[atoms].copy_from_slice(&then[by_id[&cell.id].clone()]);
+        }
+    }
+    Ok(first)
+}
+
 /// Mean curvature, cell by cell.
-fn curvature(result: &ResultFile, positions: &[[f64; 3]]) -> Vec<f64> {
-    let layout = result.layout();
+fn curvature(result: &ResultFile, frame: usize, positions: &[[f64; 3]]) -> Vec<f64> {
+    let (layout, cells) = (result.layout(), result.cells(frame));
     let mut all = Vec::with_capacity(positions.len());
-    for cell in &layout.cells {
-        let atoms = cell.first_atom as usize..(cell.first_atom + cell.atoms) as usize;
-        let facets = &layout.facets[cell.first_facet as usize..(cell.first_facet + cell.facets) as usize];
+    for (cell, atoms) in cells.iter().zip(layout.atoms_of(&cells)) {
         let surface = Surface {
-            positions: positions[atoms].iter().map(|place| Vec3::from(*place)).collect(),
-            facets: facets.iter().map(|facet| facet.map(|atom| atom - cell.first_atom)).collect(),
+            positions: positions[atoms].iter().map(|position| Vec3::from(*position)).collect(),
+            facets: layout.types[cell.kind as usize].facets.clone(),
         };
         all.extend(geometry::mean_curvature(&surface));
     }

@@ -4,9 +4,11 @@
 use rayon::prelude::*;
 
 use super::contact::settle_adhesives;
-use super::model::{Model, VolumeRule};
+use super::kind::VolumeRule;
+use super::model::Model;
 use super::projection::{ProjectScratch, project_cell};
 use super::state::State;
+use super::trouble::Trouble;
 use super::workspace::{KindScratch, Workspace};
 use crate::mechanics::volume;
 
@@ -16,33 +18,27 @@ pub const VOLUME_TOLERANCE: f64 = 1e-10;
 /// Turns of exact volumes and shapes of adhesives in a step; each leaves a small part of what the one before left.
 const TURNS: usize = 4;
 
-/// A cell whose volume could not be restored.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct VolumeFailure {
-    /// Number of the kind.
-    pub kind: usize,
-    /// Number of the cell within its kind.
-    pub cell: usize,
-    /// Relative error left.
-    pub error: f64,
-}
-
 /// Makes planes and volumes exact, in turns with the shapes of virtual adhesives where there are any; volumes come last.
-pub fn make_exact(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), VolumeFailure> {
+///
+/// # Errors
+/// A volume that could not be restored; `time` is the end of the step, s.
+pub fn make_exact(model: &Model, time: f64, from: &State, to: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
     for _ in 0..TURNS {
-        enforce_constraints(model, state, ws)?;
-        if !settle_adhesives(model, state, ws) {
+        enforce_constraints(model, time, to, ws)?;
+        if !settle_adhesives(model, from, to, ws) {
             return Ok(());
         }
     }
-    enforce_constraints(model, state, ws)
+    enforce_constraints(model, time, to, ws)
 }
 
 /// Puts atoms back outside the planes and every exact volume back on its target.
-pub fn enforce_constraints(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), VolumeFailure> {
-    ws.rooms.suit(model);
+///
+/// # Errors
+/// As [`make_exact`].
+pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
     let Workspace { kinds, rooms, .. } = ws;
-    for (number, ((kind, now), w)) in model.kinds.iter().zip(&mut state.kinds).zip(kinds).enumerate() {
+    for ((kind, now), w) in model.kinds.iter().zip(&mut to.kinds).zip(kinds) {
         let exact = matches!(kind.volume, VolumeRule::Exact(_));
         if !exact && model.planes.is_empty() {
             continue;
@@ -65,8 +61,8 @@ pub fn enforce_constraints(model: &Model, state: &mut State, ws: &mut Workspace)
                 }
             });
         let missed = |cell: &usize| exact && (left[*cell].is_nan() || left[*cell] > VOLUME_TOLERANCE);
-        if let Some(cell) = (0..kind.cells).find(missed) {
-            return Err(VolumeFailure { kind: number, cell, error: left[cell] });
+        if let Some(cell) = (0..now.cells()).find(missed) {
+            return Err(Trouble::Volume { kind: kind.name.clone(), cell, error: left[cell], time });
         }
     }
     Ok(())
@@ -75,7 +71,7 @@ pub fn enforce_constraints(model: &Model, state: &mut State, ws: &mut Workspace)
 /// Cell by cell, the thorough way.
 fn project_block(
     model: &Model,
-    kind: &super::model::Kind,
+    kind: &super::kind::Kind,
     exact: bool,
     x: &mut [f64],
     target: &[f64],

@@ -5,8 +5,9 @@
 
 use super::contact::{Law, energy_of_give};
 use super::forces::measure_energy;
-use super::model::{Kind, Model, VolumeRule};
-use super::state::State;
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
+use super::state::{KindState, State};
 use super::workspace::Workspace;
 use crate::mechanics::integrator::Method;
 
@@ -22,23 +23,22 @@ const VOLUME_OFF: f64 = 1e-9;
 /// The energy where a step begins, pN·µm; none where something may do work on the cells: loads, gravity, motility, chemistry, the
 /// energy that contacts release, volumes that change, elastic forces without an energy.
 pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option<f64> {
-    ws.contact.in_account = is_left_alone(model);
-    ws.contact.in_account.then(|| {
-        measure_energy(model, state.time, state, ws);
-        energy(model, ws) + state.contact.given()
+    is_left_alone(model).then(|| {
+        measure_energy(model, state.time, &state.chemistry.controls, &state.kinds, ws);
+        energy(&state.kinds, ws) + state.contact.given()
     })
 }
 
-/// Whether a step has left more energy than there was, beyond round-off and what sweeps leave.
-pub fn has_gained(model: &Model, before: Option<f64>, dt: f64, state: &State, ws: &mut Workspace) -> bool {
+/// Whether a step of `dt` (s) has left more energy than there was, beyond round-off and what sweeps leave.
+pub fn has_gained(model: &Model, dt: f64, before: Option<f64>, from: &State, to: &State, ws: &mut Workspace) -> bool {
     let (Some(before), Some(contact)) = (before, &model.contact) else { return false };
     if !had_their_volumes(model, ws) {
         return false;
     }
-    measure_energy(model, state.time + dt, state, ws);
+    measure_energy(model, from.time + dt, &from.chemistry.controls, &to.kinds, ws);
     let stiffest = model.kinds.iter().map(|kind| kind.largest_stiffness).fold(0.0, f64::max);
     let left = LEFT * stiffest * contact.tolerance * contact.tolerance;
-    energy(model, ws) + energy_of_give(ws) > before * (1.0 + ROUND_OFF) + left
+    energy(&to.kinds, ws) + energy_of_give(&ws.contact) > before * (1.0 + ROUND_OFF) + left
 }
 
 fn is_left_alone(model: &Model) -> bool {
@@ -47,21 +47,13 @@ fn is_left_alone(model: &Model) -> bool {
         contact.law == Law::default() && strengths.into_iter().all(|strength| strength.energy == 0.0)
     };
     let is_alone = |kind: &Kind| {
-        let steady = match &kind.volume {
-            VolumeRule::Free => true,
-            VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.kinks().next().is_none(),
-        };
-        let driven = !kind.fibres.is_empty()
-            || kind.brownian.is_some()
-            || kind.biased
-            || kind.attraction.is_some()
-            || !kind.loads.is_empty();
-        steady && !driven && kind.elasticity.is_conservative()
+        let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
+        let moves = kind.brownian.is_some() || kind.biased;
+        steady && !moves && kind.forces.iter().all(|force| force.is_elastic() && force.is_conservative())
     };
     matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)
         && model.contact.as_ref().is_some_and(sticks_only)
         && model.chemistry.is_empty()
-        && model.gravity.norm_squared() == 0.0
         && model.kinds.iter().all(is_alone)
 }
 
@@ -74,6 +66,6 @@ fn had_their_volumes(model: &Model, ws: &Workspace) -> bool {
 }
 
 /// The energy of all cells as it was measured last, pN·µm.
-fn energy(model: &Model, ws: &Workspace) -> f64 {
-    model.kinds.iter().zip(&ws.kinds).map(|(kind, w)| w.energy[..kind.cells].iter().sum::<f64>()).sum()
+fn energy(cells: &[KindState], ws: &Workspace) -> f64 {
+    cells.iter().zip(&ws.kinds).map(|(now, w)| w.energy[..now.cells()].iter().sum::<f64>()).sum()
 }

@@ -10,16 +10,17 @@ use rayon::prelude::*;
 
 use super::contact::{has_live_forces, pull_contacts};
 use super::forces::Forces;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::planes::{self, TouchScratch};
 use super::pressure::{carry_pressure, constrain};
 use super::rooms::each_or_none;
+use super::solver::{Solver, Stage, solve_block};
 use super::state::State;
 use super::targets::Targets;
-use super::workspace::{KindScratch, Solver, Workspace};
+use super::workspace::{KindScratch, Workspace};
 use crate::mechanics::integrator::Order;
 use crate::mechanics::lanes::LANES;
-use crate::mechanics::{rigid, volume};
 
 /// γ of the two-stage scheme: with K at or above the true stiffness 1/2 damps every mode and keeps the error small;
 /// it bears a K that is too small by a factor of two.
@@ -33,27 +34,28 @@ pub fn gamma(order: Order) -> f64 {
     }
 }
 
-/// Which stage of a step a solve belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
-    /// The first, or the only one.
-    First,
-    /// The second of [`Order::Second`].
-    Second,
-}
-
 /// Moves all atoms freely by one step: forces, the increments that they cause, and where these take the atoms; constraints hold to
 /// first order. Returns the largest error estimate over the mean edge of its kind, 0 at first order. A block goes through all
 /// stages at once, in the room of its thread, so that what they need is near and is not held for all cells. Forces that change
 /// with where other cells are, as those of links do, are known for a second stage only after the first of all blocks.
-pub fn advance_implicitly(model: &Model, dt: f64, order: Order, state: &mut State, ws: &mut Workspace) -> f64 {
+pub fn advance_implicitly(
+    model: &Model,
+    dt: f64,
+    order: Order,
+    from: &State,
+    to: &mut State,
+    ws: &mut Workspace,
+) -> f64 {
+    let controls = &from.chemistry.controls;
+    pull_contacts(model, controls, &from.kinds, &mut ws.contact);
     match order {
-        Order::First => advance_stages(model, dt, order, &[Stage::First], state, ws),
+        Order::First => advance_stages(model, dt, order, &[Stage::First], from, to, ws),
         Order::Second if has_live_forces(model) => {
-            advance_stages(model, dt, order, &[Stage::First], state, ws);
-            advance_stages(model, dt, order, &[Stage::Second], state, ws)
+            advance_stages(model, dt, order, &[Stage::First], from, to, ws);
+            pull_contacts(model, controls, &to.kinds, &mut ws.contact);
+            advance_stages(model, dt, order, &[Stage::Second], from, to, ws)
         }
-        Order::Second => advance_stages(model, dt, order, &[Stage::First, Stage::Second], state, ws),
+        Order::Second => advance_stages(model, dt, order, &[Stage::First, Stage::Second], from, to, ws),
     }
 }
 
@@ -63,27 +65,29 @@ fn advance_stages(
     dt: f64,
     order: Order,
     stages: &[Stage],
-    state: &mut State,
+    from: &State,
+    to: &mut State,
     ws: &mut Workspace,
 ) -> f64 {
-    pull_contacts(model, state, &mut ws.contact);
     let Workspace { kinds, rooms, drive, contact, .. } = ws;
     let mut worst = 0.0;
-    for (number, ((kind, now), w)) in model.kinds.iter().zip(&mut state.kinds).zip(kinds).enumerate() {
-        let forces = Forces { model, number, controls: &state.chemistry.controls, drive, contact };
+    let cells = from.kinds.iter().zip(&mut to.kinds);
+    for ((kind, (now, next)), w) in model.kinds.iter().zip(cells).zip(kinds) {
+        let controls = &from.chemistry.controls;
+        let forces = Forces { kind, cells: now, controls, drive, contact: &contact.forces };
         let solver = &*w.solver(kind, dt, gamma(order));
-        let targets = Targets::of(model, kind, [state.time, state.time + dt]);
-        let step = Step { model, kind, forces, solver, targets, order, start: state.time, dt };
+        let targets = Targets::of(model, kind, [from.time, from.time + dt]);
+        let step = Step { model, kind, forces, solver, targets, order, start: from.time, dt };
         let (length, lanes) = (kind.block_len(), kind.lanes);
         if order == Order::Second && stages.len() == 1 {
-            w.first.resize(now.positions.len(), 0.0);
+            w.increments.resize(now.positions.len(), 0.0);
         }
-        let KindScratch { first, start, energy, volume, target, pressure, touch, .. } = w;
-        let error = (now.positions.par_chunks_exact_mut(length))
-            .zip(now.rest_volumes.par_chunks_exact(lanes).zip(start.par_chunks_exact(length)))
+        let KindScratch { increments, energy, volume, target, pressure, touch, .. } = w;
+        let error = (next.positions.par_chunks_exact_mut(length))
+            .zip(now.rest_volumes.par_chunks_exact(lanes).zip(now.positions.par_chunks_exact(length)))
             .zip(volume.par_chunks_exact_mut(lanes).zip(target.par_chunks_exact_mut(lanes)))
             .zip(energy.par_chunks_exact_mut(lanes).zip(pressure.par_chunks_exact_mut(lanes)))
-            .zip(each_or_none(first, length, kind.blocks()).zip(touch))
+            .zip(each_or_none(increments, length, now.blocks(kind)).zip(touch))
             .enumerate()
             .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), (kept, touch)))| {
                 let mut block = Block { number, x, rest, start, volume, target, energy, pressure, touch };
@@ -111,7 +115,7 @@ struct Step<'a> {
 /// A block of cells in a step.
 struct Block<'a> {
     number: usize,
-    /// Positions now.
+    /// Positions after the stages that were made.
     x: &'a mut [f64],
     /// Rest volumes of its cells.
     rest: &'a [f64],
@@ -146,8 +150,8 @@ impl Step<'_> {
             if let (Stage::Second, Some(kept)) = (stage, &kept) {
                 first.copy_from_slice(kept);
             }
-            let time = if stage == Stage::First { self.start } else { end };
-            self.forces.on_block(block.number, time, (&*block.x, block.rest), (&mut *y, &mut *block.energy), spare);
+            let (time, x) = if stage == Stage::First { (self.start, block.start) } else { (end, &*block.x) };
+            self.forces.on_block(block.number, time, (x, block.rest), (&mut *y, &mut *block.energy), spare);
             if stage == Stage::Second {
                 carry_pressure(kind, block.x, block.pressure, y, spare);
             }
@@ -205,26 +209,6 @@ impl Block<'_> {
             largest = larger(largest, (0.5 * (y1 + y2)).abs());
         }
         largest
-    }
-}
-
-/// Solves A Y = F for a block of `lanes` cells with rigid motion taken out, eq. (step.4); F is replaced by Y.
-pub fn solve_block(
-    kind: &Kind,
-    lanes: usize,
-    solver: &Solver,
-    x: &[f64],
-    y: &mut [f64],
-    spare: &mut [f64],
-    spare2: &mut [f64],
-) {
-    if kind.is_held() {
-        volume::hold(lanes, &kind.held, y);
-        solver.solve(lanes, y, spare);
-    } else {
-        rigid::split_block(lanes, kind.atoms(), x, y, spare, solver.mobility);
-        solver.solve(lanes, y, spare2);
-        rigid::join_block(lanes, kind.atoms(), x, y, spare);
     }
 }
 

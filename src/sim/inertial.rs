@@ -1,56 +1,76 @@
 //! The schemes with inertia, `m ẍ = F − k_a ẋ`, eq. (step.6): explicit and semi-implicit Euler, velocity Verlet with the
 //! drag inside, and the classical Runge–Kutta scheme of fourth order; and over-damped explicit Euler, eq. (step.1).
 
-use super::forces::add_forces;
-use super::model::{Kind, Model, VolumeRule};
+use super::forces::sum_forces;
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
 use super::state::State;
+use super::targets::measure_volumes;
 use super::workspace::Workspace;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
 
-/// Moves all atoms freely by one step; the forces at the start of the step are not known yet.
-pub fn advance_freely(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
-    let start = state.time;
-    add_forces(model, start, state, ws);
+/// Moves all atoms freely by one step of an explicit scheme.
+pub fn advance_explicitly(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut Workspace) {
+    measure_volumes(model, from.time + dt, from, ws);
+    for (now, next) in from.kinds.iter().zip(&mut to.kinds) {
+        next.positions.copy_from_slice(&now.positions);
+        next.velocities.copy_from_slice(&now.velocities);
+    }
+    move_atoms(model, dt, from, to, ws);
+    keep_free_positions(to, ws);
+}
+
+/// Keeps the positions of the schemes with inertia for the correction of velocities.
+fn keep_free_positions(to: &State, ws: &mut Workspace) {
+    for (now, w) in to.kinds.iter().zip(&mut ws.kinds).filter(|(now, _)| !now.velocities.is_empty()) {
+        w.free.clone_from(&now.positions);
+    }
+}
+
+/// Moves atoms that stand where the step begins.
+fn move_atoms(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut Workspace) {
+    let (start, controls) = (from.time, &from.chemistry.controls);
+    sum_forces(model, start, controls, &to.kinds, ws);
     match model.integrator.method {
-        Method::Explicit => each(model, state, ws, |kind, x, _, f| {
+        Method::Explicit => each(model, to, ws, |kind, x, _, f| {
             let mobility = dt / kind.drag;
             x.iter_mut().zip(f).for_each(|(x, f)| *x += mobility * f);
         }),
-        Method::Euler => each(model, state, ws, |kind, x, v, f| {
+        Method::Euler => each(model, to, ws, |kind, x, v, f| {
             for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
                 *x += dt * *v;
                 *v += dt * (f - kind.drag * *v) / kind.mass;
             }
         }),
-        Method::SemiImplicitEuler => each(model, state, ws, |kind, x, v, f| {
+        Method::SemiImplicitEuler => each(model, to, ws, |kind, x, v, f| {
             for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
                 *v += dt * (f - kind.drag * *v) / kind.mass;
                 *x += dt * *v;
             }
         }),
         Method::Verlet => {
-            each(model, state, ws, |kind, x, v, f| {
+            each(model, to, ws, |kind, x, v, f| {
                 let (kick, slow) = (0.5 * dt / kind.mass, 1.0 / (1.0 + 0.5 * dt * kind.drag / kind.mass));
                 for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
                     *v = (*v + kick * f) * slow;
                     *x += dt * *v;
                 }
             });
-            add_forces(model, start + dt, state, ws);
-            each(model, state, ws, |kind, _, v, f| {
+            sum_forces(model, start + dt, controls, &to.kinds, ws);
+            each(model, to, ws, |kind, _, v, f| {
                 let (kick, keep) = (0.5 * dt / kind.mass, 1.0 - 0.5 * dt * kind.drag / kind.mass);
                 v.iter_mut().zip(f).for_each(|(v, f)| *v = *v * keep + kick * f);
             });
         }
-        Method::RungeKutta4 => runge_kutta(model, dt, state, ws),
+        Method::RungeKutta4 => runge_kutta(model, dt, from, to, ws),
         Method::Implicit { .. } => unreachable!("the implicit scheme has its own stages"),
     }
 }
 
 /// Runs work over the arrays of every kind: positions, velocities and forces, with held atoms kept still.
-fn each(model: &Model, state: &mut State, ws: &mut Workspace, work: impl Fn(&Kind, &mut [f64], &mut [f64], &[f64])) {
-    for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds) {
+fn each(model: &Model, to: &mut State, ws: &mut Workspace, work: impl Fn(&Kind, &mut [f64], &mut [f64], &[f64])) {
+    for ((kind, now), w) in model.kinds.iter().zip(&mut to.kinds).zip(&mut ws.kinds) {
         if kind.is_held() {
             for block in w.force.chunks_exact_mut(kind.block_len()) {
                 volume::hold(kind.lanes, &kind.held, block);
@@ -60,24 +80,25 @@ fn each(model: &Model, state: &mut State, ws: &mut Workspace, work: impl Fn(&Kin
     }
 }
 
-/// The classical scheme; `first` sums the velocities and `accelerations` the accelerations of the four stages.
-fn runge_kutta(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
-    let start = state.time;
+/// The classical scheme; `rates` sums the velocities and `accelerations` the accelerations of the four stages.
+fn runge_kutta(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut Workspace) {
+    let (start, controls) = (from.time, &from.chemistry.controls);
     // (weight of the stage in the sum, time and step from the start at which the next stage is taken)
     let stages = [(1.0, Some(0.5)), (2.0, Some(0.5)), (2.0, Some(1.0)), (1.0, None)];
     for (number, (weight, next)) in stages.into_iter().enumerate() {
         if number > 0 {
             let at = stages[number - 1].1.unwrap_or(1.0);
-            add_forces(model, start + at * dt, state, ws);
+            sum_forces(model, start + at * dt, controls, &to.kinds, ws);
         }
-        for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&mut ws.kinds) {
+        let cells = from.kinds.iter().zip(&mut to.kinds);
+        for ((kind, (begun, now)), w) in model.kinds.iter().zip(cells).zip(&mut ws.kinds) {
             if kind.is_held() {
                 for block in w.force.chunks_exact_mut(kind.block_len()) {
                     volume::hold(kind.lanes, &kind.held, block);
                 }
             }
             if number == 0 {
-                for sum in [&mut w.first, &mut w.accelerations] {
+                for sum in [&mut w.rates, &mut w.accelerations] {
                     sum.clear();
                     sum.resize(now.positions.len(), 0.0);
                 }
@@ -85,25 +106,25 @@ fn runge_kutta(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
             for i in 0..now.positions.len() {
                 let (rate, acceleration) =
                     (now.velocities[i], (w.force[i] - kind.drag * now.velocities[i]) / kind.mass);
-                w.first[i] += weight * rate;
+                w.rates[i] += weight * rate;
                 w.accelerations[i] += weight * acceleration;
                 let (move_by, x_rate, v_rate) = match next {
                     Some(part) => (part * dt, rate, acceleration),
-                    None => (dt / 6.0, w.first[i], w.accelerations[i]),
+                    None => (dt / 6.0, w.rates[i], w.accelerations[i]),
                 };
-                now.positions[i] = w.start[i] + move_by * x_rate;
-                now.velocities[i] = w.start_velocity[i] + move_by * v_rate;
+                now.positions[i] = begun.positions[i] + move_by * x_rate;
+                now.velocities[i] = begun.velocities[i] + move_by * v_rate;
             }
         }
     }
 }
 
-/// Corrects the velocities by what the constraints moved, eq. (step.7); `force` holds the free positions.
-pub fn correct_velocities(model: &Model, dt: f64, state: &mut State, ws: &Workspace) {
-    for ((kind, now), w) in model.kinds.iter().zip(&mut state.kinds).zip(&ws.kinds) {
+/// Corrects the velocities, where atoms have some, by what the constraints moved, eq. (step.7).
+pub fn correct_velocities(model: &Model, dt: f64, to: &mut State, ws: &Workspace) {
+    for ((kind, now), w) in model.kinds.iter().zip(&mut to.kinds).zip(&ws.kinds) {
         let constrained = !model.planes.is_empty() || matches!(kind.volume, VolumeRule::Exact(_));
         if constrained {
-            for ((v, x), free) in now.velocities.iter_mut().zip(&now.positions).zip(&w.force) {
+            for ((v, x), free) in now.velocities.iter_mut().zip(&now.positions).zip(&w.free) {
                 *v += (x - free) / dt;
             }
         }

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::forces::elastic_energy;
-use super::model::{Kind, Model, VolumeRule};
+use super::kind::Kind;
+use super::model::Model;
 use super::state::State;
-use super::workspace::Workspace;
 use crate::Vec3;
 use crate::geometry::{self, Surface};
 
@@ -36,18 +36,15 @@ pub struct CellMeasure {
 
 /// Measures every cell, in the order of cells.
 pub fn measure_cells(model: &Model, state: &State) -> Vec<CellMeasure> {
-    let mut all = Vec::with_capacity(model.cells());
+    let mut all = Vec::with_capacity(state.cells());
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-        let mut energy = elastic_energy(kind, &now.positions);
+        let mut energy = elastic_energy(kind, now);
         for (cell, energy) in energy.iter_mut().enumerate() {
-            *energy *= state.chemistry.controls.stiffness_of(kind.first_cell + cell);
+            *energy *= state.chemistry.controls.stiffness_of(now.first_cell + cell);
         }
         let rest_areas = geometry::facet_areas(&kind.rest);
-        let factor = match &kind.volume {
-            VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.at(state.time),
-            VolumeRule::Free => 1.0,
-        };
-        let measured: Vec<CellMeasure> = (0..kind.cells)
+        let factor = kind.volume.course().map_or(1.0, |course| course.at(state.time));
+        let measured: Vec<CellMeasure> = (0..now.cells())
             .into_par_iter()
             .map(|cell| {
                 let positions = now.cell(kind, cell);
@@ -95,21 +92,7 @@ fn smallest_cosine(surface: &Surface, centre: &Vec3) -> f64 {
     surface.facets.iter().map(cosine).fold(1.0, f64::min)
 }
 
-/// Mean velocity of the atoms of every cell over the last step, µm/s; zero before the first.
-pub fn mean_velocities(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Vec<Vec3> {
-    let mut all = Vec::with_capacity(model.cells());
-    for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&ws.kinds) {
-        for cell in 0..kind.cells {
-            if state.step == 0 || dt <= 0.0 {
-                all.push(Vec3::zeros());
-                continue;
-            }
-            let mean = |values: &[f64]| -> Vec3 {
-                (0..kind.atoms()).map(|atom| super::state::vector(kind, values, cell, atom)).sum::<Vec3>()
-                    / kind.atoms() as f64
-            };
-            all.push((mean(&now.positions) - mean(&w.start)) / dt);
-        }
-    }
-    all
+/// Mean velocity of the atoms of every cell over the last step, µm/s, in the order of cells; zero before the first.
+pub fn mean_velocities(state: &State) -> impl Iterator<Item = Vec3> {
+    state.kinds.iter().flat_map(|kind| &kind.mean_velocities).copied().map(Vec3::from)
 }

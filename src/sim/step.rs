@@ -1,204 +1,120 @@
 //! One step of the simulation, on one screen.
+//!
+//! A step is a transaction: its stages read the state where it begins and write the one where it ends, which lies in the workspace. That
+//! becomes the state when all is done, and else is scratch.
 
-use super::chemistry::{advance_chemistry, begin_chemistry, next_exchange};
+use std::borrow::Cow;
+
+use super::chemistry::{advance_chemistry, begin_chemistry as carry_first, next_exchange};
 use super::constraints::make_exact;
-use super::contact::{carry_forces, check_depth, find_contacts, hold_contacts, keep_contacts, look_for_depth, travel};
+use super::contact::{
+    carry_forces, check_depth, hold_contacts, keep_contacts, locate_contacts, look_for_depth, travel,
+};
+use super::finite::check_finite;
 use super::gain::{energy_before, has_gained};
-use super::implicit::advance_implicitly;
-use super::inertial::{advance_freely, correct_velocities};
+use super::inertial::correct_velocities;
 use super::model::Model;
 use super::motility::advance_motility;
-use super::pace::{end_at_kinks, is_shortest, judge, plan_next, plan_step};
-use super::refresh::{cover_stiffening, refresh_stiffness};
+use super::motion::move_freely;
+use super::plan::{Estimate, Flaw, Plan, StepReport};
+use super::refresh::fit_stiffness;
 use super::state::State;
-use super::targets::measure_volumes;
-use super::trouble::{Trouble, check_finite};
+use super::trouble::Trouble;
+use super::velocity::measure_velocities;
 use super::workspace::Workspace;
-use crate::mechanics::integrator::{Method, StepSize};
 
-/// What a step did.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StepReport {
-    /// Its size, s.
-    pub dt: f64,
-    /// Tries that the error estimate refused before it.
-    pub refused: u32,
-    /// Error estimate over the mean edge, 0 for schemes without one.
-    pub error: f64,
-    /// Whether contacts made this step or the one planned after it shorter than the error estimate would have.
-    pub limited: bool,
-}
-
-/// How often an accepted step is made again.
-const AGAIN: u32 = 10;
-
-/// What sweeps may leave when a step is made again, over what they might before: forces that sweeps leave unfound do work.
-const MORE_CARE: f64 = 0.1;
-
-/// What a try says about its step.
-struct Estimate {
-    /// Error over the mean edge.
-    error: f64,
-    /// The same with what contacts say: a step in which an atom moves too far counts as one over the tolerance.
-    with_contacts: f64,
-}
-
-/// Tries before a step is given up; each is at least 0.3 times the one before, so that 60 shrink it by 30 decades.
-const TRIES: u32 = 60;
-
-/// Moves the state by one step. After an error the state is the one before the step.
-pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<StepReport, Trouble> {
-    ws.rooms.suit(model);
-    begin_chemistry(model, state, ws)?;
-    if let Method::Implicit { .. } = model.integrator.method {
-        refresh_stiffness(model, state, ws);
-        cover_stiffening(model, state, ws);
-    }
-    remember(state, ws);
-    find_contacts(model, state, ws);
-    check_depth(model, state, ws)?;
-    let energy = energy_before(model, state, ws);
-    let planned = plan_step(model, state);
-    let (mut dt, mut limited, mut again) = (planned, false, 0);
-    for refused in 0..TRIES {
-        let dt_now = end_at_kinks(model, state.time, dt);
-        let Estimate { error, with_contacts } = match try_step(model, dt_now, state, ws) {
-            Ok(estimate) => estimate,
-            Err(trouble) if refused + 1 == TRIES || !may_be_mended(model, dt_now, &trouble) => {
-                restore(state, ws);
-                return Err(trouble);
-            }
-            Err(Trouble::Contact { .. }) => Estimate { error: 0.0, with_contacts: f64::INFINITY },
-            Err(_) => Estimate { error: f64::INFINITY, with_contacts: f64::INFINITY },
-        };
-        let (mut accepted, mut next) = judge(model, dt_now, with_contacts);
-        limited |= next < judge(model, dt_now, error).1;
-        if accepted {
-            let better = look_again(model, energy, dt_now, again, state, ws).inspect_err(|_| restore(state, ws))?;
-            (accepted, next) = (better.is_none(), better.unwrap_or(next));
-            (limited, again) = (limited || better.is_some_and(|better| better < dt_now), again + 1);
-        }
-        if accepted {
-            let next_step = plan_next(model, planned, dt, dt_now, next);
-            if let Err(trouble) = advance_chemistry(model, dt_now, state, ws) {
-                restore(state, ws);
-                return Err(trouble);
-            }
-            state.next_step = next_step;
-            keep_contacts(model, state, ws);
-            advance_clock(model, dt_now, state, ws);
-            return Ok(StepReport { dt: dt_now, refused, error: with_contacts, limited });
-        }
-        restore(state, ws);
-        carry_forces(model, state, ws);
-        dt = next;
-    }
-    Err(Trouble::StepTooSmall { time: state.time, dt })
-}
-
-/// Whether a shorter step may do where this one failed: an adaptive one always, a fixed one where contacts did not come to rest.
-fn may_be_mended(model: &Model, dt: f64, trouble: &Trouble) -> bool {
-    match model.integrator.size {
-        StepSize::Adaptive { .. } => true,
-        StepSize::Fixed(_) => matches!(trouble, Trouble::Contact { .. }) && !is_shortest(model, dt),
-    }
-}
-
-/// The time in which an accepted step is to be made again, with more care: where cells left alone would gain energy, or the step would
-/// end with cells deep in each other.
+/// Moves the state by one step.
 ///
 /// # Errors
-/// The cells that are deeper in each other than is promised, however short the step.
-fn look_again(
-    model: &Model,
-    energy: Option<f64>,
-    dt: f64,
-    again: u32,
-    state: &State,
-    ws: &mut Workspace,
-) -> Result<Option<f64>, Trouble> {
-    let may_be_shorter = again < AGAIN && !is_shortest(model, dt);
-    if may_be_shorter && has_gained(model, energy, dt, state, ws) {
-        ws.contact.care *= MORE_CARE;
-        // At first without mending depths, which takes work however short a step is.
-        return Ok(Some(if again == 0 { dt } else { 0.5 * dt }));
+/// Why the step could not be made; the state is the one before it, to the last byte.
+pub fn step(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<StepReport, Trouble> {
+    let mut next = std::mem::take(&mut ws.next);
+    let done = begun(model, state, ws).and_then(|from| make_step(model, &from, &mut next, ws));
+    if done.is_ok() {
+        std::mem::swap(state, &mut next);
     }
-    match look_for_depth(model, state, ws) {
-        Some(_) if may_be_shorter => Ok(Some(0.5 * dt)),
-        Some(deepened) if deepened.breaks_promise() => Err(deepened.trouble(model, state.time)),
-        _ => Ok(None),
-    }
+    ws.next = next;
+    done
 }
 
-/// The stages of a step.
-fn try_step(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<Estimate, Trouble> {
-    let end = state.time + dt;
-    advance_motility(model, dt, state, ws);
-    let error = match model.integrator.method {
-        Method::Implicit { order } => advance_implicitly(model, dt, order, state, ws),
-        _ => {
-            measure_volumes(model, end, state, ws);
-            advance_freely(model, dt, state, ws);
-            0.0
-        }
-    };
-    keep_free_positions(state, ws);
-    check_finite(model, end, state)?;
-    hold_contacts(model, dt, state, ws)?;
-    make_exact(model, state, ws).map_err(|failure| Trouble::of_volume(model, end, failure))?;
-    if model.integrator.method.is_inertial() {
-        correct_velocities(model, dt, state, ws);
+/// Lets the links carry the numbers of the start, once, and executes the events of the start; a step does so by itself.
+///
+/// # Errors
+/// A link or an event that fails; the state is as it was.
+pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+    if let Cow::Owned(begun) = begun(model, state, ws)? {
+        *state = begun;
     }
-    check_finite(model, end, state)?;
-    limit_travel(model, dt, error, state, ws)
+    Ok(())
 }
 
-/// Adds what contacts say about the step.
-fn limit_travel(model: &Model, dt: f64, error: f64, state: &State, ws: &Workspace) -> Result<Estimate, Trouble> {
-    let share = travel(model, state, ws);
-    match model.integrator.size {
-        StepSize::Adaptive { tolerance, .. } => {
-            Ok(Estimate { error, with_contacts: error.max(tolerance * share * share) })
-        }
-        StepSize::Fixed(_) if share > 1.0 => Err(Trouble::TooFast { time: state.time + dt, share }),
-        StepSize::Fixed(_) => Ok(Estimate { error, with_contacts: error }),
+/// The state with the start of chemistry made: another one in the first step of a run.
+fn begun<'a>(model: &Model, state: &'a State, ws: &mut Workspace) -> Result<Cow<'a, State>, Trouble> {
+    if model.chemistry.is_empty() || state.chemistry.carried {
+        return Ok(Cow::Borrowed(state));
     }
+    let mut begun = state.clone();
+    carry_first(model, &mut begun, ws)?;
+    Ok(Cow::Owned(begun))
 }
 
-fn remember(state: &State, ws: &mut Workspace) {
-    for (now, w) in state.kinds.iter().zip(&mut ws.kinds) {
-        w.start.copy_from_slice(&now.positions);
-        w.start_velocity.copy_from_slice(&now.velocities);
-    }
-}
-
-fn restore(state: &mut State, ws: &Workspace) {
-    for (now, w) in state.kinds.iter_mut().zip(&ws.kinds) {
-        now.positions.copy_from_slice(&w.start);
-        now.velocities.copy_from_slice(&w.start_velocity);
-    }
-}
-
-/// Keeps the freely moved positions for the correction of velocities.
-fn keep_free_positions(state: &State, ws: &mut Workspace) {
-    for (now, w) in state.kinds.iter().zip(&mut ws.kinds) {
-        if !now.velocities.is_empty() {
-            w.force.copy_from_slice(&now.positions);
+/// Makes the state to which a step leads.
+fn make_step(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> Result<StepReport, Trouble> {
+    let mut plan = prepare(model, from, to, ws)?;
+    loop {
+        let outcome = attempt(model, &plan, from, to, ws);
+        if plan.allows(model, outcome)? && plan.accepts(model, inspect(model, &plan, from, to, ws))? {
+            break;
         }
     }
+    keep_contacts(model, from, to, ws);
+    measure_velocities(model, plan.dt, from, to);
+    advance_chemistry(model, plan.dt, from, to, ws)?;
+    advance_clock(model, &plan, to);
+    Ok(plan.report())
 }
 
-fn advance_clock(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) {
-    state.time += dt;
-    let slack = 1e-12 * model.until;
-    let exchange = next_exchange(model, state.time - 2.0 * slack);
-    let mut kinks = model.kinks.iter().copied().chain([model.until, exchange]);
-    if let Some(kink) = kinks.find(|kink| (kink - state.time).abs() <= slack) {
-        state.time = kink;
+/// What is the same for all attempts.
+fn prepare(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> Result<Plan, Trouble> {
+    ws.suit(model, from);
+    to.begin_from(from);
+    fit_stiffness(model, from, to, ws);
+    locate_contacts(model, from, ws);
+    check_depth(model, from, ws)?;
+    Ok(Plan::new(model, from, energy_before(model, from, ws)))
+}
+
+/// The stages of an attempt.
+fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Workspace) -> Result<Estimate, Trouble> {
+    let (dt, end) = (plan.dt, from.time + plan.dt);
+    carry_forces(model, from, ws);
+    advance_motility(model, dt, from, to, ws);
+    let error = move_freely(model, dt, from, to, ws);
+    check_finite(model, end, to)?;
+    hold_contacts(model, dt, plan.sweep_rules(), from, to, ws)?;
+    make_exact(model, end, from, to, ws)?;
+    correct_velocities(model, dt, to, ws);
+    check_finite(model, end, to)?;
+    Ok(Estimate { error, travel: travel(model, from, to) })
+}
+
+/// Looks at where an attempt ends that its error allows.
+fn inspect(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Workspace) -> Option<Flaw> {
+    if plan.may_repeat(model) && has_gained(model, plan.dt, plan.energy, from, to, ws) {
+        return Some(Flaw::GainedEnergy);
     }
-    state.step += 1;
-    if !ws.walks.is_empty() {
-        state.walks.copy_from_slice(&ws.walks);
-        state.ended_runs.append(&mut ws.ended_runs);
+    let deepened = look_for_depth(model, from, to, ws)?;
+    Some(Flaw::Deepened(deepened.breaks_promise().then(|| deepened.trouble(model, from))))
+}
+
+/// The clock shows exactly when something is to happen, whatever round-off the steps before have left.
+fn advance_clock(model: &Model, plan: &Plan, to: &mut State) {
+    to.time += plan.dt;
+    let slack = model.clock_slack();
+    let exchange = next_exchange(model, to.time - 2.0 * slack);
+    if let Some(instant) = model.instants().chain([exchange]).find(|instant| (instant - to.time).abs() <= slack) {
+        to.time = instant;
     }
+    to.step += 1;
+    to.next_step = plan.next_step(model);
 }

@@ -1,8 +1,5 @@
 //! When the numbers fail: what, where and when.
 
-use super::constraints::VolumeFailure;
-use super::model::Model;
-use super::state::{State, index};
 use crate::ode::Reason;
 
 /// Why a step could not be made. The state is the one before the step.
@@ -100,12 +97,7 @@ pub enum Trouble {
 }
 
 impl Trouble {
-    pub(super) fn of_volume(model: &Model, time: f64, failure: VolumeFailure) -> Self {
-        let kind = model.kinds[failure.kind].name.clone();
-        Self::Volume { kind, cell: failure.cell, error: failure.error, time }
-    }
-
-    /// What to do about it.
+    /// What to do about it, where nothing is known but the trouble; [`help_at`](super::contact::help_at) looks at the cells, too.
     pub fn help(&self) -> &'static str {
         match self {
             Self::NotFinite { .. } => {
@@ -130,8 +122,8 @@ impl Trouble {
                 "bound the number in the link's transfer, such as transfer=\"max(value, 0)\", or mend the equations behind it"
             }
             Self::Contact { .. } | Self::Pressed { .. } => {
-                "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
-                 let run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
+                "contacts could not keep these cells apart: look at their last state; weaker loads, stiffer cells or \
+                 shorter steps (run.integrator: a smaller step where you set one, else max_step or tolerance) may help"
             }
             Self::TooFast { .. } => "shorten run.integrator.step, or leave it out so that steps limit themselves",
             Self::StepTooSmall { .. } => {
@@ -209,22 +201,4 @@ fn words_for(reason: Reason) -> &'static str {
         Reason::EndlessEvents => "events follow each other without end",
         Reason::Solver => "the solver gave up",
     }
-}
-
-/// Finds the first position that is not finite.
-pub fn check_finite(model: &Model, time: f64, state: &State) -> Result<(), Trouble> {
-    for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-        // A sum is not finite when a part is not, or when it overflows, which is no better.
-        if now.positions.iter().map(|x| x * 1e-30).sum::<f64>().is_finite() {
-            continue;
-        }
-        for cell in 0..kind.cells {
-            for atom in 0..kind.atoms() {
-                if (0..3).any(|axis| !now.positions[index(kind, cell, atom, axis)].is_finite()) {
-                    return Err(Trouble::NotFinite { kind: kind.name.clone(), cell, atom, time });
-                }
-            }
-        }
-    }
-    Ok(())
 }

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use super::chemistry::ChemistryScratch;
 use super::contact::ContactScratch;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::planes::TouchScratch;
 use super::projection::ProjectScratch;
 use super::rooms::Rooms;
-use crate::cell::motility::Walk;
-use crate::mechanics::implicit::Factor;
+use super::solver::Solver;
+use super::state::State;
 use crate::mechanics::stiffness::StiffnessMatrix;
 
 /// Scratch for all kinds.
@@ -17,10 +18,8 @@ use crate::mechanics::stiffness::StiffnessMatrix;
 pub struct Workspace {
     /// One entry a kind.
     pub kinds: Vec<KindScratch>,
-    /// Walks at the end of the step being tried.
-    pub walks: Vec<Walk>,
-    /// Runs that ended in the step being tried.
-    pub ended_runs: Vec<(u32, f64, f64)>,
+    /// The state that the step being made leads to; between steps the one that was left last.
+    pub next: State,
     /// Mean velocity that motility asks of every cell over the step, µm/s.
     pub drive: Vec<[f64; 3]>,
     /// Scratch of chemistry.
@@ -34,22 +33,23 @@ pub struct Workspace {
 /// Scratch of a kind; arrays have the shape of the positions unless said otherwise.
 #[derive(Debug, Clone)]
 pub struct KindScratch {
-    /// Positions at the start of the step.
-    pub start: Vec<f64>,
-    /// Velocities at the start of the step (inertial schemes).
-    pub start_velocity: Vec<f64>,
     /// Forces, pN, where they are asked for; the stages of the implicit step hold no more than those of a block.
     pub force: Vec<f64>,
-    /// Increments of the first stage, µm, where the second is made after it and not block by block, or the sum of the velocities of
-    /// all stages, µm/s (RK4); else empty.
-    pub first: Vec<f64>,
+    /// Increments of the first stage, µm, where the second is made after it and not block by block; else empty.
+    pub increments: Vec<f64>,
+    /// Positions to which the atoms went freely, µm (inertial schemes); else empty.
+    pub free: Vec<f64>,
+    /// Sum of the velocities of all stages, µm/s (RK4); else empty.
+    pub rates: Vec<f64>,
     /// Sum of the accelerations of all stages, µm/s² (RK4); else empty.
     pub accelerations: Vec<f64>,
     /// Energy of each cell, padded, pN·µm.
     pub energy: Vec<f64>,
     /// Volume of each cell, padded, µm³.
     pub volume: Vec<f64>,
-    /// What the cubic left of the volume error, padded, µm³.
+    /// Volume of each cell where its atoms went freely, padded, µm³ (contacts).
+    pub free_volume: Vec<f64>,
+    /// What is left of the volume error of each cell, padded, over its target.
     pub left: Vec<f64>,
     /// Pressure multiplier of each cell in the stage solved last, padded, pN/µm².
     pub pressure: Vec<f64>,
@@ -72,69 +72,38 @@ pub struct KindScratch {
 /// Factors kept: the ladder of steps is coarse, so few are in use at a time.
 const FACTORS_KEPT: usize = 6;
 
-/// The factored matrix along each axis.
-#[derive(Debug, Clone)]
-pub struct Solver {
-    /// Step over drag, µm/pN: the free mobility.
-    pub mobility: f64,
-    /// One factor, or three where atoms are held along some axes only.
-    factors: Vec<Factor>,
-}
-
-impl Solver {
-    /// Factors ζ/dt + γK for a kind.
-    pub fn new(kind: &Kind, stiffness: &StiffnessMatrix, dt: f64, gamma: f64) -> Self {
-        let held = |axis: usize| -> Vec<bool> {
-            (0..kind.atoms()).map(|atom| kind.is_held() && kind.held[3 * atom + axis] == 0.0).collect()
-        };
-        let masks = [held(0), held(1), held(2)];
-        let same = masks[0] == masks[1] && masks[1] == masks[2];
-        let axes = if same { 1 } else { 3 };
-        let factors = masks[..axes].iter().map(|mask| Factor::new(stiffness, kind.drag / dt, gamma, mask)).collect();
-        Self { mobility: dt / kind.drag, factors }
-    }
-
-    /// Solves in place for the vectors of a block of `lanes` cells; `scratch` has the same size.
-    pub fn solve(&self, lanes: usize, values: &mut [f64], scratch: &mut [f64]) {
-        if let [factor] = &self.factors[..] {
-            factor.solve(3 * lanes, values, scratch);
-            return;
-        }
-        let (one, scratch) = scratch.split_at_mut(values.len() / 3);
-        for (axis, factor) in self.factors.iter().enumerate() {
-            for (to, from) in one.chunks_exact_mut(lanes).zip(values.chunks_exact(3 * lanes)) {
-                to.copy_from_slice(&from[axis * lanes..(axis + 1) * lanes]);
-            }
-            factor.solve(lanes, one, &mut scratch[..values.len() / 3]);
-            for (from, to) in one.chunks_exact(lanes).zip(values.chunks_exact_mut(3 * lanes)) {
-                to[axis * lanes..(axis + 1) * lanes].copy_from_slice(from);
-            }
-        }
-    }
-}
-
 impl KindScratch {
-    fn new(kind: &Kind, inertial: bool) -> Self {
-        let size = kind.blocks() * kind.block_len();
-        let padded = kind.blocks() * kind.lanes;
+    fn new() -> Self {
         Self {
-            start: vec![0.0; size],
-            start_velocity: vec![0.0; if inertial { size } else { 0 }],
             force: Vec::new(),
-            first: Vec::new(),
+            increments: Vec::new(),
+            free: Vec::new(),
+            rates: Vec::new(),
             accelerations: Vec::new(),
-            energy: vec![0.0; padded],
-            volume: vec![0.0; padded],
-            left: vec![0.0; padded],
-            pressure: vec![0.0; padded],
-            target: vec![0.0; padded],
-            touch: vec![TouchScratch::default(); kind.blocks()],
-            project: vec![ProjectScratch::default(); kind.blocks()],
+            energy: Vec::new(),
+            volume: Vec::new(),
+            free_volume: Vec::new(),
+            left: Vec::new(),
+            pressure: Vec::new(),
+            target: Vec::new(),
+            touch: Vec::new(),
+            project: Vec::new(),
             stiffness_shape: Vec::new(),
             stiffening: 1.0,
             stiffness: None,
             factors: Vec::new(),
         }
+    }
+
+    /// Makes arrays as large as so many cells need.
+    fn suit(&mut self, kind: &Kind, cells: usize) {
+        let blocks = cells.div_ceil(kind.lanes);
+        let per_cell = [&mut self.energy, &mut self.volume, &mut self.free_volume, &mut self.left];
+        for array in per_cell.into_iter().chain([&mut self.pressure, &mut self.target]) {
+            array.resize(blocks * kind.lanes, 0.0);
+        }
+        self.touch.resize_with(blocks, TouchScratch::default);
+        self.project.resize_with(blocks, ProjectScratch::default);
     }
 
     /// The solver for a step, factored when it is new.
@@ -164,13 +133,14 @@ impl KindScratch {
         self.set_stiffness(None, &[]);
         self.stiffening = f64::NAN;
         for array in [
-            &mut self.start,
-            &mut self.start_velocity,
             &mut self.force,
-            &mut self.first,
+            &mut self.increments,
+            &mut self.free,
+            &mut self.rates,
             &mut self.accelerations,
             &mut self.energy,
             &mut self.volume,
+            &mut self.free_volume,
             &mut self.left,
             &mut self.pressure,
             &mut self.target,
@@ -183,17 +153,25 @@ impl KindScratch {
 }
 
 impl Workspace {
-    /// Scratch for a model.
+    /// Scratch for a model; it becomes as large as the cells need that there are.
     pub fn new(model: &Model) -> Self {
-        let inertial = model.integrator.method.is_inertial();
         Self {
-            kinds: model.kinds.iter().map(|kind| KindScratch::new(kind, inertial)).collect(),
-            walks: Vec::new(),
-            ended_runs: Vec::new(),
-            drive: vec![[0.0; 3]; model.cells()],
+            kinds: model.kinds.iter().map(|_| KindScratch::new()).collect(),
+            next: State::default(),
+            drive: Vec::new(),
             chemistry: ChemistryScratch::new(model),
             contact: ContactScratch::default(),
             rooms: Rooms::default(),
+        }
+    }
+
+    /// Makes scratch as large as the cells of a state need. Nothing is allocated where it is.
+    pub fn suit(&mut self, model: &Model, state: &State) {
+        self.rooms.suit(model);
+        self.drive.resize(state.cells(), [0.0; 3]);
+        self.chemistry.suit(model, state);
+        for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&mut self.kinds) {
+            w.suit(kind, now.cells());
         }
     }
 
@@ -204,6 +182,6 @@ impl Workspace {
         self.rooms.poison();
         self.kinds.iter_mut().for_each(KindScratch::poison);
         self.drive.fill([f64::NAN; 3]);
-        self.walks.clear();
+        self.next.poison();
     }
 }

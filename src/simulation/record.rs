@@ -1,50 +1,32 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
-use super::touch::Touch;
-use crate::experiment::{ADHESIVE_SERIES, CONTACT_SERIES, LINK_SERIES};
-use crate::output::{CellLayout, CellRecord, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
-use crate::sim::chemistry::Members;
-use crate::sim::contact::{Law, find_contacts};
+use super::touch::{Touch, recorded_by};
+use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
+use crate::recorded::contact_quantities;
+use crate::sim::chemistry::{Members, member_cells};
+use crate::sim::contact::find_contacts;
+use crate::sim::kind::Kind;
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
-use crate::sim::{Model, State, Workspace, forces};
+use crate::sim::{KindState, Model, State, Workspace, forces};
 
-/// Names, cells, facets and planes of a model, as the result file lists them.
+/// Types of cells, names and planes of a model, as the result file lists them.
 pub fn layout_of(model: &Model) -> Layout {
     let mut layout = outline_of(model);
-    for cell in &layout.cells {
-        let kind = &model.kinds[cell.kind as usize];
-        layout.facets.extend(kind.rest.facets.iter().map(|facet| facet.map(|atom| atom + cell.first_atom)));
-        layout.links.extend(kind.drawn_links.iter().map(|pair| pair.map(|atom| atom + cell.first_atom)));
+    for (known, kind) in layout.types.iter_mut().zip(&model.kinds) {
+        (known.facets, known.links) = (kind.rest.facets.clone(), kind.drawn_links.clone());
     }
     layout
 }
 
 /// The same without facets and links, which take most of the memory: enough to know the series of a frame.
 pub fn outline_of(model: &Model) -> Layout {
-    let mut layout = Layout::default();
-    let (mut first_atom, mut first_facet) = (0u32, 0u32);
-    for (number, kind) in model.kinds.iter().enumerate() {
-        layout.types.push(kind.name.clone());
-        for _ in 0..kind.cells {
-            let (atoms, facets) = (kind.atoms() as u32, kind.rest.facets.len() as u32);
-            layout.cells.push(CellLayout { kind: number as u32, first_atom, atoms, first_facet, facets });
-            first_atom += atoms;
-            first_facet += facets;
-        }
-    }
+    let kind = |kind: &Kind| CellType { name: kind.name.clone(), atoms: kind.atoms() as u32, ..CellType::default() };
+    let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     layout.contacts = model.contact.is_some();
-    if layout.contacts {
-        let unit = |name: &str| if name == "contact.energy" { "pN um" } else { "1" }.to_owned();
-        layout.scene_series.extend(CONTACT_SERIES.map(|name| (name.to_owned(), unit(name))));
-    }
-    let of_law: &[&str] = match model.contact.as_ref().map(|contact| &contact.law) {
-        Some(Law::Links(_)) => &[LINK_SERIES],
-        Some(Law::VirtualAdhesives(_)) => &ADHESIVE_SERIES,
-        _ => &[],
-    };
-    layout.scene_series.extend(of_law.iter().map(|name| ((*name).to_owned(), "1".to_owned())));
+    let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(recorded_by(&contact.law)));
+    layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
     layout.planes = model.planes.iter().map(plane).collect();
     add_chemistry(model, &mut layout);
@@ -69,7 +51,7 @@ fn add_chemistry(model: &Model, layout: &mut Layout) {
             name: reactor.name.clone(),
             scope: match &reactor.members {
                 Members::Scene => SystemScope::Scene,
-                Members::Cells(cells) => SystemScope::Cells(cells.clone()),
+                Members::Kinds(_) => SystemScope::Cells,
             },
             quantities: reactor.recorded.iter().map(|(_, id, unit)| (id.clone(), unit.clone())).collect(),
         });
@@ -87,18 +69,27 @@ fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
         let values = reactor.recorded.iter().map(|(quantity, ..)| {
             let mut values = vec![0.0; population.cells()];
             population.observe(&reactor.program, *quantity, time / reactor.seconds, &mut values);
-            values
+            match &reactor.members {
+                Members::Scene => values,
+                Members::Kinds(_) => {
+                    let mut of_all = vec![f64::NAN; frame.cells.len()];
+                    let cells = member_cells(&state.kinds, &reactor.members);
+                    cells.zip(values).for_each(|(cell, value)| of_all[cell] = value);
+                    of_all
+                }
+            }
         });
-        frame.systems.push(values.collect());
+        let values = values.collect();
+        frame.systems.push(values);
     }
 }
 
-/// Series name, kind and load of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
+/// Series name, kind and number of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
 fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
-    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads.iter().any(|load| load.name == name)).count();
+    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads().any(|load| load.name == name)).count();
     let mut names: Vec<(String, usize, usize)> = Vec::new();
     for (k, kind) in model.kinds.iter().enumerate() {
-        for (l, load) in kind.loads.iter().enumerate() {
+        for (l, load) in kind.loads().enumerate() {
             let owner = if owners(&load.name) > 1 { format!("{}.", kind.name) } else { String::new() };
             names.push((format!("load.{owner}{}", load.name), k, l));
         }
@@ -132,17 +123,18 @@ impl Recorder {
 
     /// The frame of this instant without the runs that ended; `dt` is the size of the last step, s.
     pub fn look(&mut self, model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
-        let mut frame = frame_of(model, state, ws, dt);
-        frame.scene = self.loads.iter().map(|&(_, k, l)| model.kinds[k].loads[l].force.at(state.time)).collect();
+        let mut frame = frame_of(model, state);
+        let at = |&(_, kind, number): &(String, usize, usize)| model.kinds[kind].loads().nth(number);
+        frame.scene = self.loads.iter().filter_map(at).map(|load| load.force.at(state.time)).collect();
         if let Some(contact) = &model.contact {
-            self.touch.look(model, contact, state, ws, dt, &mut frame);
+            self.touch.look(model, &contact.scene_of(&state.kinds), state, ws, dt, &mut frame);
         }
         if let Some(scratch) = &mut self.force_scratch {
             // What contacts carry is part of the state, and is read from there.
             find_contacts(model, state, scratch);
             forces::add_forces(model, state.time, state, scratch);
-            for (kind, w) in model.kinds.iter().zip(&scratch.kinds) {
-                for cell in 0..kind.cells {
+            for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&scratch.kinds) {
+                for cell in 0..now.cells() {
                     frame.forces.extend((0..kind.atoms()).map(|a| <[f64; 3]>::from(vector(kind, &w.force, cell, a))));
                 }
             }
@@ -151,13 +143,21 @@ impl Recorder {
     }
 }
 
-/// Positions and measures of all cells at this instant, as if they did not touch; `dt` is the size of the last step, s.
-fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
-    let velocities = mean_velocities(model, state, ws, dt);
-    let mut frame = Frame { time: state.time, step: state.step, ..Frame::default() };
+/// The cells that there are, in the order of all arrays of a frame.
+fn cells_of(state: &State) -> Vec<Cell> {
+    let of_kind = |(kind, now): (u32, &KindState)| -> Vec<Cell> {
+        now.ids.iter().zip(&now.parents).map(|(&id, &parent)| Cell { id, kind, parent }).collect()
+    };
+    (0..).zip(&state.kinds).flat_map(of_kind).collect()
+}
+
+/// Positions and measures of all cells at this instant, as if they did not touch.
+fn frame_of(model: &Model, state: &State) -> Frame {
+    let velocities = mean_velocities(state);
+    let mut frame = Frame { time: state.time, step: state.step, cells: cells_of(state), ..Frame::default() };
     for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
         frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));
-        frame.cells.push(CellRecord {
+        frame.records.push(CellRecord {
             position: cell.centre.into(),
             velocity: velocity.into(),
             volume: cell.volume,
@@ -169,7 +169,7 @@ fn frame_of(model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
             smallest_facet: cell.smallest_facet,
             smallest_cosine: cell.smallest_cosine,
             contact_share: 0.0,
-            aggregate: number as f64,
+            aggregate: frame.cells[number].id as f64,
         });
     }
     record_chemistry(model, state, &mut frame);

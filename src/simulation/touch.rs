@@ -4,8 +4,24 @@
 use crate::Vec3;
 use crate::contact::{Contacts, Detector, Scene};
 use crate::output::{Frame, Touching, clusters};
-use crate::sim::contact::{ContactModel, Law, Link, links_at};
+use crate::recorded::{ContactSeries, Recorded, contact_quantities};
+use crate::sim::contact::{ContactScene, Law, Link, links_at};
 use crate::sim::{Model, State, Workspace};
+
+/// Which series a law of contact records besides those of all contacts.
+pub fn recorded_by(law: &Law) -> Recorded {
+    match law {
+        Law::Links(_) => Recorded::WithLinks,
+        Law::VirtualAdhesives(_) => Recorded::WithAdhesives,
+        Law::Adhesives | Law::Penalty(_) => Recorded::Always,
+    }
+}
+
+/// How many aggregates there are, and cells of the largest.
+struct Aggregates {
+    number: usize,
+    largest: usize,
+}
 
 /// Looks at contacts; has scratch of its own.
 #[derive(Default)]
@@ -22,12 +38,12 @@ pub struct Touch {
 }
 
 impl Touch {
-    /// Fills in what the cells of a frame touch, and adds the series of contacts to those of the scene, in the order of
-    /// [`CONTACT_SERIES`](crate::experiment::CONTACT_SERIES); `dt` is the last step, s, 0 when there was none.
+    /// Fills in what the cells of a frame touch, and adds the series of contacts to those of the scene, as
+    /// [`CONTACTS`](crate::recorded::CONTACTS) lists them; `dt` is the last step, s, 0 when there was none.
     pub fn look(
         &mut self,
         model: &Model,
-        contact: &ContactModel,
+        contact: &ContactScene,
         state: &State,
         ws: &Workspace,
         dt: f64,
@@ -49,33 +65,44 @@ impl Touch {
         // Where links bind, cells that merely touch do not belong together.
         let first = match contact.law {
             Law::Links(_) => clusters(bodies, self.links.iter().map(|link| link.bodies)),
-            _ => clusters(bodies, frame.pairs.iter().map(|pair| [pair.cell, pair.other])),
+            _ => clusters(bodies, self.areas.iter().filter(|area| area.1 < bodies as u32).map(|area| [area.0, area.1])),
         };
-        for (cell, record) in frame.cells.iter_mut().enumerate() {
+        let mut smallest: Vec<u64> = frame.cells.iter().map(|cell| cell.id).collect();
+        for (cell, first) in frame.cells.iter().zip(&first) {
+            let known = &mut smallest[*first as usize];
+            *known = (*known).min(cell.id);
+        }
+        for (cell, record) in frame.records.iter_mut().enumerate() {
             record.contact_share = f64::from(touching[cell]) / contact.scene.shape(cell as u32).atoms as f64;
-            record.aggregate = f64::from(first[cell]);
+            record.aggregate = smallest[first[cell] as usize] as f64;
         }
         let mut sizes = vec![0_u32; first.len()];
         first.iter().for_each(|first| sizes[*first as usize] += 1);
+        let aggregates = Aggregates {
+            number: sizes.iter().filter(|size| **size > 0).count(),
+            largest: sizes.iter().copied().max().unwrap_or(0) as usize,
+        };
         let sweeps = if dt > 0.0 { ws.contact.sweeps } else { 0 };
         let edge = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
-        frame.scene.extend([
-            f64::from(sweeps),
-            (-self.found.smallest_gap()).max(0.0) / edge,
-            (self.found.atoms.len() + self.found.edges.len() + self.found.planes.len()) as f64,
-            sizes.iter().filter(|size| **size > 0).count() as f64,
-            f64::from(sizes.iter().copied().max().unwrap_or(0)),
-            state.contact.given(),
-        ]);
-        match contact.law {
-            Law::Links(_) => frame.scene.push(self.links.len() as f64),
-            Law::VirtualAdhesives(_) => {
-                let adhesives = || state.contact.adhesives.chunk_by(|one, other| one.adhesive == other.adhesive);
-                let largest = adhesives().map(<[_]>::len).max().unwrap_or(0);
-                frame.scene.extend([adhesives().count() as f64, largest as f64]);
-            }
-            Law::Adhesives | Law::Penalty(_) => {}
-        }
+        let value = |series| self.value(series, state, &aggregates, f64::from(sweeps), edge);
+        frame.scene.extend(contact_quantities(recorded_by(&contact.law)).map(|row| value(row.series)));
+    }
+
+    /// The value of a series of contacts; `edge` is the smallest mean edge of all types, µm.
+    fn value(&self, series: ContactSeries, state: &State, aggregates: &Aggregates, sweeps: f64, edge: f64) -> f64 {
+        let adhesives = || state.contact.adhesives.chunk_by(|one, other| one.adhesive == other.adhesive);
+        let count = match series {
+            ContactSeries::Sweeps => return sweeps,
+            ContactSeries::Deepest => return (-self.found.smallest_gap()).max(0.0) / edge,
+            ContactSeries::Energy => return state.contact.given(),
+            ContactSeries::Count => self.found.atoms.len() + self.found.edges.len() + self.found.planes.len(),
+            ContactSeries::Aggregates => aggregates.number,
+            ContactSeries::LargestAggregate => aggregates.largest,
+            ContactSeries::Links => self.links.len(),
+            ContactSeries::Adhesives => adhesives().count(),
+            ContactSeries::LargestAdhesive => adhesives().map(<[_]>::len).max().unwrap_or(0),
+        };
+        count as f64
     }
 
     /// Finds what each atom touches, its own cell left out; one that touches several facets of a cell counts once.
@@ -90,7 +117,7 @@ impl Touch {
     }
 
     /// Adds up the areas of contact, eq. (adhesion.8), in the order of atoms.
-    fn measure_areas(&mut self, contact: &ContactModel, frame: &mut Frame) {
+    fn measure_areas(&mut self, contact: &ContactScene, frame: &mut Frame) {
         let bodies = contact.scene.bodies.len() as u32;
         self.areas.clear();
         for of_atom in self.partners.chunk_by(|one, other| one.0 == other.0) {
@@ -106,12 +133,21 @@ impl Touch {
             self.found.edges.iter().map(|near| near.bodies(&contact.scene)).filter(|[one, other]| one != other);
         self.areas.extend(of_edges.map(|[one, other]| (one.min(other), one.max(other), 0.0)));
         self.areas.sort_by_key(|area| (area.0, area.1));
+        let ids: Vec<u64> = frame.cells.iter().map(|cell| cell.id).collect();
+        let id = |cell: u32| ids[cell as usize];
         for alike in self.areas.chunk_by(|one, other| (one.0, one.1) == (other.0, other.1)) {
             let (cell, other, area) = (alike[0].0, alike[0].1, alike.iter().map(|one| one.2).sum());
             match other.checked_sub(bodies) {
-                None => frame.pairs.push(Touching { cell, other, area }),
-                Some(plane) => frame.on_planes.push(Touching { cell, other: plane, area }),
+                None => {
+                    let (one, other) = (id(cell), id(other));
+                    frame.pairs.push(Touching { cell: one.min(other), other: one.max(other), area });
+                }
+                Some(plane) => {
+                    frame.on_planes.push(Touching { cell: id(cell), other: u64::from(plane), area });
+                }
             }
         }
+        frame.pairs.sort_by_key(|pair| (pair.cell, pair.other));
+        frame.on_planes.sort_by_key(|touching| (touching.cell, touching.other));
     }
 }

@@ -4,14 +4,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// A room and the rooms that it may use. Every room may use itself and those that see nothing else: `error`, `units`,
-/// `random`, and the crate's own `Vec3`.
+/// `random`, `recorded`, and the crate's own `Vec3`.
 const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("units", &[]),
     ("random", &[]),
+    ("recorded", &[]),
+    ("xml", &[]),
     ("geometry", &[]),
     ("mechanics", &["geometry"]),
-    ("equations", &[]),
+    ("equations", &["xml"]),
     ("ode", &["equations"]),
     ("field", &["equations", "ode"]),
     ("contact", &["geometry"]),
@@ -22,7 +24,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ("output", &[]),
     // Numbers and plots come from a finished file; the kinds of measures are words of the document.
     ("analysis", &["output", "experiment", "cell", "contact", "geometry"]),
-    ("picture", &["output", "experiment", "analysis", "cell", "geometry", "run"]),
+    ("picture", &["xml", "output", "experiment", "analysis", "cell", "geometry", "run"]),
     // The door for programs: it records frames, and writes none.
     ("simulation", &["experiment", "sim", "output", "cell", "equations", "contact", "geometry"]),
     ("run", &["simulation", "experiment", "sim", "output", "analysis"]),
@@ -45,7 +47,7 @@ const TABLE: &[(&str, &[&str])] = &[
 ];
 
 /// What every room may use.
-const GROUND: [&str; 3] = ["error", "units", "random"];
+const GROUND: [&str; 4] = ["error", "units", "random", "recorded"];
 
 /// Rooms that must not touch files or clocks, and the words that would show it.
 const PURE: [&str; 7] = ["geometry", "mechanics", "contact", "cell", "sim", "units", "random"];

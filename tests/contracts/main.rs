@@ -2,9 +2,14 @@
 
 mod book;
 mod circles;
+mod examples;
 mod layering;
 mod run;
+mod simulation;
+mod transaction;
 mod volume;
 
+#[path = "../support/everything.rs"]
+mod everything;
 #[path = "../support/turns.rs"]
 mod turns;

@@ -2,11 +2,13 @@
 
 use pseudopod::Vec3;
 use pseudopod::analysis::aggregates::{Change, changes};
-use pseudopod::experiment::{CONTACT_SERIES, Compiled, Document, PushedApart, compile, pair_series, settle_start};
+use pseudopod::experiment::{Compiled, Document, PushedApart, compile, settle_start};
 use pseudopod::output::{Overwrite, ResultFile};
+use pseudopod::recorded::{CONTACTS, Touch};
 use pseudopod::run::{Quiet, RunOptions, run};
 use pseudopod::sim::contact::Strength;
 use pseudopod::sim::{Workspace, begin_chemistry, step};
+use pseudopod::simulation::CancelToken;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -52,7 +54,7 @@ fn centres(compiled: &Compiled) -> Vec<(Vec3, f64)> {
     let of_kind = |(kind, now): (&pseudopod::sim::Kind, &pseudopod::sim::KindState)| -> Vec<(Vec3, f64)> {
         let radius = kind.rest.positions[0].norm();
         let mean = |cell| now.cell(kind, cell).iter().sum::<Vec3>() / kind.atoms() as f64;
-        (0..kind.cells).map(|cell| (mean(cell), radius)).collect()
+        (0..now.cells()).map(|cell| (mean(cell), radius)).collect()
     };
     kinds.flat_map(of_kind).collect()
 }
@@ -87,7 +89,7 @@ fn an_empty_table_turns_contacts_on_and_nothing_sticks() {
     let contact = model.contact.expect("contacts");
     assert!(contact.between.iter().chain(&contact.on_planes).all(|strength| *strength == Strength::default()));
     let smallest = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
-    assert_eq!(contact.scene.reach.proximity, 0.1 * smallest);
+    assert_eq!(contact.reach.proximity, 0.1 * smallest);
 }
 
 #[test]
@@ -102,7 +104,7 @@ fn cells_at_random_start_apart_and_above_the_planes() {
         }
     }
     let lowest = |kind: &pseudopod::sim::Kind, now: &pseudopod::sim::KindState| {
-        (0..kind.cells).flat_map(|cell| now.cell(kind, cell)).map(|p| p.z).fold(f64::INFINITY, f64::min)
+        (0..now.cells()).flat_map(|cell| now.cell(kind, cell)).map(|p| p.z).fold(f64::INFINITY, f64::min)
     };
     for (kind, now) in with.model.kinds.iter().zip(&with.state.kinds) {
         assert!(lowest(kind, now) > -1e-7, "an atom stands on the plane at most");
@@ -208,7 +210,7 @@ loads = [{{ name = "{name}_pull", all = true, direction = [{direction}, 0, 0], f
     let file = ResultFile::open(&result).expect("a result");
     let events = changes(file.cell_series("aggregate").expect("a series").view());
     println!("{events:?}");
-    let first: Vec<(Change, &[u32], &[u32])> =
+    let first: Vec<(Change, &[u64], &[u64])> =
         events.iter().map(|event| (event.change, &event.before[..], &event.after[..])).take(2).collect();
     assert_eq!(first, [(Change::Merge, &[0, 2][..], &[0][..]), (Change::Split, &[0][..], &[0, 2][..])]);
 }
@@ -256,7 +258,8 @@ fn aggregates_and_shares_of_contact_are_recorded() {
     let summary = file.summary().expect("measures");
     assert_eq!(summary.iter().find(|measure| measure.name == "together").map(|measure| measure.value), Some(3.0));
     for frame in 0..frames {
-        let pairs: Vec<[u32; 2]> = file.pairs(frame).unwrap().iter().map(|pair| [pair.cell, pair.other]).collect();
+        let pairs: Vec<[u32; 2]> =
+            file.pairs(frame).unwrap().iter().map(|pair| [pair.cell as u32, pair.other as u32]).collect();
         assert_eq!(pairs, [[0, 3], [1, 3]], "in frame {frame}");
     }
     // Two red cells and a white one touch: by chance a pair is alike with probability 1/3, and none is. There are three
@@ -265,11 +268,11 @@ fn aggregates_and_shares_of_contact_are_recorded() {
     assert!((measure("mixed") + 0.5).abs() < 1e-15 && measure("p") == 1.0);
     assert_eq!(file.scene_series("contact.segregation").expect("a series")[0], measure("mixed"));
     assert_eq!(file.scene_series("contact.heterotypic_share").expect("a series"), vec![1.0; frames]);
-    let names = pair_series(&["red", "white"], &[]);
+    let names = Touch::all(2, 0).into_iter().map(|series| series.name(&["red", "white"], &[])).collect::<Vec<_>>();
     let of_file = file
         .scene_names()
         .into_iter()
-        .filter(|name| name.starts_with("contact.") && !CONTACT_SERIES.contains(&name.as_str()));
+        .filter(|name| name.starts_with("contact.") && !CONTACTS.iter().any(|row| row.name == *name));
     assert_eq!(of_file.collect::<Vec<_>>(), names);
     let page = pseudopod::output::describe(&file).expect("a page");
     assert!(page.contains("2 aggregates in the last frame, the largest of 3"), "{page}");
@@ -335,7 +338,8 @@ fn sheets_that_lie_on_each_other_touch_with_all_their_area() {
         // Round-off of sums over 30 atoms.
         assert!((area(name) - wanted).abs() < 1e-11, "{name}: {} µm² in place of {wanted}", area(name));
     }
-    let pairs: Vec<[u32; 2]> = file.pairs(0).unwrap().iter().map(|pair| [pair.cell, pair.other]).collect();
+    let pairs: Vec<[u32; 2]> =
+        file.pairs(0).unwrap().iter().map(|pair| [pair.cell as u32, pair.other as u32]).collect();
     assert_eq!(pairs, [[0, 1], [1, 2]]);
     let values = |name: &str| file.summary().unwrap().into_iter().find(|measure| measure.name == name).unwrap().value;
     assert!(values("none") == 0.0 && values("pair") > 39.9 && values("floor") > 39.9);
@@ -390,6 +394,71 @@ fn chemistry_feels_other_cells_the_same_with_every_scratch() {
         step(&model, &mut other, &mut Workspace::new(&model)).expect("a step");
         assert!(share(&state) == share(&other) && state == other, "at {} s", state.time);
     }
+}
+
+#[test]
+fn links_read_the_share_in_contact_that_is_recorded_and_planes_have_a_share_of_their_own() {
+    let eml = r#"<eml name="touch" level="cell"><input id="share" default="0"/><input id="ground" default="0"/>
+        <variable id="sum" initial="0" rate="share + ground"/>
+        <link from="cell.contact_share" to="system.share"/><link from="cell.plane_share" to="system.ground"/></eml>"#;
+    let planes = "[[planes]]\nname = \"floor\"\npoint = [0, 0, \"15 um\"]\nnormal = [0, 0, 1]\n";
+    let before = ROW.split_once("[output]").expect("the output").0;
+    let with_system = before.replace("mechanics =", "chemistry = [\"touch\"]\nmechanics =");
+    let text = format!("{with_system}{planes}[chemistry.touch]\ndocument = \"touch.eml\"\n");
+    let beside = BTreeMap::from([("touch.eml".to_owned(), eml.to_owned())]);
+    let document = Document::parse_beside("row.toml", &text, Path::new("."), &[], beside).expect("a good document");
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = folder.path().join("row.vtkhdf");
+    let options = RunOptions {
+        result: result.clone(),
+        overwrite: Overwrite::Refuse,
+        threads: Some(1),
+        cancel: CancelToken::default(),
+    };
+    run(&document, &options, &mut Quiet).expect("a run");
+    let file = ResultFile::open(&result).expect("a result");
+    let series = |name: &str| file.cell_series(name).expect("a series");
+    let (recorded, read, ground) = (series("contact_share"), series("touch.share"), series("touch.ground"));
+    assert!(recorded.iter().any(|share| *share > 0.0) && recorded == read, "{recorded} {read}");
+    assert!(ground.iter().all(|share| *share > 0.0), "all stand on the floor: {ground}");
+}
+
+/// Two cells drawn to one point.
+const DRAWN: &str = r#"
+title = "Drawn together"
+[run]
+until = "20 s"
+[cells.red]
+mesh = { shape = "icosphere", radius = "5 um", level = 1 }
+placement = { grid = [2, 1, 1], spacing = "11 um" }
+number = 2
+mechanics = { drag = "20 pN s/um", shape_memory = { stiffness = "1 pN/um" } }
+motility = { attraction = { to = [0, 0, 0], stiffness = "0.5 pN/um" } }
+[contact]
+"#;
+
+#[test]
+fn explicit_steps_that_nobody_names_are_as_short_as_contacts_need() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let end = |method: &str| {
+        let sets = [format!("run.integrator.method={method}")];
+        let document = Document::parse("drawn.toml", DRAWN, Path::new("."), &sets).expect("a good document");
+        let result = folder.path().join(format!("{method}.vtkhdf"));
+        let options = RunOptions {
+            result: result.clone(),
+            overwrite: Overwrite::Refuse,
+            threads: Some(1),
+            cancel: CancelToken::default(),
+        };
+        let outcome = run(&document, &options, &mut Quiet).expect("a run that comes to its end");
+        let file = ResultFile::open(&result).expect("a result");
+        let at = file.cell_series("position_x").expect("a series").row(file.frames() - 1).to_vec();
+        (outcome, at)
+    };
+    let ((explicit, one), (_, other)) = (end("explicit"), end("implicit"));
+    assert!(explicit.limited > 0, "the stable step is too long for contacts: {explicit:?}");
+    let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+    assert!(apart < 0.1, "the same place by both methods, to 1 % of a diameter: {one:?} {other:?}");
 }
 
 /// Two cells that loads press together; closed surfaces have no elastic force as a whole.

@@ -4,7 +4,7 @@ use crate::turns::take_turn;
 use pseudopod::error::{Error, Paint, render};
 use pseudopod::experiment::Document;
 use pseudopod::output::{
-    CellLayout, CellRecord, FieldLayout, Frame, Header, Layout, Overwrite, ResultFile, ResultWriter, SystemLayout,
+    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Overwrite, ResultFile, ResultWriter, SystemLayout,
     SystemScope,
 };
 use std::path::{Path, PathBuf};
@@ -84,7 +84,8 @@ fn every_fault_of_a_document_has_a_place() {
 
 /// Three frames of two amoebae, one of which moves, a rock, two systems and two fields that stay as they are.
 fn recorded(path: &Path) -> ResultFile {
-    let cell = |number: u32| CellLayout { kind: number / 2, first_atom: number, atoms: 1, first_facet: 0, facets: 0 };
+    let cell = |number: u32| Cell { id: u64::from(number), kind: number / 2, parent: None };
+    let kind = |name: &str| CellType { name: name.into(), atoms: 1, ..CellType::default() };
     let unit = |name: &str| vec![(name.to_owned(), "uM".to_owned())];
     let field = |name: &str, cells| FieldLayout {
         name: name.into(),
@@ -95,13 +96,9 @@ fn recorded(path: &Path) -> ResultFile {
     };
     let system = |name: &str, scope, quantity| SystemLayout { name: name.into(), scope, quantities: unit(quantity) };
     let layout = Layout {
-        types: vec!["amoeba".into(), "rock".into()],
-        cells: (0..3).map(cell).collect(),
+        types: vec![kind("amoeba"), kind("rock")],
         fields: vec![field("attractant", [4, 3, 1]), field("medium", [2, 2, 2])],
-        systems: vec![
-            system("oscillator", SystemScope::Cells(vec![0, 1]), "cAMP"),
-            system("clock", SystemScope::Scene, "tick"),
-        ],
+        systems: vec![system("oscillator", SystemScope::Cells, "cAMP"), system("clock", SystemScope::Scene, "tick")],
         ..Layout::default()
     };
     let header = Header::now("chemistry.toml", "Made up", "", &[], 0);
@@ -112,9 +109,10 @@ fn recorded(path: &Path) -> ResultFile {
             time,
             step: u64::from(step),
             positions: vec![[0.0; 3]; 3],
-            cells: [time, 0.0, 0.0].map(|x| CellRecord { position: [x, 0.0, 0.0], ..CellRecord::default() }).to_vec(),
+            cells: (0..3).map(cell).collect(),
+            records: [time, 0.0, 0.0].map(|x| CellRecord { position: [x, 0.0, 0.0], ..CellRecord::default() }).to_vec(),
             fields: vec![vec![vec![3.0; 12]], vec![vec![3.0; 8]]],
-            systems: vec![vec![vec![time, 2.0]], vec![vec![time]]],
+            systems: vec![vec![vec![time, 2.0, f64::NAN]], vec![vec![time]]],
             ..Frame::default()
         };
         writer.append(&frame).expect("a frame");

@@ -51,10 +51,11 @@ fn loads_that_share_a_name_are_recorded_apart() {
 fn arrows_stand_outside_the_cell_and_are_as_long_as_the_force_is_strong() {
     let folder = tempfile::tempdir().unwrap();
     let (result, document) = result(folder.path(), "");
-    let arrows = LoadArrows::of(&document, result.layout()).unwrap();
-    let places = result.positions(0).unwrap();
-    assert_eq!(arrows.at(0.0, &places).len(), 2, "a load of nothing shows nothing");
-    let [soft, pull, push] = arrows.at(2.0, &places)[..] else { panic!("three loads") };
+    let arrows = LoadArrows::of(&document).unwrap();
+    let (cells, positions) = (result.cells(0), result.positions(0).unwrap());
+    let at = |time: f64| arrows.at(time, result.layout(), &cells, &positions);
+    assert_eq!(at(0.0).len(), 2, "a load of nothing shows nothing");
+    let [soft, pull, push] = at(2.0)[..] else { panic!("three loads") };
     let length = |[tail, tip]: [[f64; 3]; 2]| (0..3).map(|k| (tip[k] - tail[k]).powi(2)).sum::<f64>().sqrt();
     assert!((length(soft) - length(pull)).abs() < 1e-12, "2 pN each");
     // The pull starts at the top of the sphere, the push ends at its bottom; the outermost atoms stand at 5 µm or less.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use pseudopod::geometry::icosphere;
 use pseudopod::output::{
-    CellLayout, CellRecord, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter, SystemLayout, SystemScope,
+    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter, SystemLayout, SystemScope,
 };
 
 pub const TEXT: &str = r#"
@@ -28,15 +28,15 @@ const CENTRES: [[f64; 3]; 3] = [[12.0, 12.0, 5.0], [27.0, 33.0, 5.0], [45.0, 16.
 
 fn layout() -> Layout {
     let sphere = icosphere(5.0, 2);
-    let (atoms, facets) = (sphere.positions.len() as u32, sphere.facets.len() as u32);
-    let cell = |n: u32| CellLayout { kind: n / 2, first_atom: n * atoms, atoms, first_facet: n * facets, facets };
+    let kind = |name: &str| CellType {
+        name: name.into(),
+        atoms: sphere.positions.len() as u32,
+        facets: sphere.facets.clone(),
+        links: Vec::new(),
+    };
     let named = |name: &str, unit: &str| (name.to_string(), unit.to_string());
     Layout {
-        types: vec!["walker".into(), "rester".into()],
-        cells: (0..3).map(cell).collect(),
-        facets: (0..3)
-            .flat_map(|n| sphere.facets.iter().map(move |f| f.map(|a| a + n * atoms)).collect::<Vec<_>>())
-            .collect(),
+        types: vec![kind("walker"), kind("rester")],
         planes: vec![("ground".into(), [0.0; 3], [0.0, 0.0, 1.0])],
         fields: vec![
             FieldLayout {
@@ -57,7 +57,7 @@ fn layout() -> Layout {
         systems: vec![
             SystemLayout {
                 name: "clock".into(),
-                scope: SystemScope::Cells(vec![0, 1]),
+                scope: SystemScope::Cells,
                 quantities: vec![named("U", "uM"), named("V", "1")],
             },
             SystemLayout { name: "bath".into(), scope: SystemScope::Scene, quantities: vec![named("level", "1")] },
@@ -86,7 +86,7 @@ fn frame(layout: &Layout, number: usize) -> Frame {
         (0..field.len()).map(|at| value(place(field, at))).collect()
     };
     let (flat, medium) = (&layout.fields[0], &layout.fields[1]);
-    let clock = |phase: f64| vec![(time + phase).sin(), (time + phase + 1.0).sin()];
+    let clock = |phase: f64| vec![(time + phase).sin(), (time + phase + 1.0).sin(), f64::NAN];
     Frame {
         time,
         step: 10 * number as u64,
@@ -99,7 +99,8 @@ fn frame(layout: &Layout, number: usize) -> Frame {
                     .collect::<Vec<_>>()
             })
             .collect(),
-        cells: (0..3)
+        cells: (0..3).map(|n| Cell { id: n, kind: n as u32 / 2, parent: None }).collect(),
+        records: (0..3)
             .map(|n| CellRecord { position: centre(n), volume: 500.0 + n as f64, ..CellRecord::default() })
             .collect(),
         fields: vec![

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use pseudopod::output::{Overwrite, ResultFile, ResultWriter, load_checkpoint};
 
-use crate::result_example::{frame_with_fields as frame, header, layout_with_fields as layout, stored};
+use crate::result_example::{cells, frame_with_fields as frame, header, layout_with_fields as layout, stored};
 use crate::turns::take_turn;
 
 /// Names the file that the child process writes, and the milliseconds between its flushes.
@@ -18,11 +18,11 @@ const CELLS: u32 = 30;
 fn child_that_writes_until_it_is_killed() {
     let Ok(task) = std::env::var(TASK) else { return };
     let (interval, path) = task.split_once(' ').unwrap();
-    let layout = layout(CELLS);
-    let mut writer = ResultWriter::create(Path::new(path), &header(), &layout, Overwrite::Replace).unwrap();
+    let cells = cells(CELLS);
+    let mut writer = ResultWriter::create(Path::new(path), &header(), &layout(), Overwrite::Replace).unwrap();
     writer.set_flush_interval(Duration::from_millis(interval.parse().unwrap()));
     for number in 0.. {
-        writer.append(&frame(&layout, number)).unwrap();
+        writer.append(&frame(&cells, number)).unwrap();
         if number == 0 {
             std::fs::write(begun(Path::new(path)), b"").unwrap();
         }
@@ -80,7 +80,7 @@ fn survivors(interval: Duration, lives: impl Iterator<Item = Duration>) -> (usiz
 fn resume(path: &Path) -> Result<(), String> {
     let state = load_checkpoint(path).map_err(|error| error.to_string())?;
     let step = state.map_or(0, |state| state.meta.step);
-    let writer = ResultWriter::reopen(path, &header(), &layout(CELLS), step).map_err(|error| error.to_string())?;
+    let writer = ResultWriter::reopen(path, &header(), &layout(), step).map_err(|error| error.to_string())?;
     match (writer.frames() as u64, step / 10 + 1) {
         (found, expected) if found == expected => Ok(()),
         (found, expected) => Err(format!("{found} frames instead of {expected}")),
@@ -90,18 +90,19 @@ fn resume(path: &Path) -> Result<(), String> {
 /// Reads every frame and compares it with what was written.
 fn check(path: &Path) -> Result<usize, String> {
     let result = ResultFile::open(path).map_err(|error| error.to_string())?;
-    let layout = layout(CELLS);
+    let layout = layout();
     let series = |name: &str| result.cell_series(name).map_err(|error| error.to_string());
     let (x, principal) = (series("position_x")?, series("principal_3")?);
-    let brain = result.quantity_series("brain", "U").map_err(|error| error.to_string())?;
+    let brain = series("brain.U")?;
     for number in 0..result.frames() {
-        let expected = frame(&layout, number);
+        let expected = frame(&cells(CELLS), number);
         let positions = result.positions(number).map_err(|error| error.to_string())?;
         let forces = result.forces(number).map_err(|error| error.to_string())?;
-        let cells = (0..CELLS as usize).all(|cell| {
-            x[[number, cell]] == expected.cells[cell].position[0]
-                && principal[[number, cell]] == expected.cells[cell].principal[2]
-        }) && brain.row(number).to_vec() == expected.systems[0][0];
+        let cells =
+            (0..CELLS as usize).all(|cell| {
+                x[[number, cell]] == expected.records[cell].position[0]
+                    && principal[[number, cell]] == expected.records[cell].principal[2]
+            }) && brain.row(number).iter().map(|u| u.to_bits()).eq(expected.systems[0][0].iter().map(|u| u.to_bits()));
         for (field, values) in layout.fields.iter().zip(&expected.fields) {
             for ((name, _), values) in field.species.iter().zip(values) {
                 let found = result.field_frame(&field.name, name, number).map_err(|error| error.to_string())?;

@@ -3,7 +3,7 @@
 
 use std::process::Command;
 
-use crate::result_example::{frame_with_fields, header, layout, layout_with_fields, write};
+use crate::result_example::{cells, frame, frame_with_fields, header, layout_with_fields, lineage, write};
 use crate::turns::take_turn;
 use pseudopod::output::{Overwrite, ResultWriter, field_view_path};
 
@@ -13,17 +13,41 @@ import sys, h5py, numpy as np
 from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
 from vtkmodules.util.numpy_support import vtk_to_numpy
-path, frames = sys.argv[1], int(sys.argv[2])
+import pyvista
+path, counts = sys.argv[1], [int(count) for count in sys.argv[2].split(",")]
+frames = len(counts)
+def block(data, start, length):
+    return data[int(start):int(start) + int(length)]
+class Expected:
+    def __init__(self, f, step):
+        vtk, steps = f["VTKHDF"], f["VTKHDF/Steps"]
+        part = steps["PartOffsets"][step]
+        atoms, facets, self.links = (int(vtk[name][part]) for name in
+            ["NumberOfPoints", "Polygons/NumberOfCells", "Lines/NumberOfCells"])
+        self.points = block(vtk["Points"], steps["PointOffsets"][step], atoms)
+        self.force = block(vtk["PointData/force"], steps["PointDataOffsets/force"][step], atoms)
+        starts = steps["ConnectivityIdOffsets"][step]
+        self.facets = block(vtk["Polygons/Connectivity"], starts[2], 3 * facets).reshape(-1, 3)
+        self.lines = block(vtk["Lines/Connectivity"], starts[1], 2 * self.links).reshape(-1, 2)
+        self.cell = block(vtk["PointData/cell"], steps["PointDataOffsets/cell"][step], atoms)
+        self.owner = block(vtk["CellData/cell"], steps["CellDataOffsets/cell"][step], self.links + facets)
+        self.kind = block(vtk["CellData/type"], steps["CellDataOffsets/type"][step], self.links + facets)
+        rows = slice(f["cells/first"][step], f["cells/first"][step] + f["cells/count"][step])
+        self.ids, self.centre = f["cells/id"][rows], f["cells/position"][rows]
+        assert len(self.ids) == counts[step] == atoms / 6 == facets / 8, step
+        assert np.array_equal(self.cell, np.repeat(self.ids, 6))
+        # An octahedron around the centre of every cell.
+        assert np.allclose(self.points.reshape(-1, 6, 3).mean(1), self.centre)
+        assert np.array_equal(self.cell[self.facets], np.repeat(self.ids, 8)[:, None].repeat(3, 1))
 with h5py.File(path) as f:
-    points, force = f["VTKHDF/Points"][:], f["VTKHDF/PointData/force"][:]
-    offsets, time = f["VTKHDF/Steps/PointOffsets"][:], f["time"][:]
-    atoms, links = int(f["VTKHDF/NumberOfPoints"][0]), int(f["VTKHDF/Lines/NumberOfCells"][0])
-    facets = f["VTKHDF/Polygons/Connectivity"][:].reshape(-1, 3)
-    owner = f["VTKHDF/CellData/cell"][:]
+    time = f["time"][:]
+    expected = [Expected(f, step) for step in range(frames)]
     assert f["time"].attrs["unit"] == "s" and f["cells/volume"].attrs["unit"] == "um^3"
     assert f["provenance/experiment"].asstr()[()].startswith('title = "A walk"')
-    assert f["cells/position"].shape == (frames, 3, 3)
     assert list(f["cells/type_names"].asstr()) == ["round", "lone"]
+    if len(set(counts)) == 1:
+        assert f["cells/position"].shape == (frames * counts[0], 3)
+        assert f["VTKHDF/NumberOfPoints"].shape == (1,) and f["VTKHDF/Points"].shape == (frames * 6 * counts[0], 3)
     def check_described(name, item):
         if isinstance(item, h5py.Dataset):
             assert "unit" in item.attrs and "description" in item.attrs, name
@@ -33,22 +57,34 @@ reader.SetFileName(path)
 reader.UpdateInformation()
 steps = reader.GetOutputInformation(0).Get(pipeline.TIME_STEPS())
 assert np.array_equal(steps, time) and len(steps) == frames, steps
+def connectivity(cells, corners):
+    if cells.GetNumberOfCells() == 0:
+        return np.zeros((0, corners), int)
+    assert np.array_equal(vtk_to_numpy(cells.GetOffsetsArray()), corners * np.arange(cells.GetNumberOfCells() + 1))
+    return vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, corners)
 for step in [*range(frames), 1, frames - 1, 0]:
     reader.UpdateTimeStep(time[step])
-    surface = reader.GetOutputDataObject(0)
-    expected = points[offsets[step]:offsets[step] + atoms]
+    surface, wanted = reader.GetOutputDataObject(0), expected[step]
+    atoms = len(wanted.points)
+    assert surface.GetNumberOfPoints() == atoms, step
+    if atoms == 0:
+        continue
     bounds = np.array(surface.GetBounds()).reshape(3, 2)
-    assert np.allclose(bounds[:, 0], expected.min(0)) and np.allclose(bounds[:, 1], expected.max(0)), (step, bounds)
-    assert np.array_equal(vtk_to_numpy(surface.GetPoints().GetData()), expected)
-    assert np.array_equal(vtk_to_numpy(surface.GetPointData().GetArray("force")), force[offsets[step]:offsets[step] + atoms])
-    assert np.array_equal(vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3), facets)
-    assert surface.GetNumberOfLines() == links
-    assert np.array_equal(vtk_to_numpy(surface.GetCellData().GetArray("cell")), owner)
-    assert surface.GetPointData().GetArray("type").GetNumberOfTuples() == atoms
-import pyvista  # takes VTK's reader for the endings .vtkhdf and .hdf, and reads the first step
+    low, high = wanted.points.min(0), wanted.points.max(0)
+    assert np.allclose(bounds[:, 0], low) and np.allclose(bounds[:, 1], high), (step, bounds)
+    assert np.array_equal(vtk_to_numpy(surface.GetPoints().GetData()), wanted.points)
+    assert np.array_equal(vtk_to_numpy(surface.GetPointData().GetArray("force")), wanted.force)
+    assert np.array_equal(vtk_to_numpy(surface.GetPointData().GetArray("cell")), wanted.cell)
+    assert np.array_equal(connectivity(surface.GetPolys(), 3), wanted.facets), step
+    assert np.array_equal(connectivity(surface.GetLines(), 2), wanted.lines), step
+    assert np.array_equal(vtk_to_numpy(surface.GetCellData().GetArray("cell")), wanted.owner)
+    assert np.array_equal(vtk_to_numpy(surface.GetCellData().GetArray("type")), wanted.kind)
+    mesh = pyvista.wrap(surface)
+    assert mesh.n_faces_strict == len(wanted.facets) and mesh.n_lines == wanted.links
+# PyVista takes VTK's reader for the endings .vtkhdf and .hdf, and reads the first step.
 mesh = pyvista.read(path)
-assert np.array_equal(mesh.points, points[offsets[0]:offsets[0] + atoms])
-assert mesh.n_points == atoms and mesh.n_faces_strict == len(facets), mesh
+assert np.array_equal(mesh.points, expected[0].points)
+assert mesh.n_faces_strict == len(expected[0].facets), mesh
 print("h5py, VTK and PyVista agree on", frames, "frames")
 "#;
 
@@ -65,7 +101,8 @@ with h5py.File(path) as f:
     assert all(data.attrs["unit"] == "uM" for data in group["CellData"].values())
     extent, origin, spacing = group.attrs["WholeExtent"], group.attrs["Origin"], group.attrs["Spacing"]
     assert np.array_equal(group["Steps/Values"][:], time) and group["Steps"].attrs["NSteps"] == frames
-    assert f["chemistry/brain/U"].shape == (frames, 2) and list(f["chemistry_cells/brain"][:]) == [0, 2]
+    brain = f["chemistry/brain/U"][:].reshape(frames, 3)
+    assert np.array_equal(np.isnan(brain), np.tile([False, True, False], (frames, 1)))
     assert f["chemistry/clock/tick"].shape == (frames,)
 reader = vtkHDFReader()
 assert reader.CanReadFile(view)
@@ -109,9 +146,9 @@ fn python_reads_the_fields_as_images() {
     let folder = tempfile::tempdir().unwrap();
     for (file, finish) in [("finished.vtkhdf", true), ("interrupted.h5", false)] {
         let path = folder.path().join(file);
-        let layout = layout_with_fields(3);
+        let layout = layout_with_fields();
         let mut writer = ResultWriter::create(&path, &header(), &layout, Overwrite::Refuse).unwrap();
-        (0..12).for_each(|number| writer.append(&frame_with_fields(&layout, number)).unwrap());
+        (0..12).for_each(|number| writer.append(&frame_with_fields(&cells(3), number)).unwrap());
         if finish {
             writer.finish(1.0).unwrap()
         } else {
@@ -138,12 +175,30 @@ fn python_reads_the_animated_surface() {
     let folder = tempfile::tempdir().unwrap();
     for (name, finish) in [("finished.vtkhdf", true), ("interrupted.vtkhdf", false)] {
         let path = folder.path().join(name);
-        let writer = write(&path, &layout(3), 20);
+        let writer = write(&path, 3, 20);
         if finish {
             writer.finish(1.0).unwrap()
         } else {
             drop(writer)
         }
-        run(SCRIPT, &[path.as_ref(), "20".as_ref()]);
+        run(SCRIPT, &[path.as_ref(), ["3"; 20].join(",").as_ref()]);
+    }
+}
+
+#[test]
+#[ignore = "slow: needs python3 with h5py, vtk and pyvista"]
+fn python_reads_frames_with_different_cells() {
+    let _turn = take_turn();
+    let folder = tempfile::tempdir().unwrap();
+    // By themselves, and after a frame of so many cells that frames begin with pieces of their own.
+    for (name, first) in [("few.vtkhdf", 2), ("many.vtkhdf", 1500)] {
+        let path = folder.path().join(name);
+        let mut writer = write(&path, first, 1);
+        let later = &lineage()[1..];
+        let counts: Vec<usize> = [first as usize].into_iter().chain(later.iter().map(Vec::len)).collect();
+        (1..).zip(later).for_each(|(number, cells)| writer.append(&frame(cells, number)).unwrap());
+        writer.finish(1.0).unwrap();
+        let counts = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(",");
+        run(SCRIPT, &[path.as_ref(), counts.as_ref()]);
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pseudopod::output::{
-    CellLayout, CellRecord, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter, SystemLayout, SystemScope,
+    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter, SystemLayout, SystemScope,
     Touching,
 };
 
@@ -13,15 +13,10 @@ const CORNERS: [[f64; 3]; 6] =
 const FACETS: [[u32; 3]; 8] = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
 
 /// Octahedral cells of two types, each with one internal link.
-pub fn layout(cells: u32) -> Layout {
-    let facets = (0..cells).flat_map(|cell| FACETS.map(|facet| facet.map(|atom| atom + 6 * cell)));
+pub fn layout() -> Layout {
+    let kind = |name: &str| CellType { name: name.into(), atoms: 6, facets: FACETS.to_vec(), links: vec![[0, 3]] };
     Layout {
-        types: vec!["round".into(), "lone".into()],
-        cells: (0..cells)
-            .map(|cell| CellLayout { kind: cell % 2, first_atom: 6 * cell, atoms: 6, first_facet: 8 * cell, facets: 8 })
-            .collect(),
-        facets: facets.collect(),
-        links: (0..cells).map(|cell| [6 * cell, 6 * cell + 3]).collect(),
+        types: vec![kind("round"), kind("lone")],
         scene_series: vec![("wall.height".into(), "um".into()), ("load.pull".into(), "pN".into())],
         planes: vec![("floor".into(), [0.0, 0.0, -2.0], [0.0, 0.0, 1.0])],
         contacts: true,
@@ -29,43 +24,54 @@ pub fn layout(cells: u32) -> Layout {
     }
 }
 
-/// The frame of this number: the cells drift along x and a motility run ends in every frame but the first. Of
-/// neighbours two thirds touch, others in the next frame, and every second cell stands on the floor.
-pub fn frame(layout: &Layout, number: usize) -> Frame {
+/// So many cells that were there from the beginning, of both types by turns.
+pub fn cells(number: u32) -> Vec<Cell> {
+    (0..number).map(|cell| Cell { id: u64::from(cell), kind: cell % 2, parent: None }).collect()
+}
+
+/// The frame of this number with these cells: they drift along x and a motility run ends in every frame but the first.
+/// Of neighbours two thirds touch, others in the next frame, and every second cell stands on the floor.
+pub fn frame(cells: &[Cell], number: usize) -> Frame {
     let time = 0.25 * number as f64;
-    let cells = layout.cells.len();
-    let centre = |cell: usize| [3.0 * cell as f64 + time, 0.1 * cell as f64, 0.0];
-    let positions = (0..cells).flat_map(|cell| CORNERS.map(|corner| add(corner, centre(cell))));
+    let centre = |cell: &Cell| [3.0 * cell.id as f64 + time, 0.1 * cell.id as f64, 0.0];
+    let positions = cells.iter().flat_map(|cell| CORNERS.map(|corner| add(corner, centre(cell))));
+    let record = |cell: &Cell| CellRecord {
+        position: centre(cell),
+        velocity: [3.0, 0.0, 4.0 * time],
+        volume: 4.0 / 3.0,
+        volume_error: 1e-12 * cell.id as f64,
+        area: 48.0_f64.sqrt() + time,
+        energy: number as f64,
+        size: [2.0, 2.0, 2.5],
+        principal: [2.5, 2.0, 1.0 + cell.id as f64],
+        smallest_facet: 0.9,
+        smallest_cosine: 0.8,
+        contact_share: 0.25,
+        aggregate: cell.id as f64,
+    };
+    let mut ids: Vec<u64> = cells.iter().map(|cell| cell.id).collect();
+    ids.sort_unstable();
     Frame {
         time,
         step: 10 * number as u64,
+        cells: cells.to_vec(),
         positions: positions.collect(),
-        forces: (0..6 * cells).map(|atom| [time, atom as f64, -1.5]).collect(),
-        cells: (0..cells)
-            .map(|cell| CellRecord {
-                position: centre(cell),
-                velocity: [3.0, 0.0, 4.0 * time],
-                volume: 4.0 / 3.0,
-                volume_error: 1e-12 * cell as f64,
-                area: 48.0_f64.sqrt() + time,
-                energy: number as f64,
-                size: [2.0, 2.0, 2.5],
-                principal: [2.5, 2.0, 1.0 + cell as f64],
-                smallest_facet: 0.9,
-                smallest_cosine: 0.8,
-                contact_share: 0.25,
-                aggregate: f64::from(cell as u32),
-            })
-            .collect(),
+        forces: (0..6 * cells.len()).map(|atom| [time, atom as f64, -1.5]).collect(),
+        records: cells.iter().map(record).collect(),
         scene: vec![10.0 - time, 2.0 * time],
-        runs: if number == 0 { Vec::new() } else { vec![(number as u32 % cells as u32, time, 0.5 * time)] },
-        pairs: (1..cells as u32)
-            .filter(|cell| !(*cell as usize + number).is_multiple_of(3))
-            .map(|cell| Touching { cell: cell - 1, other: cell, area: f64::from(cell) + time })
+        runs: match (number, ids.len()) {
+            (0, _) | (_, 0) => Vec::new(),
+            (_, some) => vec![(ids[number % some], time, 0.5 * time)],
+        },
+        pairs: ids
+            .windows(2)
+            .filter(|pair| !(pair[1] as usize + number).is_multiple_of(3))
+            .map(|pair| Touching { cell: pair[0], other: pair[1], area: pair[1] as f64 + time })
             .collect(),
-        on_planes: (0..cells as u32)
-            .filter(|cell| (*cell as usize + number).is_multiple_of(2))
-            .map(|cell| Touching { cell, other: 0, area: 1.5 })
+        on_planes: ids
+            .iter()
+            .filter(|id| (**id as usize + number).is_multiple_of(2))
+            .map(|id| Touching { cell: *id, other: 0, area: 1.5 })
             .collect(),
         ..Frame::default()
     }
@@ -81,17 +87,33 @@ pub fn header() -> Header {
     Header { equations: vec![("own.eml".into(), "<eml name=\"own\"/>".into())], ..header }
 }
 
-/// Makes a file and appends frames `0..frames`.
-pub fn write(path: &Path, layout: &Layout, frames: usize) -> ResultWriter {
-    let mut writer = ResultWriter::create(path, &header(), layout, Overwrite::Refuse).unwrap();
-    for number in 0..frames {
-        writer.append(&frame(layout, number)).unwrap();
-    }
+/// Makes a file of this many cells and appends frames `0..frames`.
+pub fn write(path: &Path, number: u32, frames: usize) -> ResultWriter {
+    let mut writer = ResultWriter::create(path, &header(), &layout(), Overwrite::Refuse).unwrap();
+    (0..frames).for_each(|index| writer.append(&frame(&cells(number), index)).unwrap());
     writer
 }
 
-/// The same cells with two fields, one of them on the substrate, a system in every other cell and one of the scene.
-pub fn layout_with_fields(cells: u32) -> Layout {
+/// The cells of the frames of a run in which their number changes: two of different types, then a daughter of each, in
+/// the order of types; the first is washed out with its neighbour and the last, and comes back in nobody; at the end all
+/// are gone and a new one is seeded.
+pub fn lineage() -> Vec<Vec<Cell>> {
+    let cell = |id, kind, parent| Cell { id, kind, parent };
+    let (first, second) = (cell(0, 0, None), cell(1, 1, None));
+    let (daughter, other) = (cell(2, 0, Some(0)), cell(3, 1, Some(1)));
+    let seeded = cell(4, 1, None);
+    vec![
+        vec![first, second],
+        vec![first, daughter, second, other],
+        vec![first, daughter, second, other],
+        vec![daughter],
+        vec![],
+        vec![seeded],
+    ]
+}
+
+/// The same cells with two fields, one of them on the substrate, a system in the cells of the first type and one of the scene.
+pub fn layout_with_fields() -> Layout {
     let named = |name: &str| (name.to_string(), "uM".to_string());
     let flat = FieldLayout {
         name: "attractant".into(),
@@ -109,27 +131,35 @@ pub fn layout_with_fields(cells: u32) -> Layout {
     };
     let brain = SystemLayout {
         name: "brain".into(),
-        scope: SystemScope::Cells((0..cells).step_by(2).collect()),
+        scope: SystemScope::Cells,
         quantities: vec![named("U"), ("cells".into(), "1".into())],
     };
     let clock = SystemLayout { name: "clock".into(), scope: SystemScope::Scene, quantities: vec![named("tick")] };
-    Layout { fields: vec![flat, block], systems: vec![brain, clock], ..layout(cells) }
+    Layout { fields: vec![flat, block], systems: vec![brain, clock], ..layout() }
 }
 
 /// The frame of this number with values that differ from place to place, from species to species and from frame to frame.
-pub fn frame_with_fields(layout: &Layout, number: usize) -> Frame {
+pub fn frame_with_fields(cells: &[Cell], number: usize) -> Frame {
+    let layout = layout_with_fields();
     let value = |species: usize, i: usize| ((number + 1) * (species + 2)) as f64 + 0.1 * i as f64;
     let of_field = |field: &FieldLayout| -> Vec<Vec<f64>> {
         (0..field.species.len()).map(|species| (0..field.len()).map(|i| value(species, i)).collect()).collect()
     };
     let of_system = |system: &SystemLayout| -> Vec<Vec<f64>> {
-        let members = |quantity: usize| (0..system.members()).map(|i| value(quantity, i)).collect();
-        (0..system.quantities.len()).map(members).collect()
+        let in_cell = |quantity: usize, cell: &Cell| match cell.kind {
+            0 => value(quantity, cell.id as usize),
+            _ => f64::NAN,
+        };
+        let in_all = |quantity: usize| match system.scope {
+            SystemScope::Scene => vec![value(quantity, 0)],
+            SystemScope::Cells => cells.iter().map(|cell| in_cell(quantity, cell)).collect(),
+        };
+        (0..system.quantities.len()).map(in_all).collect()
     };
     Frame {
         fields: layout.fields.iter().map(of_field).collect(),
         systems: layout.systems.iter().map(of_system).collect(),
-        ..frame(layout, number)
+        ..frame(cells, number)
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use pseudopod::error::{Error, Fault};
 use pseudopod::output::{Overwrite, ResultFile, ResultWriter, checkpoint_path};
 
-use crate::example::{frame, header, layout, write};
+use crate::example::{cells, frame, header, layout, write};
 
 /// The only fault of an input error.
 fn fault<T>(outcome: pseudopod::error::Result<T>) -> Fault {
@@ -37,7 +37,7 @@ fn files_that_are_no_results_are_refused_with_the_reason() {
     assert_refused(&path("text.h5"), "is not an HDF5 file");
     hdf5::File::create(path("foreign.h5")).unwrap().close().unwrap();
     assert_refused(&path("foreign.h5"), "not a result of pseudopod");
-    drop(write(&path("early.h5"), &layout(1), 0));
+    drop(write(&path("early.h5"), 1, 0));
     assert_refused(&path("early.h5"), "holds no frame");
 }
 
@@ -45,7 +45,7 @@ fn files_that_are_no_results_are_refused_with_the_reason() {
 fn a_file_cut_anywhere_is_refused_or_read_but_never_crashes() {
     let folder = tempfile::tempdir().unwrap();
     let whole = folder.path().join("run.h5");
-    write(&whole, &layout(40), 50).finish(1.0).unwrap();
+    write(&whole, 40, 50).finish(1.0).unwrap();
     let bytes = std::fs::read(&whole).unwrap();
     for tenth in 1..10 {
         let path = folder.path().join(format!("cut-{tenth}.h5"));
@@ -58,7 +58,7 @@ fn a_file_cut_anywhere_is_refused_or_read_but_never_crashes() {
 fn wrong_bytes_in_the_middle_never_crash() {
     let folder = tempfile::tempdir().unwrap();
     let whole = folder.path().join("run.h5");
-    write(&whole, &layout(4), 6).finish(1.0).unwrap();
+    write(&whole, 4, 6).finish(1.0).unwrap();
     let bytes = std::fs::read(&whole).unwrap();
     let mut refused = 0;
     for part in 1..40 {
@@ -80,10 +80,10 @@ fn wrong_bytes_in_the_middle_never_crash() {
 fn a_result_is_not_overwritten_without_being_asked() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.h5");
-    let mut writer = write(&path, &layout(1), 2);
+    let mut writer = write(&path, 1, 2);
     writer.save_checkpoint(10, 0.25, b"state").unwrap();
     drop(writer);
-    let create = |overwrite| ResultWriter::create(&path, &header(), &layout(1), overwrite);
+    let create = |overwrite| ResultWriter::create(&path, &header(), &layout(), overwrite);
     let found = fault(create(Overwrite::Refuse));
     assert!(found.message.ends_with("exists") && found.help.unwrap().contains("--force"), "{}", found.message);
     assert_eq!(ResultFile::open(&path).unwrap().frames(), 2, "the file is untouched");
@@ -92,7 +92,7 @@ fn a_result_is_not_overwritten_without_being_asked() {
     let found = fault(create(Overwrite::Refuse));
     assert!(found.message.contains("the checkpoint of a run that can be resumed"), "{}", found.message);
 
-    create(Overwrite::Replace).unwrap().append(&frame(&layout(1), 0)).unwrap();
+    create(Overwrite::Replace).unwrap().append(&frame(&cells(1), 0)).unwrap();
     assert_eq!(ResultFile::open(&path).unwrap().frames(), 1);
     assert!(!checkpoint_path(&path).exists(), "the old checkpoint does not belong to the new run");
 }
@@ -100,7 +100,7 @@ fn a_result_is_not_overwritten_without_being_asked() {
 #[test]
 fn a_path_that_cannot_be_written_is_named() {
     let folder = tempfile::tempdir().unwrap();
-    let create = |path: &Path| ResultWriter::create(path, &header(), &layout(1), Overwrite::Replace);
+    let create = |path: &Path| ResultWriter::create(path, &header(), &layout(), Overwrite::Replace);
     let found = fault(create(&folder.path().join("no/such/run.h5")));
     assert!(found.message.contains("its folder does not exist"), "{}", found.message);
     let found = fault(create(folder.path()));
@@ -120,21 +120,21 @@ fn a_path_that_cannot_be_written_is_named() {
 #[ignore = "slow: needs a small disk in PSEUDOPOD_SMALL_DISK"]
 fn a_full_disk_is_reported_and_keeps_the_frames_before() {
     let disk = std::env::var("PSEUDOPOD_SMALL_DISK").expect("PSEUDOPOD_SMALL_DISK names a small disk");
-    for cells in [50, 2000] {
-        let path = Path::new(&disk).join(format!("{cells}.h5"));
-        let layout = layout(cells);
-        let mut writer = ResultWriter::create(&path, &header(), &layout, Overwrite::Replace).unwrap();
+    for number in [50, 2000] {
+        let path = Path::new(&disk).join(format!("{number}.h5"));
+        let cells = cells(number);
+        let mut writer = ResultWriter::create(&path, &header(), &layout(), Overwrite::Replace).unwrap();
         writer.set_flush_interval(std::time::Duration::ZERO);
         let mut appended = 0;
         let error = loop {
-            match writer.append(&frame(&layout, appended)) {
+            match writer.append(&frame(&cells, appended)) {
                 Ok(()) => appended += 1,
                 Err(error) => break error,
             }
         };
         assert!(error.to_string().ends_with("no space left on device"), "{error}");
         assert_eq!(error.exit_code(), 1);
-        assert!(writer.append(&frame(&layout, appended)).is_err(), "nothing more is written");
+        assert!(writer.append(&frame(&cells, appended)).is_err(), "nothing more is written");
         drop(writer);
         // A copy, because HDF5 still holds in this process what the disk refused.
         let folder = tempfile::tempdir().unwrap();
@@ -142,7 +142,7 @@ fn a_full_disk_is_reported_and_keeps_the_frames_before() {
         std::fs::copy(&path, &copy).unwrap();
         let result = ResultFile::open(&copy).unwrap();
         assert_eq!(result.frames(), appended);
-        assert_eq!(result.positions(appended - 1).unwrap(), frame(&layout, appended - 1).positions);
+        assert_eq!(result.positions(appended - 1).unwrap(), frame(&cells, appended - 1).positions);
         // The file is still open, so removing it would not free its room.
         std::fs::OpenOptions::new().write(true).truncate(true).open(&path).unwrap();
     }

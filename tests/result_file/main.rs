@@ -3,6 +3,7 @@
 mod example;
 mod faults;
 mod fields;
+mod populations;
 mod resume;
 mod round_trip;
 mod tables;

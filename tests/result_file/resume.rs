@@ -1,12 +1,12 @@
 //! A run that goes on leaves the file of a run that never stopped.
 
-use pseudopod::output::{Frame, Layout, Measure, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
+use pseudopod::output::{Frame, Measure, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
 
-use crate::example::{frame, header, layout, write};
+use crate::example::{cells, frame, header, layout, write};
 use crate::round_trip::assert_holds;
 
-fn frames(layout: &Layout, count: usize) -> Vec<Frame> {
-    (0..count).map(|number| frame(layout, number)).collect()
+fn frames(number: u32, count: usize) -> Vec<Frame> {
+    (0..count).map(|index| frame(&cells(number), index)).collect()
 }
 
 #[test]
@@ -14,16 +14,15 @@ fn a_resumed_file_equals_an_uninterrupted_one() {
     let folder = tempfile::tempdir().unwrap();
     // (cells, frames of the first part, frames kept, frames in all): within a piece of the file, across pieces, at
     // the end of a piece, and with one compressed piece per frame.
-    for (cells, first, keep, all) in [(3, 10, 6, 12), (3, 600, 300, 700), (3, 600, 512, 520), (1500, 4, 2, 5)] {
-        let path = folder.path().join(format!("{cells}-{first}-{keep}.h5"));
-        let layout = layout(cells);
-        drop(write(&path, &layout, first));
-        let mut writer = ResultWriter::reopen(&path, &header(), &layout, 10 * (keep as u64 - 1)).unwrap();
+    for (number, first, keep, all) in [(3, 10, 6, 12), (3, 600, 300, 700), (3, 600, 512, 520), (1500, 4, 2, 5)] {
+        let path = folder.path().join(format!("{number}-{first}-{keep}.h5"));
+        drop(write(&path, number, first));
+        let mut writer = ResultWriter::reopen(&path, &header(), &layout(), 10 * (keep as u64 - 1)).unwrap();
         assert_eq!(writer.frames(), keep);
-        (keep..all).for_each(|number| writer.append(&frame(&layout, number)).unwrap());
+        (keep..all).for_each(|index| writer.append(&frame(&cells(number), index)).unwrap());
         writer.finish(3.0).unwrap();
         let result = ResultFile::open(&path).unwrap();
-        assert_holds(&result, &layout, &frames(&layout, all));
+        assert_holds(&result, &frames(number, all));
         assert_eq!(result.ending().resumed, 1);
     }
 }
@@ -32,20 +31,18 @@ fn a_resumed_file_equals_an_uninterrupted_one() {
 fn a_run_resumed_before_its_first_frame_begins_anew() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.h5");
-    let layout = layout(2);
-    drop(write(&path, &layout, 0));
-    let mut writer = ResultWriter::reopen(&path, &header(), &layout, 0).unwrap();
-    (0..3).for_each(|number| writer.append(&frame(&layout, number)).unwrap());
+    drop(write(&path, 2, 0));
+    let mut writer = ResultWriter::reopen(&path, &header(), &layout(), 0).unwrap();
+    (0..3).for_each(|index| writer.append(&frame(&cells(2), index)).unwrap());
     drop(writer);
-    assert_holds(&ResultFile::open(&path).unwrap(), &layout, &frames(&layout, 3));
+    assert_holds(&ResultFile::open(&path).unwrap(), &frames(2, 3));
 }
 
 #[test]
 fn the_checkpoint_moves_into_the_finished_file_and_out_again() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.h5");
-    let layout = layout(2);
-    let mut writer = write(&path, &layout, 5);
+    let mut writer = write(&path, 2, 5);
     writer.save_checkpoint(40, 1.0, b"state at 40").unwrap();
     let measure = Measure { name: "m".into(), value: 1.0, unit: "1".into(), description: "Number.".into() };
     writer.write_summary(&[measure]).unwrap();
@@ -58,7 +55,7 @@ fn the_checkpoint_moves_into_the_finished_file_and_out_again() {
     assert_eq!(inside.meta.header.experiment, header().experiment);
     assert_eq!(inside.meta.experiment_hash, header().experiment_hash());
 
-    let writer = ResultWriter::reopen(&path, &header(), &layout, 40).unwrap();
+    let writer = ResultWriter::reopen(&path, &header(), &layout(), 40).unwrap();
     drop(writer);
     assert!(checkpoint_path(&path).exists(), "a run that goes on always has a checkpoint");
     assert_eq!(load_checkpoint(&path).unwrap().unwrap(), inside);
@@ -70,17 +67,19 @@ fn the_checkpoint_moves_into_the_finished_file_and_out_again() {
 fn another_experiment_cannot_resume() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.h5");
-    drop(write(&path, &layout(2), 3));
+    drop(write(&path, 2, 3));
     let mut other = header();
     other.seed += 1;
     let refusal = |outcome: pseudopod::error::Result<ResultWriter>| outcome.err().unwrap().to_string();
-    let text = refusal(ResultWriter::reopen(&path, &other, &layout(2), 10));
+    let text = refusal(ResultWriter::reopen(&path, &other, &layout(), 10));
     assert!(text.contains("another seed"), "{text}");
     other = header();
     other.experiment.push('#');
-    let text = refusal(ResultWriter::reopen(&path, &other, &layout(2), 10));
+    let text = refusal(ResultWriter::reopen(&path, &other, &layout(), 10));
     assert!(text.contains("another experiment document"), "{text}");
-    let text = refusal(ResultWriter::reopen(&path, &header(), &layout(3), 10));
+    let mut others = layout();
+    others.types[1].atoms += 1;
+    let text = refusal(ResultWriter::reopen(&path, &header(), &others, 10));
     assert!(text.contains("other cells"), "{text}");
     assert_eq!(ResultFile::open(&path).unwrap().frames(), 3, "a refusal loses nothing");
 }

@@ -1,7 +1,7 @@
 //! Finds room for cells that are placed at random and must not overlap.
 
 use super::super::{CellType, Document, Placement};
-use super::place::{centres, draw};
+use super::place::{centres, draw, first_cells};
 use super::vector;
 use crate::Vec3;
 use crate::error::{Error, Fault, Result};
@@ -9,6 +9,7 @@ use crate::geometry::bounding_box;
 use crate::random::{Purpose, Stream};
 use crate::sim::{Kind, Plane};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Places tried for a cell before the box is called full.
 const TRIES: u32 = 10_000;
@@ -96,25 +97,25 @@ impl<T> Near<T> {
 /// When the box is too full.
 pub fn centres_apart(document: &Document, kinds: &[Kind], planes: &[Plane], gap: f64) -> Result<Vec<Vec<Vec3>>> {
     let experiment = &document.experiment;
-    let cells = || experiment.cells.values().zip(kinds);
+    let cells = || experiment.cells.values().zip(kinds).zip(first_cells(experiment));
     let is_random = |cell: &CellType| matches!(cell.placement, Some(Placement::Random { .. }));
     let mut taken = Taken::new(kinds.iter().map(radius).fold(0.0, f64::max), gap);
-    if cells().any(|(cell, _)| is_random(cell)) {
-        for (cell, kind) in cells().filter(|(cell, _)| !is_random(cell)) {
+    if cells().any(|((cell, _), _)| is_random(cell)) {
+        for ((cell, kind), first) in cells().filter(|((cell, _), _)| !is_random(cell)) {
             let Some((low, high)) = bounding_box(&kind.rest.positions) else { continue };
-            for centre in centres(experiment, cell, kind) {
+            for centre in centres(experiment, cell, kind, first) {
                 taken.boxes.add([low + centre, high + centre], low + centre, high + centre);
             }
         }
     }
     let mut all = Vec::new();
-    for (cell, kind) in cells() {
+    for ((cell, kind), first) in cells() {
         all.push(match &cell.placement {
             Some(Placement::Random { random_from, random_to }) => {
                 let corners = [random_from, random_to].map(|corner| vector(corner.map(|x| x.value())));
-                place_kind(document, kind, planes, corners, gap, &mut taken)?
+                place_kind(document, kind, first..first + cell.count(), planes, corners, gap, &mut taken)?
             }
-            _ => centres(experiment, cell, kind),
+            _ => centres(experiment, cell, kind, first),
         });
     }
     Ok(all)
@@ -129,6 +130,7 @@ fn radius(kind: &Kind) -> f64 {
 fn place_kind(
     document: &Document,
     kind: &Kind,
+    cells: Range<usize>,
     planes: &[Plane],
     [low, high]: [Vec3; 2],
     gap: f64,
@@ -139,16 +141,16 @@ fn place_kind(
     let lowest = |plane: &Plane| atoms.iter().map(|p| p.dot(&plane.normal)).fold(f64::INFINITY, f64::min);
     let floors: Vec<(&Plane, f64)> = planes.iter().map(|plane| (plane, lowest(plane) + ROUND_OFF * radius)).collect();
     let mut centres = Vec::new();
-    for number in 0..kind.cells {
+    for cell in cells.clone() {
         let seed = document.experiment.seed;
-        let mut stream = Stream::new(seed, Purpose::Placement, (kind.first_cell + number) as u32, 0);
+        let mut stream = Stream::new(seed, Purpose::Placement, cell as u32, 0);
         let is_free = |centre: &Vec3| {
             floors.iter().all(|(plane, lowest)| (centre - plane.point).dot(&plane.normal) + lowest >= 0.0)
                 && taken.leaves_room(*centre, radius, gap)
         };
         let found = (0..TRIES).map(|_| draw(&mut stream, low, high)).find(is_free);
         let Some(centre) = found else {
-            return Err(too_full(document, kind, number, taken, [low, high], radius));
+            return Err(too_full(document, kind, [cell - cells.start, cells.len()], taken, [low, high], radius));
         };
         taken.spheres.add((centre, radius), centre, centre);
         centres.push(centre);
@@ -160,7 +162,7 @@ fn place_kind(
 fn too_full(
     document: &Document,
     kind: &Kind,
-    placed: usize,
+    [placed, wanted]: [usize; 2],
     taken: &Taken,
     [low, high]: [Vec3; 2],
     radius: f64,
@@ -173,9 +175,9 @@ fn too_full(
     let filled: f64 = taken.spheres.all.iter().filter(inside).map(|(_, radius)| ball(*radius)).sum();
     let share = 100.0 * filled / (size.x * size.y * size.z);
     let message = format!(
-        "there is no room for all cells of type `{}`: {placed} of {} found a place that overlaps no other cell and no \
+        "there is no room for all cells of type `{}`: {placed} of {wanted} found a place that overlaps no other cell and no \
          plane, the next did not in {TRIES} tries; spheres around the cells fill {share:.0} % of the box",
-        kind.name, kind.cells
+        kind.name
     );
     let help = "make the box larger or the cells fewer; places at random rarely fill more than 30 %, a grid fills more";
     let fault = Fault::new(message).help(help);

@@ -1,36 +1,19 @@
 //! One element of a drawing with its attributes.
 
-use quick_xml::XmlVersion;
-use quick_xml::events::BytesStart;
-
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::picture::colour::Colour;
+use crate::xml::Attribute;
 
 /// Name and attributes of an element.
-pub(super) struct Element {
-    pub name: String,
-    attributes: Vec<(String, String)>,
+pub(super) struct Element<'a> {
+    pub name: &'a str,
+    pub attributes: &'a [Attribute<'a>],
 }
 
-impl Element {
-    /// The element that a tag begins.
-    ///
-    /// # Errors
-    /// When its attributes are malformed.
-    pub fn of(tag: &BytesStart) -> Result<Self> {
-        let mut attributes = Vec::new();
-        for attribute in tag.attributes() {
-            let attribute = attribute.map_err(|error| undrawable(&error.to_string()))?;
-            let value = attribute.normalized_value(XmlVersion::Implicit1_0);
-            let value = value.map_err(|error| undrawable(&error.to_string()))?;
-            attributes.push((attribute.key.as_ref().to_owned(), value.into_owned()));
-        }
-        Ok(Self { name: tag.name().as_ref().to_owned(), attributes })
-    }
-
+impl Element<'_> {
     /// An attribute that is there.
     pub fn get(&self, key: &str) -> Option<&str> {
-        self.attributes.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
+        self.attributes.iter().find(|attribute| attribute.name == key).map(|attribute| &*attribute.value)
     }
 
     /// An attribute, empty where it is missing.

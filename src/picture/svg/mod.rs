@@ -8,50 +8,53 @@ mod style;
 
 use std::collections::HashMap;
 
-use quick_xml::Reader;
-use quick_xml::events::Event;
 use tiny_skia::{FillRule, Mask, Path, Pixmap, Transform};
 
 use self::element::{Element, undrawable};
 use self::letters::Line;
 use self::style::{Gradient, Style};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::xml::{Event, Limits, Reader, Trouble, What};
+
+/// How much of a drawing is read: all of any that is written here.
+const LIMITS: Limits = Limits { bytes: u32::MAX as usize, depth: 16, nodes: 0, attributes: 64 };
 
 /// Draws an SVG document, `scale` pixels for each of its units; pixels it leaves free stay transparent.
 ///
 /// # Errors
 /// When the text is not SVG or its size is zero or enormous.
 pub(crate) fn svg_to_pixels(svg: &str, scale: f32) -> Result<Pixmap> {
-    let mut reader = Reader::from_str(svg);
+    let mut reader = Reader::new(svg, LIMITS).map_err(unread)?;
     let mut painter: Option<Painter> = None;
-    loop {
-        let event = reader.read_event().map_err(|error| undrawable(&error.to_string()))?;
+    while let Some(event) = reader.event().map_err(unread)? {
         match (&mut painter, event) {
-            (None, Event::Start(start)) => painter = Some(Painter::new(&Element::of(&start)?, scale)?),
-            (Some(painter), Event::Start(start)) => painter.begin(&Element::of(&start)?),
-            (Some(painter), Event::Empty(start)) => {
-                let element = Element::of(&start)?;
-                painter.begin(&element);
-                painter.end(&element.name);
+            (None, Event::Start(start)) => {
+                painter = Some(Painter::new(&Element { name: start.name, attributes: reader.attributes() }, scale)?);
             }
-            (Some(painter), Event::End(end)) => painter.end(end.name().as_ref()),
-            (Some(painter), Event::Text(text)) => painter.letters(&text.xml10_content()),
-            (Some(painter), Event::GeneralRef(name)) => {
-                painter.letters(quick_xml::escape::resolve_predefined_entity(&name).unwrap_or_default());
+            (Some(painter), Event::Start(start)) => {
+                painter.begin(&Element { name: start.name, attributes: reader.attributes() });
             }
-            (_, Event::Eof) => break,
-            _ => {}
+            (Some(painter), Event::Text { text, .. }) => painter.letters(&text),
+            (Some(painter), Event::End { .. }) => painter.end(),
+            (None, _) => {}
         }
     }
-    painter.map(|painter| painter.pixels).ok_or_else(|| undrawable("it is empty"))
+    painter.map(|painter| painter.pixels).ok_or_else(|| undrawable("it has no element"))
+}
+
+fn unread(trouble: Trouble) -> Error {
+    match trouble.what {
+        What::Malformed { message, .. } => undrawable(&message),
+        what => undrawable(&format!("{what:?}")),
+    }
 }
 
 /// The pixels so far, and what the elements read before mean for those to come.
 struct Painter {
     pixels: Pixmap,
     scale: Transform,
-    /// The style in each open element, the innermost last.
-    styles: Vec<Style>,
+    /// Name and style of each open element, the innermost last.
+    open: Vec<(String, Style)>,
     gradients: HashMap<String, Gradient>,
     clips: HashMap<String, Path>,
     /// The definition that is open: the name of a gradient or a clip.
@@ -68,7 +71,7 @@ impl Painter {
         Ok(Self {
             pixels,
             scale: Transform::from_scale(scale, scale),
-            styles: vec![Style::default().within(page)],
+            open: vec![(page.name.to_owned(), Style::default().within(page))],
             gradients: HashMap::new(),
             clips: HashMap::new(),
             defined: String::new(),
@@ -78,8 +81,8 @@ impl Painter {
 
     /// An element begins.
     fn begin(&mut self, element: &Element) {
-        let style = self.styles.last().cloned().unwrap_or_default().within(element);
-        match element.name.as_str() {
+        let style = self.open.last().map(|(_, style)| style.clone()).unwrap_or_default().within(element);
+        match element.name {
             "linearGradient" => {
                 self.defined = element.text("id").to_owned();
                 self.gradients.insert(self.defined.clone(), Gradient::of(element));
@@ -104,13 +107,13 @@ impl Painter {
             }
             _ => {}
         }
-        self.styles.push(style);
+        self.open.push((element.name.to_owned(), style));
     }
 
-    /// An element ends.
-    fn end(&mut self, name: &str) {
-        let style = self.styles.pop().unwrap_or_default();
-        match name {
+    /// The innermost element ends.
+    fn end(&mut self) {
+        let Some((name, style)) = self.open.pop() else { return };
+        match name.as_str() {
             "linearGradient" | "clipPath" => self.defined.clear(),
             "text" => {
                 let line = self.line.take().and_then(Line::outline);
@@ -191,7 +194,7 @@ mod tests {
 
     #[test]
     fn what_is_no_drawing_is_refused_with_its_fault() {
-        for (svg, words) in [("", "it is empty"), ("<svg/>", "0×0 pixels"), ("<svg width='3' height='3'><a", "")] {
+        for (svg, words) in [("", "NotXml"), ("<svg/>", "0×0 pixels"), ("<svg width='3' height='3'><a", "")] {
             let error = svg_to_pixels(svg, 1.0).unwrap_err().to_string();
             assert!(error.contains("could not be turned into pixels") && error.contains(words), "{error}");
         }

@@ -1,27 +1,36 @@
 //! What touches where a step begins, and what it carried in the step before.
 
-use super::gather::gather_places;
+use super::assemble::write_rows;
+use super::gather::gather_positions;
 use super::give::given_after;
+use super::law::Law;
 use super::links::{links_at, pull_links};
-use super::model::Law;
 use super::penalty::press;
 use super::remember::find_at;
-use super::rows::{Pull, Row, write_rows};
-use super::scratch::{ContactScratch, empty_for};
-use super::spread::{add, add_spreading, releases_energy};
+use super::rows::{Pull, Row};
+use super::scene::ContactScene;
+use super::scratch::{ContactForces, ContactScratch, empty_for};
+use super::spread::{add_spreading, releases_energy};
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
 use crate::contact::{AtomContact, Contacts, PlaneContact};
+use crate::sim::controls::Controls;
+use crate::sim::kind::Kind;
 use crate::sim::model::Model;
-use crate::sim::state::State;
+use crate::sim::state::{KindState, State};
 use crate::sim::workspace::Workspace;
 
-/// Finds the contacts of a step. Those that were there before go on carrying what they carried.
+/// Finds the contacts of an instant, and the forces that they carry there.
 pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
-    let Some(contact) = &model.contact else { return };
+    locate_contacts(model, state, ws);
+    carry_forces(model, state, ws);
+}
+
+/// Finds the contacts of a step. Those that were there before go on carrying what they carried.
+pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     let s = &mut ws.contact;
-    s.care = 1.0;
-    let is_where_it_ended = gather_places(model, contact, state, &mut s.start);
+    let Some(contact) = &s.scene(model, &state.kinds) else { return };
+    let is_where_it_ended = gather_positions(model, contact, &state.kinds, &mut s.start);
     if !(std::mem::take(&mut s.has_looked) && is_where_it_ended) {
         find_at(contact, &state.contact, &s.start, &mut s.detector, &mut s.found);
     }
@@ -33,31 +42,31 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
         s.pulls.fill(Pull::default());
     }
     s.adhesives.take_over(&mut s.rows, &mut s.pulls, &s.start);
-    carry_forces(model, state, ws);
 }
 
-/// Writes the forces that contacts carry where the step begins, over what the projection of a try has left there.
+/// Sets the forces that contacts carry where the step begins. The state must be that of which they were found.
 pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
-    let Some(contact) = &model.contact else { return };
     let s = &mut ws.contact;
+    let Some(contact) = &s.scene(model, &state.kinds) else { return };
     let has_looked = std::mem::take(&mut s.has_looked);
     if has_looked || releases_energy(contact) {
-        gather_places(model, contact, state, &mut s.start);
+        gather_positions(model, contact, &state.kinds, &mut s.start);
     }
     if has_looked {
-        // The try was looked at to its end.
+        // The attempt before was looked at to its end.
         find_at(contact, &state.contact, &s.start, &mut s.detector, &mut s.found);
     }
-    s.moved.clear();
-    s.moved.resize(contact.scene.atoms, [0.0; 4]);
-    add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut s.moved);
+    let carried = &mut s.forces.carried;
+    carried.clear();
+    carried.resize(contact.scene.atoms, Vec3::zeros());
+    add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, carried);
     for (row, pull) in s.rows.iter().zip(&s.pulls) {
         for (atom, weight) in row.atoms.iter().zip(row.weights()) {
-            add(&mut s.moved[*atom as usize], &(weight * pull.carried()));
+            carried[*atom as usize] += weight * pull.carried();
         }
     }
     for one in &s.adhesives.atoms {
-        add(&mut s.moved[one.atom as usize], &Vec3::from(one.force));
+        carried[one.atom as usize] += Vec3::from(one.force);
     }
 }
 
@@ -68,50 +77,57 @@ pub fn has_live_forces(model: &Model) -> bool {
 
 /// Sets the forces of links and penalties where the atoms are now: they change while a step is made, and its error estimate
 /// must see that.
-pub fn pull_contacts(model: &Model, state: &State, s: &mut ContactScratch) {
-    let Some(contact) = model.contact.as_ref().filter(|_| has_live_forces(model)) else { return };
-    gather_places(model, contact, state, &mut s.places);
-    s.live_force.clear();
-    s.live_force.resize(contact.scene.atoms, Vec3::zeros());
+pub fn pull_contacts(model: &Model, controls: &Controls, cells: &[KindState], s: &mut ContactScratch) {
+    let Some(contact) = &s.scene(model, cells).filter(|_| has_live_forces(model)) else { return };
+    gather_positions(model, contact, cells, &mut s.positions);
+    let live = &mut s.forces.live;
+    live.clear();
+    live.resize(contact.scene.atoms, Vec3::zeros());
     match &contact.law {
-        Law::Penalty(penalty) => press(penalty, &s.rows, &s.start, &s.places, &mut s.live_force),
-        _ => pull_links(contact, &state.chemistry.controls, &s.links, &s.places, &mut s.live_force),
+        Law::Penalty(penalty) => press(penalty, &s.rows, &s.start, &s.positions, live),
+        _ => pull_links(contact, controls, &s.links, &s.positions, live),
     };
 }
 
 /// Adds the force that contacts carried, and what links and penalties do, to the forces of a block of a kind.
-pub fn add_contact_forces(model: &Model, number: usize, block: usize, scratch: &ContactScratch, f: &mut [f64]) {
-    let (Some(contact), kind) = (&model.contact, &model.kinds[number]) else { return };
-    let atoms = contact.atoms_of(number);
-    let forces = &scratch.moved[atoms.clone()];
-    let pulls = scratch.live_force.get(atoms);
+pub fn add_contact_forces(kind: &Kind, cells: &KindState, block: usize, forces: &ContactForces, f: &mut [f64]) {
+    let atoms = cells.atoms(kind);
+    let Some(carried) = forces.carried.get(atoms.clone()) else { return };
+    let pulls = forces.live.get(atoms);
     for lane in 0..kind.lanes {
-        let cell = (block * kind.lanes + lane).min(kind.cells - 1);
+        let cell = (block * kind.lanes + lane).min(cells.cells() - 1);
         let own = cell * kind.atoms()..(cell + 1) * kind.atoms();
         for (atom, number) in own.enumerate() {
             for axis in 0..3 {
                 let pull = pulls.map_or(0.0, |pulls| pulls[number][axis]);
-                f[(3 * atom + axis) * kind.lanes + lane] += forces[number][axis] + pull;
+                f[(3 * atom + axis) * kind.lanes + lane] += carried[number][axis] + pull;
             }
         }
     }
 }
 
-/// Keeps what contacts carry for the next step.
-pub fn keep_contacts(model: &Model, state: &mut State, ws: &mut Workspace) {
-    let Some(contact) = &model.contact else { return };
+/// Keeps what contacts carry for the next step, where that was not done to look at the end of this one.
+pub fn keep_contacts(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) {
     let s = &mut ws.contact;
-    if s.has_looked {
-        std::mem::swap(&mut state.contact, &mut s.bonds);
-        return;
+    if let Some(contact) = &s.scene(model, &from.kinds).filter(|_| !s.has_looked) {
+        write_contacts(contact, &from.chemistry.controls, &mut to.contact, s);
     }
-    s.adhesives.keep(contact, &state.chemistry.controls, &s.found, &s.moved, &mut state.contact);
-    state.contact.links.clone_from(&s.links);
-    write_bonds(&s.found, &s.rows, &s.pulls, &mut state.contact);
+}
+
+/// Writes all that contacts carry from a step to the next.
+pub(super) fn write_contacts(
+    contact: &ContactScene,
+    controls: &Controls,
+    to: &mut ContactState,
+    s: &mut ContactScratch,
+) {
+    write_bonds(&s.found, &s.rows, &s.pulls, to);
+    to.links.clone_from(&s.links);
+    s.adhesives.keep(contact, controls, &s.found, &s.moved, to);
 }
 
 /// Writes what contacts carry. The contacts must be those of the rows.
-pub(super) fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds: &mut ContactState) {
+fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds: &mut ContactState) {
     let ContactState { atoms, edges, planes, .. } = bonds;
     let (of_atoms, others) = pulls.split_at(found.atoms.len());
     let (of_edges, of_planes) = others.split_at(found.edges.len());

@@ -1,9 +1,10 @@
 //! Between the blocks of lanes of the kinds and one list of all atoms.
 
-use super::model::ContactModel;
+use super::scene::ContactScene;
 use crate::Vec3;
-use crate::sim::model::{Kind, Model};
-use crate::sim::state::{State, index, vector};
+use crate::sim::kind::Kind;
+use crate::sim::model::Model;
+use crate::sim::state::{KindState, index, vector};
 
 /// Takes the vectors of a kind in the order of its cells, and what `make` makes of each.
 pub fn gather<T>(kind: &Kind, values: &[f64], to: &mut [T], make: impl Fn(Vec3) -> T) {
@@ -17,15 +18,15 @@ pub fn gather<T>(kind: &Kind, values: &[f64], to: &mut [T], make: impl Fn(Vec3) 
 }
 
 /// Takes the positions of all atoms in the order of cells. Returns whether they were the same already.
-pub fn gather_places(model: &Model, contact: &ContactModel, state: &State, places: &mut Vec<Vec3>) -> bool {
-    let mut same = places.len() == contact.scene.atoms;
-    places.resize(contact.scene.atoms, Vec3::zeros());
-    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
-        for (cell, places) in places[contact.atoms_of(number)].chunks_exact_mut(kind.atoms()).enumerate() {
-            for (atom, place) in places.iter_mut().enumerate() {
+pub fn gather_positions(model: &Model, contact: &ContactScene, cells: &[KindState], positions: &mut Vec<Vec3>) -> bool {
+    let mut same = positions.len() == contact.scene.atoms;
+    positions.resize(contact.scene.atoms, Vec3::zeros());
+    for (number, (kind, now)) in model.kinds.iter().zip(cells).enumerate() {
+        for (cell, positions) in positions[contact.atoms_of(number)].chunks_exact_mut(kind.atoms()).enumerate() {
+            for (atom, position) in positions.iter_mut().enumerate() {
                 let now = vector(kind, &now.positions, cell, atom);
-                same &= *place == now;
-                *place = now;
+                same &= *position == now;
+                *position = now;
             }
         }
     }
@@ -33,9 +34,9 @@ pub fn gather_places(model: &Model, contact: &ContactModel, state: &State, place
 }
 
 /// Puts the vectors of a kind back, `from` the numbers of a cell and an atom of it; lanes beyond the last cell repeat it.
-pub fn scatter(kind: &Kind, from: impl Fn(usize, usize) -> Vec3, values: &mut [f64]) {
-    for slot in 0..kind.blocks() * kind.lanes {
-        let cell = slot.min(kind.cells - 1);
+pub fn scatter(kind: &Kind, cells: usize, from: impl Fn(usize, usize) -> Vec3, values: &mut [f64]) {
+    for slot in 0..cells.next_multiple_of(kind.lanes) {
+        let cell = slot.min(cells - 1);
         let first = index(kind, slot, 0, 0);
         for atom in 0..kind.atoms() {
             let x = from(cell, atom);

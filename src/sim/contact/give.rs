@@ -1,8 +1,8 @@
 //! How far contacts that hold give way while their forces change, and that they never return more than they took.
 
 use super::rows::{Pull, Row};
+use super::scratch::ContactScratch;
 use crate::Vec3;
-use crate::sim::workspace::Workspace;
 
 /// A contact that holds gives way by this share of what a free one would, at most, for each change of its force in the step,
 /// eq. (adhesion.5). Where many contacts hold the same atoms their forces are not determined; this picks some, and at
@@ -35,8 +35,8 @@ pub fn given_after(row: &Row, pull: &Pull) -> f32 {
 }
 
 /// The sum of [`given_after`] over all contacts, pN·µm.
-pub fn energy_of_give(ws: &Workspace) -> f64 {
-    ws.contact.rows.iter().zip(&ws.contact.pulls).map(|(row, pull)| f64::from(given_after(row, pull))).sum()
+pub fn energy_of_give(s: &ContactScratch) -> f64 {
+    s.rows.iter().zip(&s.pulls).map(|(row, pull)| f64::from(given_after(row, pull))).sum()
 }
 
 #[cfg(test)]

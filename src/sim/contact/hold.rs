@@ -1,16 +1,20 @@
 //! The projection: atoms are moved so that contacts and volumes hold.
 
+use std::ops::Range;
+
 use super::gather::{gather, scatter};
 use super::give::set_give;
-use super::model::{ContactModel, Law};
+use super::law::Law;
 use super::momentum::go_on;
 use super::rows::{Pull, Row};
-use super::scratch::ContactScratch;
+use super::scene::ContactScene;
+use super::scratch::{ContactScratch, SweepRules};
 use super::sweep::{Change, V4, VolumeRow, sweep_contacts, sweep_depths, sweep_volumes};
 use crate::Vec3;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
-use crate::sim::model::{Kind, Model, VolumeRule};
+use crate::sim::kind::{Kind, VolumeRule};
+use crate::sim::model::Model;
 use crate::sim::rooms::Rooms;
 use crate::sim::state::{State, vector};
 use crate::sim::trouble::Trouble;
@@ -27,52 +31,55 @@ const MENDED: f64 = 0.25;
 ///
 /// # Errors
 /// When the sweeps do not come to rest.
-pub fn hold_contacts(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
-    let Some(contact) = &model.contact else { return Ok(()) };
+pub fn hold_contacts(
+    model: &Model,
+    dt: f64,
+    rules: SweepRules,
+    from: &State,
+    to: &mut State,
+    ws: &mut Workspace,
+) -> Result<(), Trouble> {
     let Workspace { contact: s, kinds, rooms, .. } = ws;
+    let Some(contact) = &s.scene(model, &from.kinds) else { return Ok(()) };
     s.sweeps = 0;
     if s.rows.is_empty() || matches!(contact.law, Law::Penalty(_)) {
         return Ok(());
     }
-    prepare(model, contact, dt, state, s, kinds, rooms);
-    let left = sweep(model, contact, s, state);
-    if s.care == 1.0 && s.rows.iter().any(|row| row.gap() < 0.0) {
+    prepare(model, contact, dt, from, to, s, kinds, rooms);
+    load_rows(rules, s);
+    let left = sweep(model, contact, rules, s);
+    if rules.mends && s.rows.iter().any(|row| row.gap() < 0.0) {
         mend(model, contact, s);
     }
     s.adhesives.place_all(&s.start, &mut s.moved);
-    put_back(model, contact, s, kinds, state);
+    put_back(model, contact, s, from, to);
     if left.largest <= contact.tolerance {
         return Ok(());
     }
     let owners = s.rows[left.worst].atoms.map(|atom| contact.owner(atom));
     let cells = [owners[0], owners[3]].map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
-    Err(Trouble::Contact { cells, time: state.time + dt, left: left.largest, sweeps: s.sweeps })
+    Err(Trouble::Contact { cells, time: from.time + dt, left: left.largest, sweeps: s.sweeps })
 }
 
 /// Puts the atoms where their displacements take them.
-pub(super) fn put_back(
-    model: &Model,
-    contact: &ContactModel,
-    s: &ContactScratch,
-    kinds: &[KindScratch],
-    state: &mut State,
-) {
-    for (number, ((kind, now), w)) in model.kinds.iter().zip(&mut state.kinds).zip(kinds).enumerate() {
+pub(super) fn put_back(model: &Model, contact: &ContactScene, s: &ContactScratch, from: &State, to: &mut State) {
+    for (number, ((kind, now), next)) in model.kinds.iter().zip(&from.kinds).zip(&mut to.kinds).enumerate() {
         let moved = &s.moved[contact.atoms_of(number)];
-        let place = |cell: usize, atom: usize| {
+        let position = |cell: usize, atom: usize| {
             let [x, y, z, _] = moved[cell * kind.atoms() + atom];
-            vector(kind, &w.start, cell, atom) + Vec3::new(x, y, z)
+            vector(kind, &now.positions, cell, atom) + Vec3::new(x, y, z)
         };
-        scatter(kind, place, &mut now.positions);
+        scatter(kind, now.cells(), position, &mut next.positions);
     }
 }
 
-/// Displacements, mobilities, volumes and stiffnesses before the first sweep.
+/// Displacements, mobilities and volumes before the first sweep.
 fn prepare(
     model: &Model,
-    contact: &ContactModel,
+    contact: &ContactScene,
     dt: f64,
-    state: &State,
+    from: &State,
+    to: &State,
     s: &mut ContactScratch,
     kinds: &mut [KindScratch],
     rooms: &Rooms,
@@ -81,7 +88,8 @@ fn prepare(
     s.gradient.resize(contact.scene.atoms, [0.0; 3]);
     s.volumes.clear();
     s.held.clear();
-    for (number, ((kind, now), w)) in model.kinds.iter().zip(&state.kinds).zip(kinds).enumerate() {
+    let cells = from.kinds.iter().zip(&to.kinds);
+    for (number, ((kind, (now, next)), w)) in model.kinds.iter().zip(cells).zip(kinds).enumerate() {
         let range = contact.atoms_of(number);
         let mobility = match model.integrator.method {
             Method::Implicit { .. } | Method::Explicit => dt / kind.drag,
@@ -89,28 +97,32 @@ fn prepare(
         };
         for (cell, moved) in s.moved[range.clone()].chunks_exact_mut(kind.atoms()).enumerate() {
             for (atom, moved) in moved.iter_mut().enumerate() {
-                let way = vector(kind, &now.positions, cell, atom) - vector(kind, &w.start, cell, atom);
-                *moved = [way.x, way.y, way.z, mobility];
+                let change = vector(kind, &next.positions, cell, atom) - vector(kind, &now.positions, cell, atom);
+                *moved = [change.x, change.y, change.z, mobility];
             }
         }
-        hold_atoms(kind, range.start, s);
+        hold_atoms(kind, now.cells(), range.start, s);
         if matches!(kind.volume, VolumeRule::Exact(_)) {
-            add_volumes(kind, &now.positions, range.start, mobility, s, w, rooms);
+            add_volumes(kind, &next.positions, range, mobility, s, w, rooms);
         }
     }
+    s.adhesives.begin();
+}
+
+/// Rows carry what they carried where the step begins; how they give way depends on the mobilities.
+fn load_rows(rules: SweepRules, s: &mut ContactScratch) {
     for (row, pull) in s.rows.iter_mut().zip(&mut s.pulls) {
         *pull = Pull { force: pull.carried, carried: pull.carried, ..Pull::default() };
         let gives =
             row.atoms.iter().zip(row.weights()).map(|(atom, weight)| weight * weight * s.moved[*atom as usize][3]);
         row.give = gives.sum::<f64>() as f32;
-        set_give(row, pull, s.in_account);
+        set_give(row, pull, rules.in_account);
     }
-    s.adhesives.begin();
 }
 
 /// Lists what is held of a kind; atoms that are held along every axis get no mobility.
-fn hold_atoms(kind: &Kind, first: usize, s: &mut ContactScratch) {
-    for cell in 0..kind.cells {
+fn hold_atoms(kind: &Kind, cells: usize, first: usize, s: &mut ContactScratch) {
+    for cell in 0..cells {
         for (atom, factors) in kind.held.chunks_exact(3).enumerate() {
             let number = first + cell * kind.atoms() + atom;
             if factors.iter().all(|factor| *factor == 0.0) {
@@ -127,17 +139,17 @@ fn hold_atoms(kind: &Kind, first: usize, s: &mut ContactScratch) {
 fn add_volumes(
     kind: &Kind,
     x: &[f64],
-    first: usize,
+    atoms: Range<usize>,
     mobility: f64,
     s: &mut ContactScratch,
     w: &mut KindScratch,
     rooms: &Rooms,
 ) {
-    let KindScratch { left, target, .. } = w;
-    let own = &mut s.gradient[first..first + kind.cells * kind.atoms()];
+    let KindScratch { free_volume, target, .. } = w;
+    let (first, own) = (atoms.start, &mut s.gradient[atoms]);
     let (length, per_block) = (kind.block_len(), kind.lanes * kind.atoms());
     for ((x, volumes), own) in
-        (x.chunks_exact(length)).zip(left.chunks_exact_mut(kind.lanes)).zip(own.chunks_mut(per_block))
+        (x.chunks_exact(length)).zip(free_volume.chunks_exact_mut(kind.lanes)).zip(own.chunks_mut(per_block))
     {
         rooms.enter(length, |[gradient, ..]| {
             volume::measure_block(&kind.rest.facets, x, &kind.held, gradient, volumes);
@@ -151,7 +163,7 @@ fn add_volumes(
             along += (0..3).map(|axis| g[axis] * d[axis]).sum::<f64>();
             squared += (0..3).map(|axis| g[axis] * g[axis]).sum::<f64>();
         }
-        let offset = left[cell] - target[cell] - along;
+        let offset = free_volume[cell] - target[cell] - along;
         s.volumes.push(VolumeRow { first: start, end, offset, inverse: 1.0 / squared, mobility });
     }
 }
@@ -164,96 +176,83 @@ struct Part<'a> {
     moved: &'a mut [V4],
 }
 
-/// Does something for each kind, in their order, with its number, that of its first atom, and what is there of it.
+/// Does something for each kind, in their order, with what is there of it.
 fn for_each_part(
     model: &Model,
-    contact: &ContactModel,
+    contact: &ContactScene,
     (volumes, gradient, moved): (&[VolumeRow], &[[f64; 3]], &mut [V4]),
-    mut work: impl FnMut(usize, usize, Part),
+    mut work: impl FnMut(Part),
 ) {
     let mut next = 0;
     for (number, kind) in model.kinds.iter().enumerate() {
-        let count = if matches!(kind.volume, VolumeRule::Exact(_)) { kind.cells } else { 0 };
         let range = contact.atoms_of(number);
+        let count = if matches!(kind.volume, VolumeRule::Exact(_)) { range.len() / kind.atoms() } else { 0 };
         let volumes = &volumes[next..next + count];
-        work(number, range.start, Part { volumes, gradient: &gradient[range.clone()], moved: &mut moved[range] });
+        work(Part { volumes, gradient: &gradient[range.clone()], moved: &mut moved[range] });
         next += count;
     }
 }
 
-/// The vectors of all atoms of a kind in the order of its cells, in an array that has room for them.
-fn vectors<'a>(kind: &Kind, array: &'a mut [f64]) -> &'a mut [[f64; 3]] {
-    &mut array.as_chunks_mut().0[..kind.cells * kind.atoms()]
-}
-
-/// Sweeps until nothing moves any more; returns what the last sweep changed. Where the atoms went freely stands in the displacements
-/// by now: the positions of the state are those before a sweep, as displacements, until atoms are put back.
-fn sweep(model: &Model, contact: &ContactModel, s: &mut ContactScratch, state: &mut State) -> Change {
-    // Adhesives move from where the step began.
+/// Sweeps until nothing moves any more; returns what the last sweep changed.
+fn sweep(model: &Model, contact: &ContactScene, rules: SweepRules, s: &mut ContactScratch) -> Change {
+    // Adhesives that are bodies move from where the step began.
     let keeps_start = contact.law != Law::Adhesives;
-    let mut way = std::mem::take(if keeps_start { &mut s.way } else { &mut s.start });
-    way.clear();
-    way.resize(contact.scene.atoms, Vec3::zeros());
-    for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |number, _, part| {
-        let before = vectors(&model.kinds[number], &mut state.kinds[number].positions);
-        before.iter_mut().zip(part.moved).for_each(|(before, &mut [x, y, z, _])| *before = [x, y, z]);
-    });
+    let mut before = std::mem::take(if keeps_start { &mut s.before } else { &mut s.start });
+    let mut direction = std::mem::take(&mut s.forces.carried);
+    before.clear();
+    before.extend(s.moved.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z)));
+    direction.clear();
+    direction.resize(contact.scene.atoms, Vec3::zeros());
     s.momentum.begin();
     let (mut change, mut share) = (Change::default(), 0.0);
     for number in 1..=contact.most_sweeps {
         change = Change::default();
         sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, share, &mut change);
         s.adhesives.sweep(&s.start, &mut s.moved, share, &mut change);
-        let mut held = s.held.iter().peekable();
-        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |number, first, part| {
-            let before = vectors(&model.kinds[number], &mut state.kinds[number].positions);
-            while let Some((atom, axis)) = held.next_if(|(atom, _)| (*atom as usize) < first + part.moved.len()) {
-                let (atom, axis) = (*atom as usize - first, *axis as usize);
-                part.moved[atom][axis] = before[atom][axis];
-            }
+        for &(atom, axis) in &s.held {
+            s.moved[atom as usize][axis as usize] = before[atom as usize][axis as usize];
+        }
+        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |part| {
             sweep_volumes(part.volumes, part.gradient, part.moved, &mut change);
         });
         s.sweeps = number;
         // A change that is not a number is no rest either.
-        if change.largest <= contact.tolerance * s.care || number == contact.most_sweeps {
+        if change.largest <= contact.tolerance * rules.tolerance_factor || number == contact.most_sweeps {
             break;
         }
         share = s.momentum.share(change.work);
-        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |number, first, part| {
-            let before = vectors(&model.kinds[number], &mut state.kinds[number].positions);
-            let way = &mut way[first..first + part.moved.len()];
-            go_on(share, part.moved, before, way);
-        });
+        go_on(share, &mut s.moved, &mut before, &mut direction);
     }
-    *(if keeps_start { &mut s.way } else { &mut s.start }) = way;
+    s.forces.carried = direction;
+    *(if keeps_start { &mut s.before } else { &mut s.start }) = before;
     change
 }
 
 /// Pushes out what is inside.
-fn mend(model: &Model, contact: &ContactModel, s: &mut ContactScratch) {
+fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
     let is_deep = |(_, row): &(u32, &Row)| row.give > 0.0 && row.gap() < 0.0;
     s.deep.clear();
     s.deep.extend((0..).zip(&s.rows).filter(is_deep).map(|(number, _)| (number, 0.0)));
     for _ in 0..MENDING {
-        sweep_depths(&s.rows, &mut s.deep, &mut s.moved, MENDED * contact.scene.safe_travel());
+        sweep_depths(&s.rows, &mut s.deep, &mut s.moved, MENDED * contact.reach.safe_travel());
         s.adhesives.place_all(&s.start, &mut s.moved);
-        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |_, _, part| {
+        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |part| {
             sweep_volumes(part.volumes, part.gradient, part.moved, &mut Change::default());
         });
     }
 }
 
 /// The farthest that an atom moved in the step over what contacts allow; 0 without contacts.
-pub fn travel(model: &Model, state: &State, ws: &Workspace) -> f64 {
+pub fn travel(model: &Model, from: &State, to: &State) -> f64 {
     let Some(contact) = &model.contact else { return 0.0 };
     let mut farthest: f64 = 0.0;
-    for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&ws.kinds) {
+    for ((kind, now), next) in model.kinds.iter().zip(&from.kinds).zip(&to.kinds) {
         // Lanes beyond the last cell may go elsewhere.
-        for cell in 0..kind.cells {
-            let place = |x: &[f64], atom: usize| vector(kind, x, cell, atom);
-            let ways = (0..kind.atoms()).map(|atom| place(&now.positions, atom) - place(&w.start, atom));
+        for cell in 0..now.cells() {
+            let position = |x: &[f64], atom: usize| vector(kind, x, cell, atom);
+            let ways = (0..kind.atoms()).map(|atom| position(&next.positions, atom) - position(&now.positions, atom));
             farthest = ways.map(|way| way.norm_squared()).fold(farthest, f64::max);
         }
     }
-    farthest.sqrt() / contact.scene.safe_travel()
+    farthest.sqrt() / contact.reach.safe_travel()
 }

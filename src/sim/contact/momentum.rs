@@ -37,12 +37,12 @@ impl Momentum {
 
 /// Goes on from displacements after a sweep along a share of the last direction: `before` are those before the sweep, and
 /// become those before the next.
-pub fn go_on(share: f64, moved: &mut [V4], before: &mut [[f64; 3]], way: &mut [Vec3]) {
-    for ((now, before), way) in moved.iter_mut().zip(before).zip(way) {
+pub fn go_on(share: f64, moved: &mut [V4], before: &mut [Vec3], direction: &mut [Vec3]) {
+    for ((now, before), direction) in moved.iter_mut().zip(before).zip(direction) {
         for i in 0..3 {
-            let (change, old) = (now[i] - before[i], share * way[i]);
+            let (change, old) = (now[i] - before[i], share * direction[i]);
             now[i] += old;
-            way[i] = old + change;
+            direction[i] = old + change;
             before[i] = now[i];
         }
     }
@@ -55,13 +55,13 @@ mod tests {
 
     #[test]
     fn a_sweep_that_changes_a_little_more_keeps_the_direction_and_one_that_changes_much_more_loses_it() {
-        let (mut moved, mut before, mut way) = ([[0.0; 4]], [[0.0; 3]], [Vec3::zeros()]);
+        let (mut moved, mut before, mut direction) = ([[0.0; 4]], [Vec3::zeros()], [Vec3::zeros()]);
         let mut momentum = Momentum::default();
         momentum.begin();
         let mut after = |work: f64| {
             moved[0][0] += 1.0;
             let share = momentum.share(work);
-            go_on(share, &mut moved, &mut before, &mut way);
+            go_on(share, &mut moved, &mut before, &mut direction);
             (share, moved[0][0])
         };
         assert_eq!(after(2.0), (0.0, 1.0), "no direction yet");

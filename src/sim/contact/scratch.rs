@@ -1,29 +1,53 @@
 //! Scratch of the contacts.
 
-use super::links::Link;
+use super::adhesives::AdhesiveScratch;
 use super::momentum::Momentum;
 use super::rows::{Pull, Row};
-use super::state::ContactState;
+use super::scene::{ContactScene, Surfaces};
+use super::state::Link;
 use super::sweep::{V4, VolumeRow};
-use super::zones::AdhesiveScratch;
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
+use crate::sim::model::Model;
+use crate::sim::state::KindState;
+
+/// Forces of contacts on all atoms while these move freely, pN, in the order of cells; empty where there are none.
+#[derive(Debug, Clone, Default)]
+pub struct ContactForces {
+    /// What contacts carry where the step begins.
+    pub carried: Vec<Vec3>,
+    /// What links or penalties do in the stage that is being made.
+    pub live: Vec<Vec3>,
+}
+
+/// How contacts are swept in an attempt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SweepRules {
+    /// What sweeps may leave, over what contacts allow.
+    pub tolerance_factor: f64,
+    /// Whether what is inside is pushed out.
+    pub mends: bool,
+    /// Whether contacts return no more than they took.
+    pub in_account: bool,
+}
 
 /// Scratch of the contacts; arrays over all atoms stand in the order of cells.
 #[derive(Debug, Clone, Default)]
 pub struct ContactScratch {
+    /// The surfaces of the cells that there are.
+    surfaces: Option<Surfaces>,
     /// Pairs that are near.
     pub detector: Detector,
     /// What touches: under adhesives where the step ended, once it has, and else where it began.
     pub found: Contacts,
     /// Whether this was found where the step ended.
     pub(super) has_looked: bool,
-    /// What contacts carry to the next step, once that is so.
-    pub(super) bonds: ContactState,
-    /// Positions where that is, µm; in the projection under adhesives, which has no more use for them, the last direction.
+    /// Positions where that is, µm. Under adhesives the projection, which does not need them, takes their memory for `before`.
     pub start: Vec<Vec3>,
-    /// The last direction in the projection under other laws, µm.
-    pub(super) way: Vec<Vec3>,
+    /// Forces on all atoms. The projection takes the memory of those carried for its direction.
+    pub forces: ContactForces,
+    /// Displacements before the last sweep of the projection, µm, under laws whose projection needs `start`.
+    pub(super) before: Vec<Vec3>,
     /// Gradients of the volumes that are kept, µm².
     pub(super) gradient: Vec<[f64; 3]>,
     /// Links of the step.
@@ -33,17 +57,14 @@ pub struct ContactScratch {
     /// Facets that have a link.
     pub(super) linked: Vec<bool>,
     /// Positions in the stage that is being made, µm; under links and penalties only.
-    pub(super) places: Vec<Vec3>,
-    /// Force of links or penalties on the atoms in that stage, pN; empty where there are none.
-    pub(super) live_force: Vec<Vec3>,
+    pub(super) positions: Vec<Vec3>,
     /// What the surface at each atom releases an area of contact, pN/µm.
     pub(super) relief: Vec<f64>,
     /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on planes.
     pub rows: Vec<Row>,
     /// What each row carries.
     pub pulls: Vec<Pull>,
-    /// While the atoms move freely, the force of the contacts on them where the step began, pN, and 0; in the projection,
-    /// their displacement over the step, µm, and their displacement over force, µm/pN.
+    /// Displacement of the atoms over the step, µm, and their displacement over force, µm/pN.
     pub(super) moved: Vec<V4>,
     /// Volumes to keep.
     pub(super) volumes: Vec<VolumeRow>,
@@ -52,22 +73,32 @@ pub struct ContactScratch {
     /// Rows that are inside, and the pushes that mend them, pN.
     pub(super) deep: Vec<(u32, f64)>,
     pub(super) momentum: Momentum,
-    /// What sweeps may leave, over what they may in the first try of a step; depths are mended in the first try only, since to
-    /// push something out by place takes work.
-    pub care: f64,
-    /// Whether contacts return no more than they took.
-    pub in_account: bool,
     /// Sweeps of the last projection.
     pub sweeps: u32,
 }
 
 impl ContactScratch {
+    /// The contacts of the cells that there are; made again where these are others than last time. None in a model without contacts.
+    pub(crate) fn scene<'a>(&mut self, model: &'a Model, cells: &[KindState]) -> Option<ContactScene<'a>> {
+        let rules = model.contact.as_ref()?;
+        if !self.surfaces.as_ref().is_some_and(|surfaces| surfaces.are_of(cells)) {
+            self.forget();
+            self.surfaces = Some(Surfaces::of(rules, cells));
+        }
+        self.surfaces.as_ref().map(|surfaces| surfaces.with(rules))
+    }
+
+    /// Forgets what was found, so that the next look finds it anew.
+    pub fn forget(&mut self) {
+        self.detector.forget();
+        self.has_looked = false;
+    }
+
     /// Writes NaN over all scratch numbers and forgets all pairs.
     pub fn poison(&mut self) {
-        self.detector.forget();
+        self.forget();
+        self.surfaces = None;
         self.found.clear();
-        self.has_looked = false;
-        self.bonds = ContactState::default();
         self.rows.clear();
         self.pulls.clear();
         self.volumes.clear();
@@ -75,14 +106,14 @@ impl ContactScratch {
         self.links.clear();
         self.linked.clear();
         self.adhesives.poison();
-        let vectors = [&mut self.start, &mut self.way, &mut self.places, &mut self.live_force];
-        vectors.into_iter().for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
+        let forces = [&mut self.forces.carried, &mut self.forces.live];
+        let vectors = [&mut self.start, &mut self.before, &mut self.positions].into_iter().chain(forces);
+        vectors.for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
         self.gradient.fill([f64::NAN; 3]);
         self.moved.fill([f64::NAN; 4]);
         self.deep.clear();
         self.relief.fill(f64::NAN);
         self.momentum.poison();
-        self.care = f64::NAN;
         self.sweeps = u32::MAX;
     }
 }

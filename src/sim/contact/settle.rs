@@ -1,7 +1,7 @@
 //! The shapes of virtual adhesives after exact volumes have moved their atoms.
 
 use super::hold::put_back;
-use super::model::ContactModel;
+use super::scene::ContactScene;
 use super::scratch::ContactScratch;
 use crate::sim::model::Model;
 use crate::sim::state::{State, vector};
@@ -12,23 +12,23 @@ const SETTLED: f64 = 1e-3;
 
 /// Gives adhesives their shapes back that exact volumes have changed; says whether there was something to do, so that volumes must
 /// be made exact again.
-pub fn settle_adhesives(model: &Model, state: &mut State, ws: &mut Workspace) -> bool {
-    let Workspace { contact: s, kinds, .. } = ws;
-    let Some(contact) = &model.contact else { return false };
+pub fn settle_adhesives(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> bool {
+    let s = &mut ws.contact;
+    let Some(contact) = &s.scene(model, &from.kinds) else { return false };
     if s.adhesives.atoms.is_empty() {
         return false;
     }
-    take_displacements(model, contact, state, s);
+    take_displacements(model, contact, to, s);
     let moved = s.adhesives.place_all(&s.start, &mut s.moved) > SETTLED * contact.tolerance;
     if moved {
-        put_back(model, contact, s, kinds, state);
+        put_back(model, contact, s, from, to);
     }
     moved
 }
 
 /// Displacements over the step as the atoms stand now; what is kept beside them stays.
-fn take_displacements(model: &Model, contact: &ContactModel, state: &State, s: &mut ContactScratch) {
-    for (number, (kind, now)) in model.kinds.iter().zip(&state.kinds).enumerate() {
+fn take_displacements(model: &Model, contact: &ContactScene, to: &State, s: &mut ContactScratch) {
+    for (number, (kind, now)) in model.kinds.iter().zip(&to.kinds).enumerate() {
         let range = contact.atoms_of(number);
         let (first, moved) = (range.start, &mut s.moved[range]);
         for (atom, moved) in moved.iter_mut().enumerate() {

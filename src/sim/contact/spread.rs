@@ -1,15 +1,15 @@
 //! The energy of adhesion: surfaces in contact release energy with their area, which spreads contacts until surfaces under
 //! tension meet at the angle of eq. (adhesion.10).
 
-use super::model::{ContactModel, Strength};
-use super::rows::SHARE;
-use super::sweep::V4;
+use super::assemble::SHARE;
+use super::law::Strength;
+use super::scene::ContactScene;
 use crate::Vec3;
 use crate::contact::Contacts;
-use crate::sim::chemistry::Controls;
+use crate::sim::controls::Controls;
 
 /// Whether any surfaces in contact release energy.
-pub fn releases_energy(model: &ContactModel) -> bool {
+pub fn releases_energy(model: &ContactScene) -> bool {
     let releases = |strength: &Strength| strength.energy > 0.0;
     model.between.iter().chain(&model.on_planes).any(releases)
 }
@@ -17,12 +17,12 @@ pub fn releases_energy(model: &ContactModel) -> bool {
 /// Adds the forces of the energy that contacts release, eq. (adhesion.9), to those of all atoms. `relief` is scratch, one number an
 /// atom.
 pub fn add_spreading(
-    model: &ContactModel,
+    model: &ContactScene,
     found: &Contacts,
     controls: &Controls,
     positions: &[Vec3],
     relief: &mut Vec<f64>,
-    force: &mut [V4],
+    force: &mut [Vec3],
 ) {
     if !releases_energy(model) {
         return;
@@ -41,26 +41,21 @@ pub fn add_spreading(
 
 /// The forces of E = −Σ A min(w_i, w_j, w_k) over facets of area A, with `relief` w kept as it is. A facet that is not in
 /// contact with all its corners is pulled as those outside are: with a part of the relief it would grow without touching anything.
-fn spread(facets: &[[u32; 3]], relief: &[f64], x: &[Vec3], force: &mut [V4]) {
+fn spread(facets: &[[u32; 3]], relief: &[f64], x: &[Vec3], force: &mut [Vec3]) {
     for corners in facets {
         let [i, j, k] = corners.map(|corner| corner as usize);
         let least = relief[i].min(relief[j]).min(relief[k]);
         let normal = (x[j] - x[i]).cross(&(x[k] - x[i]));
         if let Some(normal) = normal.try_normalize(1e-300).filter(|_| least > 0.0) {
             for (corner, edge) in [(i, x[k] - x[j]), (j, x[i] - x[k]), (k, x[j] - x[i])] {
-                add(&mut force[corner], &(0.5 * least * normal.cross(&edge)));
+                force[corner] += 0.5 * least * normal.cross(&edge);
             }
         }
     }
 }
 
-/// Adds a force to the first three numbers.
-pub fn add(to: &mut V4, force: &Vec3) {
-    (0..3).for_each(|axis| to[axis] += force[axis]);
-}
-
 /// What the surface at each atom releases an area, pN/µm: the most of what its contacts do.
-fn relieve(model: &ContactModel, found: &Contacts, controls: &Controls, relief: &mut Vec<f64>) {
+fn relieve(model: &ContactScene, found: &Contacts, controls: &Controls, relief: &mut Vec<f64>) {
     let scene = &model.scene;
     relief.clear();
     relief.resize(scene.atoms, 0.0);
@@ -97,7 +92,7 @@ mod tests {
             let least = |facet: &[u32; 3]| facet.iter().map(|&i| relief[i as usize]).fold(f64::INFINITY, f64::min);
             -areas.iter().zip(&surface.facets).map(|(area, facet)| area * least(facet)).sum::<f64>()
         };
-        let mut force = vec![[0.0; 4]; surface.positions.len()];
+        let mut force = vec![Vec3::zeros(); surface.positions.len()];
         spread(&surface.facets, &relief, &surface.positions, &mut force);
         for (atom, axis) in [(0, 0), (7, 1), (20, 2), (41, 0)] {
             let mut at = |shift: f64| {
@@ -110,7 +105,7 @@ mod tests {
             // Central differences: (1e-4)² times the third derivative, and round-off of 1e3 · 1e-16 / 1e-4.
             assert!((slope + force[atom][axis]).abs() < 1e-6, "{slope} against {}", force[atom][axis]);
         }
-        let sum: Vec3 = force.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z)).sum();
+        let sum: Vec3 = force.iter().sum();
         assert!(sum.norm() < 1e-10, "{sum}");
     }
 }

@@ -1,0 +1,148 @@
+//! Quantities of cells: what is recorded of each at each instant.
+
+/// What is recorded of one cell at one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CellRecord {
+    /// Centre of volume (mean of the atoms for an open surface), µm.
+    pub position: [f64; 3],
+    /// Mean velocity of the atoms over the last step, µm/s.
+    pub velocity: [f64; 3],
+    /// Enclosed volume, µm³ (0 for an open surface).
+    pub volume: f64,
+    /// (V − target)/target.
+    pub volume_error: f64,
+    /// Surface area, µm².
+    pub area: f64,
+    /// Elastic energy, pN·µm.
+    pub energy: f64,
+    /// Extents of the axis-aligned bounding box, µm.
+    pub size: [f64; 3],
+    /// Extents along the principal axes of the atoms, longest first, µm.
+    pub principal: [f64; 3],
+    /// Smallest area of a facet over its area at rest.
+    pub smallest_facet: f64,
+    /// Smallest cosine between the normal of a facet and the direction from the cell's centre; 0 for an open surface.
+    pub smallest_cosine: f64,
+    /// Share of the atoms that are near another cell; 0 without contacts.
+    pub contact_share: f64,
+    /// Id of the aggregate: of the cell in it with the smallest; the cell's own where it touches no other.
+    pub aggregate: f64,
+}
+
+/// A row of [`CELL`].
+#[derive(Debug, Clone, Copy)]
+pub struct CellQuantity {
+    /// Its dataset in the result file; the name is what follows the last `/`.
+    pub dataset: &'static str,
+    /// Unit; `1` for pure numbers.
+    pub unit: &'static str,
+    /// What the numbers mean, in a sentence.
+    pub description: &'static str,
+    /// Where the numbers come from, and what charts call them.
+    pub values: Values,
+}
+
+/// Where the numbers of a quantity come from.
+#[derive(Debug, Clone, Copy)]
+pub enum Values {
+    /// One number per cell, with the words of a chart for it.
+    Number(fn(&CellRecord) -> f64, &'static str),
+    /// Three numbers per cell; each component is a series `NAME_ENDING` with its own words.
+    Vector(fn(&CellRecord) -> [f64; 3], [(&'static str, &'static str); 3]),
+}
+
+/// The length of the velocity, a series that is not stored.
+pub const SPEED: &str = "speed";
+
+const fn row(dataset: &'static str, unit: &'static str, values: Values, description: &'static str) -> CellQuantity {
+    CellQuantity { dataset, unit, description, values }
+}
+
+use Values::{Number, Vector};
+
+/// All quantities of cells, in the order of the result file.
+#[rustfmt::skip]
+pub const CELL: &[CellQuantity] = &[
+    row("/cells/position", "um", Vector(|c| c.position, [("x", "position x"), ("y", "position y"), ("z", "position z")]),
+        "Centre of volume; mean of the atoms for an open surface."),
+    row("/cells/velocity", "um/s", Vector(|c| c.velocity, [("x", "velocity_x"), ("y", "velocity_y"), ("z", "velocity_z")]),
+        "Mean velocity of the atoms over the last step."),
+    row("/cells/volume", "um^3", Number(|c| c.volume, "volume"),
+        "Enclosed volume; 0 for an open surface."),
+    row("/cells/volume_error", "1", Number(|c| c.volume_error, "volume error"),
+        "(volume - target) / target."),
+    row("/cells/area", "um^2", Number(|c| c.area, "area"),
+        "Area of the surface."),
+    row("/cells/energy", "pN um", Number(|c| c.energy, "elastic energy"),
+        "Elastic energy."),
+    row("/cells/size", "um", Vector(|c| c.size, [("x", "extent along x"), ("y", "extent along y"), ("z", "extent along z")]),
+        "Extents of the box along the axes."),
+    row("/cells/principal", "um", Vector(|c| c.principal, [("1", "longest extent"), ("2", "middle extent"), ("3", "shortest extent")]),
+        "Extents along the principal axes of the atoms, longest first."),
+    row("/cells/smallest_facet", "1", Number(|c| c.smallest_facet, "smallest facet over rest"),
+        "Smallest area of a facet over its area at rest."),
+    row("/cells/smallest_cosine", "1", Number(|c| c.smallest_cosine, "smallest cosine of normal and radius"),
+        "Smallest cosine between the normal of a facet and the direction from the centre; below 0 where a facet has folded over, 0 for an open surface."),
+    row("/cells/contact_share", "1", Number(|c| c.contact_share, "share of atoms in contact"),
+        "Share of the atoms that are near another cell; 0 without contacts."),
+    row("/cells/aggregate", "1", Number(|c| c.aggregate, "aggregate"),
+        "Aggregate of a cell: the smallest id of the cells that it touches, and that these touch; its own where it is alone."),
+];
+
+impl CellQuantity {
+    /// The name of the quantity.
+    pub fn name(&self) -> &'static str {
+        self.dataset.rsplit('/').next().unwrap_or_default()
+    }
+
+    /// The component that a series means (none for a number) and its label, if the series is of this quantity.
+    pub fn component(&self, series: &str) -> Option<(Option<usize>, &'static str)> {
+        match &self.values {
+            Number(_, label) => (series == self.name()).then_some((None, *label)),
+            Vector(_, components) => {
+                let ending = series.strip_prefix(self.name())?.strip_prefix('_')?;
+                let index = components.iter().position(|(known, _)| *known == ending)?;
+                Some((Some(index), components[index].1))
+            }
+        }
+    }
+}
+
+/// Names of the series of cells, vectors by their components (`position_x`), in the order of [`CELL`], and [`SPEED`].
+pub fn cell_series() -> impl Iterator<Item = String> {
+    let names = CELL.iter().flat_map(|quantity| match &quantity.values {
+        Number(..) => vec![quantity.name().to_owned()],
+        Vector(_, components) => components.iter().map(|(end, _)| format!("{}_{end}", quantity.name())).collect(),
+    });
+    names.chain([SPEED.to_owned()])
+}
+
+/// The unit of a series of cells.
+pub fn cell_unit(series: &str) -> Option<&'static str> {
+    let stored = if series == SPEED { "velocity_x" } else { series };
+    CELL.iter().find(|quantity| quantity.component(stored).is_some()).map(|quantity| quantity.unit)
+}
+
+/// What a chart calls a series of cells.
+pub fn cell_label(series: &str) -> Option<&'static str> {
+    let found = CELL.iter().find_map(|quantity| quantity.component(series)).map(|(_, label)| label);
+    found.or_else(|| (series == SPEED).then_some(SPEED))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vector_series_are_named_by_component_and_every_series_has_unit_and_label() {
+        let names: Vec<String> = cell_series().collect();
+        for name in ["position_x", "size_z", "principal_1", "velocity_y", "volume", "speed"] {
+            assert!(names.iter().any(|known| known == name), "{name} is missing from {names:?}");
+        }
+        for (number, name) in names.iter().enumerate() {
+            assert!(cell_unit(name).is_some() && cell_label(name).is_some(), "{name}");
+            assert!(!names[..number].contains(name), "{name} is there twice");
+        }
+        assert_eq!((cell_unit("speed"), cell_unit("position"), cell_label("size_w")), (Some("um/s"), None, None));
+    }
+}

@@ -1,0 +1,11 @@
+//! What a run writes down: names, units, labels and meanings of all quantities, in one place.
+//!
+//! Documents name them, the run fills them, the result file stores them, charts and messages speak of them; all by the
+//! tables here. A new quantity of cells is a field of [`CellRecord`] and a row of [`CELL`]; a
+//! new series about contacts is a variant of [`ContactSeries`] and a row of [`CONTACTS`].
+
+mod cell;
+mod contacts;
+
+pub use cell::{CELL, CellQuantity, CellRecord, SPEED, Values, cell_label, cell_series, cell_unit};
+pub use contacts::{CONTACTS, ContactQuantity, ContactSeries, Recorded, Touch, contact_quantities};

@@ -1,0 +1,112 @@
+//! A scene that has everything: two types, contacts that stick, walks that turn, a plane, loads, fibres, a field that cells secrete into
+//! and climb, systems with events, links both ways, an atom that is put somewhere.
+
+use pseudopod::experiment::{Compiled, Document, compile};
+use pseudopod::sim::{Model, State, Workspace, begin_chemistry, step};
+
+/// The field.
+const FIELD: &str = r#"<eml name="field"><grid dimension="2" spacing="4" origin="-40 -40" size="80 80"/>
+    <field id="c" diffusion="30" decay="0.1" initial="2 + 0.02*x"><reaction>-0.02*c^2</reaction></field></eml>"#;
+
+/// What each walker has.
+const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/><input id="c" default="0"/><input id="gx" default="0"/>
+    <input id="speed" default="0"/><input id="share" default="0"/>
+    <variable id="u" initial="1" rate="c - k*u"/><variable id="w" initial="0" rate="u - w"/>
+    <variable id="clock" initial="0" rate="1"/><variable id="pulses" initial="0" rate="0"/>
+    <event id="pulse" when="clock ge 0.35"><set id="clock">0</set><set id="pulses">pulses + 1</set></event>
+    <solver scheme="rk45" rtol="1e-6"/>
+    <link from="field[c]" to="system.c"/><link from="field[c].gradient.x" to="system.gx"/>
+    <link from="cell.speed" to="system.speed"/><link from="cell.contact_share" to="system.share"/>
+    <link from="system.gx" to="cell.motility.bias.x" gain="0.5"/><link from="system.w" to="cell.secretion[c]" gain="2"/>
+    <link from="system.u" to="cell.stiffness" transfer="1 + 0.2*tanh(value)"/>
+    <link from="system.pulses" to="cell.adhesion" transfer="1 + 0.1*sin(value)"/>
+    <link from="system.pulses" to="cell.load[push]" transfer="1 + 0.5*sin(value)"/>
+    <link from="system.pulses" to="cell.fibre[trunk]" transfer="0.5 + 0.3*sin(value)"/>
+    <link from="system.clock" to="cell.rest_volume_ratio" transfer="1 + 0.001*value"/></eml>"#;
+
+/// What the ball has: it moves one of its atoms.
+const PIN: &str = r#"<eml name="pin" level="cell"><variable id="t" initial="0" rate="1"/><input id="seen" default="0"/>
+    <define id="wanted">seen + 0.0002*cos(t)</define>
+    <link from="cell.atom[4].y" to="system.seen"/><link from="system.wanted" to="cell.atom[4].y"/></eml>"#;
+
+/// What the scene has.
+const WHOLE: &str = r#"<eml name="whole"><input id="mean" default="0"/><variable id="sum" initial="0" rate="mean"/>
+    <link from="type[walker].chemistry[own].u" to="system.mean"/></eml>"#;
+
+const TEXT: &str = r#"
+title = "everything"
+seed = 5
+[run]
+until = "100 s"
+integrator = { INTEGRATOR }
+[output]
+every = "10 s"
+
+[cells.walker]
+mesh = { shape = "icosphere", radius = "5 um", level = 1 }
+placement = { at = [["0 um", "0 um", "5.02 um"], ["9.9 um", "0 um", "5.02 um"], ["0 um", "9.9 um", "5.02 um"]] }
+mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
+motility = { brownian = { speed = "2 um/min", persistence = "PERSISTENCE" } }
+loads = [{ name = "push", all = true, direction = [0, 0, -1], force = "4 pN" }]
+fibres = [{ name = "trunk", pairs = [[0, 20]], stiffness = "1 pN/um" }]
+chemistry = ["own"]
+
+[cells.ball]
+mesh = { shape = "icosphere", radius = "4 um", level = 1 }
+placement = { at = [["9 um", "9 um", "4.02 um"]] }
+mechanics = { drag = "15 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
+loads = [{ name = "press", all = true, direction = [-0.7, -0.7, -0.2], force = [["0 s", "8 pN"], ["3.05 s", "9 pN"]] }]
+chemistry = ["pin"]
+
+[[planes]]
+name = "floor"
+point = ["0 um", "0 um", "0 um"]
+normal = [0, 0, 1]
+
+[contact]
+strength = "0.5 pN/um^2"
+
+[chemistry.field]
+document = "field.eml"
+[chemistry.own]
+document = "own.eml"
+[chemistry.pin]
+document = "pin.eml"
+[chemistry.whole]
+document = "whole.eml"
+"#;
+
+/// How the scene is stepped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Steps {
+    /// As long as the error allows.
+    Adaptive,
+    /// Of one size.
+    Fixed,
+}
+
+/// Model and start; walks last this long at a mean ("0.3 s").
+pub fn everything(steps: Steps, persistence: &str) -> (Model, State) {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, eml) in [("field", FIELD), ("own", OWN), ("pin", PIN), ("whole", WHOLE)] {
+        std::fs::write(folder.path().join(format!("{name}.eml")), eml).unwrap();
+    }
+    let integrator = match steps {
+        Steps::Adaptive => "max_step = \"0.1 s\"",
+        Steps::Fixed => "step = \"0.05 s\"",
+    };
+    let text = TEXT.replace("INTEGRATOR", integrator).replace("PERSISTENCE", persistence);
+    let document = Document::parse("test.toml", &text, folder.path(), &[]).unwrap_or_else(|error| panic!("{error}"));
+    let Compiled { model, state, .. } = compile(&document).unwrap_or_else(|error| panic!("{error}"));
+    (model, state)
+}
+
+/// The scene some steps after its start, where cells touch each other and the floor.
+pub fn after(model: &Model, mut state: State, steps: usize) -> (State, Workspace) {
+    let mut ws = Workspace::new(model);
+    begin_chemistry(model, &mut state, &mut ws).unwrap();
+    for _ in 0..steps {
+        step(model, &mut state, &mut ws).unwrap_or_else(|trouble| panic!("{trouble}"));
+    }
+    (state, ws)
+}
