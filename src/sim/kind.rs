@@ -1,7 +1,7 @@
 //! The cells that share a mesh and a material.
 
 use crate::Vec3;
-use crate::cell::motility::BrownianMotility;
+use crate::cell::Behaviour;
 use crate::geometry::{self, Surface, Topology};
 use crate::mechanics::Force;
 use crate::mechanics::course::Course;
@@ -42,10 +42,8 @@ pub struct Kind {
     pub volume: VolumeRule,
     /// Pairs of atoms whose links and fibres are drawn.
     pub drawn_links: Vec<[u32; 2]>,
-    /// Brownian persistence.
-    pub brownian: Option<BrownianMotility>,
-    /// Whether chemistry adds a velocity to the walk.
-    pub biased: bool,
+    /// What its cells do by themselves.
+    pub behaviours: Vec<Behaviour>,
     /// Lanes of a block: [`LANES`], or 1 for a few cells.
     pub lanes: usize,
     /// Mean edge length at rest, µm.
@@ -95,8 +93,7 @@ impl Kind {
             held: Vec::new(),
             volume: if closed { VolumeRule::Exact(Course::constant(1.0)) } else { VolumeRule::Free },
             drawn_links: Vec::new(),
-            brownian: None,
-            biased: false,
+            behaviours: Vec::new(),
             lanes: 1,
             edge: geometry::mean_edge_length(&rest),
             rest,
@@ -175,6 +172,22 @@ impl Kind {
             }
         }
         largest
+    }
+
+    /// Whether its cells do something of which the speed may be set.
+    pub fn has_speed(&self) -> bool {
+        self.behaviours.iter().any(|behaviour| behaviour.speed().is_some())
+    }
+
+    /// Whether a velocity may be set of its cells.
+    pub fn is_biased(&self) -> bool {
+        self.behaviours.contains(&Behaviour::Bias)
+    }
+
+    /// Lets a velocity be set of its cells, or no more.
+    pub fn set_biased(&mut self, biased: bool) {
+        self.behaviours.retain(|behaviour| *behaviour != Behaviour::Bias);
+        self.behaviours.extend(biased.then_some(Behaviour::Bias));
     }
 
     /// Its loads.

@@ -3,12 +3,14 @@
 use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
+use crate::cell::Behaviour;
 use crate::cell::ends::{Setting, settable, setting};
 use crate::equations::eml::{Step, read_end};
 use crate::equations::tree::System;
 use crate::geometry;
 use crate::mechanics::CONTROLLED;
 use crate::sim::chemistry::{Control, Target, Whose, missed, set_control};
+use crate::sim::state::start_of;
 use crate::sim::{Kind, VolumeRule};
 
 impl Simulation {
@@ -50,7 +52,11 @@ impl Simulation {
         let (number, cells) = (self.position_of(cell)?, self.state.cells());
         self.state.chemistry.controls.admit(control, cells);
         match control {
-            Control::Bias(_) => self.model.kinds[kind].biased = true,
+            Control::Bias(_) if !self.model.kinds[kind].is_biased() => {
+                self.model.kinds[kind].set_biased(true);
+                let start = start_of(&self.state.kinds[kind].ids, Behaviour::Bias, self.model.seed);
+                self.state.kinds[kind].behaviours.push(start);
+            }
             Control::Secretion(channel) if channel == self.model.chemistry.secreted.len() => {
                 self.model.chemistry.secreted.extend(self.species(what));
             }
@@ -76,7 +82,7 @@ impl Simulation {
         };
         let unknown = |what, name: &str, known| Err(SimulationError::Unknown { what, name: name.to_owned(), known });
         match setting {
-            Setting::MotilitySpeed if kind.brownian.is_none() => {
+            Setting::MotilitySpeed if !kind.has_speed() => {
                 lacks("has no Brownian motility", "give it one, or set motility.bias.x")
             }
             Setting::Adhesion if self.model.contact.is_none() => {
