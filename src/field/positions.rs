@@ -1,7 +1,7 @@
 //! The position of boxes as the equations of a document see it.
 
 use super::grid::Grid;
-use super::reactor::WIDTH;
+use super::rows::ROW as WIDTH;
 use super::scales::{POSITION, Scales};
 use crate::equations::program::code::Code;
 use crate::equations::program::{Lanes, Program};

@@ -5,6 +5,7 @@ use crate::cell::Behaviour;
 use crate::geometry::{self, Surface, Topology};
 use crate::mechanics::Force;
 use crate::mechanics::course::Course;
+use crate::mechanics::fibres::Fibres;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::load::Load;
@@ -194,6 +195,14 @@ impl Kind {
     pub fn loads(&self) -> impl Iterator<Item = &Load> {
         self.forces.iter().filter_map(|force| match force {
             Force::Load(load) => Some(load),
+            _ => None,
+        })
+    }
+
+    /// Its fibres.
+    pub fn fibres(&self) -> impl Iterator<Item = &Fibres> {
+        self.forces.iter().filter_map(|force| match force {
+            Force::Fibres(fibres) => Some(fibres),
             _ => None,
         })
     }

@@ -23,6 +23,7 @@ mod pressure;
 pub mod projection;
 mod refresh;
 mod rooms;
+pub mod seeding;
 mod solver;
 pub mod state;
 mod step;

@@ -46,6 +46,8 @@ pub struct PopulationChange {
 pub enum Change {
     /// Cells at rest are added around these centres, µm.
     Add(Vec<Vec3>),
+    /// So many cells at rest are added at random points of a box, given by its lowest and highest corner, µm, clear of all others.
+    Seed(usize, [Vec3; 2]),
     /// Cells are removed.
     Remove(Removal),
 }

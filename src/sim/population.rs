@@ -5,6 +5,7 @@ use super::contact::check_added;
 use super::kind::Kind;
 use super::model::{Change, Model, Removal};
 use super::population_trouble::PopulationTrouble;
+use super::seeding::seed;
 use super::state::{NewCell, State};
 use super::workspace::Workspace;
 use crate::Vec3;
@@ -82,10 +83,10 @@ pub fn apply_due_changes(model: &Model, state: &mut State, ws: &mut Workspace) -
     let mut made = 0;
     while let Some(due) = model.changes.get(state.changes).filter(|due| due.time <= state.time + model.clock_slack()) {
         match &due.change {
-            Change::Add(centres) => {
-                let kind = model.kinds.get(due.kind).ok_or_else(|| no_such_kind(model, due.kind))?;
-                let cells: Vec<NewCell> = centres.iter().map(|centre| at_rest(kind, centre)).collect();
-                add_cells(model, state, ws, due.kind, &cells)?;
+            Change::Add(centres) => add_at(model, state, ws, due.kind, centres)?,
+            Change::Seed(number, corners) => {
+                let centres = seed(model, state, due.kind, *number, *corners)?;
+                add_at(model, state, ws, due.kind, &centres)?;
             }
             Change::Remove(removal) => {
                 let ids = removed(model, state, due.kind, *removal)?;
@@ -96,6 +97,19 @@ pub fn apply_due_changes(model: &Model, state: &mut State, ws: &mut Workspace) -
         made += 1;
     }
     Ok(made)
+}
+
+/// Adds cells at rest around these centres, µm.
+fn add_at(
+    model: &Model,
+    state: &mut State,
+    ws: &mut Workspace,
+    kind: usize,
+    centres: &[Vec3],
+) -> Result<(), PopulationTrouble> {
+    let of = model.kinds.get(kind).ok_or_else(|| no_such_kind(model, kind))?;
+    let cells: Vec<NewCell> = centres.iter().map(|centre| at_rest(of, centre)).collect();
+    add_cells(model, state, ws, kind, &cells).map(|_| ())
 }
 
 /// A cell at rest around a centre.

@@ -49,6 +49,15 @@ pub enum PopulationTrouble {
         /// How deep, µm.
         depth: f64,
     },
+    /// A box has no room for all cells that were to come at random points of it.
+    NoRoom {
+        /// Name of the kind.
+        kind: String,
+        /// How many found room.
+        found: usize,
+        /// How many were to come.
+        wanted: usize,
+    },
 }
 
 impl std::fmt::Display for PopulationTrouble {
@@ -70,6 +79,13 @@ impl std::fmt::Display for PopulationTrouble {
             Self::Overlap { cells: [(kind, id), (other, its)], depth } => {
                 write!(f, "a cell to be added overlaps another: cell {id} of type `{kind}` and cell {its} of type ")?;
                 write!(f, "`{other}` would be {depth:.1e} um deep in each other; place it where nothing is")
+            }
+            Self::NoRoom { kind, found, wanted } => {
+                write!(
+                    f,
+                    "there is no room for all cells that come to type `{kind}`: {found} of {wanted} found a point "
+                )?;
+                write!(f, "where they touch no other cell and no plane; make their box larger, or them fewer")
             }
             Self::BehindPlane { cell: (kind, id), plane, depth } => {
                 write!(f, "a cell to be added is behind a plane: cell {id} of type `{kind}` would be {depth:.1e} um ")?;

@@ -4,11 +4,10 @@ use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
 use crate::cell::Behaviour;
-use crate::cell::ends::{Setting, settable, setting};
+use crate::cell::ends::{Setting, settable, setting, word_of};
 use crate::equations::eml::{Step, read_end};
 use crate::equations::tree::System;
 use crate::geometry;
-use crate::mechanics::CONTROLLED;
 use crate::sim::chemistry::{Control, Target, Whose, missed, set_control};
 use crate::sim::state::start_of;
 use crate::sim::{Kind, VolumeRule};
@@ -103,7 +102,7 @@ impl Simulation {
             Setting::RestVolumeRatio => Ok(Control::RestVolumeRatio),
             Setting::Force(handle, name) => match kind.controlled(handle).position(|known| known == name) {
                 Some(number) => Ok(Control::Force(handle, number)),
-                None => unknown(CONTROLLED[handle].word, &name, kind.controlled(handle).map(str::to_owned).collect()),
+                None => unknown(word_of(handle), &name, kind.controlled(handle).map(str::to_owned).collect()),
             },
             Setting::Secretion(name) => match self.species(what) {
                 Some(channel) => {

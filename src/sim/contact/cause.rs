@@ -64,6 +64,7 @@ fn cause_of(model: &Model, state: &State, cells: &[(String, usize); 2]) -> Cause
     if bodies.into_iter().any(is_folded) {
         return Cause::Folded;
     }
+    let contact = &contact.scene_of(&state.kinds);
     let (mut positions, mut found) = (Vec::new(), Contacts::default());
     gather_positions(model, contact, &state.kinds, &mut positions);
     Detector::default().detect(&contact.scene, &positions, &mut found);
