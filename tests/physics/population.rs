@@ -187,7 +187,7 @@ fn course(threads: usize, between: impl Fn(&mut State, &mut Workspace) + Sync) -
         for round in 0..24u32 {
             between(&mut state, &mut ws);
             match round {
-                4 => drop(add_cells(&model, &mut state, &mut ws, 0, &[at(&model, 0, [-9.95, 0.0, 5.02])]).unwrap()),
+                4 => drop(add_cells(&model, &mut state, &mut ws, 0, &[at(&model, 0, [-10.3, 0.0, 5.02])]).unwrap()),
                 8 => remove_cells(&model, &mut state, &mut ws, &[0]).unwrap(),
                 12 => drop(add_cells(&model, &mut state, &mut ws, 1, &[at(&model, 1, [30.0, 0.0, 4.02])]).unwrap()),
                 16 => remove_cells(&model, &mut state, &mut ws, &[3]).unwrap(),
