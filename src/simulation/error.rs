@@ -3,7 +3,7 @@
 use super::id::CellId;
 use crate::error::words::{all_of, meant};
 use crate::error::{Error, Fault};
-use crate::sim::Trouble;
+use crate::sim::{PopulationTrouble, Trouble};
 
 /// Why a simulation could not be made, or could not do what was asked.
 #[derive(Debug, thiserror::Error)]
@@ -68,6 +68,9 @@ pub enum SimulationError {
     /// A model and a state that do not belong together.
     #[error("the state is not one of this model: {0}")]
     Mismatch(String),
+    /// Cells that cannot come or go.
+    #[error(transparent)]
+    Population(#[from] PopulationTrouble),
     /// Bytes that cannot be restored.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointFault),
@@ -102,7 +105,7 @@ impl SimulationError {
         Some(match self {
             Self::Input(Error::Input(faults)) => return faults.iter().find_map(|fault| fault.help.clone()),
             Self::Input(Error::Numbers { help, .. } | Error::Machine { help, .. }) => help.clone(),
-            Self::Input(Error::Interrupted { .. }) | Self::Value { .. } => return None,
+            Self::Input(Error::Interrupted { .. }) | Self::Value { .. } | Self::Population(_) => return None,
             Self::Trouble(trouble) => trouble.help().to_owned(),
             Self::Cancelled { .. } => "go on with a new cancel token".to_owned(),
             Self::NoSuchCell { .. } => "ask `cells` which there are".to_owned(),

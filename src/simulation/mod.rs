@@ -35,6 +35,7 @@ mod fingerprint;
 mod fits;
 mod history;
 mod id;
+mod population;
 mod record;
 mod series;
 mod snapshot;
@@ -42,7 +43,7 @@ mod stepping;
 mod touch;
 
 pub use crate::output::{SeriesInfo, SeriesScope};
-pub use crate::sim::{StepReport, Trouble};
+pub use crate::sim::{PopulationTrouble, StepReport, Trouble};
 pub use builder::Builder;
 pub(crate) use builder::Ready;
 pub use cancel::CancelToken;
