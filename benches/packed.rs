@@ -55,7 +55,7 @@ fn population(cells: usize, largest: f64) -> (Model, State) {
     let stiffness = 0.05 * (25.0 / cells as f64).powf(2.0 / 3.0);
     kind.forces.push(Force::Attraction(Attraction { to: Vec3::zeros(), stiffness }));
     kind.largest_stiffness = kind.measure_largest_stiffness();
-    let mut kind = kind.with_cells(0, cells);
+    let mut kind = kind.for_cells(cells);
     kind.bound_stiffness();
     let size = StepSize::Adaptive { tolerance: 1e-3, largest };
     let integrator = Integrator { method: Method::Implicit { order: Order::Second }, size };
@@ -86,7 +86,7 @@ fn seconds(since: &Instant, threads: usize) -> f64 {
 /// The positions of all atoms, in the order of cells.
 fn positions(model: &Model, state: &State) -> Vec<Vec3> {
     let kind = &model.kinds[0];
-    (0..kind.cells).flat_map(|cell| state.kinds[0].cell(kind, cell)).collect()
+    (0..state.cells()).flat_map(|cell| state.kinds[0].cell(kind, cell)).collect()
 }
 
 /// Packs a population and prints what its steps cost.
@@ -109,7 +109,7 @@ fn measure(cells: usize, threads: usize, pack: f64) {
             contacts += ws.contact.rows.len();
         }
         let seconds = now() - began;
-        let bytes = (HELD.load(Ordering::Relaxed) - before) as f64 / model.atoms() as f64;
+        let bytes = (HELD.load(Ordering::Relaxed) - before) as f64 / state.atoms(&model) as f64;
         // The same cells as if they passed through each other: the rest of the step.
         let (alone, mut trial) = (Model { contact: None, ..model.clone() }, state.clone());
         let mut spare = Workspace::new(&alone);
@@ -121,7 +121,7 @@ fn measure(cells: usize, threads: usize, pack: f64) {
         let without = now() - began;
         let (mut finding, mut detecting) = (0.0, 0.0);
         let (mut detector, mut found) = (Detector::default(), Contacts::default());
-        let scene = &model.contact.as_ref().expect("contacts").scene;
+        let scene = &model.contact.as_ref().expect("contacts").scene_of(&state.kinds).scene;
         detector.detect(scene, &positions(&model, &state), &mut found);
         for _ in 0..STEPS {
             step(&model, &mut state, &mut ws).expect("a step");
@@ -142,7 +142,7 @@ fn measure(cells: usize, threads: usize, pack: f64) {
             "{cells:6} {threads:8} {:10.2} {:10.2} {:10.3} {:8.1} {:12.1} {:10.2} {:10.2} {:10.3} {:10.0}",
             each(seconds, STEPS),
             each(seconds, tries),
-            1e-6 * model.atoms() as f64 * f64::from(tries) / seconds,
+            1e-6 * state.atoms(&model) as f64 * f64::from(tries) / seconds,
             f64::from(sweeps) / f64::from(STEPS),
             contacts as f64 / f64::from(STEPS) / cells as f64,
             each(seconds, tries) - each(without, others),

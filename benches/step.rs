@@ -19,7 +19,7 @@ fn kind(level: u32, cells: usize) -> Kind {
     let memory = ShapeMemory::new(&surface.positions, &rings, 10.0, Reaction::Exact);
     let mut kind = Kind::new("cell", surface, vec![Force::ShapeMemory(memory)]);
     kind.bound_stiffness();
-    kind.with_cells(0, cells)
+    kind.for_cells(cells)
 }
 
 fn model(kind: Kind, method: Method, dt: f64) -> Model {

@@ -1,6 +1,10 @@
 //! Memory is part of the design: nothing is allocated in a step after the first, and an atom at rest costs few bytes.
 //! A file of its own, because the allocator of a test program counts for all its tests; one test after the other.
 
+#[path = "support/everything.rs"]
+mod everything;
+
+use everything::{Steps, after, everything};
 use pseudopod::Vec3;
 use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
@@ -79,7 +83,7 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
         }
     }
     let integrator = Integrator { method, size: StepSize::Fixed(0.01) };
-    Model { planes, ..Model::of(vec![kind.with_cells(0, cells)], integrator, 1e9) }
+    Model { planes, ..Model::of(vec![kind.for_cells(cells)], integrator, 1e9) }
 }
 
 fn pull(direction: Vec3, atom: u32) -> Force {
@@ -110,6 +114,27 @@ fn allocations(method: Method, acting: Acting, threads: usize) -> usize {
     })
 }
 
+/// Allocations of twenty steps in the scene that has everything: contacts, walks, fields, systems with events, links. Walks do not turn, for
+/// each run that ends is kept for the result.
+fn allocations_of_everything() -> usize {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .start_handler(|_| WORKS.set(true))
+        .exit_handler(|_| WORKS.set(false))
+        .build()
+        .unwrap();
+    let (model, start) = everything(Steps::Fixed, "1000 h");
+    pool.install(|| {
+        // Until the cells lie where they stay, and lists of contacts are as long as they become.
+        let (mut state, mut ws) = after(&model, start, 100);
+        let before = CALLS.load(Ordering::Relaxed);
+        for _ in 0..20 {
+            step(&model, &mut state, &mut ws).unwrap();
+        }
+        CALLS.load(Ordering::Relaxed) - before
+    })
+}
+
 #[test]
 fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
     let methods = [
@@ -129,12 +154,13 @@ fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
         let shared = allocations(method, Acting::Loads, 2);
         assert!(shared < 20, "{method:?} on two threads: {shared}");
     }
+    assert_eq!(allocations_of_everything(), 0, "where there is everything");
     let before = BYTES.load(Ordering::Relaxed);
     let model = scene(Method::Implicit { order: Order::Second }, Acting::Elastic, 100_000);
     let places = vec![model.kinds[0].rest.positions.clone(); 100_000];
     let (mut state, mut ws) = (State::new(&model, &[places]), Workspace::new(&model));
     step(&model, &mut state, &mut ws).unwrap();
-    let bytes = (BYTES.load(Ordering::Relaxed) - before) as f64 / model.atoms() as f64;
-    println!("{bytes:.0} bytes an atom on {} cells of {} atoms", model.cells(), model.kinds[0].atoms());
+    let bytes = (BYTES.load(Ordering::Relaxed) - before) as f64 / state.atoms(&model) as f64;
+    println!("{bytes:.0} bytes an atom on {} cells of {} atoms", state.cells(), model.kinds[0].atoms());
     assert!(bytes < 250.0, "{bytes}");
 }

@@ -16,17 +16,16 @@ pub fn advance_behaviours(model: &Model, dt: f64, from: &State, to: &mut State, 
         if kind.behaviours.is_empty() {
             continue;
         }
-        for local in 0..kind.cells {
-            let cell = kind.first_cell + local;
-            let (speed, bias) = (controls.speed_of(cell), controls.bias_of(cell));
-            let circumstances = Circumstances { seed: model.seed, cell: cell as u64, speed, bias };
+        for (local, (number, &id)) in begun.numbers().zip(&begun.ids).enumerate() {
+            let (speed, bias) = (controls.speed_of(number), controls.bias_of(number));
+            let circumstances = Circumstances { seed: model.seed, cell: id, speed, bias };
             let mut velocity = Vec3::zeros();
             for (behaviour, states) in kind.behaviours.iter().zip(&mut now.behaviours) {
                 velocity += behaviour.advance(dt, &circumstances, &mut states[local], |duration, offset| {
-                    ended_runs.push((cell as u32, from.time + offset, duration));
+                    ended_runs.push((id, from.time + offset, duration));
                 });
             }
-            ws.drive[cell] = velocity.into();
+            ws.drive[number] = velocity.into();
         }
     }
 }

@@ -9,7 +9,6 @@ use crate::equations::eml::{Step, read_end};
 use crate::equations::tree::System;
 use crate::geometry;
 use crate::sim::chemistry::{Control, Target, Whose, missed, set_control};
-use crate::sim::state::start_of;
 use crate::sim::{Kind, VolumeRule};
 
 impl Simulation {
@@ -48,12 +47,12 @@ impl Simulation {
         if let Some(expected) = missed(Target::Cell(Whose::Own, control), value) {
             return Err(SimulationError::Value { what: of_cell(what, cell), value, expected });
         }
-        let (number, cells) = (self.position_of(cell)?, self.model.cells());
+        let (number, cells) = (self.position_of(cell)?, self.state.cells());
         self.state.chemistry.controls.admit(control, cells);
         match control {
             Control::Bias(_) if !self.model.kinds[kind].is_biased() => {
                 self.model.kinds[kind].set_biased(true);
-                let start = start_of(&self.model.kinds[kind], Behaviour::Bias, self.model.seed);
+                let start = self.state.kinds[kind].start_of(&Behaviour::Bias, self.model.seed);
                 self.state.kinds[kind].behaviours.push(start);
             }
             Control::Secretion(channel) if channel == self.model.chemistry.secreted.len() => {

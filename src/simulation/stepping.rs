@@ -31,7 +31,7 @@ pub struct Simulation {
 
 impl std::fmt::Debug for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let (time, steps, cells) = (self.state.time, self.state.step, self.model.cells());
+        let (time, steps, cells) = (self.state.time, self.state.step, self.state.cells());
         f.debug_struct("Simulation").field("time", &time).field("steps", &steps).field("cells", &cells).finish()
     }
 }

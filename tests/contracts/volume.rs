@@ -117,7 +117,7 @@ fn worst_error(scene: &[&str], integrator: &[&str]) -> Result<f64, String> {
             }
             step(&model, &mut state, &mut ws).map_err(|trouble| format!("{population:?}: {trouble}"))?;
             let target = rest * if scene.contains(&DRIVEN) { driven(state.time) } else { 1.0 };
-            for cell in 0..kind.cells {
+            for cell in 0..state.kinds[0].cells() {
                 let error = (volume_of(kind, &state, cell) / target - 1.0).abs();
                 if error.is_nan() || error > TOLERANCE {
                     return Err(format!("{population:?}: cell {cell} is {error:.1e} off after step {number}"));

@@ -11,7 +11,7 @@ use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::random::{Purpose, Stream};
-use pseudopod::sim::contact::{ContactModel, Pull, Row, Strength, check_passed};
+use pseudopod::sim::contact::{ContactModel, Pull, Row, Strength, check_passed, help_at};
 use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::{Kind, Model, State, Trouble, VolumeRule, Workspace, step};
 
@@ -51,13 +51,9 @@ fn reach(edge: f64) -> Reach {
 
 /// A model of these kinds in which all stick with a strength.
 fn model(mut kinds: Vec<Kind>, integrator: Integrator, until: f64, strength: Strength) -> Model {
-    let mut first = 0;
     for kind in &mut kinds {
         kind.largest_stiffness = kind.measure_largest_stiffness();
         kind.bound_stiffness();
-        let cells = kind.cells;
-        kind.first_cell = first;
-        first += cells;
     }
     let mut contact = ContactModel::new(&kinds, &[], reach(kinds[0].edge));
     (0..kinds.len()).for_each(|one| (0..kinds.len()).for_each(|other| contact.stick(one, other, strength)));
@@ -220,7 +216,7 @@ fn a_pair_parts_at_its_strength_and_not_at_its_step() {
 
 /// Two cells that were squeezed and pressed together, left alone.
 fn squeezed_pair(strength: f64, largest: f64) -> (Model, State) {
-    let kind = cell("cell", 5.0).with_cells(0, 2);
+    let kind = cell("cell", 5.0).for_cells(2);
     let model =
         model(vec![kind], adaptive(largest), 40.0, Strength { tensile: strength, shear: strength, energy: 0.0 });
     let squeeze = |x: &Vec3| Vec3::new(0.8 * x.x, 1.1 * x.y, 1.1 * x.z + 0.1 * x.x);
@@ -294,7 +290,7 @@ fn a_fixed_step_in_which_a_pair_would_gain_energy_is_made_in_shorter_ones_that_e
 fn gathered(seed: u64, cells: usize, pull: f64, strength: Strength) -> (Model, State) {
     let mut kind = cell("cell", 5.0);
     kind.forces.push(Force::Attraction(Attraction { to: Vec3::zeros(), stiffness: pull }));
-    let model = model(vec![kind.with_cells(0, cells)], adaptive(1.0), f64::INFINITY, strength);
+    let model = model(vec![kind.for_cells(cells)], adaptive(1.0), f64::INFINITY, strength);
     let mut dice = Stream::new(seed, Purpose::Placement, 0, 0);
     let mut centres: Vec<Vec3> = Vec::new();
     while centres.len() < cells {
@@ -365,7 +361,7 @@ fn contacts_are_state_and_nothing_else_is() {
 
 #[test]
 fn cells_inside_each_other_are_seen_whatever_their_contacts_say() {
-    let kind = cell("cell", 5.0).with_cells(0, 3);
+    let kind = cell("cell", 5.0).for_cells(3);
     let model = model(vec![kind], adaptive(0.1), 1.0, GLUE);
     let at = |x: f64| {
         let centres = [Vec3::zeros(), Vec3::new(30.0, 0.0, 0.0), Vec3::new(30.0 + x, 0.0, 0.0)];
@@ -376,7 +372,7 @@ fn cells_inside_each_other_are_seen_whatever_their_contacts_say() {
     for x in [0.5 * RADIUS, 1.5 * RADIUS] {
         let Err(Trouble::Pressed { cells, depth, .. }) = at(x) else { panic!("{x} um apart is not seen") };
         assert_eq!(cells.map(|(_, cell)| cell), [1, 2]);
-        assert!(depth > model.contact.as_ref().unwrap().scene.reach.depth, "{depth}");
+        assert!(depth > model.contact.as_ref().unwrap().reach.depth, "{depth}");
     }
 }
 
@@ -403,12 +399,36 @@ fn contacts_that_do_not_come_to_rest_end_a_run_name_the_cells_and_leave_the_stat
     named.sort_unstable();
     assert_eq!((named, *sweeps), (vec!["left", "right"], 1));
     assert!(*left > 0.0);
-    assert_eq!(trouble.help().split(':').next(), Some("cells are pressed together harder than their volumes allow"));
+    let help = help_at(&trouble, &model, &state);
+    assert!(help.starts_with("nothing presses these cells together from around"), "two cells in the open: {help}");
     let cells = [("left", 0), ("right", 0)].map(|(kind, cell)| (kind.to_owned(), cell));
     let words = Trouble::Contact { cells, time: 1.5, left: 2e-4, sweeps: 200 }.to_string();
     let expected = "contacts and volumes do not come to rest at t = 1.500000 s: after 200 sweeps atoms of cell 0 of type `left` \
                     and of cell 0 of type `right`, which touch, still move by 2.0e-4 um";
     assert_eq!(words, expected);
+}
+
+#[test]
+fn the_help_for_contacts_that_fail_fits_what_the_cells_look_like() {
+    let advice = |model: &Model, state: &State| {
+        let cells = [("left".to_owned(), 0), ("right".to_owned(), 0)];
+        help_at(&Trouble::Pressed { cells, time: 0.0, depth: 0.1 }, model, state)
+    };
+    let kinds = || vec![cell("left", 5.0), cell("right", 5.0)];
+    let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
+    let model = model(kinds(), adaptive(0.1), 10.0, Strength::default());
+    let apart = |centres: &[Vec3]| [0, 1].map(|i| places(&model.kinds[i], &centres[i..=i]));
+    let open = advice(&model, &State::new(&model, &apart(&centres)));
+    assert!(open.contains("move or yield faster than contacts follow"), "{open}");
+    // An atom is pushed through to the other side of its cell.
+    let mut folded = apart(&centres);
+    folded[1][0][0] = 2.0 * centres[1] - folded[1][0][0];
+    let folded = State::new(&model, &folded);
+    let folded = advice(&model, &folded);
+    assert!(folded.starts_with("the surface of one of these cells is folded"), "{folded}");
+    // Nearly at the same place each has the other everywhere.
+    let crowded = advice(&model, &State::new(&model, &apart(&[Vec3::zeros(), Vec3::new(0.05, 0.0, 0.0)])));
+    assert!(crowded.starts_with("cells are pressed together harder than their volumes allow"), "{crowded}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ fn drawn_together(cells: usize, size: StepSize) -> f64 {
     // The documents' trunk: 0 to 1 in 2 s, back in half a second, then rest.
     let activation = Course::through(vec![(0.0, 0.0), (2.0, 1.0), (2.5, 0.0)]).unwrap();
     let trunk = Fibres::new("trunk", vec![[0, 20]], 3.0, activation);
-    let mut kind = Kind::new("cell", rest, vec![Force::Fibres(trunk)]).with_cells(0, cells);
+    let mut kind = Kind::new("cell", rest, vec![Force::Fibres(trunk)]).for_cells(cells);
     kind.volume = VolumeRule::Free;
     kind.drag = 2.0;
     kind.bound_stiffness();

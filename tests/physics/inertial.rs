@@ -151,7 +151,7 @@ fn cell(cells: usize) -> Kind {
     let mut kind = Kind::new("cell", surface, vec![Force::ShapeMemory(memory)]);
     (kind.drag, kind.mass) = (1.0, 0.3);
     kind.bound_stiffness();
-    kind.with_cells(0, cells)
+    kind.for_cells(cells)
 }
 
 fn stretched(kind: &Kind) -> Vec<Vec3> {

@@ -125,7 +125,7 @@ fn steps_of_a_long_pull(cells: usize) -> (u32, f64) {
     let force = Course::through(vec![(0.0, 0.0), (1.0, 300.0)]).unwrap();
     let pull = |side: f64| Force::Load(Load::new("", poles(side), side * Vec3::z(), force.clone()));
     let (up, down) = (pull(1.0), pull(-1.0));
-    let mut kind = Kind::new("sphere", surface, vec![Force::Membrane(membrane), up, down]).with_cells(0, cells);
+    let mut kind = Kind::new("sphere", surface, vec![Force::Membrane(membrane), up, down]).for_cells(cells);
     kind.bound_stiffness();
     kind.drag = 0.01;
     let model = model_of(kind, SECOND, ADAPTIVE, 2.0);
@@ -148,7 +148,7 @@ fn a_stiffness_made_for_the_shape_saves_steps_and_changes_no_result() {
 
 #[test]
 fn eight_lanes_give_what_one_lane_gives() {
-    let kind = sphere_kind(1, 10.0).with_cells(0, 11);
+    let kind = sphere_kind(1, 10.0).for_cells(11);
     assert_eq!(kind.lanes, 8);
     let model = model_of(kind, SECOND, StepSize::Fixed(0.3), 3.0);
     let shapes: Vec<Vec<Vec3>> = (0..11).map(|i| stretched(&model.kinds[0], 1.05 + 0.03 * i as f64)).collect();
@@ -156,7 +156,7 @@ fn eight_lanes_give_what_one_lane_gives() {
     run_until_end(&model, &mut state, &mut ws);
     for cell in 0..11 {
         // Two cells run alone, each on one lane; a kind of one cell would make its stiffness again as it deforms.
-        let alone = model_of(sphere_kind(1, 10.0).with_cells(0, 2), SECOND, StepSize::Fixed(0.3), 3.0);
+        let alone = model_of(sphere_kind(1, 10.0).for_cells(2), SECOND, StepSize::Fixed(0.3), 3.0);
         assert_eq!(alone.kinds[0].lanes, 1);
         let (mut one, mut ws) = start(&alone, vec![shapes[cell].clone(), shapes[0].clone()]);
         run_until_end(&alone, &mut one, &mut ws);
@@ -167,7 +167,7 @@ fn eight_lanes_give_what_one_lane_gives() {
 
 #[test]
 fn scratch_is_scratch() {
-    let model = model_of(sphere_kind(1, 10.0).with_cells(0, 5), SECOND, ADAPTIVE, 100.0);
+    let model = model_of(sphere_kind(1, 10.0).for_cells(5), SECOND, ADAPTIVE, 100.0);
     let shapes: Vec<Vec<Vec3>> = (0..5).map(|i| stretched(&model.kinds[0], 1.1 + 0.05 * i as f64)).collect();
     let (mut clean, mut ws) = start(&model, shapes);
     let mut poisoned = clean.clone();
@@ -182,7 +182,7 @@ fn scratch_is_scratch() {
 
 #[test]
 fn threads_do_not_matter() {
-    let model = model_of(sphere_kind(1, 10.0).with_cells(0, 50), SECOND, ADAPTIVE, 100.0);
+    let model = model_of(sphere_kind(1, 10.0).for_cells(50), SECOND, ADAPTIVE, 100.0);
     let shapes: Vec<Vec<Vec3>> = (0..50).map(|i| stretched(&model.kinds[0], 1.1 + 0.01 * i as f64)).collect();
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

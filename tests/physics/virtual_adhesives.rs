@@ -45,12 +45,9 @@ fn pull(kind: &mut Kind, direction: Vec3, force: &[(f64, f64)]) {
 
 /// A model in which all kinds are glued alike, with fixed steps.
 fn model(mut kinds: Vec<Kind>, method: Method, dt: f64, until: f64, kappa: f64) -> Model {
-    let mut first = 0;
     for kind in &mut kinds {
         kind.largest_stiffness = kind.measure_largest_stiffness();
         kind.bound_stiffness();
-        kind.first_cell = first;
-        first += kind.cells;
     }
     let near = 0.1 * kinds[0].edge;
     let integrator = Integrator { method, size: StepSize::Fixed(dt) };
@@ -73,7 +70,7 @@ fn state(model: &Model, at: &[Vec3]) -> State {
 
 fn positions(model: &Model, state: &State) -> Vec<Vec3> {
     let kinds = model.kinds.iter().zip(&state.kinds);
-    kinds.flat_map(|(kind, now)| (0..kind.cells).flat_map(|cell| now.cell(kind, cell))).collect()
+    kinds.flat_map(|(kind, now)| (0..now.cells()).flat_map(|cell| now.cell(kind, cell))).collect()
 }
 
 /// Goes on to the end, or until something is so.

@@ -298,12 +298,11 @@ impl Scene {
         let mut dice = Dice::new(self.seed ^ 0x5eed_0000_0000);
         let mut kinds: Vec<Kind> = Vec::new();
         for (number, of) in self.types.iter().enumerate() {
-            let first = kinds.iter().map(|kind| kind.cells).sum();
-            kinds.push(self.kind(number, of).with_cells(first, of.cells));
+            kinds.push(self.kind(number, of).for_cells(of.cells));
         }
         let turn = dice.turn();
         let (places, half) = match self.purpose {
-            Purposed::Alone => (pair(&mut dice, &kinds), 0.0),
+            Purposed::Alone => (pair(&mut dice, self, &kinds), 0.0),
             _ => scatter(&mut dice, self, &kinds),
         };
         let places: Vec<Vec<Vec<Vec3>>> = places
@@ -435,9 +434,10 @@ fn stable_step(kinds: &[Kind]) -> f64 {
 }
 
 /// Two cells, each turned and squeezed without a change of its volume, that just touch.
-fn pair(dice: &mut Dice, kinds: &[Kind]) -> Vec<Vec<Vec<Vec3>>> {
+fn pair(dice: &mut Dice, scene: &Scene, kinds: &[Kind]) -> Vec<Vec<Vec<Vec3>>> {
     let mut cells: Vec<Vec<Vec3>> = Vec::new();
-    for kind in kinds.iter().flat_map(|kind| std::iter::repeat_n(kind, kind.cells)) {
+    let of_types = kinds.iter().zip(&scene.types);
+    for kind in of_types.flat_map(|(kind, of)| std::iter::repeat_n(kind, of.cells)) {
         let turn = dice.turn();
         let [a, b] = [0; 2].map(|_| dice.between(0.85, 1.15));
         let lean = dice.between(-0.1, 0.1);
@@ -460,13 +460,13 @@ fn scatter(dice: &mut Dice, scene: &Scene, kinds: &[Kind]) -> (Vec<Vec<Vec<Vec3>
     let closed: Vec<usize> = (0..kinds.len()).filter(|number| !is_sheet(*number)).collect();
     let largest = closed.iter().map(|number| radius(&kinds[*number])).fold(0.0, f64::max);
     let filled: f64 =
-        closed.iter().map(|number| kinds[*number].cells as f64 * (2.0 * radius(&kinds[*number])).powi(3)).sum();
+        closed.iter().map(|number| scene.types[*number].cells as f64 * (2.0 * radius(&kinds[*number])).powi(3)).sum();
     let mut half = 0.5 * filled.cbrt();
     let mut taken: Vec<(Vec3, f64)> = Vec::new();
     let mut places = vec![Vec::new(); kinds.len()];
     for &number in &closed {
         let (kind, own) = (&kinds[number], radius(&kinds[number]));
-        for _ in 0..kind.cells {
+        for _ in 0..scene.types[number].cells {
             let centre = loop {
                 let centre = Vec3::from_fn(|_, _| dice.between(-half, half));
                 if taken.iter().all(|(other, its)| (centre - other).norm() > own + its + 0.02 * kind.edge) {

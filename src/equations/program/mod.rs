@@ -47,7 +47,7 @@ pub struct Program {
     pub timeless: bool,
     /// Whether the rates never read the clock, not even for a switch: at the same state and open values they are the same.
     pub rates_stand_still: bool,
-    /// A number that programs with other rates or registers do not share.
+    /// A number that programs with other rates, slots, constants or registers do not share.
     pub mark: u64,
     /// Row and column of the Jacobian's entries that are not always zero, row after row.
     pub pattern: Vec<(u32, u32)>,
@@ -117,7 +117,7 @@ impl Program {
             sizes: sizes(system, &initial),
             initial,
             rates_stand_still: !rates.reads(0),
-            mark: mark(&rates, &constants.values, registers),
+            mark: mark(&rates, &constants.values, slots, registers),
             rates,
             linear,
             timeless,
@@ -170,10 +170,10 @@ impl Program {
     }
 }
 
-/// A number made of the rates' operations, the constants and the number of registers.
-fn mark(rates: &Code, constants: &[f64], registers: usize) -> u64 {
+/// A number made of the rates' operations, the constants and the numbers of slots and registers.
+fn mark(rates: &Code, constants: &[f64], slots: usize, registers: usize) -> u64 {
     let mut hasher = std::hash::DefaultHasher::new();
-    (rates, registers).hash(&mut hasher);
+    (rates, slots, registers).hash(&mut hasher);
     constants.iter().for_each(|constant| constant.to_bits().hash(&mut hasher));
     hasher.finish()
 }

@@ -26,7 +26,7 @@ use crate::field::Fields;
 use crate::geometry::{self, Surface};
 use crate::mechanics::course::Course;
 use crate::sim::chemistry::ChemistryState;
-use crate::sim::model::kinks;
+use crate::sim::kind::kinks;
 use crate::sim::{Kind, Model, Plane, State, VolumeRule};
 use builder::Built;
 use numbers::vector;
@@ -74,7 +74,7 @@ impl Prepared {
         let cells = model.kinds.iter().zip(&centres);
         let positions: Vec<_> = cells.map(|(kind, centres)| place::atoms_at(kind, centres)).collect();
         let mut state = State::new(&model, &positions);
-        state.chemistry = ChemistryState::new(&model, &fields);
+        state.chemistry = ChemistryState::new(&model, &state.counts(), &fields);
         Compiled { model, state, schedule }
     }
 }
@@ -95,7 +95,7 @@ pub fn compile(document: &Document) -> Result<Compiled> {
 pub fn prepare(document: &Document) -> Result<Prepared> {
     let experiment = &document.experiment;
     let (mut kinds, mut faults) = (Vec::new(), Vec::new());
-    let mut first_cell = 0;
+    let mut counts = Vec::new();
     for (name, cell) in &experiment.cells {
         let before = faults.len();
         let Some(surface) = mesh::surface(document, name, cell, &mut faults) else { continue };
@@ -103,13 +103,15 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         if faults.len() > before {
             continue;
         }
-        let kind = kind.with_cells(first_cell, cell.count());
-        first_cell += cell.count();
-        kinds.push(kind);
+        kinds.push(kind.for_cells(cell.count()));
+        counts.push(cell.count());
     }
     // Atoms that do not exist have been told; links look at kinds and must see them all.
-    let (chemistry, fields) =
-        if faults.is_empty() { chemistry::chemistry(document, &mut kinds, &mut faults) } else { Default::default() };
+    let (chemistry, fields) = if faults.is_empty() {
+        chemistry::chemistry(document, &counts, &mut kinds, &mut faults)
+    } else {
+        Default::default()
+    };
     kinds.iter_mut().for_each(Kind::bound_stiffness);
     if !faults.is_empty() {
         return Err(Error::Input(faults));
@@ -118,7 +120,8 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let centres = match reach {
         Some(reach) => room::centres_apart(document, &kinds, &planes, reach.proximity)?,
         None => {
-            experiment.cells.values().zip(&kinds).map(|(cell, kind)| place::centres(experiment, cell, kind)).collect()
+            let cells = experiment.cells.values().zip(&kinds).zip(place::first_cells(experiment));
+            cells.map(|((cell, kind), first)| place::centres(experiment, cell, kind, first)).collect()
         }
     };
     let integrator = steps::integrator(document, &mut kinds)?;
@@ -126,6 +129,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),
+        changes: Vec::new(),
         integrator,
         contact: contact.map(|contact| contact.suited_to(integrator.size)),
         kinds,

@@ -60,12 +60,13 @@ fn unusual_width(document: &Document, kind: &Kind) -> Option<String> {
 
 /// Whether two cells may come to the same place; false only where that is plain to see.
 fn may_meet(model: &Model, centres: &[Vec<Vec3>]) -> bool {
-    if model.cells() < 2 {
+    let cells: usize = centres.iter().map(Vec::len).sum();
+    if cells < 2 {
         return false;
     }
     let reaches: Option<Vec<f64>> = model.kinds.iter().map(|kind| reach(model, kind)).collect();
     let Some(reaches) = reaches else { return true };
-    let mut boxes: Vec<[Vec3; 2]> = Vec::with_capacity(model.cells());
+    let mut boxes: Vec<[Vec3; 2]> = Vec::with_capacity(cells);
     for ((kind, centres), reach) in model.kinds.iter().zip(centres).zip(reaches) {
         let Some((low, high)) = bounding_box(&kind.rest.positions) else { continue };
         let (low, high) = (low.add_scalar(-reach), high.add_scalar(reach));

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::controls::Controls;
 use super::super::model::Model;
-use super::model::{Reactor, Target};
+use super::model::Reactor;
 use crate::field::Fields;
 use crate::ode::{EventMemory, Population};
 
@@ -37,14 +37,15 @@ pub struct FieldState {
 }
 
 impl ChemistryState {
-    /// The start: systems at their initial values, `fields` as they start.
-    pub fn new(model: &Model, fields: &[Fields]) -> Self {
+    /// The start of so many cells of each kind: systems at their initial values, `fields` as they start.
+    pub fn new(model: &Model, cells: &[usize], fields: &[Fields]) -> Self {
         let chemistry = &model.chemistry;
         let reactors = &chemistry.reactors;
-        let populations = reactors.iter().map(|r| Population::new(&r.program, r.members.len(), r.method));
+        let members = |reactor: &Reactor| reactor.members.count(|kind| cells[kind]);
+        let populations = reactors.iter().map(|r| Population::new(&r.program, members(r), r.method));
         let events = |reactor: &Reactor| match reactor.events.is_empty() {
             true => Vec::new(),
-            false => vec![reactor.events.before_start(); reactor.members.len()],
+            false => vec![reactor.events.before_start(); members(reactor)],
         };
         let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
             values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
@@ -56,15 +57,15 @@ impl ChemistryState {
             events: reactors.iter().map(events).collect(),
             times: vec![0.0; reactors.len()],
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
-            controls: controls_of(model),
+            controls: controls_of(model, cells.iter().sum()),
             carried: false,
         }
     }
 
     /// Copies another of the same shape without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.populations.clone_from(&other.populations);
-        self.events.clone_from(&other.events);
+        copy_each(&mut self.populations, &other.populations, Population::copy_from);
+        copy_each(&mut self.events, &other.events, |to, from| copy_each(to, from, EventMemory::copy_from));
         self.times.clone_from(&other.times);
         if self.fields.len() != other.fields.len() {
             self.fields.clone_from(&other.fields);
@@ -105,14 +106,18 @@ impl ChemistryState {
     }
 }
 
+/// Makes a list the same as another, its first things without allocating, where `copy` does not.
+fn copy_each<T: Clone>(to: &mut Vec<T>, from: &[T], copy: impl Fn(&mut T, &T)) {
+    to.truncate(from.len());
+    to.iter_mut().zip(from).for_each(|(to, from)| copy(to, from));
+    to.extend_from_slice(&from[to.len()..]);
+}
+
 /// The lists that the links of a model write, at numbers that change nothing.
-fn controls_of(model: &Model) -> Controls {
-    let (mut controls, cells) = (Controls::default(), model.cells());
+fn controls_of(model: &Model, cells: usize) -> Controls {
+    let mut controls = Controls::default();
     controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
-    for link in &model.chemistry.links {
-        if let Target::Cell(_, control) = link.to {
-            controls.admit(control, cells);
-        }
-    }
+    let set = model.chemistry.links.iter().filter_map(|link| link.to.control());
+    set.for_each(|control| controls.admit(control, cells));
     controls
 }

@@ -1,8 +1,8 @@
 //! Writes the rows of the system that the sweeps solve.
 
 use super::law::Strength;
-use super::model::ContactModel;
 use super::rows::{Pairing, Pull, Row};
+use super::scene::ContactScene;
 use super::scratch::empty_for;
 use super::state::ContactState;
 use crate::Vec3;
@@ -18,7 +18,7 @@ const SKIN: f64 = 0.05;
 
 /// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them.
 pub fn write_rows(
-    model: &ContactModel,
+    model: &ContactScene,
     found: &Contacts,
     before: &ContactState,
     controls: &Controls,

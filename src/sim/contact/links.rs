@@ -2,7 +2,7 @@
 //! atoms, and let each other go when they are too far apart.
 
 use super::law::Law;
-use super::model::ContactModel;
+use super::scene::ContactScene;
 use super::state::Link;
 use crate::Vec3;
 use crate::contact::{AtomContact, Contacts, EdgeContact, Scene};
@@ -34,7 +34,7 @@ impl Link {
 /// The links at an instant: those that hold of the ones before, and new ones between facets that collide. A facet has one link at most.
 /// `taken` is scratch.
 pub fn links_at(
-    model: &ContactModel,
+    model: &ContactScene,
     controls: &Controls,
     before: &[Link],
     found: &Contacts,
@@ -118,7 +118,7 @@ fn facing_at_edges(scene: &Scene, near: &EdgeContact, positions: &[Vec3]) -> Opt
 /// Adds the forces of links to those of all atoms, eq. (adhesion.11), and returns their energy, pN·µm: less than nothing where
 /// they hold, and nothing where they break.
 pub fn pull_links(
-    model: &ContactModel,
+    model: &ContactScene,
     controls: &Controls,
     links: &[Link],
     positions: &[Vec3],

@@ -9,6 +9,7 @@
 
 mod adhesives;
 mod assemble;
+mod cause;
 mod depth;
 mod find;
 mod gather;
@@ -21,8 +22,10 @@ mod momentum;
 mod penalty;
 mod recruit;
 mod remember;
+mod renumber;
 mod rigid;
 mod rows;
+mod scene;
 mod scratch;
 mod settle;
 mod spread;
@@ -33,7 +36,8 @@ mod sweep_tests;
 mod zones;
 
 pub use adhesives::AdhesiveScratch;
-pub use depth::{Deepened, check_depth, check_passed, look_for_depth};
+pub use cause::help_at;
+pub use depth::{Deepened, check_added, check_depth, check_passed, look_for_depth};
 pub use find::{
     add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, locate_contacts, pull_contacts,
 };
@@ -44,6 +48,7 @@ pub use links::{links_at, pull_links};
 pub use model::ContactModel;
 pub use penalty::press;
 pub use rows::{Pairing, Pull, Row};
+pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
 pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Link, PlaneBond};

@@ -2,21 +2,21 @@
 //! merge, lose atoms and die.
 
 use super::adhesives::{AdhesiveScratch, NONE, Role};
-use super::model::ContactModel;
 use super::recruit::{Glue, reset, root};
 use super::rigid::Rigid;
 use super::rows::{Pairing, Pull, Row};
+use super::scene::ContactScene;
 use super::state::{AdhesiveAtom, ContactState};
 use crate::Vec3;
 use crate::contact::Contacts;
 use crate::sim::controls::Controls;
-use crate::sim::model::Kind;
+use crate::sim::kind::Kind;
 
 impl AdhesiveScratch {
     /// Finds the adhesives of a step: those before, with what touches now.
     pub(super) fn find(
         &mut self,
-        model: &ContactModel,
+        model: &ContactScene,
         kinds: &[Kind],
         controls: &Controls,
         before: &ContactState,
@@ -56,11 +56,11 @@ impl AdhesiveScratch {
     }
 
     /// The adhesives as rigid bodies that resist as the drag of their atoms does, and carried forces without sum and torque.
-    fn make_bodies(&mut self, model: &ContactModel, kinds: &[Kind], positions: &[Vec3]) {
+    fn make_bodies(&mut self, model: &ContactScene, kinds: &[Kind], positions: &[Vec3]) {
         self.drags.clear();
         for one in &self.atoms {
             let kind = model.owner(one.atom).0;
-            let atom = (one.atom as usize - model.first_atom[kind]) % kinds[kind].atoms();
+            let atom = model.within(kind, one.atom);
             let held = kinds[kind].held.get(3 * atom..3 * atom + 3).is_some_and(|axes| axes == [0.0; 3]);
             self.drags.push(if held { f64::INFINITY } else { kinds[kind].drag });
         }
@@ -108,7 +108,7 @@ impl AdhesiveScratch {
     /// force of all atoms as its fourth number.
     pub(super) fn keep(
         &mut self,
-        model: &ContactModel,
+        model: &ContactScene,
         controls: &Controls,
         found: &Contacts,
         moved: &[[f64; 4]],

@@ -24,6 +24,8 @@ pub(super) struct Ends<'a, 'b> {
     pub(super) parts: &'a [Part<'a>],
     pub(super) part: &'a Part<'a>,
     pub(super) kinds: &'b [Kind],
+    /// How many cells of each kind there are at the start.
+    pub(super) counts: &'b [usize],
     pub(super) chemistry: &'b mut Chemistry,
     /// Whether the experiment has contacts.
     pub(super) touching: bool,
@@ -168,7 +170,7 @@ impl Ends<'_, '_> {
                 Setting::RestVolume | Setting::RestVolumeRatio if free => {
                     ("has no volume that is kept", "give it a closed mesh and the volume rule exact or compressible")
                 }
-                Setting::Atom(..) if matches!(whose, Whose::Cell(_)) && kind.cells > 1 => {
+                Setting::Atom(..) if matches!(whose, Whose::Cell(_)) && self.counts[number] > 1 => {
                     ("has other cells whose atom would be held with it", "make the cell a type of its own")
                 }
                 _ => continue,
@@ -241,12 +243,12 @@ impl Ends<'_, '_> {
         let shared = self.part.kinds.is_empty();
         let whose = match &end.root {
             Root::Cell(Some(Index::Number(cell))) => {
-                let cells = self.kinds.iter().map(|kind| kind.cells).sum::<usize>();
+                let cells = self.counts.iter().sum::<usize>();
                 if *cell >= cells {
                     let message = format!("there is no cell {cell}: the experiment has {cells}");
                     return Err(within(&end.place, "no such cell", message, "cells are numbered from 0"));
                 }
-                Whose::Cell(*cell)
+                Whose::Cell(*cell as u64)
             }
             Root::Cell(Some(Index::Name(name))) => {
                 let message = format!("cells have numbers, not names such as `{name}`");
@@ -294,10 +296,7 @@ impl Ends<'_, '_> {
         match whose {
             Whose::Own => self.part.kinds.clone(),
             Whose::Kind(kind) => vec![kind],
-            Whose::Cell(cell) => {
-                let of = |kind: &Kind| (kind.first_cell..kind.first_cell + kind.cells).contains(&cell);
-                self.kinds.iter().position(of).into_iter().collect()
-            }
+            Whose::Cell(cell) => kind_of_cell(self.counts, cell).into_iter().collect(),
         }
     }
 
@@ -390,4 +389,13 @@ fn meant<'a>(end: &Endpoint, known: impl IntoIterator<Item = &'a str>) -> String
 
 fn parts_of(path: &[Step]) -> Vec<(&str, Option<&Index>)> {
     path.iter().map(|step| (step.name.as_str(), step.index.as_ref())).collect()
+}
+
+/// The kind of a cell by its id, where there are so many of each kind at the start.
+pub(super) fn kind_of_cell(counts: &[usize], cell: u64) -> Option<usize> {
+    let ends = counts.iter().scan(0, |end, count| {
+        *end += *count as u64;
+        Some(*end)
+    });
+    ends.enumerate().find(|(_, end)| cell < *end).map(|(kind, _)| kind)
 }
