@@ -6,6 +6,7 @@ mod everything;
 
 use everything::{Steps, after, everything};
 use pseudopod::Vec3;
+use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::geometry::{Topology, icosphere};
 use pseudopod::mechanics::Force;
@@ -77,7 +78,8 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
         }
         Acting::Motility => {
             // Runs so long that none ends: each that does is kept for the result, which is no scratch.
-            kind.brownian = Some(BrownianMotility { speed: 0.1, persistence: 1e9, space: Space::Plane });
+            let walk = BrownianMotility { speed: 0.1, persistence: 1e9, space: Space::Plane };
+            kind.behaviours = vec![Behaviour::Brownian(walk)];
         }
     }
     let integrator = Integrator { method, size: StepSize::Fixed(0.01) };

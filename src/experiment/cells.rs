@@ -1,16 +1,17 @@
 //! Types of cells: how many, of which shape, where, and how they move about.
 
-use super::loads::{Fibre, Fixed, Link, Load};
+use super::loads::Applied;
 use super::mechanics::Mechanics;
+use super::motility::Motility;
 use super::values::{Colour, LengthUnit};
-use crate::units::{Angle, Length, LineStiffness, Speed, Time};
+use crate::units::{Angle, Length};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A type of cells that share shape and mechanics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(extend("unevaluatedProperties" = false))]
 pub struct CellType {
     /// How many cells; without it as many as the placement says, or one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -29,18 +30,9 @@ pub struct CellType {
     pub placement: Option<Placement>,
     /// What the cells are made of.
     pub mechanics: Mechanics,
-    /// Atoms that are held where they start, along some axes.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub fixed: Vec<Fixed>,
-    /// Forces applied to some atoms.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub loads: Vec<Load>,
-    /// Internal springs between atoms of the same cell.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub links: Vec<Link>,
-    /// Contractile fibres between atoms of the same cell.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub fibres: Vec<Fibre>,
+    /// What is done to some of its atoms.
+    #[serde(flatten)]
+    pub applied: Applied,
     /// How the cells move by themselves.
     #[serde(default)]
     pub motility: Motility,
@@ -59,10 +51,7 @@ impl CellType {
             orientation: None,
             placement: None,
             mechanics,
-            fixed: Vec::new(),
-            loads: Vec::new(),
-            links: Vec::new(),
-            fibres: Vec::new(),
+            applied: Applied::default(),
             motility: Motility::default(),
             chemistry: Vec::new(),
         }
@@ -190,54 +179,4 @@ pub enum Placement {
         /// The corner with the largest coordinates.
         random_to: [Length; 3],
     },
-}
-
-/// How cells move by themselves; nothing of it is on unless it is given.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Motility {
-    /// Straight runs of random direction and exponential duration.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub brownian: Option<Brownian>,
-    /// A pull of every atom towards one point.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub attraction: Option<Attraction>,
-}
-
-/// Brownian persistence: the cell keeps its direction for a random time, then takes another.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Brownian {
-    /// Speed during a run.
-    #[schemars(extend("x-minimum" = 0))]
-    pub speed: Speed,
-    /// Mean duration of a run.
-    #[schemars(extend("x-exclusive-minimum" = 0))]
-    pub persistence: Time,
-    /// Whether directions lie in the plane of the substrate or anywhere in space.
-    #[serde(default)]
-    pub space: Space,
-}
-
-/// Where the directions of motility lie.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(inline)]
-pub enum Space {
-    /// In the plane x, y.
-    #[default]
-    Plane,
-    /// Anywhere on the sphere.
-    Volume,
-}
-
-/// A pull of every atom towards a point, the stand-in for a diffusing attractant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Attraction {
-    /// The point.
-    pub to: [Length; 3],
-    /// Force on an atom over its distance from the point.
-    #[schemars(extend("x-minimum" = 0))]
-    pub stiffness: LineStiffness,
 }

@@ -15,6 +15,7 @@ mod fixed;
 mod lu;
 mod mask;
 mod members;
+#[cfg(feature = "diffsol")]
 mod multistep;
 mod narrow;
 mod population;

@@ -69,7 +69,7 @@ fn a_step_that_succeeds_writes_every_part_of_the_state() {
     }
     assert_ne!(next.kinds[0].rest_volumes, state.kinds[0].rest_volumes, "links set them");
     assert_ne!(next.kinds[1].stiffness_shape, state.kinds[1].stiffness_shape, "K was made again");
-    assert_ne!(next.walks, state.walks);
+    assert_ne!(next.kinds[0].behaviours, state.kinds[0].behaviours);
     assert_ne!(next.contact, state.contact);
     assert_ne!(next.chemistry.populations, state.chemistry.populations);
     assert_ne!(next.chemistry.times, state.chemistry.times);

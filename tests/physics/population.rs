@@ -2,6 +2,7 @@
 
 use crate::everything::{Steps, after, everything};
 use pseudopod::Vec3;
+use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::geometry::{self, Surface, Topology, icosphere};
 use pseudopod::mechanics::Force;
@@ -72,7 +73,7 @@ fn ids_are_given_once_and_kinds_may_have_no_cells() {
     run(&model, &mut state, &mut ws, 3);
     remove_cells(&model, &mut state, &mut ws, &[0, 2, 4, 6, 7]).unwrap();
     assert_eq!((state.cells(), state.next_id), (0, 8));
-    assert!(state.walks.is_empty() && state.contact == Default::default());
+    assert!(state.kinds[0].behaviours.iter().all(Vec::is_empty) && state.contact == Default::default());
     run(&model, &mut state, &mut ws, 3);
     add_cells(&model, &mut state, &mut ws, 0, &[at(&model, 0, [0.0, 0.0, 5.02])]).unwrap();
     run(&model, &mut state, &mut ws, 3);
@@ -131,7 +132,7 @@ fn a_cell_that_came_and_went_leaves_the_others_as_if_it_had_never_been() {
     for id in 0..4 {
         assert_eq!(cell(&model, &plain, id), cell(&model, &other, id), "cell {id}");
     }
-    assert_eq!(plain.walks, other.walks, "walks are drawn by ids");
+    assert_eq!(plain.kinds[0].behaviours, other.kinds[0].behaviours, "walks are drawn by ids");
     assert!(other.ended_runs.iter().any(|run| ids.contains(&run.0)), "and those of cells that are gone are told");
 }
 
@@ -218,7 +219,8 @@ fn lanes_are_filled_and_emptied_in_any_order() {
         let mut kind = Kind::new("cell", surface.clone(), vec![Force::ShapeMemory(memory.clone())]).for_cells(cells);
         assert_eq!(kind.lanes, lanes);
         kind.bound_stiffness();
-        kind.brownian = Some(BrownianMotility { speed: 0.5, persistence: 2.0, space: Space::Volume });
+        let walk = BrownianMotility { speed: 0.5, persistence: 2.0, space: Space::Volume };
+        kind.behaviours = vec![Behaviour::Brownian(walk)];
         let integrator = Integrator { method: Method::Implicit { order: Order::Second }, size: STEP };
         let model = Model::of(vec![kind], integrator, 1e9);
         let places = |count: usize| -> Vec<Vec<Vec3>> {

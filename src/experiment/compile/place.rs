@@ -1,7 +1,7 @@
 //! Puts cells where they start.
 
 use super::super::{CellType, Experiment, Placement};
-use super::vector;
+use super::numbers::vector;
 use crate::Vec3;
 use crate::random::{Purpose, Stream};
 use crate::sim::Kind;
