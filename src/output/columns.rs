@@ -228,7 +228,8 @@ impl Columns {
             if !self.are_made {
                 self.start(file, Start::New(&pieces))?;
             }
-            if self.frames == 0 && !self.forces && !frame.forces.is_empty() {
+            let no_atoms_yet = self.atom_vectors.iter().all(|(_, column)| column.rows() == 0);
+            if no_atoms_yet && !self.forces && !frame.forces.is_empty() {
                 let pieces = Pieces::found(file)?.unwrap_or(pieces);
                 self.add_forces(file, Start::New(&pieces))?;
             }
