@@ -15,7 +15,7 @@ use pseudopod::equations::eml;
 use pseudopod::equations::program::{Program, run};
 use pseudopod::equations::tree::System;
 use pseudopod::error::Source;
-use pseudopod::ode::{Method, Population, Tolerances};
+use pseudopod::ode::{Method, Population, PopulationScratch, Tolerances};
 
 const WINDOWS: usize = 20;
 /// Cells of the runs that are compared.
@@ -48,11 +48,12 @@ impl Problem {
         Self { name, program: Program::new(system).expect("no circles"), window }
     }
 
-    fn advance(&self, population: &mut Population, relative: f64) {
+    fn advance(&self, population: &mut Population, relative: f64, scratch: &mut PopulationScratch) {
         let tolerances = Tolerances { relative, absolute: relative, ..Tolerances::default() };
         for window in 0..WINDOWS {
             let from = self.window * window as f64;
-            population.advance(&self.program, from, from + self.window, &tolerances).expect("no cell blows up");
+            let advanced = population.advance(&self.program, from, from + self.window, &tolerances, scratch);
+            advanced.expect("no cell blows up");
         }
     }
 
@@ -71,7 +72,7 @@ impl Problem {
         let cell = |cell| (0..self.program.size()).map(|v| at(v) * factor(cell, v)).collect();
         let start: States = (0..CELLS).map(cell).collect();
         let mut population = self.population(Method::Rosenbrock, &start);
-        self.advance(&mut population, TOLERANCE);
+        self.advance(&mut population, TOLERANCE, &mut PopulationScratch::default());
         states(&population, self.program.size())
     }
 
@@ -85,7 +86,7 @@ impl Problem {
     /// The states at the end.
     fn end(&self, method: Method, start: &[Vec<f64>], relative: f64) -> States {
         let mut population = self.population(method, start);
-        self.advance(&mut population, relative);
+        self.advance(&mut population, relative, &mut PopulationScratch::default());
         states(&population, self.program.size())
     }
 
@@ -98,13 +99,14 @@ impl Problem {
     /// Microseconds a window of all populations together, and the last of them at the end.
     fn timed(&self, fresh: &[Population], repeats: usize, relative: f64) -> (f64, Population) {
         let (mut best, mut population) = (f64::INFINITY, fresh[0].clone());
+        let mut scratch = PopulationScratch::default();
         for _ in 0..5 {
             // Long enough for a clock that ticks every few milliseconds.
             let began = seconds();
             for _ in 0..repeats.max(1) {
                 for fresh in fresh {
-                    population.clone_from(fresh);
-                    self.advance(&mut population, relative);
+                    population.copy_from(fresh);
+                    self.advance(&mut population, relative, &mut scratch);
                 }
             }
             best = best.min((seconds() - began) / repeats.max(1) as f64);

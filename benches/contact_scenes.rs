@@ -70,7 +70,7 @@ fn measure(name: &str, figure: &str, from: f64, then: &str) {
     let tries = each(f64::from(tries));
     println!(
         "{name:16} {figure:9} {:6} {:8.0} {:10.2} {tries:10.2} {:10.3} {:8.1} {then:>9}",
-        model.atoms(),
+        state.atoms(&model),
         each(rows as f64),
         1e3 * each(with) * tries,
         1e3 * each(with - without),

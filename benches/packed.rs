@@ -9,12 +9,13 @@ use std::time::Instant;
 use pseudopod::Vec3;
 use pseudopod::contact::{Contacts, Detector, Reach};
 use pseudopod::geometry::{Topology, icosphere, mean_edge_length};
+use pseudopod::mechanics::Force;
+use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
-use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::contact::{ContactModel, Strength, find_contacts};
-use pseudopod::sim::{Attraction, Kind, Model, State, Workspace, step};
+use pseudopod::sim::{Kind, Model, State, Workspace, step};
 
 /// Bytes held now.
 static HELD: AtomicUsize = AtomicUsize::new(0);
@@ -46,18 +47,15 @@ fn population(cells: usize, largest: f64) -> (Model, State) {
     let topology = Topology::of(&rest);
     let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
     let energy = 5.0 * mean_edge_length(&rest).powi(2);
-    let elasticity = Elasticity {
-        shape_memory: vec![ShapeMemory::new(&rest.positions, &rings, 5.0, Reaction::Exact)],
-        barrier: vec![Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy))],
-        ..Elasticity::default()
-    };
-    let mut kind = Kind::new("cell", rest.clone(), elasticity);
+    let memory = ShapeMemory::new(&rest.positions, &rings, 5.0, Reaction::Exact);
+    let barrier = Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy));
+    let mut kind = Kind::new("cell", rest.clone(), vec![Force::ShapeMemory(memory), Force::Barrier(barrier)]);
     kind.drag = 20.0 / 42.0;
     // The same pressure in the middle, however many there are.
     let stiffness = 0.05 * (25.0 / cells as f64).powf(2.0 / 3.0);
-    kind.attraction = Some(Attraction { to: Vec3::zeros(), stiffness });
+    kind.forces.push(Force::Attraction(Attraction { to: Vec3::zeros(), stiffness }));
     kind.largest_stiffness = kind.measure_largest_stiffness();
-    let mut kind = kind.with_cells(0, cells);
+    let mut kind = kind.for_cells(cells);
     kind.bound_stiffness();
     let size = StepSize::Adaptive { tolerance: 1e-3, largest };
     let integrator = Integrator { method: Method::Implicit { order: Order::Second }, size };
@@ -88,7 +86,7 @@ fn seconds(since: &Instant, threads: usize) -> f64 {
 /// The positions of all atoms, in the order of cells.
 fn positions(model: &Model, state: &State) -> Vec<Vec3> {
     let kind = &model.kinds[0];
-    (0..kind.cells).flat_map(|cell| state.kinds[0].cell(kind, cell)).collect()
+    (0..state.cells()).flat_map(|cell| state.kinds[0].cell(kind, cell)).collect()
 }
 
 /// Packs a population and prints what its steps cost.
@@ -111,7 +109,7 @@ fn measure(cells: usize, threads: usize, pack: f64) {
             contacts += ws.contact.rows.len();
         }
         let seconds = now() - began;
-        let bytes = (HELD.load(Ordering::Relaxed) - before) as f64 / model.atoms() as f64;
+        let bytes = (HELD.load(Ordering::Relaxed) - before) as f64 / state.atoms(&model) as f64;
         // The same cells as if they passed through each other: the rest of the step.
         let (alone, mut trial) = (Model { contact: None, ..model.clone() }, state.clone());
         let mut spare = Workspace::new(&alone);
@@ -123,7 +121,7 @@ fn measure(cells: usize, threads: usize, pack: f64) {
         let without = now() - began;
         let (mut finding, mut detecting) = (0.0, 0.0);
         let (mut detector, mut found) = (Detector::default(), Contacts::default());
-        let scene = &model.contact.as_ref().expect("contacts").scene;
+        let scene = &model.contact.as_ref().expect("contacts").scene_of(&state.kinds).scene;
         detector.detect(scene, &positions(&model, &state), &mut found);
         for _ in 0..STEPS {
             step(&model, &mut state, &mut ws).expect("a step");
@@ -144,7 +142,7 @@ fn measure(cells: usize, threads: usize, pack: f64) {
             "{cells:6} {threads:8} {:10.2} {:10.2} {:10.3} {:8.1} {:12.1} {:10.2} {:10.2} {:10.3} {:10.0}",
             each(seconds, STEPS),
             each(seconds, tries),
-            1e-6 * model.atoms() as f64 * f64::from(tries) / seconds,
+            1e-6 * state.atoms(&model) as f64 * f64::from(tries) / seconds,
             f64::from(sweeps) / f64::from(STEPS),
             contacts as f64 / f64::from(STEPS) / cells as f64,
             each(seconds, tries) - each(without, others),

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use pseudopod::Vec3;
 use pseudopod::geometry::{Topology, icosphere};
-use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::{Kind, Model, State, Workspace, step};
@@ -17,7 +17,7 @@ fn kind() -> Kind {
     let surface = icosphere(5.0, 2);
     let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
     let memory = ShapeMemory::new(&surface.positions, &rings, 10.0, Reaction::Exact);
-    let mut kind = Kind::new("cell", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    let mut kind = Kind::new("cell", surface, vec![Force::ShapeMemory(memory)]);
     kind.bound_stiffness();
     kind
 }

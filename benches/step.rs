@@ -5,10 +5,11 @@ use std::time::Instant;
 
 use pseudopod::Vec3;
 use pseudopod::geometry::{Topology, icosphere};
-use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::lanes::LANES;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory, reference};
+use pseudopod::mechanics::sum::measure_elastic;
 use pseudopod::sim::{Kind, Model, State, Workspace, step};
 
 /// A kind of cells of 42 atoms (level 1) or more, with shape memory alone.
@@ -16,9 +17,9 @@ fn kind(level: u32, cells: usize) -> Kind {
     let surface = icosphere(5.0, level);
     let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
     let memory = ShapeMemory::new(&surface.positions, &rings, 10.0, Reaction::Exact);
-    let mut kind = Kind::new("cell", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    let mut kind = Kind::new("cell", surface, vec![Force::ShapeMemory(memory)]);
     kind.bound_stiffness();
-    kind.with_cells(0, cells)
+    kind.for_cells(cells)
 }
 
 fn model(kind: Kind, method: Method, dt: f64) -> Model {
@@ -44,7 +45,8 @@ fn fastest(rounds: usize, mut work: impl FnMut()) -> f64 {
 /// Million atoms a second of the plain scalar reference.
 fn reference_rate() -> f64 {
     let kind = kind(1, 1);
-    let (memory, x) = (&kind.elasticity.shape_memory[0], stretched(&kind));
+    let Force::ShapeMemory(memory) = &kind.forces[0] else { unreachable!("the kind has shape memory alone") };
+    let x = stretched(&kind);
     let mut f = vec![Vec3::zeros(); x.len()];
     let repeats = 2000;
     let seconds = fastest(9, || {
@@ -63,7 +65,7 @@ fn lane_rate() -> f64 {
     let repeats = 1000;
     let seconds = fastest(9, || {
         for _ in 0..repeats {
-            kind.elasticity.add_forces(LANES, black_box(&x), &mut f, &mut energy);
+            measure_elastic(&kind.forces, LANES, black_box(&x), &mut f, &mut energy);
         }
     });
     1e-6 * (repeats * kind.atoms() * LANES) as f64 / seconds

@@ -1,8 +1,10 @@
 //! What can go wrong, told so that the reader knows where, what was found, what was expected and what to do.
 
+#[cfg(feature = "cli")]
 mod render;
 pub mod words;
 
+#[cfg(feature = "cli")]
 pub use render::{Paint, render};
 
 use std::path::PathBuf;

@@ -12,6 +12,7 @@ extern crate self as pseudopod; // So that tests in here share examples with the
 
 pub mod analysis;
 pub mod cell;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;
 pub mod equations;
@@ -22,6 +23,7 @@ pub mod geometry;
 pub mod mechanics;
 pub mod ode;
 pub mod output;
+#[cfg(feature = "pictures")]
 pub mod picture;
 pub mod random;
 pub mod recorded;
@@ -29,6 +31,7 @@ pub mod run;
 pub mod sim;
 pub mod simulation;
 pub mod units;
+pub mod xml;
 
 pub use simulation::{CancelToken, Simulation, SimulationError};
 

@@ -18,6 +18,8 @@ pub enum Purpose {
     Placement = 2,
     /// Permutations of cell types in the test for segregation; the number of the permutation stands for the cell.
     Permutation = 3,
+    /// Which cells are removed; the number of the change is that of the draw.
+    Removal = 4,
 }
 
 const ROUNDS: usize = 10;

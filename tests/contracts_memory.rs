@@ -1,14 +1,19 @@
 //! Memory is part of the design: nothing is allocated in a step after the first, and an atom at rest costs few bytes.
 //! A file of its own, because the allocator of a test program counts for all its tests; one test after the other.
 
+#[path = "support/everything.rs"]
+mod everything;
+
+use everything::{Steps, after, everything};
 use pseudopod::Vec3;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::geometry::{Topology, icosphere};
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
-use pseudopod::sim::{Kind, Load, Model, Plane, State, Workspace, step};
+use pseudopod::sim::{Kind, Model, Plane, State, Workspace, step};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -56,12 +61,12 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
     let surface = icosphere(5.0, 1);
     let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
     let memory = ShapeMemory::new(&surface.positions, &rings, 10.0, Reaction::Exact);
-    let mut kind = Kind::new("cell", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    let mut kind = Kind::new("cell", surface, vec![Force::ShapeMemory(memory)]);
     kind.bound_stiffness();
     let mut planes = Vec::new();
     match acting {
         Acting::Elastic => {}
-        Acting::Loads => kind.loads = vec![pull(Vec3::z(), 0), pull(-Vec3::z(), 7)],
+        Acting::Loads => kind.forces.extend([pull(Vec3::z(), 0), pull(-Vec3::z(), 7)]),
         Acting::Planes => {
             let plane = |name: &str, side: f64| Plane {
                 name: name.to_owned(),
@@ -76,11 +81,11 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
         }
     }
     let integrator = Integrator { method, size: StepSize::Fixed(0.01) };
-    Model { planes, ..Model::of(vec![kind.with_cells(0, cells)], integrator, 1e9) }
+    Model { planes, ..Model::of(vec![kind.for_cells(cells)], integrator, 1e9) }
 }
 
-fn pull(direction: Vec3, atom: u32) -> Load {
-    Load { name: "pull".to_owned(), atoms: vec![(atom, 1.0)], direction, force: Course::constant(1.0) }
+fn pull(direction: Vec3, atom: u32) -> Force {
+    Force::Load(Load::new("pull", vec![(atom, 1.0)], direction, Course::constant(1.0)))
 }
 
 /// Allocations of twenty steps, after a few that may size scratch for what they meet.
@@ -107,6 +112,27 @@ fn allocations(method: Method, acting: Acting, threads: usize) -> usize {
     })
 }
 
+/// Allocations of twenty steps in the scene that has everything: contacts, walks, fields, systems with events, links. Walks do not turn, for
+/// each run that ends is kept for the result.
+fn allocations_of_everything() -> usize {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .start_handler(|_| WORKS.set(true))
+        .exit_handler(|_| WORKS.set(false))
+        .build()
+        .unwrap();
+    let (model, start) = everything(Steps::Fixed, "1000 h");
+    pool.install(|| {
+        // Until the cells lie where they stay, and lists of contacts are as long as they become.
+        let (mut state, mut ws) = after(&model, start, 100);
+        let before = CALLS.load(Ordering::Relaxed);
+        for _ in 0..20 {
+            step(&model, &mut state, &mut ws).unwrap();
+        }
+        CALLS.load(Ordering::Relaxed) - before
+    })
+}
+
 #[test]
 fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
     let methods = [
@@ -126,12 +152,13 @@ fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
         let shared = allocations(method, Acting::Loads, 2);
         assert!(shared < 20, "{method:?} on two threads: {shared}");
     }
+    assert_eq!(allocations_of_everything(), 0, "where there is everything");
     let before = BYTES.load(Ordering::Relaxed);
     let model = scene(Method::Implicit { order: Order::Second }, Acting::Elastic, 100_000);
     let places = vec![model.kinds[0].rest.positions.clone(); 100_000];
     let (mut state, mut ws) = (State::new(&model, &[places]), Workspace::new(&model));
     step(&model, &mut state, &mut ws).unwrap();
-    let bytes = (BYTES.load(Ordering::Relaxed) - before) as f64 / model.atoms() as f64;
-    println!("{bytes:.0} bytes an atom on {} cells of {} atoms", model.cells(), model.kinds[0].atoms());
+    let bytes = (BYTES.load(Ordering::Relaxed) - before) as f64 / state.atoms(&model) as f64;
+    println!("{bytes:.0} bytes an atom on {} cells of {} atoms", state.cells(), model.kinds[0].atoms());
     assert!(bytes < 250.0, "{bytes}");
 }

@@ -1,9 +1,10 @@
 //! What of a cell chemistry can read and what it can set: the words behind `cell.` in a link.
 //!
 //! A link's end such as `cell.atom[4].y` is grammar to EML; here its words get their meaning. Words that exist are in
-//! [`READABLE`] and [`SETTABLE`], in the order in which messages list them.
+//! [`READABLE`] and [`settable`], in the order in which messages list them.
 
 use crate::equations::eml::{Index, Step};
+use crate::mechanics::CONTROLLED;
 
 /// A number that can be read from a cell at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,10 +48,8 @@ pub enum Setting {
     RestVolume,
     /// Rest volume over that of the mesh at rest.
     RestVolumeRatio,
-    /// Factor of a load; 1 without a link.
-    Load(String),
-    /// Activation of fibres, 0 to 1.
-    Fibre(String),
+    /// What may be set of a force: the number of its handle in [`CONTROLLED`], and its name.
+    Force(usize, String),
     /// A component of an atom's position, µm, imposed.
     Atom(usize, usize),
     /// Amount of a field's substance that the cell releases in a second; negative: takes up.
@@ -88,18 +87,12 @@ pub const READABLE: [&str; 15] = [
 ];
 
 /// What can be set, as messages list it.
-pub const SETTABLE: [&str; 10] = [
-    "motility.speed",
-    "motility.bias.x",
-    "stiffness",
-    "adhesion",
-    "rest_volume",
-    "rest_volume_ratio",
-    "load[NAME]",
-    "fibre[NAME]",
-    "atom[0].x",
-    "secretion[FIELD]",
-];
+pub fn settable() -> Vec<String> {
+    let own = ["motility.speed", "motility.bias.x", "stiffness", "adhesion", "rest_volume", "rest_volume_ratio"];
+    let forces = CONTROLLED.map(|handle| format!("{}[NAME]", handle.word));
+    let last = ["atom[0].x", "secretion[FIELD]"].map(String::from);
+    own.map(String::from).into_iter().chain(forces).chain(last).collect()
+}
 
 /// The meaning of the words behind `cell.`, if they can be read from the cell alone.
 pub fn reading(path: &[Step]) -> Option<Reading> {
@@ -128,10 +121,11 @@ pub fn setting(path: &[Step]) -> Option<Setting> {
         [("adhesion", None)] => Setting::Adhesion,
         [("rest_volume", None)] => Setting::RestVolume,
         [("rest_volume_ratio", None)] => Setting::RestVolumeRatio,
-        [("load", Some(Index::Name(name)))] => Setting::Load(name.clone()),
-        [("fibre", Some(Index::Name(name)))] => Setting::Fibre(name.clone()),
         [("atom", Some(Index::Number(atom))), (axis, None)] => Setting::Atom(*atom, component(axis)?),
         [("secretion", Some(Index::Name(name)))] => Setting::Secretion(name.clone()),
+        [(word, Some(Index::Name(name)))] => {
+            Setting::Force(CONTROLLED.iter().position(|handle| handle.word == word)?, name.clone())
+        }
         _ => return None,
     })
 }
@@ -176,8 +170,8 @@ mod tests {
 
     #[test]
     fn every_word_that_is_listed_is_known() {
-        for text in SETTABLE {
-            assert!(setting(&path(text)).is_some(), "{text} can be set");
+        for text in settable() {
+            assert!(setting(&path(&text)).is_some(), "{text} can be set");
         }
         for text in READABLE.into_iter().filter(|text| !text.starts_with("field") && !text.starts_with("chemistry")) {
             assert!(reading(&path(text)).is_some(), "{text} can be read");

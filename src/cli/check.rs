@@ -77,7 +77,7 @@ fn settled(document: &Document, prepared: Prepared) -> Result<PushedApart> {
     if prepared.model.contact.is_none() {
         return Ok(PushedApart::default());
     }
-    let cells = prepared.model.cells();
+    let cells: usize = prepared.centres.iter().map(Vec::len).sum();
     if cells >= MANY {
         say(&format!("looking whether any of {cells} cells overlap, which takes a while"));
     }

@@ -6,6 +6,7 @@ pub mod export;
 pub mod frames;
 pub mod info;
 pub mod plot;
+pub mod progress;
 pub mod render;
 pub mod report;
 pub mod resume;

@@ -1,10 +1,11 @@
 //! `pseudopod run`: runs an experiment and leaves its result, picture and charts.
 
+use super::progress::Progress;
 use super::report::{Report, path_text, paths};
 use crate::error::{Error, Result, say};
 use crate::experiment::Document;
 use crate::output::Overwrite;
-use crate::run::{self, Outcome, Progress, Quiet, RunOptions};
+use crate::run::{self, Outcome, Quiet, RunOptions};
 use crate::simulation::CancelToken;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

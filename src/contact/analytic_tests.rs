@@ -314,7 +314,7 @@ fn overlaps_at_the_start_are_told_apart() {
 #[test]
 fn an_empty_scene_and_a_body_without_facets_are_no_trouble() {
     let mut contacts = Contacts::default();
-    let empty = Scene::new(Vec::new(), &[], Vec::new(), REACH);
+    let empty = Scene::new([], &[], Vec::new(), REACH);
     assert_eq!(Detector::default().detect(&empty, &[], &mut contacts).pairs, 0);
     let lone = Surface { positions: vec![Vec3::zeros(), Vec3::x()], facets: Vec::new() };
     let scene = Scene::new(vec![Shape::new(&lone, Sides::Both, 0.1)], &[0, 0], Vec::new(), REACH);

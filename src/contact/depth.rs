@@ -29,7 +29,9 @@ pub fn find_deeper(
     let first = |inner: u32| {
         neighbours.of(inner).iter().filter(|outer| **outer != inner).find_map(|&outer| {
             let most = most(inner, outer);
-            let depth = depth_inside(scene, positions, [inner, outer], &bounds, most);
+            // Any depth is right: there is nothing to measure.
+            let depth =
+                if most < f64::INFINITY { depth_inside(scene, positions, [inner, outer], &bounds, most) } else { most };
             (depth > most).then_some((inner, outer, depth))
         })
     };

@@ -1,5 +1,7 @@
 //! Everything that can touch: the surfaces of cells, sheets and rigid bodies, one after the other, and rigid planes.
 
+use std::sync::Arc;
+
 use super::boxes::Levels;
 use super::owners::Owners;
 use super::shape::Shape;
@@ -22,6 +24,16 @@ impl Reach {
     /// The farthest that matters now, µm.
     pub(super) fn range(&self) -> f64 {
         self.proximity.max(self.depth)
+    }
+
+    /// The largest displacement of atoms between two detections for which nothing is missed, µm: half of the smaller
+    /// of proximity and depth, eq. (contacts.6).
+    ///
+    /// When no atom moves farther, whatever was outside and comes to touch was either a contact before or ends inside
+    /// by no more than the depth, and is found there. Self-contact and sheets with two outer sides know no inside:
+    /// only what was a contact before, and is held by it, cannot pass.
+    pub fn safe_travel(&self) -> f64 {
+        0.5 * self.proximity.min(self.depth)
     }
 }
 
@@ -55,11 +67,11 @@ pub struct Body {
 /// result; small enough that 25 cells fill two threads.
 const ATOMS_PER_BATCH: usize = 256;
 
-/// What can touch, and from how far. It does not change in a run.
+/// What can touch, and from how far. It changes with the bodies that there are; meshes are shared.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// The different meshes.
-    pub shapes: Vec<Shape>,
+    pub shapes: Arc<[Shape]>,
     /// All surfaces; atoms, facets and edges are numbered through in this order.
     pub bodies: Vec<Body>,
     /// Rigid planes.
@@ -88,7 +100,8 @@ impl Scene {
     /// # Panics
     /// When a body names a shape that is not there, when a length of `reach` is negative or not finite, or when there
     /// are 2³¹ facets or edges or more.
-    pub fn new(shapes: Vec<Shape>, shape_of_body: &[usize], planes: Vec<Plane>, reach: Reach) -> Self {
+    pub fn new(shapes: impl Into<Arc<[Shape]>>, shape_of_body: &[usize], planes: Vec<Plane>, reach: Reach) -> Self {
+        let shapes = shapes.into();
         let lengths = [reach.proximity, reach.depth, reach.margin];
         assert!(lengths.iter().all(|length| length.is_finite() && *length >= 0.0), "a reach below zero: {reach:?}");
         let levels: Vec<Levels> = shapes.iter().map(|shape| Levels::of(shape.facets.len())).collect();
@@ -167,13 +180,8 @@ impl Scene {
         self.batches[batch]..self.batches[batch + 1]
     }
 
-    /// The largest displacement of atoms between two detections for which nothing is missed, µm: half of the smaller
-    /// of proximity and depth, eq. (contacts.6).
-    ///
-    /// When no atom moves farther, whatever was outside and comes to touch was either a contact before or ends inside
-    /// by no more than the depth, and is found there. Self-contact and sheets with two outer sides know no inside:
-    /// only what was a contact before, and is held by it, cannot pass.
+    /// That of its [`Reach`].
     pub fn safe_travel(&self) -> f64 {
-        0.5 * self.reach.proximity.min(self.reach.depth)
+        self.reach.safe_travel()
     }
 }

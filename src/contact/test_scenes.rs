@@ -33,7 +33,8 @@ pub struct Stage {
 
 /// Bodies in a scene, from surfaces at rest and positions of their atoms.
 pub fn stage(bodies: &[(&Surface, Sides, Vec<Vec3>)], planes: Vec<Plane>, reach: Reach) -> Stage {
-    let shapes = bodies.iter().map(|(rest, sides, _)| Shape::new(rest, *sides, 1.5 * reach.proximity)).collect();
+    let shapes: Vec<Shape> =
+        bodies.iter().map(|(rest, sides, _)| Shape::new(rest, *sides, 1.5 * reach.proximity)).collect();
     let scene = Scene::new(shapes, &(0..bodies.len()).collect::<Vec<_>>(), planes, reach);
     Stage { scene, positions: bodies.iter().flat_map(|body| body.2.iter().copied()).collect() }
 }

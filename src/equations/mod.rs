@@ -5,6 +5,7 @@
 
 pub mod eml;
 pub mod expression;
+mod fault;
 pub mod program;
 mod range;
 mod read;

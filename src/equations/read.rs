@@ -1,4 +1,4 @@
-//! One way in for documents of equations: EML, and SBML models wherever an EML document can stand.
+//! One entrance for documents of equations: EML, and SBML models wherever an EML document can stand.
 
 use super::{eml, sbml};
 use crate::error::{Place, Result, Source};

@@ -51,6 +51,7 @@ pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{Compiled, Prepared, PushedApart, Schedule, compile, notices, prepare, settle_start};
 pub use contact::{Between, Contact, ContactModel, Zones};
 pub use document::Document;
+#[cfg(feature = "cli")]
 pub(crate) use document::near_file;
 pub use loads::{Cap, CapExtent, Fibre, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
 pub use measures::{

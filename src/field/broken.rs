@@ -1,10 +1,6 @@
-//! A window of reactions, and where and when its values first stopped being numbers.
-
-use std::sync::{Mutex, PoisonError};
+//! Where and when the values of a window of reactions first stopped being numbers.
 
 use super::grid::Grid;
-use super::react::Chunk;
-use super::reactor::Reactor;
 use super::species::Species;
 use crate::error::{Error, short};
 
@@ -39,33 +35,5 @@ impl Broken {
                 .into(),
             kept: None,
         }
-    }
-}
-
-/// A window of reactions.
-pub struct Course<'a> {
-    pub(super) reactor: &'a Reactor,
-    pub(super) grid: &'a Grid,
-    pub(super) inputs: &'a [f64],
-    /// Whether steps that fail are taken again: then the shortest counts, and else the first.
-    pub(super) adaptive: bool,
-    pub(super) broken: Mutex<Option<Broken>>,
-}
-
-impl Course<'_> {
-    /// Lets the boxes of a chunk react.
-    pub fn react(&self, chunk: &mut Chunk) {
-        let Some(found) = self.reactor.react(self.grid, self.inputs, chunk) else { return };
-        // Which thread comes first must not matter. Where several boxes break at once, the largest value has led.
-        let order = |one: &Broken| (if self.adaptive { one.dt } else { 0.0 }, one.time, -one.before, one.at);
-        let mut broken = self.broken.lock().unwrap_or_else(PoisonError::into_inner);
-        if broken.is_none_or(|known| order(&found) < order(&known)) {
-            *broken = Some(found);
-        }
-    }
-
-    /// The value that broke the window.
-    pub fn broken(&self) -> Option<Broken> {
-        *self.broken.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -48,7 +48,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// Room for the factors of an axis of `n` boxes between these walls.
+    /// Empty factors of an axis of `n` boxes between these walls.
     pub fn new(n: usize, walls: [Wall; 2]) -> Self {
         let ring = (walls[0] == Wall::Periodic).then(|| Ring {
             share: vec![[0.0; 2]; n],

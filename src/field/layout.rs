@@ -2,8 +2,8 @@
 //! in µm and s.
 
 use super::grid::{FEWEST, Grid, Wall};
+use super::scales::Scales;
 use super::species::Species;
-use super::system::Scales;
 use crate::Vec3;
 use crate::equations::eml::{self, Document, GridDescription};
 use crate::equations::tree::{Expr, System};
@@ -25,7 +25,7 @@ const ROUND_OFF: f64 = 1e-9;
 /// Arrays as large as the values that moving the fields needs, the values included.
 const ARRAYS: usize = 6;
 
-/// The grid of a document in µm, with room for its fields.
+/// The grid of a document in µm, if memory holds its fields.
 pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
     let Some(wanted) = &document.grid else {
         let message = format!("the document '{}' has no grid", document.name);

@@ -35,7 +35,7 @@ pub fn limit(line: &Line, factor: f64, scratch: &mut [f64]) {
     let n = line.real.len();
     let mut parts = scratch.chunks_exact_mut(section(n)).map(|part| &mut part.as_chunks_mut::<WIDTH>().0[..n]);
     let mut next = || parts.next().expect("six sections");
-    let [before, y, values, low, safe, room] = std::array::from_fn(|_| next());
+    let [before, y, values, low, safe, shares] = std::array::from_fn(|_| next());
     backward_euler(line, before, low);
     // What stays after the flows of backward Euler, and which part of the further outflow it can pay for.
     for i in 0..n {
@@ -45,21 +45,21 @@ pub fn limit(line: &Line, factor: f64, scratch: &mut [f64]) {
             let left = (before[i][lane] + (out[lane] - inn[lane])).max(0.0);
             let loss = (out[lane] - high_out[lane]).max(0.0) + (high_in[lane] - inn[lane]).max(0.0);
             safe[i][lane] = left;
-            room[i][lane] = if loss > left { left / loss } else { 1.0 };
+            shares[i][lane] = if loss > left { left / loss } else { 1.0 };
         }
     }
     let bath = [1.0; WIDTH];
     for i in 0..n {
         let (out, inn) = (face(line, low, i + 1), face(line, low, i));
         let (high_out, high_in) = (face(line, y, i + 1), face(line, y, i));
-        let ends = |at: usize| if line.ring.is_some() { &room[at] } else { &bath };
-        let above = if i + 1 == n { ends(0) } else { &room[i + 1] };
-        let below = if i == 0 { ends(n - 1) } else { &room[i - 1] };
+        let ends = |at: usize| if line.ring.is_some() { &shares[at] } else { &bath };
+        let above = if i + 1 == n { ends(0) } else { &shares[i + 1] };
+        let below = if i == 0 { ends(n - 1) } else { &shares[i - 1] };
         for lane in 0..WIDTH {
             let (gain, loss) = (high_out[lane] - out[lane], high_in[lane] - inn[lane]);
             // Each flow is cut by the box that pays it.
-            let gain = gain * if gain > 0.0 { above[lane] } else { room[i][lane] };
-            let loss = loss * if loss > 0.0 { room[i][lane] } else { below[lane] };
+            let gain = gain * if gain > 0.0 { above[lane] } else { shares[i][lane] };
+            let loss = loss * if loss > 0.0 { shares[i][lane] } else { below[lane] };
             values[i][lane] = (safe[i][lane] + (gain - loss)).max(0.0) * factor;
         }
     }

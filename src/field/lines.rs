@@ -3,9 +3,9 @@
 //! It knows no splitting and no approximant, so that it measures both; its steps are as short as diffusion asks.
 
 use super::grid::{Grid, Wall};
+use super::scales::{POSITION, Scales};
 use super::species::Species;
 use super::state::Fields;
-use super::system::{POSITION, Scales};
 use crate::equations::Range;
 use crate::equations::tree::{Binary, Expr, Quantity, QuantityId, Role, System};
 use crate::error::{Error, Fault, Result};

@@ -6,6 +6,7 @@
 mod axis;
 mod broken;
 mod bundle;
+mod course;
 mod factors;
 pub mod grid;
 mod layout;
@@ -15,8 +16,10 @@ mod positions;
 mod profiles;
 mod react;
 mod reactor;
+mod reactor_scratch;
 mod release;
 mod rows;
+mod scales;
 mod sense;
 mod shared;
 mod species;

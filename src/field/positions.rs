@@ -1,8 +1,8 @@
 //! The position of boxes as the equations of a document see it.
 
 use super::grid::Grid;
-use super::reactor::WIDTH;
-use super::system::{POSITION, Scales};
+use super::rows::ROW as WIDTH;
+use super::scales::{POSITION, Scales};
 use crate::equations::program::code::Code;
 use crate::equations::program::{Lanes, Program};
 

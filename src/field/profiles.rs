@@ -3,7 +3,7 @@
 use super::grid::Grid;
 use super::positions::{positions, set_positions};
 use super::reactor::WIDTH;
-use super::system::Scales;
+use super::scales::Scales;
 use crate::equations::program::{Program, run};
 use crate::equations::tree::{Expr, QuantityId, Role, System};
 

@@ -3,6 +3,7 @@
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
 use super::grid::Grid;
+use super::reactor_scratch::ReactorScratch;
 use super::species::Species;
 use crate::equations::Range;
 
@@ -21,6 +22,29 @@ pub struct Chunk<'a> {
     pub time: f64,
     /// The step, s.
     pub dt: f64,
+    /// What the reactions of a document work in; nobody else has it while the chunk is.
+    pub(super) scratch: &'a mut Option<Box<ReactorScratch>>,
+}
+
+/// What the boxes of one part of a grid need while they react.
+#[derive(Debug, Clone)]
+pub struct PartScratch {
+    /// The values of a chunk.
+    values: Vec<f64>,
+    reactor: Option<Box<ReactorScratch>>,
+}
+
+impl PartScratch {
+    /// Scratch for so many species.
+    pub fn new(species: usize) -> Self {
+        Self { values: vec![0.0; species * POINTS], reactor: None }
+    }
+
+    /// Writes NaN over all numbers.
+    pub fn poison(&mut self) {
+        self.values.fill(f64::NAN);
+        self.reactor = None;
+    }
 }
 
 impl Chunk<'_> {
@@ -46,24 +70,24 @@ pub fn react(
     function: &React,
     (time, dt): (f64, f64),
     values: &mut [f64],
-    rooms: &mut [Vec<f64>],
+    parts: &mut [PartScratch],
 ) {
-    let (len, parts) = (grid.len(), rooms.len());
+    let (len, count) = (grid.len(), parts.len());
     let chunks = len.div_ceil(POINTS);
     let shared = super::shared::Shared::new(values);
-    let work = |(part, room): (usize, &mut Vec<f64>)| {
-        for chunk in part * chunks / parts..(part + 1) * chunks / parts {
+    let work = |(part, PartScratch { values, reactor }): (usize, &mut PartScratch)| {
+        for chunk in part * chunks / count..(part + 1) * chunks / count {
             let first = chunk * POINTS;
             let points = POINTS.min(len - first);
             // SAFETY: no other part has these points.
             let row = |s: usize| unsafe { shared.part(s * len + first, points) };
-            for (s, to) in room.chunks_exact_mut(POINTS).enumerate() {
+            for (s, to) in values.chunks_exact_mut(POINTS).enumerate() {
                 let from = row(s);
                 to[..points].copy_from_slice(from);
                 to[points..].fill(from[points - 1]);
             }
-            function(&mut Chunk { values: &mut room[..], points, first, time, dt });
-            for (s, from) in room.chunks_exact(POINTS).enumerate() {
+            function(&mut Chunk { values: &mut values[..], points, first, time, dt, scratch: &mut *reactor });
+            for (s, from) in values.chunks_exact(POINTS).enumerate() {
                 let floor = if species[s].range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };
                 for (to, from) in row(s).iter_mut().zip(from) {
                     // A value that is not a number stays so, to be found.
@@ -73,8 +97,8 @@ pub fn react(
         }
     };
     if chunks >= 8 && rayon::current_num_threads() > 1 {
-        rooms.par_iter_mut().enumerate().for_each(work);
+        parts.par_iter_mut().enumerate().for_each(work);
     } else {
-        rooms.iter_mut().enumerate().for_each(work);
+        parts.iter_mut().enumerate().for_each(work);
     }
 }

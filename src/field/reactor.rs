@@ -3,19 +3,17 @@
 //! A step of reactions is one explicit midpoint step, second order like the splitting, or what the document's scheme
 //! asks for: the engine's methods with error control, Rosenbrock's for stiff reactions, within each step of the splitting.
 
-use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
-
 use pulp::Arch;
 
-use super::broken::{Broken, Course};
+use super::broken::Broken;
 use super::grid::Grid;
 use super::positions::{Positions, positions, set_positions};
 use super::react::{Chunk, POINTS};
+use super::reactor_scratch::ReactorScratch;
 use super::rows::{ROW, Rows};
-use super::sweeps::PARTS;
-use super::system::{POSITION, Scales};
+use super::scales::{POSITION, Scales, compile};
 use crate::equations::eml::{Document, Scheme};
-use crate::equations::program::{Lanes, Program};
+use crate::equations::program::Program;
 use crate::equations::tree::{Expr, Role};
 use crate::error::{Error, Fault, Result};
 use crate::ode::block;
@@ -27,7 +25,7 @@ use crate::ode::{Method, Tolerances};
 pub const WIDTH: usize = ROW;
 
 /// The compiled reactions.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Reactor {
     program: Program,
     rows: Rows,
@@ -38,33 +36,6 @@ pub struct Reactor {
     /// Where the position and the inputs stand among the registers.
     place: Positions,
     inputs: Vec<usize>,
-    rooms: Vec<Mutex<Option<Room>>>,
-}
-
-/// What one thread works in.
-#[derive(Debug)]
-struct Room {
-    scratch: Scratch<WIDTH>,
-    /// States now and before, and open quantities, of a row of boxes, for the engine's methods.
-    states: Vec<Lanes<WIDTH>>,
-    before: Vec<Lanes<WIDTH>>,
-    given: Vec<Lanes<WIDTH>>,
-}
-
-fn empty_rooms() -> Vec<Mutex<Option<Room>>> {
-    (0..PARTS).map(|_| Mutex::new(None)).collect()
-}
-
-impl Clone for Reactor {
-    fn clone(&self) -> Self {
-        Self {
-            program: self.program.clone(),
-            rows: self.rows.clone(),
-            rooms: empty_rooms(),
-            inputs: self.inputs.clone(),
-            ..*self
-        }
-    }
 }
 
 impl Reactor {
@@ -78,7 +49,7 @@ impl Reactor {
         if document.system.quantities.iter().all(|quantity| still(&quantity.role)) {
             return Ok(None);
         }
-        let program = super::system::compile(document)?;
+        let program = compile(document)?;
         debug_assert!(document.fields.iter().map(|field| field.quantity).eq(program.variables.iter().copied()));
         let usual = Tolerances::default();
         let tolerances = Tolerances {
@@ -89,57 +60,45 @@ impl Reactor {
         let (place, rows) = (positions(&program, &program.rates), Rows::new(&program));
         let ours = |number: &usize| !POSITION.contains(&program.names[program.open[*number] as usize].as_str());
         let inputs = (0..program.open.len()).filter(ours).map(|number| program.first_open() + number).collect();
-        Ok(Some(Self { program, rows, method, tolerances, scales, place, inputs, rooms: empty_rooms() }))
-    }
-
-    /// A window with these inputs.
-    pub fn course<'a>(&'a self, grid: &'a Grid, inputs: &'a [f64], adaptive: bool) -> Course<'a> {
-        Course { reactor: self, grid, inputs, adaptive, broken: Mutex::new(None) }
-    }
-
-    /// A room that no other thread is in.
-    fn room(&self, hint: usize) -> MutexGuard<'_, Option<Room>> {
-        for at in 0..self.rooms.len() {
-            match self.rooms[(hint + at) % self.rooms.len()].try_lock() {
-                Ok(room) => return room,
-                Err(TryLockError::Poisoned(room)) => return room.into_inner(),
-                Err(TryLockError::WouldBlock) => {}
-            }
-        }
-        self.rooms[hint % self.rooms.len()].lock().unwrap_or_else(PoisonError::into_inner)
+        Ok(Some(Self { program, rows, method, tolerances, scales, place, inputs }))
     }
 
     /// Lets the boxes of a chunk react; of those whose values are finite before and
     /// not after the one with the largest before.
     pub fn react(&self, grid: &Grid, inputs: &[f64], chunk: &mut Chunk) -> Option<Broken> {
-        let mut room = self.room(chunk.first / POINTS);
-        let room = room.get_or_insert_with(|| Room {
-            scratch: Scratch::new(&self.program, self.method == Some(Method::Rosenbrock)),
-            states: vec![[0.0; WIDTH]; self.program.size()],
-            before: vec![[0.0; WIDTH]; self.program.size()],
-            given: vec![[0.0; WIDTH]; self.program.open.len()],
-        });
+        let key = (self.program.mark, self.method);
+        // Taken out for as long as the chunk is worked on.
+        let known = chunk.scratch.take().filter(|known| known.key == key);
+        let mut own = known.unwrap_or_else(|| Box::new(ReactorScratch::new(key, &self.program)));
         for (register, value) in self.inputs.iter().zip(inputs) {
-            room.scratch.file[*register] = [*value; WIDTH];
+            own.scratch.file[*register] = [*value; WIDTH];
         }
-        Arch::new().dispatch(Job { reactor: self, grid, room, chunk })
+        let broken = Arch::new().dispatch(Job { reactor: self, grid, own: &mut own, chunk });
+        *chunk.scratch = Some(own);
+        broken
     }
 
     #[inline(always)]
-    fn blocks<S: pulp::Simd>(&self, simd: S, grid: &Grid, room: &mut Room, chunk: &mut Chunk) -> Option<Broken> {
+    fn blocks<S: pulp::Simd>(
+        &self,
+        simd: S,
+        grid: &Grid,
+        own: &mut ReactorScratch,
+        chunk: &mut Chunk,
+    ) -> Option<Broken> {
         let (from, dt) = (chunk.time / self.scales.seconds, chunk.dt / self.scales.seconds);
         let mut broken = None;
         for first in (0..chunk.points).step_by(WIDTH) {
-            let scratch = &mut room.scratch;
+            let scratch = &mut own.scratch;
             for (s, state) in scratch.state.iter_mut().enumerate() {
                 state.copy_from_slice(&chunk.values[s * POINTS + first..][..WIDTH]);
             }
             set_positions(grid, self.scales, &self.place, chunk.first + first, &mut scratch.file);
             match self.method {
                 None => midpoint(&self.rows, scratch, from, dt),
-                Some(method) => self.with_method(simd, method, room, (from, from + dt)),
+                Some(method) => self.with_method(simd, method, own, (from, from + dt)),
             }
-            let scratch = &mut room.scratch;
+            let scratch = &mut own.scratch;
             let mut fine = true;
             for (s, proposal) in scratch.proposal.iter().enumerate() {
                 chunk.values[s * POINTS + first..][..WIDTH].copy_from_slice(proposal);
@@ -158,8 +117,8 @@ impl Reactor {
 
     /// A step of reactions by one of the engine's methods; a box in trouble gets values that are no numbers.
     #[inline(always)]
-    fn with_method<S: pulp::Simd>(&self, simd: S, method: Method, room: &mut Room, window: (f64, f64)) {
-        let Room { scratch, states, before, given } = room;
+    fn with_method<S: pulp::Simd>(&self, simd: S, method: Method, own: &mut ReactorScratch, window: (f64, f64)) {
+        let ReactorScratch { scratch, states, before, given, .. } = own;
         states.copy_from_slice(&scratch.state);
         let open = self.program.first_open();
         let many = given.len();
@@ -181,7 +140,7 @@ impl Reactor {
 struct Job<'a, 'c> {
     reactor: &'a Reactor,
     grid: &'a Grid,
-    room: &'a mut Room,
+    own: &'a mut ReactorScratch,
     chunk: &'a mut Chunk<'c>,
 }
 
@@ -190,7 +149,7 @@ impl pulp::WithSimd for Job<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<Broken> {
-        self.reactor.blocks(simd, self.grid, self.room, self.chunk)
+        self.reactor.blocks(simd, self.grid, self.own, self.chunk)
     }
 }
 

@@ -1,14 +1,16 @@
 //! The values of all species on one grid.
 
 use super::grid::Grid;
-use super::react::POINTS;
+use super::react::PartScratch;
 use super::species::Species;
 use super::steady::steady;
-use super::sweeps::{Factors, PARTS, diffuse, room};
+use super::sweeps::{Factors, PARTS, diffuse, sweep_buffer};
 use crate::Vec3;
 use crate::equations::Range;
 use crate::error::{Error, Fault, Result};
 
+/// A window is never halved more often than this.
+pub const FINEST: u32 = 20;
 /// Step sizes whose factors are kept: a step, its half, and those of the last change.
 const KEPT_FACTORS: usize = 6;
 
@@ -37,8 +39,9 @@ pub(super) struct Work {
     /// When each of the factors was last used.
     used: Vec<u64>,
     uses: u64,
-    rooms: Vec<Vec<f64>>,
-    pub reacting: Vec<Vec<f64>>,
+    /// For the sweeps along the axes, and for the reactions: one for each part of the work.
+    sweeping: Vec<Vec<f64>>,
+    pub reacting: Vec<PartScratch>,
     /// Values at the start of the window, at the start of a checked step, and after it in one piece.
     pub start: Vec<f64>,
     pub before: Vec<f64>,
@@ -56,12 +59,20 @@ impl Work {
             factors: vec![Factors::new(grid, species); KEPT_FACTORS],
             used: vec![0; KEPT_FACTORS],
             uses: 0,
-            rooms: vec![room(grid); PARTS],
-            reacting: vec![vec![0.0; species.len() * POINTS]; PARTS],
+            sweeping: vec![sweep_buffer(grid); PARTS],
+            reacting: vec![PartScratch::new(species.len()); PARTS],
             start: vec![0.0; grid.len() * species.len()],
             before: vec![0.0; grid.len() * species.len()],
             whole: vec![0.0; grid.len() * species.len()],
         }
+    }
+
+    /// Writes NaN over all numbers and forgets what is kept.
+    fn poison(&mut self) {
+        self.factors.iter_mut().for_each(|factors| factors.dt = f64::NAN);
+        let lists = [&mut self.start, &mut self.before, &mut self.whole];
+        lists.into_iter().chain(&mut self.sweeping).for_each(|list| list.fill(f64::NAN));
+        self.reacting.iter_mut().for_each(PartScratch::poison);
     }
 
     /// The factors of a step size, made now or kept.
@@ -126,6 +137,14 @@ impl Fields {
         std::mem::swap(values, &mut self.values);
     }
 
+    /// Writes NaN over the values, the time and all scratch: what holds fields for others while they lend their values must not
+    /// matter between.
+    pub fn poison(&mut self) {
+        self.values.fill(f64::NAN);
+        self.time = f64::NAN;
+        self.work.poison();
+    }
+
     /// Says what time it is, s.
     pub fn set_time(&mut self, time: f64) {
         self.time = time;
@@ -139,7 +158,7 @@ impl Fields {
 
     /// Takes up the pace of an earlier run.
     pub fn set_pace(&mut self, (level, unchecked): (u32, u32)) {
-        (self.level, self.unchecked) = (level.min(super::step::FINEST), unchecked);
+        (self.level, self.unchecked) = (level.min(FINEST), unchecked);
     }
 
     /// Values of a species in all boxes, x fastest: amount/µm² on the substrate, amount/µm³ in the medium.
@@ -217,7 +236,7 @@ impl Fields {
                 *value -= steady;
             }
         }
-        diffuse(grid, &work.factors[at], &work.ranges, values, &mut work.rooms);
+        diffuse(grid, &work.factors[at], &work.ranges, values, &mut work.sweeping);
         for (s, (steady, values)) in work.steady.iter().zip(values.chunks_exact_mut(grid.len())).enumerate() {
             let floor = if species[s].range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };
             for (value, steady) in values.iter_mut().zip(steady) {

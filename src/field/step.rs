@@ -2,7 +2,7 @@
 //! half a step, eq. (field.1), with steps as small as the splitting asks.
 
 use super::react::{React, react};
-use super::state::Fields;
+use super::state::{FINEST, Fields};
 use crate::error::{Error, Result, short};
 
 /// How a window is cut into steps.
@@ -32,11 +32,9 @@ pub struct Report {
     pub error: f64,
 }
 
-/// A window is never halved more often than this.
-pub const FINEST: u32 = 20;
 /// Of so many steps one is checked, while nothing speaks for a change of the step.
 const CHECK_EVERY: u32 = 4;
-/// Below this error the step is doubled: the error of a doubled step is 8 times as large, and some room is left.
+/// Below this error the step is doubled: the error of a doubled step is 8 times as large, and some slack is left.
 const CALM: f64 = 0.08;
 /// Above this error the next step is checked too.
 const WATCH: f64 = 0.5;
@@ -113,7 +111,7 @@ impl Fields {
                     report.rejected += 1;
                     self.level += 1;
                     if self.level > FINEST {
-                        return Err(self.hopeless(dt));
+                        return Err(self.unreachable_tolerance(dt));
                     }
                     continue;
                 }
@@ -180,7 +178,7 @@ impl Fields {
     }
 
     /// The box that is worst is told; its values in halves and whole stand where a refused step leaves them.
-    fn hopeless(&self, dt: f64) -> Error {
+    fn unreachable_tolerance(&self, dt: f64) -> Error {
         let apart = |at: &usize| (self.work.before[*at] - self.work.whole[*at]).abs();
         let apart = |at: &usize| if apart(at).is_nan() { f64::INFINITY } else { apart(at) };
         // Of equals the first.

@@ -34,7 +34,7 @@ pub struct Factors {
 }
 
 impl Factors {
-    /// Room for the factors of these species.
+    /// Empty factors of these species.
     pub fn new(grid: &Grid, species: &[Species]) -> Self {
         let line = |species: &Species, axis: usize| Line::new(grid.cells[axis], species.walls[axis]);
         let lines = species.iter().flat_map(|species| (0..3).map(move |axis| line(species, axis))).collect();
@@ -114,32 +114,32 @@ impl WithSimd for Solve<'_> {
 }
 
 /// Scratch of one part of the work.
-pub fn room(grid: &Grid) -> Vec<f64> {
+pub fn sweep_buffer(grid: &Grid) -> Vec<f64> {
     vec![0.0; scratch(*grid.cells.iter().max().expect("three axes")) + 8]
 }
 
 /// The same from where a line of the cache begins, so that no register is loaded from two of them.
-fn aligned(room: &mut [f64]) -> &mut [f64] {
-    let skip = room.as_ptr().align_offset(64).min(8);
-    &mut room[skip..]
+fn aligned(buffer: &mut [f64]) -> &mut [f64] {
+    let skip = buffer.as_ptr().align_offset(64).min(8);
+    &mut buffer[skip..]
 }
 
 /// Does `count` tasks, each with scratch that no other task uses meanwhile.
-fn share(count: usize, threads: bool, rooms: &mut [Vec<f64>], work: impl Fn(usize, &mut [f64]) + Sync) {
-    let parts = rooms.len();
+fn share(count: usize, threads: bool, buffers: &mut [Vec<f64>], work: impl Fn(usize, &mut [f64]) + Sync) {
+    let parts = buffers.len();
     if threads {
-        rooms.par_iter_mut().enumerate().for_each(|(part, room)| {
-            let room = aligned(room);
-            (part * count / parts..(part + 1) * count / parts).for_each(|task| work(task, room));
+        buffers.par_iter_mut().enumerate().for_each(|(part, buffer)| {
+            let buffer = aligned(buffer);
+            (part * count / parts..(part + 1) * count / parts).for_each(|task| work(task, buffer));
         });
     } else {
-        let room = aligned(&mut rooms[0]);
-        (0..count).for_each(|task| work(task, room));
+        let buffer = aligned(&mut buffers[0]);
+        (0..count).for_each(|task| work(task, buffer));
     }
 }
 
 /// One step of diffusion and decay. `ranges[s]` says which species are kept from going below zero.
-pub fn diffuse(grid: &Grid, factors: &Factors, ranges: &[Range], values: &mut [f64], rooms: &mut [Vec<f64>]) {
+pub fn diffuse(grid: &Grid, factors: &Factors, ranges: &[Range], values: &mut [f64], buffers: &mut [Vec<f64>]) {
     let ([nx, ny, nz], len, species) = (grid.cells, grid.len(), ranges.len());
     let threads = values.len() >= WORTH_THREADS && rayon::current_num_threads() > 1;
     let shared = &Shared::new(values);
@@ -150,46 +150,46 @@ pub fn diffuse(grid: &Grid, factors: &Factors, ranges: &[Range], values: &mut [f
         let factor = if last(s) == Some(axis) { factors.decay[s] } else { 1.0 };
         (line.ratio > 0.0).then_some(Task { line, factor, range: ranges[s] })
     };
-    let rows = |task: Task, from: usize, to: usize, room: &mut [f64]| {
+    let rows = |task: Task, from: usize, to: usize, buffer: &mut [f64]| {
         for first in (from..to).step_by(WIDTH) {
             let lines = Lines::Rows { first: first * nx, n: nx, count: WIDTH.min(to - first) };
             // SAFETY: no other task has these rows.
-            unsafe { task.solve(shared, lines, room) };
+            unsafe { task.solve(shared, lines, buffer) };
         }
     };
-    let columns = |task: Task, at: usize, n: usize, stride: usize, count: usize, room: &mut [f64]| {
+    let columns = |task: Task, at: usize, n: usize, stride: usize, count: usize, buffer: &mut [f64]| {
         let lines = Lines::Columns { first: at, n, stride, count };
         // SAFETY: no other task has these columns.
-        unsafe { task.solve(shared, lines, room) };
+        unsafe { task.solve(shared, lines, buffer) };
     };
     let blocks = |lines: usize| lines.div_ceil(WIDTH);
     if nz == 1 {
-        share(species * blocks(ny), threads, rooms, |job, room| {
+        share(species * blocks(ny), threads, buffers, |job, buffer| {
             let (s, block) = (job / blocks(ny), job % blocks(ny) * WIDTH);
             let Some(task) = task(s, 0) else { return };
-            rows(task, s * ny + block, s * ny + ny.min(block + WIDTH), room);
+            rows(task, s * ny + block, s * ny + ny.min(block + WIDTH), buffer);
         });
-        share(species * blocks(nx), threads, rooms, |job, room| {
+        share(species * blocks(nx), threads, buffers, |job, buffer| {
             let (s, block) = (job / blocks(nx), job % blocks(nx) * WIDTH);
             let Some(task) = task(s, 1) else { return };
-            columns(task, s * len + block, ny, nx, WIDTH.min(nx - block), room);
+            columns(task, s * len + block, ny, nx, WIDTH.min(nx - block), buffer);
         });
     } else {
-        share(species * nz, threads, rooms, |plane, room| {
+        share(species * nz, threads, buffers, |plane, buffer| {
             let s = plane / nz;
             if let Some(task) = task(s, 0) {
-                rows(task, plane * ny, (plane + 1) * ny, room);
+                rows(task, plane * ny, (plane + 1) * ny, buffer);
             }
             let Some(task) = task(s, 1) else { return };
             for block in (0..nx).step_by(WIDTH) {
-                columns(task, plane * nx * ny + block, ny, nx, WIDTH.min(nx - block), room);
+                columns(task, plane * nx * ny + block, ny, nx, WIDTH.min(nx - block), buffer);
             }
         });
         let across = nx * ny;
-        share(species * blocks(across), threads, rooms, |job, room| {
+        share(species * blocks(across), threads, buffers, |job, buffer| {
             let (s, block) = (job / blocks(across), job % blocks(across) * WIDTH);
             let Some(task) = task(s, 2) else { return };
-            columns(task, s * len + block, nz, across, WIDTH.min(across - block), room);
+            columns(task, s * len + block, nz, across, WIDTH.min(across - block), buffer);
         });
     }
     for (s, values) in values.chunks_exact_mut(len).enumerate() {

@@ -3,16 +3,18 @@
 //! A document keeps its own units of time and length; the fields are moved in µm and s, and their values are
 //! concentrations in the unit that the document gives them.
 
+use super::course::Course;
 use super::grid::Grid;
 use super::layout::{Placing, describe, layout, unit};
 use super::lines;
 use super::profiles::profiles;
 use super::reactor::Reactor;
+use super::scales::{POSITION, Scales, in_circle};
 use super::species::Species;
 use super::state::Fields;
 use super::step::{Report, Stepping};
 use crate::equations::eml;
-use crate::equations::program::{Program, initial_values};
+use crate::equations::program::initial_values;
 use crate::equations::tree::{QuantityId, Role, System};
 use crate::error::{Error, Fault, Place, Result};
 
@@ -48,18 +50,6 @@ impl Start {
         Self { quantity: field.quantity, profile: field.initial.clone(), place: field.place.clone() }
     }
 }
-
-/// The document's units, eq. (field.11).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Scales {
-    /// Seconds in its unit of time.
-    pub seconds: f64,
-    /// Micrometres in its unit of length.
-    pub micrometres: f64,
-}
-
-/// The position in expressions of a document of fields.
-pub(super) const POSITION: [&str; 3] = ["x", "y", "z"];
 
 impl FieldSystem {
     /// Puts the fields of a document on its grid. What the document leaves open is taken from `placing`. A side that is
@@ -207,7 +197,7 @@ impl FieldSystem {
         let Some(reactor) = &self.reactor else {
             return fields.advance(window, stepping, None).map_err(|error| self.named(error));
         };
-        let course = reactor.course(&self.grid, inputs, matches!(stepping, Stepping::Adaptive { .. }));
+        let course = Course::new(reactor, &self.grid, inputs, matches!(stepping, Stepping::Adaptive { .. }));
         let react = |chunk: &mut super::react::Chunk| course.react(chunk);
         fields.advance(window, stepping, Some(&react)).map_err(|error| {
             let broken = course.broken().map(|broken| broken.error(&self.name, &self.species, &self.grid));
@@ -239,19 +229,4 @@ impl FieldSystem {
             other => other,
         }
     }
-}
-
-fn in_circle(document: &eml::Document, circle: &[String]) -> Error {
-    let first = circle.first().and_then(|id| document.system.find(id));
-    let fault = Fault::new(format!("a circle of {}", circle.join(", "))).help("let one of them be a number");
-    let place = first.and_then(|number| document.places.get(number as usize));
-    Error::input(match place {
-        Some(place) => fault.at(place.clone()),
-        None => fault,
-    })
-}
-
-/// The program of a system whose circles were refused before.
-pub(super) fn compile(document: &eml::Document) -> Result<Program> {
-    Program::new(&document.system).map_err(|circle| in_circle(document, &circle))
 }

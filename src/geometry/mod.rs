@@ -6,6 +6,7 @@ mod curvature;
 mod export;
 mod import;
 mod measure;
+mod occupied;
 mod principal;
 mod red_cell;
 mod sheet;
@@ -23,6 +24,7 @@ pub use measure::{
     area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,
     mean_edge_length, smallest_angle, volume, volume_gradient,
 };
+pub use occupied::{Occupied, point_in_box};
 pub use principal::{PrincipalAxes, principal_axes, principal_extents};
 pub use red_cell::{RED_CELL_DIAMETER, red_cell, red_cell_area, red_cell_half_thickness, red_cell_volume};
 pub use sheet::sheet;

@@ -305,6 +305,11 @@ impl<'a, T: Real> Vectors<'a, T> {
     pub fn new(token: T::Token, data: &'a [T::Raw], stride: usize, part: usize) -> Self {
         Self { token, data, stride, part }
     }
+    /// Number of atoms.
+    #[inline(always)]
+    pub fn atoms(&self) -> usize {
+        self.data.len() / (3 * self.stride)
+    }
     /// The vector of an atom.
     #[inline(always)]
     pub fn get(&self, atom: usize) -> V3<T> {

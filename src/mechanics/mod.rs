@@ -1,18 +1,22 @@
 //! How forces move atoms: elasticity, loads, integration in time, constraints.
 //!
 //! Every force is one file: its parameters, `add_forces` (which returns the energy) written over
-//! [`lanes::Real`], and `add_stiffness`, its constant linear part for the implicit step.
+//! [`lanes::Real`], and `add_stiffness`, its constant linear part for the implicit step. [`Force`] is the one list of them,
+//! which the step, the stiffness, the energy account, chemistry and the shared test walk alike.
 
 pub mod angles;
+pub mod attraction;
 pub mod barrier;
 pub mod bending;
+pub mod control;
 pub mod course;
-pub mod elasticity;
 pub mod fibres;
+pub mod gravity;
 mod hinge;
 pub mod implicit;
 pub mod integrator;
 pub mod lanes;
+pub mod load;
 pub mod membrane;
 pub mod ordering;
 pub mod rigid;
@@ -21,5 +25,154 @@ pub mod shape_modulus;
 pub mod springs;
 pub mod stability;
 pub mod stiffness;
+pub mod sum;
 pub mod tension;
 pub mod volume;
+
+use crate::Vec3;
+use control::{Context, Handle};
+use course::Course;
+use lanes::{LANES, Real, Vectors, VectorsMut};
+use stiffness::StiffnessMatrix;
+
+/// A force on the atoms of every cell of a kind. Drag is none: it is what the schemes divide by.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Force {
+    /// Shape memory in the triplet form.
+    ShapeMemory(shape_memory::ShapeMemory),
+    /// Shape memory in the (α, β, γ) form.
+    Angles(angles::Angles),
+    /// In-plane elasticity of a membrane.
+    Membrane(membrane::Membrane),
+    /// Surface tension and the modulus of the total area.
+    Tension(tension::Tension),
+    /// Pulls along a surface that keep its atoms in order.
+    Ordering(ordering::Ordering),
+    /// Bending of a membrane.
+    Bending(bending::Bending),
+    /// Springs on edges and links between any two atoms.
+    Springs(springs::Springs),
+    /// The barrier against folding and collapsing facets.
+    Barrier(barrier::Barrier),
+    /// A load with a course in time on some atoms.
+    Load(load::Load),
+    /// Contractile fibres.
+    Fibres(fibres::Fibres),
+    /// Weight.
+    Gravity(gravity::Gravity),
+    /// A pull of every atom to a point.
+    Attraction(attraction::Attraction),
+}
+
+/// The kinds of forces that chemistry or a program may set, in the order in which messages list them.
+pub const CONTROLLED: [Handle; 2] = [load::HANDLE, fibres::HANDLE];
+
+impl Force {
+    /// What it is.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::ShapeMemory(_) => "shape memory",
+            Self::Angles(_) => "shape memory, angles",
+            Self::Membrane(_) => "membrane",
+            Self::Tension(_) => "tension",
+            Self::Ordering(_) => "ordering",
+            Self::Bending(_) => "bending",
+            Self::Springs(_) => "springs",
+            Self::Barrier(_) => "barrier",
+            Self::Load(_) => "load",
+            Self::Fibres(_) => "fibres",
+            Self::Gravity(_) => "gravity",
+            Self::Attraction(_) => "attraction",
+        }
+    }
+
+    /// Whether it answers to the shape of the cell alone and at all times: its energy is the cell's elastic energy, and chemistry may
+    /// scale it as a whole. All others do work on the cell.
+    pub fn is_elastic(&self) -> bool {
+        match self {
+            Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => true,
+            Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) => true,
+            Self::Load(_) | Self::Fibres(_) | Self::Gravity(_) | Self::Attraction(_) => false,
+        }
+    }
+
+    /// Whether it is, at any instant, the gradient of the energy that it tells. Not so are the documents' shape memories and pulls
+    /// that keep order.
+    pub fn is_conservative(&self) -> bool {
+        match self {
+            Self::ShapeMemory(force) => force.is_gradient(),
+            Self::Angles(_) | Self::Ordering(_) => false,
+            _ => true,
+        }
+    }
+
+    /// Its course in time, if it has one.
+    pub fn course(&self) -> Option<&Course> {
+        match self {
+            Self::Load(force) => Some(&force.force),
+            Self::Fibres(force) => Some(&force.activation),
+            _ => None,
+        }
+    }
+
+    /// The times at which its course bends, s: a step must not run over them.
+    pub fn kinks(&self) -> impl Iterator<Item = f64> + '_ {
+        self.course().into_iter().flat_map(Course::kinks)
+    }
+
+    /// The number in [`CONTROLLED`] and the name by which it may be set, if it may.
+    pub fn handle(&self) -> Option<(usize, &str)> {
+        match self {
+            Self::Load(force) => Some((0, &force.name)),
+            Self::Fibres(force) => Some((1, &force.name)),
+            _ => None,
+        }
+    }
+
+    /// Adds its linear part for the implicit step, pN/µm, as it is fit for the shape `x` (µm) of a cell with this rest shape.
+    pub fn add_stiffness(&self, rest: &[Vec3], x: &[Vec3], matrix: &mut StiffnessMatrix) {
+        match self {
+            Self::ShapeMemory(force) => force.add_stiffness(rest, x, matrix),
+            Self::Angles(force) => force.add_stiffness(matrix),
+            Self::Membrane(force) => force.add_stiffness(x, matrix),
+            Self::Tension(force) => force.add_stiffness(matrix),
+            Self::Ordering(force) => force.add_stiffness(x, matrix),
+            Self::Bending(force) => force.add_stiffness(matrix),
+            Self::Springs(force) => force.add_stiffness(matrix),
+            Self::Barrier(force) => force.add_stiffness(matrix),
+            Self::Fibres(force) => force.add_stiffness(matrix),
+            Self::Attraction(force) => force.add_stiffness(matrix),
+            Self::Load(_) | Self::Gravity(_) => {}
+        }
+    }
+
+    /// How strongly it acts on the cell of each lane of a block where these numbers are `set`; elastic forces act as they are.
+    fn strength(&self, context: &Context, set: &[f64; LANES]) -> [f64; LANES] {
+        match self {
+            Self::Load(force) => force.strength(context.time, set),
+            Self::Fibres(force) => force.activation(context.time, set),
+            Self::Gravity(_) => [context.mass; LANES],
+            _ => [1.0; LANES],
+        }
+    }
+
+    /// Adds the force on every atom, pN, at the strength of each cell, and returns the energy, pN·µm. Matched once for a register
+    /// of cells.
+    #[inline(always)]
+    fn add_forces<T: Real>(&self, strength: T, x: &Vectors<T>, f: &mut VectorsMut<T>) -> T {
+        match self {
+            Self::ShapeMemory(force) => force.add_forces(x, f),
+            Self::Angles(force) => force.add_forces(x, f),
+            Self::Membrane(force) => force.add_forces(x, f),
+            Self::Tension(force) => force.add_forces(x, f),
+            Self::Ordering(force) => force.add_forces(x, f),
+            Self::Bending(force) => force.add_forces(x, f),
+            Self::Springs(force) => force.add_forces(x, f),
+            Self::Barrier(force) => force.add_forces(x, f),
+            Self::Load(force) => force.add_forces(strength, x, f),
+            Self::Fibres(force) => force.add_forces(strength, x, f),
+            Self::Gravity(force) => force.add_forces(strength, x, f),
+            Self::Attraction(force) => force.add_forces(x, f),
+        }
+    }
+}

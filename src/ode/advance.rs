@@ -1,12 +1,13 @@
 //! A population through a window: side by side in tasks of blocks, or a few cells one by one.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::PoisonError;
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::block::{self, CellTrouble};
-use super::cells::{Cells, Kept};
+use super::buffers::PopulationScratch;
+use super::cells::{Cells, Kept, kept_numbers};
 use super::narrow::Narrow;
 use super::population::{LANES, Population};
 use super::scratch::Scratch;
@@ -16,7 +17,7 @@ use crate::equations::program::{Lanes, Program};
 impl Population {
     /// Advances all cells through a window. Each cell has an error and a step of its own; its result does not depend on
     /// how many cells there are nor on the number of threads. Open quantities stand still within the window. Nothing is
-    /// allocated after the first window.
+    /// allocated after the first window with the same scratch.
     ///
     /// # Errors
     /// The cell of the smallest number that could not be advanced. Cells in trouble keep their last good state; all
@@ -31,42 +32,54 @@ impl Population {
         from: f64,
         until: f64,
         tolerances: &Tolerances,
+        scratch: &mut PopulationScratch,
     ) -> Result<Work, OdeTrouble> {
         assert_eq!((self.variables, self.open), (program.size(), program.open.len()), "the population's own program");
         assert!(until > from, "a window from {from} until {until}");
         if self.variables == 0 || self.cells == 0 {
             return Ok(Work::default());
         }
-        self.keep_rates(program);
+        scratch.suit(program, self.method(), self.blocks());
         let result = if self.cells <= FEW {
-            self.advance_one_by_one(program, (from, until), tolerances)
+            self.advance_one_by_one(program, (from, until), tolerances, scratch)
         } else {
-            self.advance_side_by_side(program, (from, until), tolerances)
+            self.advance_side_by_side(program, (from, until), tolerances, scratch)
         };
         result.map_err(|trouble| trouble.of(program))
     }
 
-    fn advance_one_by_one(&mut self, program: &Program, window: (f64, f64), tolerances: &Tolerances) -> TaskResult {
-        let Self { states, steps, errors, given, rates, known, narrow, .. } = self;
-        let kept = (!known.is_empty()).then_some(Kept { rates, known });
+    fn advance_one_by_one(
+        &mut self,
+        program: &Program,
+        window: (f64, f64),
+        tolerances: &Tolerances,
+        scratch: &mut PopulationScratch,
+    ) -> TaskResult {
+        let method = self.method();
+        let Self { states, steps, errors, given, .. } = self;
+        let PopulationScratch { kept, narrow, .. } = scratch;
+        let kept = (!kept.is_empty()).then_some(Kept { numbers: kept });
         let mut cells = Cells { count: self.cells, states, given, steps, errors, kept };
-        let narrow = narrow.get_or_insert_with(|| Box::new(Narrow::new(program, self.method)));
-        narrow.advance(program, self.method, &mut cells, window, tolerances)
+        let narrow = narrow.get_or_insert_with(|| Box::new(Narrow::new(program, method.is_implicit())));
+        narrow.advance(program, method, &mut cells, window, tolerances)
     }
 
-    fn advance_side_by_side(&mut self, program: &Program, window: (f64, f64), tolerances: &Tolerances) -> TaskResult {
-        let n = self.variables;
-        let threads = rayon::current_num_threads();
-        while self.rooms.len() < threads {
-            self.rooms.push(Mutex::new(None));
-        }
-        let Self { states, steps, errors, given, rates, known, rooms, .. } = self;
-        let (method, cells, open) = (self.method, self.cells, self.open);
-        let blocks = blocks_a_task(steps.len(), threads);
+    fn advance_side_by_side(
+        &mut self,
+        program: &Program,
+        window: (f64, f64),
+        tolerances: &Tolerances,
+        scratch: &mut PopulationScratch,
+    ) -> TaskResult {
+        let (method, cells, n, open) = (self.method(), self.cells, self.variables, self.open);
+        scratch.suit_threads();
+        let Self { states, steps, errors, given, .. } = self;
+        let PopulationScratch { kept, threads, .. } = scratch;
+        let blocks = blocks_a_task(steps.len(), rayon::current_num_threads());
         let one = |(task, (((states, steps), errors), kept)): (usize, Part)| {
-            let room = &rooms[rayon::current_thread_index().unwrap_or(0)];
-            let mut room = room.lock().unwrap_or_else(PoisonError::into_inner);
-            let scratch = room.get_or_insert_with(|| Box::new(Scratch::new(program, method == Method::Rosenbrock)));
+            let own = &threads[rayon::current_thread_index().unwrap_or(0)];
+            let mut own = own.lock().unwrap_or_else(PoisonError::into_inner);
+            let scratch = own.block.get_or_insert_with(|| Box::new(Scratch::new(program, method.is_implicit())));
             program.set_constants(&mut scratch.file);
             let first = task * blocks;
             let given = &given[first * open..(first + steps.len()) * open];
@@ -76,8 +89,7 @@ impl Population {
             result.map_err(|trouble| CellTrouble { cell: first * LANES + trouble.cell, ..trouble })
         };
         let tasks = states.par_chunks_mut(n * blocks).zip(steps.par_chunks_mut(blocks));
-        let kept = rates.par_chunks_mut(n * blocks).zip(known.par_chunks_mut(blocks));
-        let kept = kept.map(|(rates, known)| Some(Kept { rates, known }));
+        let kept = kept.par_chunks_mut(kept_numbers(n, open) * blocks).map(|numbers| Some(Kept { numbers }));
         let unkept = if kept.len() > 0 { 0 } else { tasks.len() };
         let kept = kept.chain((0..unkept).into_par_iter().map(|_| None));
         let result = tasks.zip(errors.par_chunks_mut(blocks)).zip(kept).enumerate().map(one);

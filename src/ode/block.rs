@@ -50,8 +50,8 @@ pub fn advance<S: Simd, const L: usize>(
 /// Lanes wait for each other until one in so many is free: that costs less than to change cells more often.
 const FREE_SHARE: usize = 2;
 
-/// What is known of each lane on its way through the window, beside what goes with its cell.
-struct Way<const L: usize> {
+/// How far each lane has come in the window, beside what goes with its cell.
+struct Progress<const L: usize> {
     time: Lanes<L>,
     /// Rounds since the cell took its seat.
     rounds: Lanes<L>,
@@ -78,27 +78,27 @@ fn adaptive<S: Simd, const L: usize, M: Adaptive>(
 ) -> Result<Work, CellTrouble> {
     let (mut work, mut trouble) = (Work::default(), None);
     let mut seats = Seats::<L>::new();
-    let mut way = Way { time: [from; L], rounds: [0.0; L], refused: [0; L] };
+    let mut progress = Progress { time: [from; L], rounds: [0.0; L], refused: [0; L] };
     let shortest = control::shortest(from, until);
     let open = program.first_open();
     loop {
-        sit(&mut seats, &mut way, cells, open, s, from);
+        sit(&mut seats, &mut progress, cells, open, s, from);
         let left = mask::count(&seats.active);
         if left == 0 {
             break;
         }
-        begin::<L, M>(program, s, &mut seats, &way.time, until - from, tolerances, &mut work);
-        let round = plan(&seats, &way, (from, until));
-        M::step(simd, program, s, &way.time, &round.step);
+        begin::<L, M>(program, s, &mut seats, &progress.time, until - from, tolerances, &mut work);
+        let round = plan(&seats, &progress, (from, until));
+        M::step(simd, program, s, &progress.time, &round.step);
         work.jacobians += M::JACOBIANS * left as u64;
         work.rates += M::RATES * left as u64;
         let error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
-        let accepted = judge(&mut seats, &mut way, &round, &error, &M::CONTROLLER, until);
+        let accepted = judge(&mut seats, &mut progress, &round, &error, &M::CONTROLLER, until);
         let steps = mask::count(&accepted);
         work.steps += steps as u64;
         work.rejected += (left - steps) as u64;
         advance_state::<L, M>(s, &accepted, steps);
-        let (arrived, leaving) = leaving(&seats, &way, until, shortest, f64::from(tolerances.max_steps));
+        let (arrived, leaving) = leaving(&seats, &progress, until, shortest, f64::from(tolerances.max_steps));
         let leave = mask::count(&leaving);
         if leave == 0 {
             continue;
@@ -108,7 +108,7 @@ fn adaptive<S: Simd, const L: usize, M: Adaptive>(
         }
         for l in (0..L).filter(|&l| leaving[l] != 0) {
             if arrived[l] == 0 {
-                let known = explain(program, s, (way.time, seats.step), l, (seats.cell[l], error[l], shortest));
+                let known = explain(program, s, (progress.time, seats.step), l, (seats.cell[l], error[l], shortest));
                 if trouble.is_none_or(|first: CellTrouble| known.cell < first.cell) {
                     trouble = Some(known);
                 }
@@ -121,10 +121,10 @@ fn adaptive<S: Simd, const L: usize, M: Adaptive>(
 
 /// The steps that lanes take next: as wanted, or into what is left of the window.
 #[inline(always)]
-fn plan<const L: usize>(seats: &Seats<L>, way: &Way<L>, (from, until): (f64, f64)) -> Round<L> {
+fn plan<const L: usize>(seats: &Seats<L>, progress: &Progress<L>, (from, until): (f64, f64)) -> Round<L> {
     let mut round = Round { step: [0.0; L], last: [0; L], cut: [0; L] };
     for l in 0..L {
-        let (rest, wanted) = (until - way.time[l], seats.step[l]);
+        let (rest, wanted) = (until - progress.time[l], seats.step[l]);
         let (last, cut) = (when(wanted >= rest * NEAR), when(wanted > 0.5 * rest));
         let within = pick(last, rest, pick(cut, 0.5 * rest, wanted));
         round.step[l] = pick(seats.active[l], within, until - from);
@@ -138,7 +138,7 @@ fn plan<const L: usize>(seats: &Seats<L>, way: &Way<L>, (from, until): (f64, f64
 #[inline(always)]
 fn judge<const L: usize>(
     seats: &mut Seats<L>,
-    way: &mut Way<L>,
+    progress: &mut Progress<L>,
     round: &Round<L>,
     error: &Lanes<L>,
     controller: &Controller,
@@ -154,16 +154,16 @@ fn judge<const L: usize>(
     }
     for l in 0..L {
         let (step, wanted) = (round.step[l], seats.step[l]);
-        let most = pick(way.refused[l], 1.0, controller.most);
+        let most = pick(progress.refused[l], 1.0, controller.most);
         let next = control::after_good(step, (wanted, round.cut[l] != 0), factor[l], most);
         seats.step[l] = pick(accepted[l], next, control::after_refused(step, error[l], factor[l]));
     }
     for l in 0..L {
-        let end = pick(round.last[l], until, way.time[l] + round.step[l]);
-        way.time[l] = pick(accepted[l], end, way.time[l]);
+        let end = pick(round.last[l], until, progress.time[l] + round.step[l]);
+        progress.time[l] = pick(accepted[l], end, progress.time[l]);
         seats.error[l] = pick(accepted[l], error[l], seats.error[l]);
-        way.refused[l] = !accepted[l];
-        way.rounds[l] += pick(seats.active[l], 1.0, 0.0);
+        progress.refused[l] = !accepted[l];
+        progress.rounds[l] += pick(seats.active[l], 1.0, 0.0);
     }
     accepted
 }
@@ -172,16 +172,16 @@ fn judge<const L: usize>(
 #[inline(always)]
 fn leaving<const L: usize>(
     seats: &Seats<L>,
-    way: &Way<L>,
+    progress: &Progress<L>,
     until: f64,
     shortest: f64,
     max_rounds: f64,
 ) -> (Mask<L>, Mask<L>) {
     let (mut arrived, mut leaving) = ([0; L], [0; L]);
     for l in 0..L {
-        let short = way.refused[l] & when(seats.step[l] <= shortest);
-        let endless = when(way.rounds[l] >= max_rounds);
-        arrived[l] = seats.active[l] & when(way.time[l] >= until);
+        let short = progress.refused[l] & when(seats.step[l] <= shortest);
+        let endless = when(progress.rounds[l] >= max_rounds);
+        arrived[l] = seats.active[l] & when(progress.time[l] >= until);
         leaving[l] = arrived[l] | (seats.active[l] & (short | endless));
     }
     (arrived, leaving)
@@ -213,7 +213,7 @@ fn advance_state<const L: usize, M: Adaptive>(s: &mut Scratch<L>, accepted: &Mas
 #[inline(always)]
 fn sit<const L: usize>(
     seats: &mut Seats<L>,
-    way: &mut Way<L>,
+    progress: &mut Progress<L>,
     cells: &Cells<L>,
     open: usize,
     s: &mut Scratch<L>,
@@ -224,12 +224,12 @@ fn sit<const L: usize>(
         return;
     }
     if free == L && seats.take_block(cells, open, s) {
-        (way.time, way.rounds, way.refused) = ([from; L], [0.0; L], [0; L]);
+        (progress.time, progress.rounds, progress.refused) = ([from; L], [0.0; L], [0; L]);
         return;
     }
     for l in 0..L {
         if seats.active[l] == 0 && seats.take(l, cells, open, s) {
-            (way.time[l], way.rounds[l], way.refused[l]) = (from, 0.0, 0);
+            (progress.time[l], progress.rounds[l], progress.refused[l]) = (from, 0.0, 0);
         }
     }
 }
@@ -270,7 +270,7 @@ fn begin<const L: usize, M: Adaptive>(
 
 /// What is wrong with the cell of a lane.
 #[inline(never)]
-pub fn explain<const L: usize>(
+fn explain<const L: usize>(
     program: &Program,
     s: &mut Scratch<L>,
     (time, step): (Lanes<L>, Lanes<L>),

@@ -20,12 +20,40 @@ pub struct Cells<'a, const L: usize> {
     pub kept: Option<Kept<'a, L>>,
 }
 
-/// The rates at which cells left their last window: those at which they begin the next.
+/// The rates at which cells left their last window: those at which they begin the next, if they begin with the state and the open
+/// quantities that the rates were worked out from. These stand beside them, so that it does not matter whose rates they are.
 pub struct Kept<'a, const L: usize> {
-    /// Rates, as [`Cells::states`].
-    pub rates: &'a mut [Lanes<L>],
-    /// The cells of which they are known.
-    pub known: &'a mut [Mask<L>],
+    /// Of each block the rates, the states and the open quantities; states that are no number where nothing is known.
+    pub numbers: &'a mut [Lanes<L>],
+}
+
+/// How many numbers of a block [`Kept`] holds, of a system of so many variables and open quantities.
+pub fn kept_numbers(variables: usize, open: usize) -> usize {
+    2 * variables + open
+}
+
+/// Whether rates worked out from one number are those of another. What is not a number is like no other.
+#[inline(always)]
+fn is_same(one: f64, other: f64) -> bool {
+    (one == other) & (one.to_bits() == other.to_bits())
+}
+
+impl<const L: usize> Kept<'_, L> {
+    /// The rates of a block, and what they were worked out from.
+    #[inline(always)]
+    fn block(&self, block: usize, n: usize, open: usize) -> (&[Lanes<L>], &[Lanes<L>], &[Lanes<L>]) {
+        let all = &self.numbers[block * kept_numbers(n, open)..][..kept_numbers(n, open)];
+        (&all[..n], &all[n..2 * n], &all[2 * n..])
+    }
+
+    /// The same to be written.
+    #[inline(always)]
+    fn block_mut(&mut self, block: usize, n: usize, open: usize) -> [&mut [Lanes<L>]; 3] {
+        let all = &mut self.numbers[block * kept_numbers(n, open)..][..kept_numbers(n, open)];
+        let (rates, from) = all.split_at_mut(n);
+        let (states, given) = from.split_at_mut(n);
+        [rates, states, given]
+    }
 }
 
 /// The lanes: each holds a cell until its window is done and then takes the next one that waits.
@@ -74,10 +102,18 @@ impl<const L: usize> Seats<L> {
         }
         self.fresh[l] = YES;
         if let Some(kept) = &cells.kept {
-            for (rate, from) in s.stages[..n].iter_mut().zip(&kept.rates[block * n..]) {
+            let (rates, states, given) = kept.block(block, n, numbers);
+            for (rate, from) in s.stages[..n].iter_mut().zip(rates) {
                 rate[l] = from[lane];
             }
-            self.fresh[l] = !kept.known[block][lane];
+            let mut known = true;
+            for (before, now) in states.iter().zip(&s.state) {
+                known &= is_same(before[lane], now[l]);
+            }
+            for (before, now) in given.iter().zip(&s.file[open..]) {
+                known &= is_same(before[lane], now[l]);
+            }
+            self.fresh[l] = when(!known);
         }
         (self.step[l], self.error[l]) = (cells.steps[block][lane], cells.errors[block][lane]);
         (self.cell[l], self.active[l], self.block) = (self.next, YES, None);
@@ -97,8 +133,15 @@ impl<const L: usize> Seats<L> {
         s.file[open..open + numbers].copy_from_slice(&cells.given[block * numbers..(block + 1) * numbers]);
         self.fresh = [YES; L];
         if let Some(kept) = &cells.kept {
-            s.stages[..n].copy_from_slice(&kept.rates[block * n..(block + 1) * n]);
-            self.fresh = kept.known[block].map(|known| !known);
+            let (rates, states, given) = kept.block(block, n, numbers);
+            s.stages[..n].copy_from_slice(rates);
+            let mut known = [YES; L];
+            for (before, now) in states.iter().zip(&s.state).chain(given.iter().zip(&s.file[open..])) {
+                for l in 0..L {
+                    known[l] &= when(is_same(before[l], now[l]));
+                }
+            }
+            self.fresh = known.map(|known| !known);
         }
         (self.step, self.error) = (cells.steps[block], cells.errors[block]);
         self.cell = std::array::from_fn(|l| self.next + l);
@@ -107,7 +150,7 @@ impl<const L: usize> Seats<L> {
         true
     }
 
-    /// Copies what belongs to a lane's cell back to it; the rates count as known if the cell has arrived.
+    /// Copies what belongs to a lane's cell back to it; the rates are kept if the cell has arrived.
     #[inline(always)]
     pub fn leave(&mut self, l: usize, cells: &mut Cells<L>, s: &Scratch<L>, arrived: bool) {
         let (block, lane, n) = (self.cell[l] / L, self.cell[l] % L, s.state.len());
@@ -115,10 +158,17 @@ impl<const L: usize> Seats<L> {
             to[lane] = state[l];
         }
         if let Some(kept) = &mut cells.kept {
-            for (to, rate) in kept.rates[block * n..(block + 1) * n].iter_mut().zip(&s.stages) {
+            let numbers = cells.given.len() / cells.steps.len();
+            let [rates, states, given] = kept.block_mut(block, n, numbers);
+            for (to, rate) in rates.iter_mut().zip(&s.stages) {
                 to[lane] = rate[l];
             }
-            kept.known[block][lane] = when(arrived);
+            for (to, state) in states.iter_mut().zip(&s.state) {
+                to[lane] = if arrived { state[l] } else { f64::NAN };
+            }
+            for (to, from) in given.iter_mut().zip(&cells.given[block * numbers..]) {
+                to[lane] = from[lane];
+            }
         }
         (cells.steps[block][lane], cells.errors[block][lane]) = (self.step[l], self.error[l]);
         (self.active[l], self.block) = (0, None);
@@ -132,8 +182,11 @@ impl<const L: usize> Seats<L> {
         };
         cells.states[block * n..(block + 1) * n].copy_from_slice(&s.state);
         if let Some(kept) = &mut cells.kept {
-            kept.rates[block * n..(block + 1) * n].copy_from_slice(&s.stages[..n]);
-            kept.known[block] = [YES; L];
+            let numbers = cells.given.len() / cells.steps.len();
+            let [rates, states, given] = kept.block_mut(block, n, numbers);
+            rates.copy_from_slice(&s.stages[..n]);
+            states.copy_from_slice(&s.state);
+            given.copy_from_slice(&cells.given[block * numbers..(block + 1) * numbers]);
         }
         (cells.steps[block], cells.errors[block]) = (self.step, self.error);
         self.active = [0; L];

@@ -4,12 +4,12 @@ use super::OdeTrouble;
 use super::events::{Events, STOPS, TRIGGERS};
 use super::stepper::Stepper;
 
-/// Places within a step at which triggers are looked at.
+/// Points within a step at which triggers are looked at.
 const SAMPLES: usize = 8;
 /// With events no step is longer than this share of the whole time.
 pub const LONGEST_SHARE: f64 = 0.02;
 
-/// A way from the stepper's present until a time.
+/// A course from the stepper's present until a time.
 pub struct Course<'c, 'a> {
     stepper: &'c mut Stepper<'a>,
     events: &'c mut Events<'a>,
@@ -18,25 +18,35 @@ pub struct Course<'c, 'a> {
     written: usize,
     each: &'c mut dyn FnMut(f64, &[f64]),
     until: f64,
+    buffers: &'c mut CourseBuffers,
+}
+
+/// What a [`Course`] works in.
+#[derive(Debug, Default)]
+pub struct CourseBuffers {
     /// The state within a step, and the triggers there.
     within: Vec<f64>,
     now: Vec<f64>,
+    /// The present state, and differences that are met exactly at three times.
+    present: Vec<f64>,
+    differences: [Vec<f64>; 3],
 }
 
 impl<'c, 'a> Course<'c, 'a> {
-    /// The way until a time, with the values of all quantities handed to `each` at the points.
+    /// The course until a time, with the values of all quantities handed to `each` at the points.
     pub fn new(
         stepper: &'c mut Stepper<'a>,
         events: &'c mut Events<'a>,
         until: f64,
         points: &'c [f64],
         each: &'c mut dyn FnMut(f64, &[f64]),
+        buffers: &'c mut CourseBuffers,
     ) -> Self {
-        let within = vec![0.0; stepper.program.size()];
-        Self { stepper, events, points, written: 0, each, until, within, now: Vec::new() }
+        buffers.within.resize(stepper.program.size(), 0.0);
+        Self { stepper, events, points, written: 0, each, until, buffers }
     }
 
-    /// Goes all the way. What is triggered at its begin or exactly at its end is executed.
+    /// Goes to its end. What is triggered at its begin or exactly at its end is executed.
     ///
     /// # Errors
     /// When the numbers fail, or events follow each other without end.
@@ -87,8 +97,8 @@ impl<'c, 'a> Course<'c, 'a> {
                     let share = self.find(begin, reached, (low, high));
                     let time = if share >= 1.0 { reached } else { begin + share * (reached - begin) };
                     self.write_between(begin, reached, time);
-                    self.stepper.between(share, &mut self.within);
-                    self.stepper.commit_between(time, &self.within);
+                    self.stepper.between(share, &mut self.buffers.within);
+                    self.stepper.commit_between(time, &self.buffers.within);
                     self.arrive()?;
                     return Ok(true);
                 }
@@ -106,19 +116,20 @@ impl<'c, 'a> Course<'c, 'a> {
     /// Whether a trigger that did not hold does at a share of the step. Takes note of triggers that no longer hold.
     fn turns_true(&mut self, begin: f64, reached: f64, share: f64) -> bool {
         self.look(begin, reached, share);
-        let turned = self.events.turns_true(&self.now);
+        let turned = self.events.turns_true(&self.buffers.now);
         if !turned {
-            self.events.note_falling(&self.now);
+            self.events.note_falling(&self.buffers.now);
         }
         turned
     }
 
     /// Works out the triggers at a share of the step.
     fn look(&mut self, begin: f64, reached: f64, share: f64) {
-        self.stepper.between(share, &mut self.within);
+        let CourseBuffers { within, now, .. } = &mut *self.buffers;
+        self.stepper.between(share, within);
         let program = self.stepper.program;
         let time = if share >= 1.0 { reached } else { begin + share * (reached - begin) };
-        self.stepper.evaluate(&program.further[TRIGGERS], time, &self.within, &mut self.now);
+        self.stepper.evaluate(&program.further[TRIGGERS], time, within, now);
     }
 
     /// The smallest share, to the last bit of the time, at which a trigger that did not hold does.
@@ -130,7 +141,7 @@ impl<'c, 'a> Course<'c, 'a> {
                 break;
             }
             self.look(begin, reached, middle);
-            (low, high) = if self.events.turns_true(&self.now) { (low, middle) } else { (middle, high) };
+            (low, high) = if self.events.turns_true(&self.buffers.now) { (low, middle) } else { (middle, high) };
         }
         high
     }
@@ -143,16 +154,15 @@ impl<'c, 'a> Course<'c, 'a> {
             return f64::INFINITY;
         }
         let time = self.stepper.time;
-        let state: Vec<f64> = (0..program.size()).map(|v| self.stepper.state(v)).collect();
         let length = (self.until - time).max(1e-3 * self.until.abs());
-        let mut at = |time: f64| {
-            let mut results = Vec::new();
-            self.stepper.evaluate(code, time, &state, &mut results);
-            results
-        };
-        let (now, half, whole) = (at(time), at(time + 0.5 * length), at(time + length));
+        let CourseBuffers { present, differences, .. } = &mut *self.buffers;
+        self.stepper.state_into(present);
+        for (share, results) in [0.0, 0.5, 1.0].into_iter().zip(&mut *differences) {
+            self.stepper.evaluate(code, time + share * length, present, results);
+        }
+        let [now, half, whole] = &*differences;
         let mut next = f64::INFINITY;
-        for ((now, half), whole) in now.iter().zip(&half).zip(&whole) {
+        for ((now, half), whole) in now.iter().zip(half).zip(whole) {
             let (slope, size) = ((whole - now) / length, now.abs().max(whole.abs()));
             let even = (half - 0.5 * (now + whole)).abs() <= 1e-12 * size;
             let root = time - now / slope;
@@ -165,8 +175,8 @@ impl<'c, 'a> Course<'c, 'a> {
 
     /// Writes the points before a time, from within the step.
     fn write_between(&mut self, begin: f64, reached: f64, time: f64) {
-        let mut state = vec![0.0; self.stepper.program.size()];
         while let Some(&point) = self.points.get(self.written).filter(|point| **point < time) {
+            let mut state = vec![0.0; self.stepper.program.size()];
             self.stepper.between((point - begin) / (reached - begin), &mut state);
             self.write(point, &state);
         }

@@ -1,11 +1,14 @@
-//! Populations whose system has events: each cell alone on the way that single solves take, window by window.
+//! Populations whose system has events: each cell by itself on the course that single solves take, window by window.
+
+use std::sync::PoisonError;
 
 use rayon::prelude::*;
 
+use super::buffers::{Arrived, CellBuffers, PopulationScratch};
 use super::course::{Course, LONGEST_SHARE};
 use super::events::{EventMemory, EventPlan, Events};
 use super::population::Population;
-use super::stepper::Stepper;
+use super::stepper::{Stepper, StepperBuffers};
 use super::{OdeTrouble, Tolerances, Work};
 use crate::equations::program::Program;
 
@@ -23,20 +26,11 @@ pub struct Eventful<'a> {
     pub span: f64,
 }
 
-/// A cell at the end of a window.
-struct Arrived {
-    state: Vec<f64>,
-    open: Vec<f64>,
-    pace: (f64, f64),
-    memory: EventMemory,
-    work: Work,
-}
-
-impl<'a> Eventful<'a> {
+impl Eventful<'_> {
     /// Advances all cells through a window, as [`Population::advance`] does for systems without events. `memories`
     /// holds one entry a cell. Triggers that have turned true since the last window, because an open quantity was set
     /// or because nothing was before, fire at `from`; what is due at `until` is executed. A window of no length
-    /// does only that.
+    /// does only that. Nothing is allocated after the first window with the same scratch but for events that fire.
     ///
     /// # Errors
     /// The cell of the smallest number that could not be advanced. Cells in trouble keep the state of the window's
@@ -50,47 +44,57 @@ impl<'a> Eventful<'a> {
         memories: &mut [EventMemory],
         from: f64,
         until: f64,
+        scratch: &mut PopulationScratch,
     ) -> Result<Work, OdeTrouble> {
         assert_eq!(memories.len(), population.cells(), "one memory a cell");
-        let stepper = || {
-            let mut stepper = Stepper::new(self.program, population.method(), self.tolerances, from);
-            stepper.longest = LONGEST_SHARE * self.span;
-            stepper
-        };
-        let one = |stepper: &mut Stepper<'a>, (cell, memory): (usize, &EventMemory)| {
-            let state = (0..self.program.size()).map(|place| population.state(cell, place));
-            let open = (0..self.program.open.len()).map(|place| population.given(cell, place));
-            stepper.resume(from, state, open, population.pace(cell));
-            self.one(stepper, memory, until).map_err(|trouble| OdeTrouble { cell: Some(cell), ..trouble })
-        };
-        let cells = memories.par_iter().enumerate();
-        let arrived: Vec<_> = cells.map_init(stepper, one).collect();
+        scratch.suit(self.program, population.method(), population.blocks());
+        scratch.suit_threads();
+        let PopulationScratch { threads, arrived, .. } = scratch;
+        arrived.resize_with(memories.len(), Arrived::default);
+        let before = &*population;
+        arrived.par_iter_mut().zip(memories.par_iter()).enumerate().for_each(|(cell, (arrived, memory))| {
+            let own = &threads[rayon::current_thread_index().unwrap_or(0)];
+            let mut own = own.lock().unwrap_or_else(PoisonError::into_inner);
+            arrived.memory.copy_from(memory);
+            self.one(before, cell, (from, until), arrived, &mut own.single);
+        });
         let (mut work, mut trouble) = (Work::default(), None);
-        for ((cell, memory), arrived) in memories.iter_mut().enumerate().zip(arrived) {
-            match arrived {
-                Ok(arrived) => {
-                    arrived.state.iter().enumerate().for_each(|(place, &x)| population.set_state(cell, place, x));
-                    arrived.open.iter().enumerate().for_each(|(place, &x)| population.set_given(cell, place, x));
-                    population.set_pace(cell, arrived.pace);
-                    *memory = arrived.memory;
-                    work.add(arrived.work);
-                }
-                Err(found) => trouble = trouble.or(Some(found)),
+        for (cell, (memory, arrived)) in memories.iter_mut().zip(arrived).enumerate() {
+            if let Some(found) = arrived.trouble.take() {
+                trouble = trouble.or(Some(OdeTrouble { cell: Some(cell), ..found }));
+                continue;
             }
+            arrived.state.iter().enumerate().for_each(|(position, &x)| population.set_state(cell, position, x));
+            arrived.open.iter().enumerate().for_each(|(position, &x)| population.set_given(cell, position, x));
+            population.set_pace(cell, arrived.pace);
+            std::mem::swap(memory, &mut arrived.memory);
+            work.add(arrived.work);
         }
         trouble.map_or(Ok(work), Err)
     }
 
-    /// One cell from the stepper's present until a time.
-    fn one(&self, stepper: &mut Stepper<'a>, memory: &EventMemory, until: f64) -> Result<Arrived, OdeTrouble> {
-        let mut events = Events::new(self.plan, memory.clone());
-        Course::new(stepper, &mut events, until, &[], &mut |_, _| ()).run()?;
-        Ok(Arrived {
-            state: (0..self.program.size()).map(|place| stepper.state(place)).collect(),
-            open: stepper.open.clone(),
-            pace: stepper.pace(),
-            memory: events.into_memory(),
-            work: stepper.work,
-        })
+    /// One cell through a window.
+    fn one(
+        &self,
+        population: &Population,
+        cell: usize,
+        (from, until): (f64, f64),
+        arrived: &mut Arrived,
+        buffers: &mut CellBuffers,
+    ) {
+        let (program, method) = (self.program, population.method());
+        let CellBuffers { stepper, course, events } = buffers;
+        let known = stepper.take().unwrap_or_else(|| StepperBuffers::new(program, method.is_implicit()));
+        let mut own = Stepper::within(known, program, method, self.tolerances);
+        let state = (0..program.size()).map(|position| population.state(cell, position));
+        let open = (0..program.open.len()).map(|position| population.given(cell, position));
+        own.resume(from, state, open, population.pace(cell));
+        own.longest = LONGEST_SHARE * self.span;
+        let mut events = Events::new(self.plan, &mut arrived.memory, events);
+        arrived.trouble = Course::new(&mut own, &mut events, until, &[], &mut |_, _| (), course).run().err();
+        own.state_into(&mut arrived.state);
+        arrived.open.clone_from(&own.open);
+        (arrived.pace, arrived.work) = (own.pace(), own.work);
+        *stepper = Some(own.into_buffers());
     }
 }

@@ -27,24 +27,27 @@ struct Pending {
 }
 
 /// What a system knows of its events at a time: which triggers hold, and what has fired and waits.
-#[derive(Debug, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct EventMemory {
     holds: Vec<bool>,
     pending: Vec<Pending>,
 }
 
-impl Clone for EventMemory {
-    fn clone(&self) -> Self {
-        Self { holds: self.holds.clone(), pending: self.pending.clone() }
-    }
-
-    fn clone_from(&mut self, other: &Self) {
-        self.holds.clone_from(&other.holds);
-        self.pending.clone_from(&other.pending);
-    }
-}
-
 impl EventMemory {
+    /// Becomes another; where as much waits as before, nothing is allocated.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.holds.clone_from(&other.holds);
+        self.pending.truncate(other.pending.len());
+        for (to, from) in self.pending.iter_mut().zip(&other.pending) {
+            (to.event, to.time) = (from.event, from.time);
+            match (&mut to.values, &from.values) {
+                (Some(to), Some(from)) => to.clone_from(from),
+                (to, from) => *to = from.clone(),
+            }
+        }
+        self.pending.extend_from_slice(&other.pending[self.pending.len()..]);
+    }
+
     /// Whether another is of as many events.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let count = self.holds.len();
@@ -92,7 +95,17 @@ impl EventPlan {
 /// The events of a system on its way.
 pub struct Events<'a> {
     plan: &'a EventPlan,
-    memory: EventMemory,
+    memory: &'a mut EventMemory,
+    buffers: &'a mut EventBuffers,
+}
+
+/// What [`Events`] work in.
+#[derive(Debug, Default)]
+pub struct EventBuffers {
+    state: Vec<f64>,
+    triggers: Vec<f64>,
+    /// Delay of an event that fires, and the values that it sets.
+    firing: Vec<f64>,
 }
 
 /// Parameters that events set; they must stay open in the program.
@@ -175,13 +188,8 @@ fn is_steady(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>)
 
 impl<'a> Events<'a> {
     /// The events of a system with what is known of them.
-    pub fn new(plan: &'a EventPlan, memory: EventMemory) -> Self {
-        Self { plan, memory }
-    }
-
-    /// What is known of the events now.
-    pub fn into_memory(self) -> EventMemory {
-        self.memory
+    pub fn new(plan: &'a EventPlan, memory: &'a mut EventMemory, buffers: &'a mut EventBuffers) -> Self {
+        Self { plan, memory, buffers }
     }
 
     /// Whether there are none.
@@ -201,22 +209,17 @@ impl<'a> Events<'a> {
 
     /// Takes note of the triggers now: fires those that turned true, drops what no longer persists.
     pub fn update(&mut self, stepper: &mut Stepper) {
-        let (state, mut now) = (present(stepper), Vec::new());
+        let EventBuffers { state, triggers, firing } = &mut *self.buffers;
         let program = stepper.program;
-        stepper.evaluate(&program.further[TRIGGERS], stepper.time, &state, &mut now);
-        self.note(stepper, &now, &state);
-    }
-
-    fn note(&mut self, stepper: &mut Stepper, now: &[f64], state: &[f64]) {
+        stepper.state_into(state);
+        stepper.evaluate(&program.further[TRIGGERS], stepper.time, state, triggers);
         for event in 0..self.plan.events.len() {
-            let (held, holds) = (self.memory.holds[event], now[event] != 0.0);
+            let (held, holds) = (self.memory.holds[event], triggers[event] != 0.0);
             self.memory.holds[event] = holds;
             if !held && holds {
-                let mut values = Vec::new();
-                let program = stepper.program;
-                stepper.evaluate(&program.further[FIRST_EVENT + event], stepper.time, state, &mut values);
-                let delay = values.remove(0).max(0.0);
-                let values = self.plan.events[event].values_from_firing.then_some(values);
+                stepper.evaluate(&program.further[FIRST_EVENT + event], stepper.time, state, firing);
+                let delay = firing[0].max(0.0);
+                let values = self.plan.events[event].values_from_firing.then(|| firing[1..].to_vec());
                 self.memory.pending.push(Pending { event, time: stepper.time + delay, values });
             } else if held && !holds && !self.plan.events[event].persistent {
                 self.memory.pending.retain(|pending| pending.event != event);
@@ -238,9 +241,10 @@ impl<'a> Events<'a> {
     /// and equals in the order of their firing. Returns whether anything was executed.
     pub fn execute(&mut self, stepper: &mut Stepper) -> Result<bool, OdeTrouble> {
         let mut count = 0;
-        let (mut priorities, mut values) = (Vec::new(), Vec::new());
+        let (mut state, mut priorities, mut values) = (Vec::new(), Vec::new(), Vec::new());
         while self.next() <= stepper.time {
-            let (state, program) = (present(stepper), stepper.program);
+            let program = stepper.program;
+            stepper.state_into(&mut state);
             stepper.evaluate(&program.further[PRIORITIES], stepper.time, &state, &mut priorities);
             let due = self.memory.pending.iter().enumerate().filter(|(_, pending)| pending.time <= stepper.time);
             // The first of equals: the later one must be strictly larger.
@@ -276,9 +280,4 @@ impl<'a> Events<'a> {
         }
         Ok(count > 0)
     }
-}
-
-/// The present state.
-fn present(stepper: &Stepper) -> Vec<f64> {
-    (0..stepper.program.size()).map(|v| stepper.state(v)).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::block::CellTrouble;
 use super::cells::Cells;
-use super::mask::{YES, choose};
+use super::mask::{Mask, choose, when};
 use super::scratch::Scratch;
 use super::{Reason, Work, explicit};
 use crate::equations::program::Program;
@@ -28,7 +28,8 @@ pub fn advance<const L: usize, const CLASSICAL: bool>(
     for block in 0..cells.steps.len() {
         s.state.copy_from_slice(&cells.states[block * n..(block + 1) * n]);
         s.file[open..open + numbers].copy_from_slice(&cells.given[block * numbers..(block + 1) * numbers]);
-        let mut going = [YES; L];
+        // Lanes without a cell stay as they are.
+        let mut going: Mask<L> = std::array::from_fn(|l| when(block * L + l < cells.count));
         for number in 0..count as u64 {
             let time = from + number as f64 * step;
             if CLASSICAL {
@@ -41,7 +42,7 @@ pub fn advance<const L: usize, const CLASSICAL: bool>(
                 if broken.is_some() && going[l] != 0 {
                     going[l] = 0;
                     let cell = block * L + l;
-                    if cell < cells.count && trouble.is_none_or(|known| cell < known.cell) {
+                    if trouble.is_none_or(|known| cell < known.cell) {
                         trouble = Some(CellTrouble { cell, time, variable: broken, reason: Reason::NotFinite });
                     }
                 }

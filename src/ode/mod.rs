@@ -4,6 +4,7 @@
 mod adaptive;
 mod advance;
 pub(crate) mod block;
+mod buffers;
 pub(crate) mod cells;
 mod control;
 mod course;
@@ -13,6 +14,8 @@ mod explicit;
 mod fixed;
 mod lu;
 mod mask;
+mod members;
+#[cfg(feature = "diffsol")]
 mod multistep;
 mod narrow;
 mod population;
@@ -23,10 +26,11 @@ mod stepper;
 pub mod tableau;
 mod wide;
 
+pub use buffers::PopulationScratch;
 pub use control::Tolerances;
 pub use eventful::Eventful;
 pub use events::{EventMemory, EventPlan, assigned_parameters};
-pub use population::{LANES, Population};
+pub use population::{BlockView, LANES, Population};
 pub use solve::{Scheme, Solution, SolveOptions, solve, solve_each};
 
 use serde::{Deserialize, Serialize};

@@ -3,28 +3,28 @@
 use pulp::Scalar;
 
 use super::block::{self, CellTrouble};
-use super::cells::{Cells, Kept};
-use super::mask::Mask;
+use super::cells::{Cells, Kept, kept_numbers};
 use super::scratch::Scratch;
 use super::{Method, Tolerances, Work};
 use crate::equations::program::{Lanes, Program};
 
-/// Room for one cell at a time.
+/// Buffers for one cell at a time.
 #[derive(Debug)]
 pub struct Narrow {
     scratch: Scratch<1>,
     state: Vec<Lanes<1>>,
     given: Vec<Lanes<1>>,
-    rates: Vec<Lanes<1>>,
+    /// See [`Kept`].
+    kept: Vec<Lanes<1>>,
 }
 
 impl Narrow {
-    /// Room for a cell of a program.
-    pub fn new(program: &Program, method: Method) -> Self {
+    /// Buffers for a cell of a program; `stiff` methods need matrices.
+    pub fn new(program: &Program, stiff: bool) -> Self {
         let empty = |count| vec![[0.0]; count];
-        let n = program.size();
-        let scratch = Scratch::new(program, method == Method::Rosenbrock);
-        Self { scratch, state: empty(n), given: empty(program.open.len()), rates: empty(n) }
+        let (n, open) = (program.size(), program.open.len());
+        let scratch = Scratch::new(program, stiff);
+        Self { scratch, state: empty(n), given: empty(open), kept: empty(kept_numbers(n, open)) }
     }
 
     /// Advances the cells of one block, each by itself: the same bits as side by side.
@@ -62,19 +62,16 @@ impl Narrow {
         copy(&mut self.state, 0, cells.states, l);
         copy(&mut self.given, 0, cells.given, l);
         let (mut step, mut error) = ([[cells.steps[0][l]]], [[cells.errors[0][l]]]);
-        let mut known: [Mask<1>; 1] = [[0]];
-        if let Some(kept) = &cells.kept {
-            copy(&mut self.rates, 0, kept.rates, l);
-            known = [[kept.known[0][l]]];
-        }
-        let kept = cells.kept.is_some().then_some(Kept { rates: &mut self.rates, known: &mut known });
+        let kept = cells.kept.as_ref().map(|kept| {
+            copy(&mut self.kept, 0, kept.numbers, l);
+            Kept { numbers: &mut self.kept }
+        });
         let (steps, errors) = (&mut step[..], &mut error[..]);
         let mut one = Cells { count: 1, states: &mut self.state, given: &self.given, steps, errors, kept };
         let result = block::advance(Scalar, program, method, &mut self.scratch, &mut one, window, tolerances);
         copy(cells.states, l, &self.state, 0);
         if let Some(kept) = &mut cells.kept {
-            copy(kept.rates, l, &self.rates, 0);
-            kept.known[0][l] = known[0][0];
+            copy(kept.numbers, l, &self.kept, 0);
         }
         (cells.steps[0][l], cells.errors[0][l]) = (step[0][0], error[0][0]);
         result

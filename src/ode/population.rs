@@ -1,117 +1,51 @@
 //! All cells that share a system of equations, advanced window by window.
 
-use std::sync::Mutex;
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
 use super::Method;
-use super::mask::Mask;
-use super::narrow::Narrow;
-use super::scratch::Scratch;
+use super::buffers::PopulationScratch;
 use crate::equations::program::{Lanes, Program, run};
 use crate::equations::tree::QuantityId;
 
 pub use crate::equations::program::LANES;
 
-/// The states of cells that share a program. Arrays are `[block][number][lane]`.
-#[derive(Debug, Serialize, Deserialize)]
+/// The states of cells that share a program. Arrays are `[block][number][lane]`. In lanes beyond the last cell everything is 0, and the error 1.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Population {
     /// How the cells are advanced.
-    pub(super) method: Method,
+    method: Method,
     pub(super) cells: usize,
     pub(super) variables: usize,
     pub(super) open: usize,
     pub(super) states: Vec<Lanes<LANES>>,
     pub(super) given: Vec<Lanes<LANES>>,
+    /// The step that each cell tries next; 0 where none is known.
     pub(super) steps: Vec<Lanes<LANES>>,
+    /// Error of each cell's last step.
     pub(super) errors: Vec<Lanes<LANES>>,
-    /// Rates at the states for explicit pairs, where `known`: what comes out of them again, so that nothing depends on
-    /// whether they are kept.
-    #[serde(skip)]
-    pub(super) rates: Vec<Lanes<LANES>>,
-    #[serde(skip)]
-    pub(super) known: Vec<Mask<LANES>>,
-    /// The program that they and the scratch are of.
-    #[serde(skip)]
-    mark: u64,
-    #[serde(skip)]
-    pub(super) rooms: Vec<Mutex<Option<Box<Scratch<LANES>>>>>,
-    /// Room for cells that are advanced one by one.
-    #[serde(skip)]
-    pub(super) narrow: Option<Box<Narrow>>,
-}
-
-impl Clone for Population {
-    /// The same cells; scratch is not copied.
-    fn clone(&self) -> Self {
-        Self {
-            method: self.method,
-            cells: self.cells,
-            variables: self.variables,
-            open: self.open,
-            states: self.states.clone(),
-            given: self.given.clone(),
-            steps: self.steps.clone(),
-            errors: self.errors.clone(),
-            rates: self.rates.clone(),
-            known: self.known.clone(),
-            mark: self.mark,
-            rooms: Vec::new(),
-            narrow: None,
-        }
-    }
-
-    fn clone_from(&mut self, other: &Self) {
-        (self.method, self.cells, self.variables, self.open) = (other.method, other.cells, other.variables, other.open);
-        self.states.clone_from(&other.states);
-        self.given.clone_from(&other.given);
-        self.steps.clone_from(&other.steps);
-        self.errors.clone_from(&other.errors);
-        self.rates.clone_from(&other.rates);
-        self.known.clone_from(&other.known);
-        self.mark = other.mark;
-    }
-}
-
-impl PartialEq for Population {
-    /// Whether all cells are the same and will go on the same; scratch does not count.
-    fn eq(&self, other: &Self) -> bool {
-        self.has_shape_of(other)
-            && self.method == other.method
-            && self.states == other.states
-            && self.given == other.given
-            && self.steps == other.steps
-            && self.errors == other.errors
-    }
 }
 
 impl Population {
+    /// No cells, of a system with so many variables and open quantities.
+    pub(super) fn empty(variables: usize, open: usize, method: Method) -> Self {
+        let (states, given, steps, errors) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { method, cells: 0, variables, open, states, given, steps, errors }
+    }
+
     /// Whether another population has as many cells, variables and open quantities.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         (self.cells, self.variables, self.open) == (other.cells, other.variables, other.open)
     }
 
-    /// Cells at the system's initial values.
-    pub fn new(program: &Program, cells: usize, method: Method) -> Self {
-        let blocks = cells.div_ceil(LANES);
-        let initial = |numbers: &[QuantityId]| -> Vec<Lanes<LANES>> {
-            (0..blocks).flat_map(|_| numbers.iter().map(|&q| [program.initial[q as usize]; LANES])).collect()
-        };
-        Self {
-            method,
-            cells,
-            variables: program.size(),
-            open: program.open.len(),
-            states: initial(&program.variables),
-            given: initial(&program.open),
-            steps: vec![[0.0; LANES]; blocks],
-            errors: vec![[1.0; LANES]; blocks],
-            rates: Vec::new(),
-            known: Vec::new(),
-            mark: 0,
-            rooms: Vec::new(),
-            narrow: None,
-        }
+    /// Becomes another; where its numbers fit into what this one holds, nothing is allocated.
+    pub fn copy_from(&mut self, other: &Self) {
+        (self.method, self.cells, self.variables, self.open) = (other.method, other.cells, other.variables, other.open);
+        self.states.clone_from(&other.states);
+        self.given.clone_from(&other.given);
+        self.steps.clone_from(&other.steps);
+        self.errors.clone_from(&other.errors);
     }
 
     /// How many cells there are.
@@ -119,7 +53,7 @@ impl Population {
         self.cells
     }
 
-    /// A cell's value of the variable at a place of [`Program::variables`].
+    /// A cell's value of the variable at a position of [`Program::variables`].
     ///
     /// # Panics
     /// When there is no such cell or variable.
@@ -134,12 +68,10 @@ impl Population {
     /// When there is no such cell or variable.
     pub fn set_state(&mut self, cell: usize, variable: usize, value: f64) {
         assert!(variable < self.variables, "variable {variable} of {}", self.variables);
-        let place = cell / LANES * self.variables + variable;
-        let old = std::mem::replace(&mut self.states[place][cell % LANES], value);
-        self.forget_rates_unless(old.to_bits() == value.to_bits(), cell);
+        self.states[cell / LANES * self.variables + variable][cell % LANES] = value;
     }
 
-    /// A cell's value of the open quantity at a place of [`Program::open`].
+    /// A cell's value of the open quantity at a position of [`Program::open`].
     ///
     /// # Panics
     /// When there is no such cell or open quantity.
@@ -154,37 +86,7 @@ impl Population {
     /// When there is no such cell or open quantity.
     pub fn set_given(&mut self, cell: usize, open: usize, value: f64) {
         assert!(open < self.open, "open quantity {open} of {}", self.open);
-        let old = std::mem::replace(&mut self.given[cell / LANES * self.open + open][cell % LANES], value);
-        self.forget_rates_unless(old.to_bits() == value.to_bits(), cell);
-    }
-
-    fn forget_rates_unless(&mut self, same: bool, cell: usize) {
-        if let (false, Some(known)) = (same, self.known.get_mut(cell / LANES)) {
-            known[cell % LANES] = 0;
-        }
-    }
-
-    /// Makes sure that rates are kept where they can be, and that they and the scratch are the program's.
-    pub(super) fn keep_rates(&mut self, program: &Program) {
-        if self.mark != program.mark {
-            self.mark = program.mark;
-            self.rooms.clear();
-            self.narrow = None;
-            self.known.clear();
-        }
-        if !self.method.keeps_rates() {
-            self.known.clear();
-            self.rates.clear();
-            return;
-        }
-        if !program.rates_stand_still {
-            self.known.clear();
-        } else if self.known.is_empty() {
-            self.known.resize(self.steps.len(), [0; LANES]);
-        }
-        if self.rates.len() != self.states.len() {
-            self.rates.resize(self.states.len(), [0.0; LANES]);
-        }
+        self.given[cell / LANES * self.open + open][cell % LANES] = value;
     }
 
     /// The step that a cell will try next; 0 before its first window and for methods with fixed steps.
@@ -195,6 +97,11 @@ impl Population {
     /// How the cells are advanced.
     pub(super) fn method(&self) -> Method {
         self.method
+    }
+
+    /// How many blocks hold the cells.
+    pub(super) fn blocks(&self) -> usize {
+        self.steps.len()
     }
 
     /// The step that a cell will try next, and the error of its last.
@@ -218,19 +125,49 @@ impl Population {
     /// When `values` has another length than there are cells.
     pub fn observe(&self, program: &Program, quantity: QuantityId, time: f64, values: &mut [f64]) {
         assert_eq!(values.len(), self.cells, "one number a cell");
-        let mut file = program.file::<LANES>();
-        for (block, values) in values.chunks_mut(LANES).enumerate() {
-            self.load(block, time, &mut file);
-            run(&program.observe, &mut file);
-            let register = program.observe.outputs[quantity as usize] as usize;
-            values.copy_from_slice(&file[register][..values.len()]);
-        }
+        self.each_block(program, time, &mut program.file(), |block| {
+            values[block.cells.clone()].copy_from_slice(block.values(quantity));
+        });
     }
 
-    fn load(&self, block: usize, time: f64, file: &mut [Lanes<LANES>]) {
+    /// Shows the values of all quantities of the cells of each block at a time, by one evaluation of the equations a block. Nothing is
+    /// allocated after the first time with the same scratch.
+    pub fn observe_blocks(
+        &self,
+        program: &Program,
+        time: f64,
+        scratch: &mut PopulationScratch,
+        each: impl FnMut(BlockView),
+    ) {
+        scratch.suit(program, self.method(), self.blocks());
+        self.each_block(program, time, &mut scratch.file, each);
+    }
+
+    fn each_block(&self, program: &Program, time: f64, file: &mut [Lanes<LANES>], mut each: impl FnMut(BlockView)) {
         let (n, m) = (self.variables, self.open);
-        file[0] = [time; LANES];
-        file[1..=n].copy_from_slice(&self.states[block * n..(block + 1) * n]);
-        file[1 + n..1 + n + m].copy_from_slice(&self.given[block * m..(block + 1) * m]);
+        for block in 0..self.blocks() {
+            file[0] = [time; LANES];
+            file[1..=n].copy_from_slice(&self.states[block * n..(block + 1) * n]);
+            file[1 + n..1 + n + m].copy_from_slice(&self.given[block * m..(block + 1) * m]);
+            run(&program.observe, file);
+            each(BlockView { program, file, cells: block * LANES..self.cells.min((block + 1) * LANES) });
+        }
+    }
+}
+
+/// All quantities of the cells of a block at one time.
+#[derive(Debug)]
+pub struct BlockView<'a> {
+    program: &'a Program,
+    file: &'a [Lanes<LANES>],
+    /// The numbers of the cells.
+    pub cells: Range<usize>,
+}
+
+impl BlockView<'_> {
+    /// The values of a quantity, one a cell.
+    pub fn values(&self, quantity: QuantityId) -> &[f64] {
+        let register = self.program.observe.outputs[quantity as usize] as usize;
+        &self.file[register][..self.cells.len()]
     }
 }

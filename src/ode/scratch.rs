@@ -1,4 +1,4 @@
-//! Room to work in, kept from window to window so that nothing is allocated on the way.
+//! Buffers that are kept from window to window so that nothing is allocated on the way.
 
 use super::lu::Swap;
 use crate::equations::program::{Lanes, Program, run};
@@ -28,7 +28,7 @@ pub struct Scratch<const L: usize> {
 }
 
 impl<const L: usize> Scratch<L> {
-    /// Room for a program; `stiff` methods need matrices.
+    /// Buffers for a program; `stiff` methods need matrices.
     pub fn new(program: &Program, stiff: bool) -> Self {
         let n = program.size();
         let empty = || vec![[0.0; L]; n];

@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::control::Tolerances;
-use super::course::{Course, LONGEST_SHARE};
-use super::events::{EventPlan, Events};
+use super::course::{Course, CourseBuffers, LONGEST_SHARE};
+use super::events::{EventBuffers, EventPlan, Events};
+#[cfg(feature = "diffsol")]
 use super::multistep;
 use super::stepper::Stepper;
 use super::{Method, OdeTrouble, Reason, Work};
@@ -33,6 +34,11 @@ impl Scheme {
             Self::Bdf | Self::Esdirk34 | Self::TrBdf2 => true,
             Self::Tsit45 => false,
         }
+    }
+
+    /// Whether this build solves with it: those of diffsol need the feature of that name.
+    pub fn is_built_in(self) -> bool {
+        cfg!(feature = "diffsol") || matches!(self, Self::OneStep(_))
     }
 
     /// The scheme of a name: `rk45`, `rk65`, `rosenbrock`, `bdf`, `esdirk34`, `tr-bdf2`, `tsit45`, and with an inner step
@@ -144,11 +150,12 @@ pub fn solve_each(
     match options.scheme {
         Scheme::OneStep(method) => {
             let mut stepper = Stepper::new(&program, method, tolerances, from);
-            let mut events = Events::new(&plan, plan.before_start());
+            let (mut memory, mut buffers) = (plan.before_start(), EventBuffers::default());
+            let mut events = Events::new(&plan, &mut memory, &mut buffers);
             if !plan.is_empty() {
                 stepper.longest = LONGEST_SHARE * (until - from);
             }
-            Course::new(&mut stepper, &mut events, until, points, each).run()?;
+            Course::new(&mut stepper, &mut events, until, points, each, &mut CourseBuffers::default()).run()?;
             Ok(stepper.work)
         }
         _ if program.size() == 0 => {
@@ -158,6 +165,9 @@ pub fn solve_each(
         _ if !system.events.is_empty() => {
             Err(trouble("this scheme takes no events: use rosenbrock, rk45, rk65, rk4 or euler".into()))
         }
+        #[cfg(not(feature = "diffsol"))]
+        _ => Err(trouble("this program was built without diffsol: use rosenbrock, rk45, rk65, rk4 or euler".into())),
+        #[cfg(feature = "diffsol")]
         scheme => multistep::solve(&program, scheme, from, until, points, &tolerances, each),
     }
 }

@@ -32,15 +32,33 @@ pub struct Stepper<'a> {
     pub longest: f64,
 }
 
+/// What a stepper works in, which may be handed from one to the next of a program.
+#[derive(Debug)]
+pub struct StepperBuffers {
+    s: Scratch<1>,
+    open: Vec<f64>,
+    middle: Vec<f64>,
+}
+
+impl StepperBuffers {
+    /// Buffers for a program; `stiff` methods need matrices.
+    pub fn new(program: &Program, stiff: bool) -> Self {
+        Self { s: Scratch::new(program, stiff), open: vec![0.0; program.open.len()], middle: Vec::new() }
+    }
+}
+
 impl<'a> Stepper<'a> {
     /// A system at its initial values.
     pub fn new(program: &'a Program, method: Method, tolerances: Tolerances, time: f64) -> Self {
-        let mut s = Scratch::new(program, method == Method::Rosenbrock);
-        let at = |quantity: u32| program.initial[quantity as usize];
-        for (value, &quantity) in s.state.iter_mut().zip(&program.variables) {
-            *value = [at(quantity)];
-        }
-        let open = program.open.iter().map(|&quantity| at(quantity)).collect();
+        let mut stepper = Self::within(StepperBuffers::new(program, method.is_implicit()), program, method, tolerances);
+        let at = |quantity: &u32| program.initial[*quantity as usize];
+        stepper.resume(time, program.variables.iter().map(at), program.open.iter().map(at), (0.0, 1.0));
+        stepper
+    }
+
+    /// A system that works in these buffers; [`Self::resume`] must follow.
+    pub fn within(buffers: StepperBuffers, program: &'a Program, method: Method, tolerances: Tolerances) -> Self {
+        let StepperBuffers { s, open, middle } = buffers;
         let (work, longest) = (Work::default(), f64::INFINITY);
         Self {
             program,
@@ -48,15 +66,20 @@ impl<'a> Stepper<'a> {
             tolerances,
             s,
             open,
-            time,
+            time: f64::NAN,
             step: 0.0,
             error: 1.0,
             fresh: true,
             taken: 0.0,
-            middle: Vec::new(),
+            middle,
             work,
             longest,
         }
+    }
+
+    /// The buffers, for the next stepper.
+    pub fn into_buffers(self) -> StepperBuffers {
+        StepperBuffers { s: self.s, open: self.open, middle: self.middle }
     }
 
     /// Goes on from a time with a state, values of the open quantities, and the next step with the error of the last.
@@ -83,9 +106,15 @@ impl<'a> Stepper<'a> {
         matches!(self.method, Method::Rk4 { .. } | Method::Euler { .. })
     }
 
-    /// The variable at a place of the state.
+    /// A variable, by its position in the state.
     pub fn state(&self, variable: usize) -> f64 {
         self.s.state[variable][0]
+    }
+
+    /// Writes all variables to a list.
+    pub fn state_into(&self, state: &mut Vec<f64>) {
+        state.clear();
+        state.extend(self.s.state.iter().map(|value| value[0]));
     }
 
     /// Sets a variable; [`Self::restart`] must follow.

@@ -243,7 +243,8 @@ fn create_group(file: &File, field: &FieldLayout, order: i64) -> hdf5::Result<Gr
     group.create_group("CellData")?;
     let steps = group.create_group("Steps")?;
     set_number(&steps, "NSteps", 0_i64)?;
-    file.link_hard("/VTKHDF/Steps/Values", &format!("{}/Steps/Values", path_of(field)))?;
+    // The times themselves are made with the first frame, and the link leads there from then on.
+    file.link_soft("/VTKHDF/Steps/Values", &format!("{}/Steps/Values", path_of(field)))?;
     Ok(group)
 }
 

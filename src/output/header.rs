@@ -1,5 +1,7 @@
 //! Where a result comes from: the experiment's text, the program that ran it, and the numbers it was asked for.
 
+use std::time::SystemTime;
+
 use serde::{Deserialize, Serialize};
 
 /// What identifies a run. It is written once, when the file is made, and is the same on every machine but for
@@ -29,7 +31,7 @@ pub struct Header {
 impl Header {
     /// A header for a run that begins now with this build of the program.
     pub fn now(document: &str, title: &str, experiment: &str, sets: &[String], seed: u64) -> Self {
-        let now = jiff::Timestamp::now().round(jiff::Unit::Second).unwrap_or_else(|_| jiff::Timestamp::now());
+        let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
         Self {
             document: document.into(),
             title: title.into(),
@@ -39,7 +41,7 @@ impl Header {
             seed,
             version: env!("CARGO_PKG_VERSION").into(),
             commit: env!("PSEUDOPOD_COMMIT").into(),
-            started: now.to_string(),
+            started: utc_text(now.as_secs()),
         }
     }
 
@@ -60,6 +62,23 @@ impl Header {
     }
 }
 
+/// Seconds since the beginning of 1970 as date and time, UTC: `2026-03-01T12:00:00Z`.
+fn utc_text(seconds: u64) -> String {
+    let (days, second) = (seconds / 86_400, seconds % 86_400);
+    // Years are counted from a 1st of March, so that the day that some have more is their last (Hinnant, "chrono-compatible
+    // low-level date algorithms"); 719 468 days lie between that of the year 0 and 1970.
+    let days = days + 719_468;
+    let (era, day) = (days / 146_097, days % 146_097);
+    let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let (month, next) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
+    let year = year + 400 * era + next;
+    let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
+    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
+}
+
 /// A scalar that the experiment declares, found at the end of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
@@ -71,4 +90,23 @@ pub struct Measure {
     pub unit: String,
     /// What it is, in a sentence.
     pub description: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        for (seconds, text) in [
+            (0, "1970-01-01T00:00:00Z"),
+            (951_782_399, "2000-02-28T23:59:59Z"),
+            (951_782_400, "2000-02-29T00:00:00Z"),
+            (1_772_366_400, "2026-03-01T12:00:00Z"),
+            (1_798_761_599, "2026-12-31T23:59:59Z"),
+            (4_107_542_400, "2100-03-01T00:00:00Z"),
+        ] {
+            assert_eq!(utc_text(seconds), text);
+        }
+    }
 }

@@ -37,7 +37,7 @@ impl LoadArrows {
         let model = compile(document)?.model;
         let mut arrows = Vec::new();
         for (number, kind) in (0..).zip(&model.kinds) {
-            arrows.extend(kind.loads.iter().map(|load| Arrow {
+            arrows.extend(kind.loads().map(|load| Arrow {
                 kind: number,
                 atoms: load.atoms.clone(),
                 direction: load.direction,

@@ -16,6 +16,7 @@ pub mod movie;
 pub mod plots;
 pub mod quantities;
 pub mod render;
+mod svg;
 pub(crate) mod text;
 pub mod ticks;
 

@@ -1,12 +1,6 @@
-//! Lettering: writes text into SVG and turns SVG into pixels with the font that travels inside the program.
+//! Lettering: writes text into SVG.
 
 use std::fmt::Write;
-use std::sync::{Arc, OnceLock};
-
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg;
-
-use crate::error::{Error, Result};
 
 /// What SVG files ask for; pixels are always drawn with the Ubuntu Light inside the program.
 pub(crate) const FONT_FAMILY: &str = "Ubuntu, Helvetica, Arial, sans-serif";
@@ -158,49 +152,10 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     1.06 * size * thousandths / 1000.0
 }
 
-/// The font inside the program, parsed once.
-fn fonts() -> Arc<usvg::fontdb::Database> {
-    static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
-    FONTS
-        .get_or_init(|| {
-            let mut fonts = usvg::fontdb::Database::new();
-            fonts.load_font_source(usvg::fontdb::Source::Binary(Arc::new(epaint_default_fonts::UBUNTU_LIGHT)));
-            fonts.set_sans_serif_family("Ubuntu");
-            Arc::new(fonts)
-        })
-        .clone()
-}
-
-/// Draws an SVG document, `scale` pixels for each of its units; pixels it leaves free stay transparent.
-pub(crate) fn svg_to_pixels(svg: &str, scale: f32) -> Result<Pixmap> {
-    let options = usvg::Options {
-        fontdb: fonts(),
-        font_family: "Ubuntu".into(),
-        // The program's only font is a light one: thin outlines in the letters' colour make it as dark as a book face.
-        style_sheet: Some(format!(
-            ".soft {{ stroke: {SOFT_INK}; stroke-width: 0.2 }} .plain {{ stroke: {INK}; stroke-width: 0.3 }} \
-             .strong {{ stroke: {INK}; stroke-width: 0.65 }}"
-        )),
-        ..usvg::Options::default()
-    };
-    let tree = usvg::Tree::from_str(svg, &options).map_err(|error| undrawable(&error.to_string()))?;
-    let size = tree.size();
-    let (width, height) = ((size.width() * scale).round() as u32, (size.height() * scale).round() as u32);
-    let mut pixels = Pixmap::new(width, height).ok_or_else(|| undrawable(&format!("{width}×{height} pixels")))?;
-    resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    Ok(pixels)
-}
-
-fn undrawable(what: &str) -> Error {
-    Error::Machine {
-        message: format!("a drawing could not be turned into pixels: {what}"),
-        help: "choose a positive size below 30 000 pixels a side; otherwise please report this drawing".into(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::svg::svg_to_pixels;
 
     #[test]
     fn letters_of_units_and_greek_leave_ink() {

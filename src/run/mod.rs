@@ -3,7 +3,7 @@
 mod progress;
 mod recording;
 
-pub use progress::{Progress, Quiet, Report};
+pub use progress::{Quiet, Report};
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};

@@ -7,7 +7,7 @@ use super::progress::Report;
 use crate::error::{Error, Result};
 use crate::experiment::Schedule;
 use crate::output::ResultWriter;
-use crate::sim::contact::check_passed;
+use crate::sim::contact::{check_passed, help_at};
 use crate::sim::{State, StepReport, Trouble};
 use crate::simulation::{Recorder, Simulation, passed};
 
@@ -105,19 +105,20 @@ impl<'a> Recording<'a> {
         let unseen = simulation.steps() > self.recorded;
         let frame = if unseen { self.writer.append(&simulation.record(&mut self.recorder)) } else { Ok(()) };
         let kept = frame.and_then(|()| self.save(simulation));
-        self.failed(trouble, kept)
+        self.failed(trouble, simulation, kept)
     }
 
     /// Keeps the state in which cells were last outside each other, to resume from.
     pub fn keep_good(&mut self, trouble: &Trouble, simulation: &Simulation) -> Error {
         let good = self.good.as_ref().unwrap_or(simulation.state());
         let kept = self.writer.save_checkpoint(good.step, good.time, &simulation.checkpoint_of(good));
-        self.failed(trouble, kept)
+        self.failed(trouble, simulation, kept)
     }
 
-    fn failed(&self, trouble: &Trouble, kept: Result<()>) -> Error {
+    fn failed(&self, trouble: &Trouble, simulation: &Simulation, kept: Result<()>) -> Error {
         let kept = kept.is_ok().then(|| self.result.to_path_buf());
-        Error::Numbers { message: trouble.to_string(), help: trouble.help().to_owned(), kept }
+        let help = help_at(trouble, simulation.model(), simulation.state());
+        Error::Numbers { message: trouble.to_string(), help: help.to_owned(), kept }
     }
 
     fn remember_good(&mut self, simulation: &Simulation) {

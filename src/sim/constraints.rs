@@ -4,7 +4,8 @@
 use rayon::prelude::*;
 
 use super::contact::settle_adhesives;
-use super::model::{Model, VolumeRule};
+use super::kind::VolumeRule;
+use super::model::Model;
 use super::projection::{ProjectScratch, project_cell};
 use super::state::State;
 use super::trouble::Trouble;
@@ -36,7 +37,6 @@ pub fn make_exact(model: &Model, time: f64, from: &State, to: &mut State, ws: &m
 /// # Errors
 /// As [`make_exact`].
 pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
-    ws.rooms.suit(model);
     let Workspace { kinds, rooms, .. } = ws;
     for ((kind, now), w) in model.kinds.iter().zip(&mut to.kinds).zip(kinds) {
         let exact = matches!(kind.volume, VolumeRule::Exact(_));
@@ -61,7 +61,7 @@ pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Wo
                 }
             });
         let missed = |cell: &usize| exact && (left[*cell].is_nan() || left[*cell] > VOLUME_TOLERANCE);
-        if let Some(cell) = (0..kind.cells).find(missed) {
+        if let Some(cell) = (0..now.cells()).find(missed) {
             return Err(Trouble::Volume { kind: kind.name.clone(), cell, error: left[cell], time });
         }
     }
@@ -71,7 +71,7 @@ pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Wo
 /// Cell by cell, the thorough way.
 fn project_block(
     model: &Model,
-    kind: &super::model::Kind,
+    kind: &super::kind::Kind,
     exact: bool,
     x: &mut [f64],
     target: &[f64],

@@ -14,7 +14,7 @@ pub fn check_finite(model: &Model, time: f64, state: &State) -> Result<(), Troub
         if now.positions.iter().map(|x| x * 1e-30).sum::<f64>().is_finite() {
             continue;
         }
-        for cell in 0..kind.cells {
+        for cell in 0..now.cells() {
             for atom in 0..kind.atoms() {
                 if (0..3).any(|axis| !now.positions[index(kind, cell, atom, axis)].is_finite()) {
                     return Err(Trouble::NotFinite { kind: kind.name.clone(), cell, atom, time });

@@ -1,24 +1,29 @@
 //! The stage that adds up every force on every atom.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
-use super::chemistry::Controls;
 use super::contact::{ContactForces, add_contact_forces, pull_contacts};
-use super::model::{Kind, Model, VolumeRule};
+use super::controls::Controls;
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
 use super::rooms::{Rooms, each_or_none};
 use super::state::{KindState, State};
 use super::workspace::{KindScratch, Workspace};
+use crate::mechanics::control::Context;
 use crate::mechanics::lanes::LANES;
+use crate::mechanics::sum::{measure_elastic, measure_forces};
 use crate::mechanics::volume;
 
 /// All forces on the cells of a kind, drag not included. Motility enters as the drag that its velocity
 /// overcomes.
 #[derive(Clone, Copy)]
 pub struct Forces<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// The number of the kind.
-    pub number: usize,
+    /// The kind.
+    pub kind: &'a Kind,
+    /// Its cells, wherever their atoms are.
+    pub cells: &'a KindState,
     /// What chemistry sets.
     pub controls: &'a Controls,
     /// Mean velocity that motility asks of every cell of the model, µm/s.
@@ -38,25 +43,20 @@ impl Forces<'_> {
         (f, energy): (&mut [f64], &mut [f64]),
         spare: &mut [f64],
     ) {
-        let &Self { model, number, controls, drive, contact } = self;
-        let kind = &model.kinds[number];
-        f.fill(0.0);
-        energy.fill(0.0);
-        kind.elasticity.add_forces(kind.lanes, x, f, energy);
-        scale_elasticity(kind, controls, block, f, energy);
-        add_loads(kind, controls, block, time, f);
-        add_fibres(kind, controls, block, time, x, f, energy);
-        add_gravity(model, kind, f);
-        add_attraction(kind, x, f, energy);
-        add_drive(kind, &drive[kind.first_cell..kind.first_cell + kind.cells], block, f);
+        let &Self { kind, cells, controls, drive, contact } = self;
+        let numbers = cells.numbers_of_block(kind, block);
+        let context = context(kind, controls, numbers.clone(), time);
+        measure_forces(&kind.forces, &context, kind.lanes, x, f, energy);
+        add_drive(kind, &drive[numbers], f);
         add_pressure(kind, time, x, rest, spare, f, energy);
-        add_contact_forces(model, number, block, contact, f);
+        add_contact_forces(kind, cells, block, contact, f);
     }
 }
 
 /// Sets `force` of every kind to the sum of all forces at time `time` (pN), and `energy` to the energy of every cell. What contacts
 /// carry must have been found.
 pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
+    ws.suit(model, state);
     sum_forces(model, time, &state.chemistry.controls, &state.kinds, ws);
 }
 
@@ -67,7 +67,6 @@ pub fn sum_forces(model: &Model, time: f64, controls: &Controls, cells: &[KindSt
         w.force.resize(now.positions.len(), 0.0);
     }
     let Workspace { kinds, rooms, drive, contact, .. } = ws;
-    rooms.suit(model);
     let contact = &contact.forces;
     for_each_kind(model, time, (controls, drive, contact), cells, kinds, rooms, |w| (&mut w.force, &mut w.energy));
 }
@@ -75,7 +74,6 @@ pub fn sum_forces(model: &Model, time: f64, controls: &Controls, cells: &[KindSt
 /// Sets `energy` of every kind to the energy of every cell, pN·µm; contacts have none.
 pub fn measure_energy(model: &Model, time: f64, controls: &Controls, cells: &[KindState], ws: &mut Workspace) {
     let Workspace { kinds, rooms, drive, .. } = ws;
-    rooms.suit(model);
     let none = ContactForces::default();
     for_each_kind(model, time, (controls, drive, &none), cells, kinds, rooms, |w| (&mut [], &mut w.energy));
 }
@@ -90,12 +88,12 @@ fn for_each_kind(
     rooms: &Rooms,
     lent: impl Fn(&mut KindScratch) -> (&mut [f64], &mut [f64]),
 ) {
-    for (number, ((kind, now), w)) in model.kinds.iter().zip(cells).zip(kinds).enumerate() {
-        let forces = Forces { model, number, controls, drive, contact };
+    for ((kind, now), w) in model.kinds.iter().zip(cells).zip(kinds) {
+        let forces = Forces { kind, cells: now, controls, drive, contact };
         let (length, lanes) = (kind.block_len(), kind.lanes);
         let (force, energy) = lent(w);
         (now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
-            .zip(energy.par_chunks_exact_mut(lanes).zip(each_or_none(force, length, kind.blocks())))
+            .zip(energy.par_chunks_exact_mut(lanes).zip(each_or_none(force, length, now.blocks(kind))))
             .enumerate()
             .for_each(|(block, (cells, (energy, held)))| {
                 rooms.enter(length, |[f, spare, ..]| {
@@ -106,88 +104,26 @@ fn for_each_kind(
 }
 
 /// Elastic energy of each cell of a kind alone, pN·µm, for observers.
-pub fn elastic_energy(kind: &Kind, positions: &[f64]) -> Vec<f64> {
-    let mut energy = vec![0.0; kind.blocks() * kind.lanes];
+pub fn elastic_energy(kind: &Kind, cells: &KindState) -> Vec<f64> {
+    let mut energy = vec![0.0; cells.blocks(kind) * kind.lanes];
     let mut force = vec![0.0; kind.block_len()];
-    for (x, energy) in positions.chunks_exact(kind.block_len()).zip(energy.chunks_exact_mut(kind.lanes)) {
-        kind.elasticity.add_forces(kind.lanes, x, &mut force, energy);
+    for (x, energy) in cells.positions.chunks_exact(kind.block_len()).zip(energy.chunks_exact_mut(kind.lanes)) {
+        measure_elastic(&kind.forces, kind.lanes, x, &mut force, energy);
     }
-    energy.truncate(kind.cells);
+    energy.truncate(cells.cells());
     energy
 }
 
-/// What chemistry makes of the elastic forces, the only ones in `f` so far.
-fn scale_elasticity(kind: &Kind, controls: &Controls, block: usize, f: &mut [f64], energy: &mut [f64]) {
-    if controls.stiffness.is_empty() {
-        return;
-    }
-    let mut factors = [1.0; LANES];
-    for (lane, factor) in factors.iter_mut().enumerate().take(kind.lanes) {
-        if let Some(cell) = kind.cell_at(block, lane) {
-            *factor = controls.stiffness_of(cell);
-        }
-    }
-    for row in f.chunks_exact_mut(kind.lanes).chain([energy]) {
-        row.iter_mut().zip(&factors).for_each(|(slot, factor)| *slot *= factor);
-    }
+/// What forces on these cells depend on beside positions.
+fn context<'a>(kind: &Kind, controls: &'a Controls, cells: Range<usize>, time: f64) -> Context<'a> {
+    Context { time, mass: kind.mass, cells, stiffness: &controls.stiffness, controls: &controls.forces }
 }
 
-fn add_loads(kind: &Kind, controls: &Controls, block: usize, time: f64, f: &mut [f64]) {
-    for (number, load) in kind.loads.iter().enumerate() {
-        let force = load.force.at(time);
-        let mut forces = [force; LANES];
-        if controls.loads.get(number).is_some() {
-            for (lane, force) in forces.iter_mut().enumerate().take(kind.lanes) {
-                *force *= kind.cell_at(block, lane).map_or(1.0, |cell| controls.load_of(number, cell));
-            }
-        }
-        for &(atom, share) in &load.atoms {
-            for axis in 0..3 {
-                let along = share * load.direction[axis];
-                let at = (3 * atom as usize + axis) * kind.lanes;
-                f[at..at + kind.lanes].iter_mut().zip(&forces).for_each(|(slot, force)| *slot += force * along);
-            }
-        }
-    }
-}
-
-/// Fibres pull with the activation that chemistry sets, or else with that of their course.
-fn add_fibres(kind: &Kind, controls: &Controls, block: usize, time: f64, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
-    for (number, fibres) in kind.fibres.iter().enumerate() {
-        let mut activation = [fibres.activation.at(time); LANES];
-        for (lane, activation) in activation.iter_mut().enumerate().take(kind.lanes) {
-            let set = kind.cell_at(block, lane).and_then(|cell| controls.activation_of(number, cell));
-            *activation = set.unwrap_or(*activation);
-        }
-        fibres.add_forces(kind.lanes, &activation, x, f, energy);
-    }
-}
-
-fn add_gravity(model: &Model, kind: &Kind, f: &mut [f64]) {
-    let weight = model.gravity * kind.mass;
-    if weight.norm_squared() > 0.0 {
-        for (i, row) in f.chunks_exact_mut(kind.lanes).enumerate() {
-            row.iter_mut().for_each(|slot| *slot += weight[i % 3]);
-        }
-    }
-}
-
-fn add_attraction(kind: &Kind, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
-    let Some(attraction) = &kind.attraction else { return };
-    for (i, (row, place)) in f.chunks_exact_mut(kind.lanes).zip(x.chunks_exact(kind.lanes)).enumerate() {
-        for ((slot, here), energy) in row.iter_mut().zip(place).zip(energy.iter_mut()) {
-            let away = here - attraction.to[i % 3];
-            *slot -= attraction.stiffness * away;
-            *energy += 0.5 * attraction.stiffness * away * away;
-        }
-    }
-}
-
-fn add_drive(kind: &Kind, drive: &[[f64; 3]], block: usize, f: &mut [f64]) {
+fn add_drive(kind: &Kind, drive: &[[f64; 3]], f: &mut [f64]) {
     if kind.brownian.is_none() && !kind.biased {
         return;
     }
-    for (lane, velocity) in drive.iter().skip(block * kind.lanes).take(kind.lanes).enumerate() {
+    for (lane, velocity) in drive.iter().enumerate() {
         for atom in 0..kind.atoms() {
             for axis in 0..3 {
                 f[(3 * atom + axis) * kind.lanes + lane] += kind.drag * velocity[axis];

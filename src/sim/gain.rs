@@ -5,8 +5,9 @@
 
 use super::contact::{Law, energy_of_give};
 use super::forces::measure_energy;
-use super::model::{Kind, Model, VolumeRule};
-use super::state::State;
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
+use super::state::{KindState, State};
 use super::workspace::Workspace;
 use crate::mechanics::integrator::Method;
 
@@ -24,7 +25,7 @@ const VOLUME_OFF: f64 = 1e-9;
 pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option<f64> {
     is_left_alone(model).then(|| {
         measure_energy(model, state.time, &state.chemistry.controls, &state.kinds, ws);
-        energy(model, ws) + state.contact.given()
+        energy(&state.kinds, ws) + state.contact.given()
     })
 }
 
@@ -37,7 +38,7 @@ pub fn has_gained(model: &Model, dt: f64, before: Option<f64>, from: &State, to:
     measure_energy(model, from.time + dt, &from.chemistry.controls, &to.kinds, ws);
     let stiffest = model.kinds.iter().map(|kind| kind.largest_stiffness).fold(0.0, f64::max);
     let left = LEFT * stiffest * contact.tolerance * contact.tolerance;
-    energy(model, ws) + energy_of_give(&ws.contact) > before * (1.0 + ROUND_OFF) + left
+    energy(&to.kinds, ws) + energy_of_give(&ws.contact) > before * (1.0 + ROUND_OFF) + left
 }
 
 fn is_left_alone(model: &Model) -> bool {
@@ -46,21 +47,13 @@ fn is_left_alone(model: &Model) -> bool {
         contact.law == Law::default() && strengths.into_iter().all(|strength| strength.energy == 0.0)
     };
     let is_alone = |kind: &Kind| {
-        let steady = match &kind.volume {
-            VolumeRule::Free => true,
-            VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.kinks().next().is_none(),
-        };
-        let driven = !kind.fibres.is_empty()
-            || kind.brownian.is_some()
-            || kind.biased
-            || kind.attraction.is_some()
-            || !kind.loads.is_empty();
-        steady && !driven && kind.elasticity.is_conservative()
+        let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
+        let moves = kind.brownian.is_some() || kind.biased;
+        steady && !moves && kind.forces.iter().all(|force| force.is_elastic() && force.is_conservative())
     };
     matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)
         && model.contact.as_ref().is_some_and(sticks_only)
         && model.chemistry.is_empty()
-        && model.gravity.norm_squared() == 0.0
         && model.kinds.iter().all(is_alone)
 }
 
@@ -73,6 +66,6 @@ fn had_their_volumes(model: &Model, ws: &Workspace) -> bool {
 }
 
 /// The energy of all cells as it was measured last, pN·µm.
-fn energy(model: &Model, ws: &Workspace) -> f64 {
-    model.kinds.iter().zip(&ws.kinds).map(|(kind, w)| w.energy[..kind.cells].iter().sum::<f64>()).sum()
+fn energy(cells: &[KindState], ws: &Workspace) -> f64 {
+    cells.iter().zip(&ws.kinds).map(|(now, w)| w.energy[..now.cells()].iter().sum::<f64>()).sum()
 }

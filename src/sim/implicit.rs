@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::contact::{has_live_forces, pull_contacts};
 use super::forces::Forces;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::planes::{self, TouchScratch};
 use super::pressure::{carry_pressure, constrain};
 use super::rooms::each_or_none;
@@ -70,11 +71,10 @@ fn advance_stages(
 ) -> f64 {
     let Workspace { kinds, rooms, drive, contact, .. } = ws;
     let mut worst = 0.0;
-    for (number, ((kind, (now, next)), w)) in
-        model.kinds.iter().zip(from.kinds.iter().zip(&mut to.kinds)).zip(kinds).enumerate()
-    {
+    let cells = from.kinds.iter().zip(&mut to.kinds);
+    for ((kind, (now, next)), w) in model.kinds.iter().zip(cells).zip(kinds) {
         let controls = &from.chemistry.controls;
-        let forces = Forces { model, number, controls, drive, contact: &contact.forces };
+        let forces = Forces { kind, cells: now, controls, drive, contact: &contact.forces };
         let solver = &*w.solver(kind, dt, gamma(order));
         let targets = Targets::of(model, kind, [from.time, from.time + dt]);
         let step = Step { model, kind, forces, solver, targets, order, start: from.time, dt };
@@ -87,7 +87,7 @@ fn advance_stages(
             .zip(now.rest_volumes.par_chunks_exact(lanes).zip(now.positions.par_chunks_exact(length)))
             .zip(volume.par_chunks_exact_mut(lanes).zip(target.par_chunks_exact_mut(lanes)))
             .zip(energy.par_chunks_exact_mut(lanes).zip(pressure.par_chunks_exact_mut(lanes)))
-            .zip(each_or_none(increments, length, kind.blocks()).zip(touch))
+            .zip(each_or_none(increments, length, now.blocks(kind)).zip(touch))
             .enumerate()
             .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), (kept, touch)))| {
                 let mut block = Block { number, x, rest, start, volume, target, energy, pressure, touch };

@@ -2,7 +2,8 @@
 //! drag inside, and the classical Runge–Kutta scheme of fourth order; and over-damped explicit Euler, eq. (step.1).
 
 use super::forces::sum_forces;
-use super::model::{Kind, Model, VolumeRule};
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
 use super::state::State;
 use super::targets::measure_volumes;
 use super::workspace::Workspace;

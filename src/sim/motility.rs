@@ -1,7 +1,8 @@
 //! The stage that lets motile cells decide where they go during the step.
 
+use super::kind::Kind;
 use super::model::Model;
-use super::state::State;
+use super::state::{KindState, State};
 use super::workspace::Workspace;
 use crate::Vec3;
 use crate::cell::motility::BrownianMotility;
@@ -12,15 +13,16 @@ pub fn advance_motility(model: &Model, dt: f64, from: &State, to: &mut State, ws
     to.ended_runs.clone_from(&from.ended_runs);
     let controls = &from.chemistry.controls;
     let mut next = 0;
-    for kind in model.kinds.iter().filter(|kind| kind.brownian.is_some() || kind.biased) {
-        for cell in kind.first_cell..kind.first_cell + kind.cells {
+    let motile = |(kind, _): &(&Kind, &KindState)| kind.brownian.is_some() || kind.biased;
+    for (kind, now) in model.kinds.iter().zip(&from.kinds).filter(motile) {
+        for (cell, &id) in now.numbers().zip(&now.ids) {
             let mut velocity = Vec3::from(controls.bias_of(cell));
             if let Some(motility) = &kind.brownian {
                 let motility =
                     BrownianMotility { speed: controls.speed_of(cell).unwrap_or(motility.speed), ..*motility };
                 let ended = &mut to.ended_runs;
-                velocity += motility.advance(model.seed, cell as u64, &mut to.walks[next], dt, |duration, offset| {
-                    ended.push((cell as u32, from.time + offset, duration));
+                velocity += motility.advance(model.seed, id, &mut to.walks[next], dt, |duration, offset| {
+                    ended.push((id, from.time + offset, duration));
                 });
                 next += 1;
             }

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::forces::elastic_energy;
-use super::model::{Kind, Model, VolumeRule};
+use super::kind::Kind;
+use super::model::Model;
 use super::state::State;
 use crate::Vec3;
 use crate::geometry::{self, Surface};
@@ -35,18 +36,15 @@ pub struct CellMeasure {
 
 /// Measures every cell, in the order of cells.
 pub fn measure_cells(model: &Model, state: &State) -> Vec<CellMeasure> {
-    let mut all = Vec::with_capacity(model.cells());
+    let mut all = Vec::with_capacity(state.cells());
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-        let mut energy = elastic_energy(kind, &now.positions);
+        let mut energy = elastic_energy(kind, now);
         for (cell, energy) in energy.iter_mut().enumerate() {
-            *energy *= state.chemistry.controls.stiffness_of(kind.first_cell + cell);
+            *energy *= state.chemistry.controls.stiffness_of(now.first_cell + cell);
         }
         let rest_areas = geometry::facet_areas(&kind.rest);
-        let factor = match &kind.volume {
-            VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => course.at(state.time),
-            VolumeRule::Free => 1.0,
-        };
-        let measured: Vec<CellMeasure> = (0..kind.cells)
+        let factor = kind.volume.course().map_or(1.0, |course| course.at(state.time));
+        let measured: Vec<CellMeasure> = (0..now.cells())
             .into_par_iter()
             .map(|cell| {
                 let positions = now.cell(kind, cell);

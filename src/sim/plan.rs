@@ -2,7 +2,8 @@
 
 use super::chemistry::next_exchange;
 use super::contact::SweepRules;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::state::State;
 use super::trouble::Trouble;
 use crate::mechanics::integrator::StepSize;
@@ -212,10 +213,8 @@ fn is_shortest(model: &Model, dt: f64) -> bool {
 
 /// A step never runs over a bend of a course, an exchange with chemistry or the end of the run.
 fn end_at_kinks(model: &Model, time: f64, dt: f64) -> f64 {
-    // For the round-off of a clock that adds many steps.
-    let slack = 1e-12 * model.until;
-    let kinks = model.kinks.iter().copied().chain([model.until, next_exchange(model, time)]);
-    let ahead = kinks.filter(|&kink| kink > time + slack);
+    let slack = model.clock_slack();
+    let ahead = model.instants().chain([next_exchange(model, time)]).filter(|&instant| instant > time + slack);
     let left = ahead.fold(f64::INFINITY, f64::min) - time;
     if dt >= left - slack { left } else { dt }
 }

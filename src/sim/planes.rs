@@ -4,7 +4,8 @@
 //! mobility of the cell (eq. step.4, step.5) and C the normals of the touching atoms, the reactions r ≥ 0 solve
 //! `C M Cᵀ r = −gap − C Y`. So a cell that rests on a plane is in exact balance, however large the step.
 
-use super::model::{Kind, Model, VolumeRule};
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
 use super::pressure::pressure;
 use super::solver::{Solver, Stage, solve_block};
 use crate::Vec3;

@@ -1,6 +1,6 @@
 //! The pressure that keeps the volumes of cells in the implicit step.
 
-use super::model::{Kind, VolumeRule};
+use super::kind::{Kind, VolumeRule};
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::volume;
 

@@ -1,7 +1,8 @@
 //! The thorough way to put one cell right: planes and volume in turns until both hold. Cells that touch a plane and
 //! those whose volume one cubic could not restore go through it.
 
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::planes::TOUCH;
 use crate::Vec3;
 use crate::mechanics::volume;

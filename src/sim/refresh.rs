@@ -4,8 +4,9 @@
 //! several times stiffer than K, eq. (step.8), and then only tiny steps are stable. A kind of one cell therefore makes K
 //! again for the shape that the cell has now, whenever an edge has changed enough since K was last made.
 
-use super::model::{Kind, Model};
-use super::state::State;
+use super::kind::Kind;
+use super::model::Model;
+use super::state::{KindState, State};
 use super::workspace::Workspace;
 use crate::Vec3;
 use crate::mechanics::integrator::Method;
@@ -18,7 +19,7 @@ const CHANGE: f64 = 1.4;
 pub fn fit_stiffness(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) {
     if let Method::Implicit { .. } = model.integrator.method {
         refresh_stiffness(model, from, to, ws);
-        cover_stiffening(model, from, ws);
+        cover_stiffening(from, ws);
     }
 }
 
@@ -26,11 +27,12 @@ pub fn fit_stiffness(model: &Model, from: &State, to: &mut State, ws: &mut Works
 fn refresh_stiffness(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) {
     let cells = from.kinds.iter().zip(&mut to.kinds);
     for ((kind, (now, next)), w) in model.kinds.iter().zip(cells).zip(&mut ws.kinds) {
-        if kind.cells != 1 {
-            continue;
-        }
-        if has_changed(kind, &now.stiffness_shape, &now.positions) {
-            next.stiffness_shape.clone_from(&now.positions);
+        if now.cells() != 1 {
+            next.stiffness_shape.clear();
+        } else if has_changed(kind, now) {
+            next.stiffness_shape.clear();
+            next.stiffness_shape
+                .extend((0..kind.atoms()).flat_map(|atom| <[f64; 3]>::from(now.position(kind, 0, atom))));
         }
         if w.stiffness_shape != next.stiffness_shape {
             let shape: Vec<Vec3> = next.stiffness_shape.chunks_exact(3).map(Vec3::from_column_slice).collect();
@@ -41,29 +43,25 @@ fn refresh_stiffness(model: &Model, from: &State, to: &mut State, ws: &mut Works
 
 /// Raises K to cover the stiffest cell of each kind where chemistry sets the stiffness, in powers of two so that few
 /// factorisations are made. A K that is too large costs some accuracy, one that is too small stability.
-fn cover_stiffening(model: &Model, from: &State, ws: &mut Workspace) {
+fn cover_stiffening(from: &State, ws: &mut Workspace) {
     let controls = &from.chemistry.controls;
-    for (kind, w) in model.kinds.iter().zip(&mut ws.kinds) {
-        let cells = kind.first_cell..kind.first_cell + kind.cells;
-        let largest = controls.stiffness.get(cells).map_or(1.0, |cells| cells.iter().copied().fold(1.0, f64::max));
+    for (now, w) in from.kinds.iter().zip(&mut ws.kinds) {
+        let cells = controls.stiffness.get(now.numbers());
+        let largest = cells.map_or(1.0, |cells| cells.iter().copied().fold(1.0, f64::max));
         w.stiffening = largest.log2().ceil().exp2();
     }
 }
 
 /// Whether an edge of a single cell has another length than in the shape that K was made for (the rest shape, if none).
-fn has_changed(kind: &Kind, shape: &[f64], x: &[f64]) -> bool {
-    let squared = |x: &[f64], i: u32, j: u32| {
-        let (i, j) = (3 * i as usize, 3 * j as usize);
-        (0..3).map(|axis| (x[i + axis] - x[j + axis]).powi(2)).sum::<f64>()
-    };
+fn has_changed(kind: &Kind, now: &KindState) -> bool {
+    let shape = &now.stiffness_shape;
+    let squared = |position: &dyn Fn(u32) -> Vec3, i: u32, j: u32| (position(i) - position(j)).norm_squared();
+    let then = |atom: u32| Vec3::from_column_slice(&shape[3 * atom as usize..3 * atom as usize + 3]);
+    let rest = |atom: u32| kind.rest.positions[atom as usize];
     kind.rest.facets.iter().any(|&[a, b, c]| {
         [(a, b), (b, c), (c, a)].into_iter().any(|(i, j)| {
-            let then = if shape.is_empty() {
-                (kind.rest.positions[i as usize] - kind.rest.positions[j as usize]).norm_squared()
-            } else {
-                squared(shape, i, j)
-            };
-            let ratio = squared(x, i, j) / then;
+            let then = if shape.is_empty() { squared(&rest, i, j) } else { squared(&then, i, j) };
+            let ratio = squared(&|atom| now.position(kind, 0, atom as usize), i, j) / then;
             !(1.0 / CHANGE..=CHANGE).contains(&ratio)
         })
     })

@@ -1,6 +1,6 @@
 //! The linear system of the implicit step: A = ζ/dt + γK, factored, with rigid motion taken out, eq. (step.4).
 
-use super::model::Kind;
+use super::kind::Kind;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::{rigid, volume};

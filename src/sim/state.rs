@@ -1,10 +1,13 @@
 //! Where a run is. A checkpoint is exactly this.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::chemistry::ChemistryState;
 use super::contact::ContactState;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use crate::Vec3;
 use crate::cell::motility::Walk;
 
@@ -15,14 +18,18 @@ pub struct State {
     pub time: f64,
     /// Steps made.
     pub step: u64,
+    /// The id that the next cell gets.
+    pub next_id: u64,
+    /// Changes of the model's population that were made.
+    pub changes: usize,
     /// The step that the error estimate proposes next, s.
     pub next_step: f64,
     /// One entry a kind.
     pub kinds: Vec<KindState>,
     /// One walk for every cell of a kind with Brownian motility, in the order of cells.
     pub walks: Vec<Walk>,
-    /// Motility runs that ended and are not recorded yet: (cell, end s, duration s).
-    pub ended_runs: Vec<(u32, f64, f64)>,
+    /// Motility runs that ended and are not recorded yet: (id of the cell, end s, duration s).
+    pub ended_runs: Vec<(u64, f64, f64)>,
     /// Systems and fields; empty in a model without chemistry.
     pub chemistry: ChemistryState,
     /// What contacts carry; empty in a model without contacts.
@@ -32,14 +39,22 @@ pub struct State {
 /// The cells of a kind, in blocks of lanes.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct KindState {
+    /// Id of each cell, rising: given once, and never to another cell.
+    pub ids: Vec<u64>,
+    /// Id of the cell that each was born from; none of those that were placed.
+    pub parents: Vec<Option<u64>>,
+    /// Number of the first cell in the order of all cells.
+    pub first_cell: usize,
+    /// Number of its first atom among all atoms, in the order of all cells.
+    pub first_atom: usize,
     /// Positions, µm: `[block][atom][axis][lane]`. Lanes beyond the last cell repeat it and are never read.
     pub positions: Vec<f64>,
     /// Velocities, µm/s, the same shape; empty in over-damped runs.
     pub velocities: Vec<f64>,
     /// Rest volume of every cell, µm³, padded to whole blocks.
     pub rest_volumes: Vec<f64>,
-    /// Positions of the cell when the stiffness of the implicit step was last made, µm; empty where it is that of the
-    /// rest shape.
+    /// Positions of a single cell when the stiffness of the implicit step was last made, µm, `[atom][axis]`; empty where it is that
+    /// of the rest shape.
     pub stiffness_shape: Vec<f64>,
     /// Mean velocity of the atoms of every cell over the last step, µm/s; zero before the first.
     pub mean_velocities: Vec<[f64; 3]>,
@@ -57,33 +72,65 @@ pub fn vector(kind: &Kind, values: &[f64], cell: usize, atom: usize) -> Vec3 {
 }
 
 impl KindState {
-    /// Places cells; `places[cell]` are the positions of a cell's atoms.
-    pub fn new(kind: &Kind, places: &[Vec<Vec3>], inertial: Inertia) -> Self {
-        let mut positions = vec![0.0; kind.blocks() * kind.block_len()];
-        for slot in 0..kind.blocks() * kind.lanes {
-            let place = &places[slot.min(places.len() - 1)];
-            for (atom, x) in place.iter().enumerate() {
+    /// Places cells at rest, `positions[cell]` those of a cell's atoms, µm; ids count from 0.
+    pub fn new(kind: &Kind, positions: &[Vec<Vec3>], inertial: Inertia) -> Self {
+        let cells = positions.len();
+        let mut blocks = vec![0.0; cells.div_ceil(kind.lanes) * kind.block_len()];
+        for slot in 0..cells.next_multiple_of(kind.lanes) {
+            for (atom, x) in positions[slot.min(cells - 1)].iter().enumerate() {
                 for axis in 0..3 {
-                    positions[index(kind, slot, atom, axis)] = x[axis];
+                    blocks[index(kind, slot, atom, axis)] = x[axis];
                 }
             }
         }
         let velocities = match inertial {
-            Inertia::Inertial => vec![0.0; positions.len()],
+            Inertia::Inertial => vec![0.0; blocks.len()],
             Inertia::OverDamped => Vec::new(),
         };
-        let volume = if kind.closed { crate::geometry::volume(&kind.rest) } else { 0.0 };
         Self {
-            positions,
+            ids: (0..cells as u64).collect(),
+            parents: vec![None; cells],
+            first_cell: 0,
+            first_atom: 0,
+            positions: blocks,
             velocities,
-            rest_volumes: vec![volume; kind.blocks() * kind.lanes],
+            rest_volumes: vec![kind.rest_volume(); cells.next_multiple_of(kind.lanes)],
             stiffness_shape: Vec::new(),
-            mean_velocities: vec![[0.0; 3]; kind.cells],
+            mean_velocities: vec![[0.0; 3]; cells],
         }
+    }
+
+    /// How many cells there are.
+    pub fn cells(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Their numbers in the order of all cells.
+    pub fn numbers(&self) -> Range<usize> {
+        self.first_cell..self.first_cell + self.cells()
+    }
+
+    /// The numbers of their atoms, in the order of all cells.
+    pub fn atoms(&self, kind: &Kind) -> Range<usize> {
+        self.first_atom..self.first_atom + self.cells() * kind.atoms()
+    }
+
+    /// The numbers of the cells of a block in the order of all cells.
+    pub fn numbers_of_block(&self, kind: &Kind, block: usize) -> Range<usize> {
+        let first = self.first_cell + block * kind.lanes;
+        first..(first + kind.lanes).min(self.first_cell + self.cells())
+    }
+
+    /// How many blocks of lanes they fill.
+    pub fn blocks(&self, kind: &Kind) -> usize {
+        self.cells().div_ceil(kind.lanes)
     }
 
     /// As [`State::begin_from`].
     fn begin_from(&mut self, from: &Self) {
+        self.ids.clone_from(&from.ids);
+        self.parents.clone_from(&from.parents);
+        (self.first_cell, self.first_atom) = (from.first_cell, from.first_atom);
         self.positions.resize(from.positions.len(), 0.0);
         self.velocities.resize(from.velocities.len(), 0.0);
         self.rest_volumes.clone_from(&from.rest_volumes);
@@ -92,21 +139,79 @@ impl KindState {
     }
 
     fn poison(&mut self) {
+        self.ids.clear();
+        self.parents.clear();
+        (self.first_cell, self.first_atom) = (usize::MAX, usize::MAX);
         for array in [&mut self.positions, &mut self.velocities, &mut self.rest_volumes, &mut self.stiffness_shape] {
             array.fill(f64::NAN);
         }
         self.mean_velocities.fill([f64::NAN; 3]);
     }
 
+    /// Adds a cell at rest behind the others; whoever adds it counts the cells of all kinds anew.
+    pub(super) fn push(&mut self, kind: &Kind, id: u64, parent: Option<u64>, positions: &[Vec3], inertial: bool) {
+        let cell = self.cells();
+        self.ids.push(id);
+        self.parents.push(parent);
+        self.mean_velocities.push([0.0; 3]);
+        self.stiffness_shape.clear();
+        let blocks = self.blocks(kind);
+        self.positions.resize(blocks * kind.block_len(), 0.0);
+        self.velocities.resize(if inertial { self.positions.len() } else { 0 }, 0.0);
+        self.rest_volumes.resize(blocks * kind.lanes, 0.0);
+        // Lanes beyond the last cell repeat it.
+        for slot in cell..blocks * kind.lanes {
+            self.rest_volumes[slot] = kind.rest_volume();
+            for (atom, x) in positions.iter().enumerate() {
+                for axis in 0..3 {
+                    let at = index(kind, slot, atom, axis);
+                    self.positions[at] = x[axis];
+                    self.velocities.get_mut(at).into_iter().for_each(|v| *v = 0.0);
+                }
+            }
+        }
+    }
+
+    /// Keeps some cells, in their order; whoever removes the others counts the cells of all kinds anew.
+    pub(super) fn retain(&mut self, kind: &Kind, keep: impl Fn(usize) -> bool) {
+        let kept: Vec<usize> = (0..self.cells()).filter(|cell| keep(*cell)).collect();
+        let blocks = kept.len().div_ceil(kind.lanes);
+        // Lanes beyond the last cell repeat it.
+        let slots: Vec<usize> =
+            kept.iter().chain(kept.last().into_iter().cycle()).take(blocks * kind.lanes).copied().collect();
+        let take = |values: &[f64], of_atoms: usize| -> Vec<f64> {
+            let row = |block: usize, number: usize| {
+                let cells = &slots[block * kind.lanes..(block + 1) * kind.lanes];
+                cells
+                    .iter()
+                    .map(move |cell| values[(cell / kind.lanes * of_atoms + number) * kind.lanes + cell % kind.lanes])
+            };
+            (0..blocks).flat_map(|block| (0..of_atoms).flat_map(move |number| row(block, number))).collect()
+        };
+        let numbers = 3 * kind.atoms();
+        self.positions = take(&self.positions, numbers);
+        self.velocities = if self.velocities.is_empty() { Vec::new() } else { take(&self.velocities, numbers) };
+        self.rest_volumes = take(&self.rest_volumes, 1);
+        self.stiffness_shape.clear();
+        self.ids = kept.iter().map(|cell| self.ids[*cell]).collect();
+        self.parents = kept.iter().map(|cell| self.parents[*cell]).collect();
+        self.mean_velocities = kept.iter().map(|cell| self.mean_velocities[*cell]).collect();
+    }
+
     /// Moves a cell as a whole, µm.
     pub fn shift(&mut self, kind: &Kind, cell: usize, way: &Vec3) {
         // Lanes beyond the last cell repeat it.
-        let end = if cell + 1 == kind.cells { kind.blocks() * kind.lanes } else { cell + 1 };
+        let end = if cell + 1 == self.cells() { self.blocks(kind) * kind.lanes } else { cell + 1 };
         for slot in cell..end {
             for atom in 0..kind.atoms() {
                 (0..3).for_each(|axis| self.positions[index(kind, slot, atom, axis)] += way[axis]);
             }
         }
+    }
+
+    /// Position of an atom of a cell, µm.
+    pub fn position(&self, kind: &Kind, cell: usize, atom: usize) -> Vec3 {
+        vector(kind, &self.positions, cell, atom)
     }
 
     /// Positions of the atoms of a cell, µm.
@@ -126,19 +231,58 @@ pub enum Inertia {
 
 impl State {
     /// The start of a run with every cell at rest, `places[kind][cell][atom]`, and no fields; see
-    /// [`ChemistryState::new`] for a model that has some.
+    /// [`ChemistryState::new`] for a model that has some. Ids count through all cells in their order.
     pub fn new(model: &Model, places: &[Vec<Vec<Vec3>>]) -> Self {
         let inertia = if model.integrator.method.is_inertial() { Inertia::Inertial } else { Inertia::OverDamped };
         let kinds = model.kinds.iter().zip(places).map(|(kind, cells)| KindState::new(kind, cells, inertia)).collect();
-        let mut walks = Vec::new();
-        for kind in &model.kinds {
+        let mut state = Self { kinds, ..Self::default() };
+        state.number_cells(model);
+        state.next_id = state.cells() as u64;
+        for (kind, now) in model.kinds.iter().zip(&mut state.kinds) {
+            now.ids = now.numbers().map(|cell| cell as u64).collect();
             if let Some(motility) = &kind.brownian {
-                walks.extend((0..kind.cells).map(|cell| motility.start(model.seed, (kind.first_cell + cell) as u64)));
+                state.walks.extend(now.ids.iter().map(|id| motility.start(model.seed, *id)));
             }
         }
-        let chemistry = ChemistryState::new(model, &[]);
-        let contact = ContactState::default();
-        Self { time: 0.0, step: 0, next_step: 0.0, kinds, walks, ended_runs: Vec::new(), chemistry, contact }
+        state.chemistry = ChemistryState::new(model, &state.counts(), &[]);
+        state
+    }
+
+    /// Counts cells and atoms through all kinds.
+    pub(super) fn number_cells(&mut self, model: &Model) {
+        let (mut cell, mut atom) = (0, 0);
+        for (kind, now) in model.kinds.iter().zip(&mut self.kinds) {
+            (now.first_cell, now.first_atom) = (cell, atom);
+            cell += now.cells();
+            atom += now.cells() * kind.atoms();
+        }
+    }
+
+    /// How many cells there are.
+    pub fn cells(&self) -> usize {
+        self.kinds.iter().map(KindState::cells).sum()
+    }
+
+    /// How many cells of each kind there are.
+    pub fn counts(&self) -> Vec<usize> {
+        self.kinds.iter().map(KindState::cells).collect()
+    }
+
+    /// How many atoms all cells have.
+    pub fn atoms(&self, model: &Model) -> usize {
+        model.kinds.iter().zip(&self.kinds).map(|(kind, now)| now.cells() * kind.atoms()).sum()
+    }
+
+    /// The kind of a cell, by its number in the order of all cells, and its number within the kind.
+    pub fn kind_of(&self, cell: usize) -> (usize, usize) {
+        let kind = self.kinds.partition_point(|kind| kind.numbers().end <= cell);
+        (kind, cell - self.kinds[kind].first_cell)
+    }
+
+    /// The kind of the cell with an id, and its number within the kind; none where there is no such cell.
+    pub fn find(&self, id: u64) -> Option<(usize, usize)> {
+        let cell = |(kind, now): (usize, &KindState)| now.ids.binary_search(&id).ok().map(|cell| (kind, cell));
+        self.kinds.iter().enumerate().find_map(cell)
     }
 
     /// Makes this state, which may hold anything, the one that a step from another leads to, as far as that is known before it: where
@@ -146,6 +290,7 @@ impl State {
     /// Nothing is allocated where both are as large.
     pub fn begin_from(&mut self, from: &Self) {
         (self.time, self.step, self.next_step) = (from.time, from.step, from.next_step);
+        (self.next_id, self.changes) = (from.next_id, from.changes);
         self.kinds.resize_with(from.kinds.len(), KindState::default);
         self.kinds.iter_mut().zip(&from.kinds).for_each(|(kind, from)| kind.begin_from(from));
     }
@@ -153,6 +298,7 @@ impl State {
     /// Writes NaN over all numbers and forgets what is held in lists.
     pub fn poison(&mut self) {
         (self.time, self.step, self.next_step) = (f64::NAN, u64::MAX, f64::NAN);
+        (self.next_id, self.changes) = (u64::MAX, usize::MAX);
         self.kinds.iter_mut().for_each(KindState::poison);
         self.walks.clear();
         self.ended_runs.clear();

@@ -76,7 +76,7 @@ fn make_step(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) ->
 
 /// What is the same for all attempts.
 fn prepare(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> Result<Plan, Trouble> {
-    ws.rooms.suit(model);
+    ws.suit(model, from);
     to.begin_from(from);
     fit_stiffness(model, from, to, ws);
     locate_contacts(model, from, ws);
@@ -104,17 +104,16 @@ fn inspect(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
         return Some(Flaw::GainedEnergy);
     }
     let deepened = look_for_depth(model, from, to, ws)?;
-    Some(Flaw::Deepened(deepened.breaks_promise().then(|| deepened.trouble(model, from.time))))
+    Some(Flaw::Deepened(deepened.breaks_promise().then(|| deepened.trouble(model, from))))
 }
 
 /// The clock shows exactly when something is to happen, whatever round-off the steps before have left.
 fn advance_clock(model: &Model, plan: &Plan, to: &mut State) {
     to.time += plan.dt;
-    let slack = 1e-12 * model.until;
+    let slack = model.clock_slack();
     let exchange = next_exchange(model, to.time - 2.0 * slack);
-    let mut kinks = model.kinks.iter().copied().chain([model.until, exchange]);
-    if let Some(kink) = kinks.find(|kink| (kink - to.time).abs() <= slack) {
-        to.time = kink;
+    if let Some(instant) = model.instants().chain([exchange]).find(|instant| (instant - to.time).abs() <= slack) {
+        to.time = instant;
     }
     to.step += 1;
     to.next_step = plan.next_step(model);

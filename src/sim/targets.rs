@@ -2,14 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::model::{Kind, Model, VolumeRule};
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
 use super::state::State;
 use super::workspace::Workspace;
 use crate::mechanics::volume;
 
 /// Measures the volumes at the start of the step and sets the targets for its end.
 pub fn measure_volumes(model: &Model, end: f64, state: &State, ws: &mut Workspace) {
-    ws.rooms.suit(model);
     let Workspace { kinds, rooms, .. } = ws;
     for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(kinds) {
         let Some(targets) = Targets::of(model, kind, [state.time, end]) else { continue };
@@ -43,7 +43,7 @@ impl<'a> Targets<'a> {
             VolumeRule::Compressible { course, .. } => (course, false),
         };
         let contact = model.contact.as_ref().filter(|_| is_exact);
-        let approach = contact.map(|contact| (course.at(start), contact.scene.safe_travel()));
+        let approach = contact.map(|contact| (course.at(start), contact.reach.safe_travel()));
         Some(Self { kind, factor: course.at(end), approach })
     }
 

@@ -97,7 +97,7 @@ pub enum Trouble {
 }
 
 impl Trouble {
-    /// What to do about it.
+    /// What to do about it, where nothing is known but the trouble; [`help_at`](super::contact::help_at) looks at the cells, too.
     pub fn help(&self) -> &'static str {
         match self {
             Self::NotFinite { .. } => {
@@ -122,8 +122,8 @@ impl Trouble {
                 "bound the number in the link's transfer, such as transfer=\"max(value, 0)\", or mend the equations behind it"
             }
             Self::Contact { .. } | Self::Pressed { .. } => {
-                "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
-                 let run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
+                "contacts could not keep these cells apart: look at their last state; weaker loads, stiffer cells or \
+                 shorter steps (run.integrator: a smaller step where you set one, else max_step or tolerance) may help"
             }
             Self::TooFast { .. } => "shorten run.integrator.step, or leave it out so that steps limit themselves",
             Self::StepTooSmall { .. } => {

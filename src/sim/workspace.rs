@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::chemistry::ChemistryScratch;
 use super::contact::ContactScratch;
-use super::model::{Kind, Model};
+use super::kind::Kind;
+use super::model::Model;
 use super::planes::TouchScratch;
 use super::projection::ProjectScratch;
 use super::rooms::Rooms;
@@ -72,27 +73,37 @@ pub struct KindScratch {
 const FACTORS_KEPT: usize = 6;
 
 impl KindScratch {
-    fn new(kind: &Kind) -> Self {
-        let padded = kind.blocks() * kind.lanes;
+    fn new() -> Self {
         Self {
             force: Vec::new(),
             increments: Vec::new(),
             free: Vec::new(),
             rates: Vec::new(),
             accelerations: Vec::new(),
-            energy: vec![0.0; padded],
-            volume: vec![0.0; padded],
-            free_volume: vec![0.0; padded],
-            left: vec![0.0; padded],
-            pressure: vec![0.0; padded],
-            target: vec![0.0; padded],
-            touch: vec![TouchScratch::default(); kind.blocks()],
-            project: vec![ProjectScratch::default(); kind.blocks()],
+            energy: Vec::new(),
+            volume: Vec::new(),
+            free_volume: Vec::new(),
+            left: Vec::new(),
+            pressure: Vec::new(),
+            target: Vec::new(),
+            touch: Vec::new(),
+            project: Vec::new(),
             stiffness_shape: Vec::new(),
             stiffening: 1.0,
             stiffness: None,
             factors: Vec::new(),
         }
+    }
+
+    /// Makes arrays as large as so many cells need.
+    fn suit(&mut self, kind: &Kind, cells: usize) {
+        let blocks = cells.div_ceil(kind.lanes);
+        let per_cell = [&mut self.energy, &mut self.volume, &mut self.free_volume, &mut self.left];
+        for array in per_cell.into_iter().chain([&mut self.pressure, &mut self.target]) {
+            array.resize(blocks * kind.lanes, 0.0);
+        }
+        self.touch.resize_with(blocks, TouchScratch::default);
+        self.project.resize_with(blocks, ProjectScratch::default);
     }
 
     /// The solver for a step, factored when it is new.
@@ -142,15 +153,25 @@ impl KindScratch {
 }
 
 impl Workspace {
-    /// Scratch for a model.
+    /// Scratch for a model; it becomes as large as the cells need that there are.
     pub fn new(model: &Model) -> Self {
         Self {
-            kinds: model.kinds.iter().map(KindScratch::new).collect(),
+            kinds: model.kinds.iter().map(|_| KindScratch::new()).collect(),
             next: State::default(),
-            drive: vec![[0.0; 3]; model.cells()],
+            drive: Vec::new(),
             chemistry: ChemistryScratch::new(model),
             contact: ContactScratch::default(),
             rooms: Rooms::default(),
+        }
+    }
+
+    /// Makes scratch as large as the cells of a state need. Nothing is allocated where it is.
+    pub fn suit(&mut self, model: &Model, state: &State) {
+        self.rooms.suit(model);
+        self.drive.resize(state.cells(), [0.0; 3]);
+        self.chemistry.suit(model, state);
+        for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&mut self.kinds) {
+            w.suit(kind, now.cells());
         }
     }
 

@@ -3,6 +3,7 @@
 use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
+use crate::mechanics::Force;
 use crate::sim::state::index;
 use crate::sim::{Kind, KindState};
 
@@ -10,6 +11,7 @@ use crate::sim::{Kind, KindState};
 #[derive(Debug, Clone, Copy)]
 pub struct TypeView<'a> {
     kind: &'a Kind,
+    cells: &'a KindState,
 }
 
 impl<'a> TypeView<'a> {
@@ -44,19 +46,21 @@ impl<'a> TypeView<'a> {
     }
 
     /// Names of its loads.
-    pub fn loads(&self) -> impl ExactSizeIterator<Item = &'a str> + use<'a> {
-        self.kind.loads.iter().map(|load| load.name.as_str())
+    pub fn loads(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        self.kind.loads().map(|load| load.name.as_str())
     }
 
     /// Names of its fibres.
-    pub fn fibres(&self) -> impl ExactSizeIterator<Item = &'a str> + use<'a> {
-        self.kind.fibres.iter().map(|fibres| fibres.name.as_str())
+    pub fn fibres(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        self.kind.forces.iter().filter_map(|force| match force {
+            Force::Fibres(fibres) => Some(fibres.name.as_str()),
+            _ => None,
+        })
     }
 
     /// Its cells, in order.
     pub fn cells(&self) -> impl ExactSizeIterator<Item = CellId> + use<'a> {
-        let first = self.kind.first_cell;
-        (0..self.kind.cells).map(move |cell| CellId::new((first + cell) as u64))
+        self.cells.ids.iter().map(|id| CellId::new(*id))
     }
 }
 
@@ -71,7 +75,7 @@ impl Simulation {
     /// # Ok::<(), pseudopod::simulation::SimulationError>(())
     /// ```
     pub fn types(&self) -> impl ExactSizeIterator<Item = TypeView<'_>> {
-        self.model.kinds.iter().map(|kind| TypeView { kind })
+        self.model.kinds.iter().zip(&self.state.kinds).map(|(kind, cells)| TypeView { kind, cells })
     }
 
     /// The type of a cell.
@@ -80,7 +84,7 @@ impl Simulation {
     /// [`SimulationError::NoSuchCell`].
     pub fn type_of(&self, cell: CellId) -> Result<TypeView<'_>, SimulationError> {
         let (kind, _) = self.kind_and_number(cell)?;
-        Ok(TypeView { kind: &self.model.kinds[kind] })
+        Ok(TypeView { kind: &self.model.kinds[kind], cells: &self.state.kinds[kind] })
     }
 
     /// All cells, in the order of [`Simulation::positions_into`], of series and of results: type after type.
@@ -90,12 +94,12 @@ impl Simulation {
 
     /// Number of cells.
     pub fn cell_count(&self) -> usize {
-        self.model.cells()
+        self.state.cells()
     }
 
     /// Number of atoms of all cells.
     pub fn atom_count(&self) -> usize {
-        self.model.atoms()
+        self.state.atoms(&self.model)
     }
 
     /// Writes the positions of all atoms, µm, cell after cell.
@@ -117,7 +121,7 @@ impl Simulation {
         check_length(self.atom_count(), positions.len())?;
         let mut rest = positions;
         for (kind, now) in self.model.kinds.iter().zip(&self.state.kinds) {
-            for cell in 0..kind.cells {
+            for cell in 0..now.cells() {
                 let (own, others) = rest.split_at_mut(kind.atoms());
                 copy_positions(kind, now, cell, own);
                 rest = others;
@@ -144,13 +148,13 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError::NoSuchCell`].
     pub fn position_of(&self, cell: CellId) -> Result<usize, SimulationError> {
-        let number = usize::try_from(cell.number()).ok().filter(|number| *number < self.model.cells());
-        number.ok_or(SimulationError::NoSuchCell { cell })
+        let (kind, local) = self.kind_and_number(cell)?;
+        Ok(self.state.kinds[kind].first_cell + local)
     }
 
     /// The number of a cell's kind, and its own within that.
     pub(super) fn kind_and_number(&self, cell: CellId) -> Result<(usize, usize), SimulationError> {
-        Ok(self.model.kind_of(self.position_of(cell)?))
+        self.state.find(cell.number()).ok_or(SimulationError::NoSuchCell { cell })
     }
 }
 

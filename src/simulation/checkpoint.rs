@@ -13,7 +13,7 @@ use crate::sim::{Model, State, Workspace};
 /// First bytes of a checkpoint.
 const MAGIC: &[u8; 8] = b"PSEUDSIM";
 /// Version of the arrangement of the bytes, the state's included.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What [`Simulation::set`] changes in the model beside the state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -3,10 +3,11 @@
 use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
-use crate::cell::ends::{SETTABLE, Setting, setting};
+use crate::cell::ends::{Setting, settable, setting};
 use crate::equations::eml::{Step, read_end};
 use crate::equations::tree::System;
 use crate::geometry;
+use crate::mechanics::CONTROLLED;
 use crate::sim::chemistry::{Control, Target, Whose, missed, set_control};
 use crate::sim::{Kind, VolumeRule};
 
@@ -46,7 +47,7 @@ impl Simulation {
         if let Some(expected) = missed(Target::Cell(Whose::Own, control), value) {
             return Err(SimulationError::Value { what: of_cell(what, cell), value, expected });
         }
-        let (number, cells) = (self.position_of(cell)?, self.model.cells());
+        let (number, cells) = (self.position_of(cell)?, self.state.cells());
         self.state.chemistry.controls.admit(control, cells);
         match control {
             Control::Bias(_) => self.model.kinds[kind].biased = true,
@@ -66,8 +67,8 @@ impl Simulation {
     /// The meaning of a word for a cell of a kind.
     fn control(&self, cell: CellId, kind: &Kind, what: &str) -> Result<Control, SimulationError> {
         let Some(setting) = setting(&path(what)) else {
-            let known = SETTABLE.iter().filter(|word| !word.starts_with("atom")).map(|word| (*word).to_owned());
-            return Err(SimulationError::Unknown { what: "setting", name: what.to_owned(), known: known.collect() });
+            let known = settable().into_iter().filter(|word| !word.starts_with("atom")).collect();
+            return Err(SimulationError::Unknown { what: "setting", name: what.to_owned(), known });
         };
         let lacks = |why: &str, help| {
             let why = format!("type `{}` {why}", kind.name);
@@ -94,13 +95,9 @@ impl Simulation {
             Setting::Adhesion => Ok(Control::Adhesion),
             Setting::RestVolume => Ok(Control::RestVolume),
             Setting::RestVolumeRatio => Ok(Control::RestVolumeRatio),
-            Setting::Load(name) => match kind.loads.iter().position(|load| load.name == name) {
-                Some(number) => Ok(Control::Load(number)),
-                None => unknown("load", &name, kind.loads.iter().map(|load| load.name.clone()).collect()),
-            },
-            Setting::Fibre(name) => match kind.fibres.iter().position(|fibres| fibres.name == name) {
-                Some(number) => Ok(Control::Fibre(number)),
-                None => unknown("fibre", &name, kind.fibres.iter().map(|fibres| fibres.name.clone()).collect()),
+            Setting::Force(handle, name) => match kind.controlled(handle).position(|known| known == name) {
+                Some(number) => Ok(Control::Force(handle, number)),
+                None => unknown(CONTROLLED[handle].word, &name, kind.controlled(handle).map(str::to_owned).collect()),
             },
             Setting::Secretion(name) => match self.species(what) {
                 Some(channel) => {

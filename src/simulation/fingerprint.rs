@@ -34,9 +34,9 @@ impl Write for Fnv {
 /// The fingerprint of a model: of all that decides the course of a state, and of nothing that follows from the rest or that
 /// a program changes while a simulation runs.
 pub fn fingerprint(model: &Model) -> u64 {
-    let Model { seed, kinds, planes, contact, gravity, chemistry, integrator, until, kinks: _ } = model;
+    let Model { seed, kinds, planes, contact, chemistry, integrator, until, kinks: _, changes } = model;
     let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
-    hash.value(&(seed, integrator, until, gravity, planes));
+    hash.value(&(seed, integrator, until, planes, changes));
     kinds.iter().for_each(|kind| add_kind(&mut hash, kind));
     if let Some(contact) = contact {
         add_contact(&mut hash, contact);
@@ -46,20 +46,20 @@ pub fn fingerprint(model: &Model) -> u64 {
 }
 
 fn add_kind(hash: &mut Fnv, kind: &Kind) {
-    hash.value(&(&kind.name, kind.cells, &kind.rest.positions, &kind.rest.facets));
-    hash.value(&kind.elasticity);
+    hash.value(&(&kind.name, kind.lanes, &kind.rest.positions, &kind.rest.facets));
+    hash.value(&kind.forces);
     hash.value(&(kind.drag, kind.mass, &kind.held, &kind.volume));
-    hash.value(&(&kind.loads, &kind.fibres, &kind.brownian, &kind.attraction));
+    hash.value(&kind.brownian);
 }
 
 fn add_contact(hash: &mut Fnv, contact: &ContactModel) {
-    let ContactModel { scene, law, between, on_planes, tolerance, most_sweeps, .. } = contact;
-    hash.value(&(scene.reach, law, between, on_planes, tolerance, most_sweeps));
+    let ContactModel { reach, law, between, on_planes, tolerance, most_sweeps, .. } = contact;
+    hash.value(&(reach, law, between, on_planes, tolerance, most_sweeps));
 }
 
 fn add_chemistry(hash: &mut Fnv, chemistry: &Chemistry) {
     for reactor in &chemistry.reactors {
-        hash.value(&(&reactor.name, &reactor.program, &reactor.events, reactor.members.len()));
+        hash.value(&(&reactor.name, &reactor.program, &reactor.events, &reactor.members));
         hash.value(&(reactor.seconds, reactor.method, reactor.tolerances, reactor.exchange));
     }
     for field in &chemistry.fields {

@@ -1,8 +1,9 @@
 //! Whether a state is one of a model: as many numbers of everything as the model asks for.
 
 use super::error::SimulationError;
-use crate::sim::chemistry::{ChemistryState, Controls, FieldState};
-use crate::sim::{KindState, Model, State};
+use crate::sim::chemistry::{ChemistryState, FieldState};
+use crate::sim::controls::Controls;
+use crate::sim::{Model, State};
 
 /// Checks that all arrays of a state have the lengths that a model asks for.
 ///
@@ -14,19 +15,26 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
         return mismatch(format!("it has {} types of cells, not {}", state.kinds.len(), model.kinds.len()));
     }
     let inertial = model.integrator.method.is_inertial();
+    let (mut first_cell, mut first_atom) = (0, 0);
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-        let (positions, cells) = (kind.blocks() * kind.block_len(), kind.blocks() * kind.lanes);
-        let KindState { positions: x, velocities, rest_volumes, stiffness_shape, mean_velocities } = now;
-        let fits = x.len() == positions
-            && velocities.len() == if inertial { positions } else { 0 }
-            && rest_volumes.len() == cells
-            && mean_velocities.len() == kind.cells
-            && (stiffness_shape.is_empty() || stiffness_shape.len() == positions);
+        let (count, blocks) = (now.cells(), now.blocks(kind));
+        let (positions, padded) = (blocks * kind.block_len(), blocks * kind.lanes);
+        let fits = now.positions.len() == positions
+            && now.velocities.len() == if inertial { positions } else { 0 }
+            && now.rest_volumes.len() == padded
+            && (now.stiffness_shape.is_empty() || now.stiffness_shape.len() == 3 * kind.atoms())
+            && now.mean_velocities.len() == count
+            && now.parents.len() == count
+            && now.ids.is_sorted_by(|one, other| one < other)
+            && now.ids.last().is_none_or(|id| *id < state.next_id)
+            && (now.first_cell, now.first_atom) == (first_cell, first_atom);
+        (first_cell, first_atom) = (first_cell + count, first_atom + count * kind.atoms());
         if !fits {
             return mismatch(format!("the cells of type `{}` are others, or of another number", kind.name));
         }
     }
-    let walks: usize = model.kinds.iter().filter(|kind| kind.brownian.is_some()).map(|kind| kind.cells).sum();
+    let walkers = model.kinds.iter().zip(&state.kinds).filter(|(kind, _)| kind.brownian.is_some());
+    let walks: usize = walkers.map(|(_, now)| now.cells()).sum();
     if state.walks.len() != walks {
         return mismatch(format!("{} cells of it walk, not {walks}", state.walks.len()));
     }
@@ -34,17 +42,17 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
         values: vec![0.0; field.system.species().len() * field.system.grid().len()],
         ..FieldState::default()
     });
-    let fresh = ChemistryState { fields: fields.collect(), ..ChemistryState::new(model, &[]) };
+    let fresh = ChemistryState { fields: fields.collect(), ..ChemistryState::new(model, &state.counts(), &[]) };
     if !fresh.has_shape_of(&state.chemistry) {
         return mismatch("its systems or fields are others".to_owned());
     }
-    check_controls(model.cells(), &state.chemistry.controls)
+    check_controls(state.cells(), &state.chemistry.controls)
 }
 
 /// A list of controls is empty or has one number a cell.
 fn check_controls(cells: usize, controls: &Controls) -> Result<(), SimulationError> {
-    let Controls { speed, bias, stiffness, adhesion, loads, fibres, secretion } = controls;
-    let lists = [speed, stiffness, adhesion].into_iter().chain(loads).chain(fibres).chain(secretion);
+    let Controls { speed, bias, stiffness, adhesion, forces, secretion } = controls;
+    let lists = [speed, stiffness, adhesion].into_iter().chain(forces.iter().flatten()).chain(secretion);
     match lists.map(Vec::len).chain([bias.len()]).find(|length| ![0, cells].contains(length)) {
         None => Ok(()),
         Some(length) => Err(SimulationError::Mismatch(format!("something is set of {length} cells, not {cells}"))),

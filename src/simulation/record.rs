@@ -3,12 +3,12 @@
 use super::touch::{Touch, recorded_by};
 use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
 use crate::recorded::contact_quantities;
-use crate::sim::chemistry::Members;
+use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::find_contacts;
-use crate::sim::model::Kind;
+use crate::sim::kind::Kind;
 use crate::sim::observe::{mean_velocities, measure_cells};
 use crate::sim::state::vector;
-use crate::sim::{Model, State, Workspace, forces};
+use crate::sim::{KindState, Model, State, Workspace, forces};
 
 /// Types of cells, names and planes of a model, as the result file lists them.
 pub fn layout_of(model: &Model) -> Layout {
@@ -51,7 +51,7 @@ fn add_chemistry(model: &Model, layout: &mut Layout) {
             name: reactor.name.clone(),
             scope: match &reactor.members {
                 Members::Scene => SystemScope::Scene,
-                Members::Cells(_) => SystemScope::Cells,
+                Members::Kinds(_) => SystemScope::Cells,
             },
             quantities: reactor.recorded.iter().map(|(_, id, unit)| (id.clone(), unit.clone())).collect(),
         });
@@ -71,9 +71,10 @@ fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
             population.observe(&reactor.program, *quantity, time / reactor.seconds, &mut values);
             match &reactor.members {
                 Members::Scene => values,
-                Members::Cells(cells) => {
+                Members::Kinds(_) => {
                     let mut of_all = vec![f64::NAN; frame.cells.len()];
-                    cells.iter().zip(values).for_each(|(cell, value)| of_all[*cell as usize] = value);
+                    let cells = member_cells(&state.kinds, &reactor.members);
+                    cells.zip(values).for_each(|(cell, value)| of_all[cell] = value);
                     of_all
                 }
             }
@@ -83,12 +84,12 @@ fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
     }
 }
 
-/// Series name, kind and load of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
+/// Series name, kind and number of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
 fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
-    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads.iter().any(|load| load.name == name)).count();
+    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads().any(|load| load.name == name)).count();
     let mut names: Vec<(String, usize, usize)> = Vec::new();
     for (k, kind) in model.kinds.iter().enumerate() {
-        for (l, load) in kind.loads.iter().enumerate() {
+        for (l, load) in kind.loads().enumerate() {
             let owner = if owners(&load.name) > 1 { format!("{}.", kind.name) } else { String::new() };
             names.push((format!("load.{owner}{}", load.name), k, l));
         }
@@ -117,24 +118,23 @@ impl Recorder {
     /// The frame of this instant; takes the ended runs from the state, since they are recorded now.
     pub fn record(&mut self, model: &Model, state: &mut State, ws: &Workspace, dt: f64) -> Frame {
         let frame = self.look(model, state, ws, dt);
-        let ended = std::mem::take(&mut state.ended_runs);
-        let runs = ended.into_iter().map(|(cell, end, duration)| (u64::from(cell), end, duration)).collect();
-        Frame { runs, ..frame }
+        Frame { runs: std::mem::take(&mut state.ended_runs), ..frame }
     }
 
     /// The frame of this instant without the runs that ended; `dt` is the size of the last step, s.
     pub fn look(&mut self, model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
         let mut frame = frame_of(model, state);
-        frame.scene = self.loads.iter().map(|&(_, k, l)| model.kinds[k].loads[l].force.at(state.time)).collect();
+        let at = |&(_, kind, number): &(String, usize, usize)| model.kinds[kind].loads().nth(number);
+        frame.scene = self.loads.iter().filter_map(at).map(|load| load.force.at(state.time)).collect();
         if let Some(contact) = &model.contact {
-            self.touch.look(model, contact, state, ws, dt, &mut frame);
+            self.touch.look(model, &contact.scene_of(&state.kinds), state, ws, dt, &mut frame);
         }
         if let Some(scratch) = &mut self.force_scratch {
             // What contacts carry is part of the state, and is read from there.
             find_contacts(model, state, scratch);
             forces::add_forces(model, state.time, state, scratch);
-            for (kind, w) in model.kinds.iter().zip(&scratch.kinds) {
-                for cell in 0..kind.cells {
+            for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&scratch.kinds) {
+                for cell in 0..now.cells() {
                     frame.forces.extend((0..kind.atoms()).map(|a| <[f64; 3]>::from(vector(kind, &w.force, cell, a))));
                 }
             }
@@ -144,15 +144,17 @@ impl Recorder {
 }
 
 /// The cells that there are, in the order of all arrays of a frame.
-fn cells_of(model: &Model, _: &State) -> Vec<Cell> {
-    let kinds = (0..).zip(&model.kinds).flat_map(|(number, kind)| std::iter::repeat_n(number, kind.cells));
-    (0..).zip(kinds).map(|(id, kind)| Cell { id, kind, parent: None }).collect()
+fn cells_of(state: &State) -> Vec<Cell> {
+    let of_kind = |(kind, now): (u32, &KindState)| -> Vec<Cell> {
+        now.ids.iter().zip(&now.parents).map(|(&id, &parent)| Cell { id, kind, parent }).collect()
+    };
+    (0..).zip(&state.kinds).flat_map(of_kind).collect()
 }
 
 /// Positions and measures of all cells at this instant, as if they did not touch.
 fn frame_of(model: &Model, state: &State) -> Frame {
     let velocities = mean_velocities(state);
-    let mut frame = Frame { time: state.time, step: state.step, cells: cells_of(model, state), ..Frame::default() };
+    let mut frame = Frame { time: state.time, step: state.step, cells: cells_of(state), ..Frame::default() };
     for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
         frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));
         frame.records.push(CellRecord {

@@ -31,7 +31,7 @@ pub struct Simulation {
 
 impl std::fmt::Debug for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let (time, steps, cells) = (self.state.time, self.state.step, self.model.cells());
+        let (time, steps, cells) = (self.state.time, self.state.step, self.state.cells());
         f.debug_struct("Simulation").field("time", &time).field("steps", &steps).field("cells", &cells).finish()
     }
 }
@@ -42,12 +42,11 @@ impl Simulation {
     ///
     /// ```
     /// use pseudopod::geometry::icosphere;
-    /// use pseudopod::mechanics::elasticity::Elasticity;
     /// use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
     /// use pseudopod::sim::{Kind, Model, State};
     /// use pseudopod::simulation::Simulation;
     ///
-    /// let mut kind = Kind::new("limp", icosphere(5.0, 1), Elasticity::default());
+    /// let mut kind = Kind::new("limp", icosphere(5.0, 1), Vec::new());
     /// kind.drag = 2.0;
     /// kind.bound_stiffness();
     /// let start = vec![vec![kind.rest.positions.clone()]];

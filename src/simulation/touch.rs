@@ -5,7 +5,7 @@ use crate::Vec3;
 use crate::contact::{Contacts, Detector, Scene};
 use crate::output::{Frame, Touching, clusters};
 use crate::recorded::{ContactSeries, Recorded, contact_quantities};
-use crate::sim::contact::{ContactModel, Law, Link, links_at};
+use crate::sim::contact::{ContactScene, Law, Link, links_at};
 use crate::sim::{Model, State, Workspace};
 
 /// Which series a law of contact records besides those of all contacts.
@@ -43,7 +43,7 @@ impl Touch {
     pub fn look(
         &mut self,
         model: &Model,
-        contact: &ContactModel,
+        contact: &ContactScene,
         state: &State,
         ws: &Workspace,
         dt: f64,
@@ -117,7 +117,7 @@ impl Touch {
     }
 
     /// Adds up the areas of contact, eq. (adhesion.8), in the order of atoms.
-    fn measure_areas(&mut self, contact: &ContactModel, frame: &mut Frame) {
+    fn measure_areas(&mut self, contact: &ContactScene, frame: &mut Frame) {
         let bodies = contact.scene.bodies.len() as u32;
         self.areas.clear();
         for of_atom in self.partners.chunk_by(|one, other| one.0 == other.0) {

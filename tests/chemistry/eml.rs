@@ -5,6 +5,7 @@ use pseudopod::equations::eml::{
 };
 use pseudopod::equations::tree::{Expr, Role, System};
 use pseudopod::error::{Error, Paint, Source, render};
+use pseudopod::xml::{self, Limits, Node};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -181,15 +182,18 @@ fn a_text_with_escapes_and_comments_keeps_its_places() {
 /// Names of elements and, of each, attributes, as the schema has them: `NAME attribute attribute`.
 fn schema_words() -> Vec<String> {
     let text = std::fs::read_to_string(root().join("eml/eml.xsd")).expect("the schema");
-    let tree = roxmltree::Document::parse(&text).expect("XML");
+    let limits = Limits { bytes: 1 << 20, depth: 100, nodes: 10_000, attributes: 100 };
+    let tree = xml::Document::read(&text, limits).expect("XML");
     let mut found = Vec::new();
-    for element in tree.descendants().filter(|node| node.has_tag_name(("http://www.w3.org/2001/XMLSchema", "element")))
-    {
+    let is_element =
+        |node: &Node| node.name() == "element" && node.namespace() == Some("http://www.w3.org/2001/XMLSchema");
+    for element in tree.root().descendants().filter(is_element) {
         let Some(name) = element.attribute("name") else { continue };
-        let own = |node: &roxmltree::Node| {
-            node.ancestors().find(|up| up.tag_name().name() == "element").is_some_and(|up| up == element)
+        let own = |node: &Node| {
+            let mut around = std::iter::successors(node.parent(), |up| up.parent());
+            around.find(|up| up.name() == "element").is_some_and(|up| up.index() == element.index())
         };
-        let attributes = element.descendants().filter(|node| node.tag_name().name() == "attribute" && own(node));
+        let attributes = element.descendants().filter(|node| node.name() == "attribute" && own(node));
         let mut words: Vec<String> = attributes
             .map(|node| {
                 let mark = if node.attribute("use") == Some("required") { "!" } else { "" };

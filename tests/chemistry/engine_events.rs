@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use crate::ode_problems::{self, expression, system};
 use pseudopod::equations::tree::{Binary, Event, Expr, System};
-use pseudopod::ode::{EventPlan, Eventful, Method, Population, Reason, Scheme, SolveOptions, Tolerances, solve};
+use pseudopod::ode::{
+    EventPlan, Eventful, Method, Population, PopulationScratch, Reason, Scheme, SolveOptions, Tolerances, solve,
+};
 
 fn compare(function: Binary, a: Expr, b: Expr) -> Expr {
     Expr::Binary(function, Box::new(a), Box::new(b))
@@ -194,12 +196,12 @@ fn a_parameter_that_an_event_sets_stays_set_from_window_to_window() {
     let (program, plan) = EventPlan::compile(&switched, 0.0).expect("a program");
     for method in [Method::Rosenbrock, Method::Rk45, Method::Rk65, Method::Rk4 { step: 0.01 }] {
         let mut cells = Population::new(&program, 2, method);
-        let mut memories = vec![plan.before_start(); 2];
+        let (mut memories, mut scratch) = (vec![plan.before_start(); 2], PopulationScratch::default());
         cells.set_given(1, 0, 0.5);
         let one = Eventful { program: &program, plan: &plan, tolerances: Tolerances::default(), span: 4.0 };
         for window in 0..10 {
             let (from, until) = (0.4 * f64::from(window), 0.4 * f64::from(window + 1));
-            one.advance(&mut cells, &mut memories, from, until).expect("straight lines");
+            one.advance(&mut cells, &mut memories, from, until, &mut scratch).expect("straight lines");
         }
         // 1.5 at 2.5 and 3·1.5 after; with 0.5 at the start 1.5 at 2 and 3·2 after.
         for (cell, end) in [(0, 6.0), (1, 7.5)] {

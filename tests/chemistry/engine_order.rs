@@ -2,7 +2,7 @@
 
 use crate::ode_problems::{self, martiel_goldbeter, system, van_der_pol_pair};
 use pseudopod::equations::program::Program;
-use pseudopod::ode::{Method, Population, Reason, Scheme, SolveOptions, Tolerances, solve};
+use pseudopod::ode::{Method, Population, PopulationScratch, Reason, Scheme, SolveOptions, Tolerances, solve};
 
 /// Errors at the end, and work in steps, of a system with known answer for a list of tolerances or steps.
 fn errors(schemes: &[(Scheme, f64)]) -> Vec<(f64, f64)> {
@@ -54,10 +54,11 @@ fn steps_of_equal_length_converge_with_the_order_of_their_method() {
     for (order, method) in [(5.0, Method::Rk45), (6.0, Method::Rk65), (4.0, Method::Rosenbrock)] {
         let error = |steps: u32| {
             let at = |number: i32| 6.0 * f64::from(number) / f64::from(steps);
-            let mut cell = Population::new(&program, 1, method);
+            let (mut cell, mut scratch) = (Population::new(&program, 1, method), PopulationScratch::default());
             cell.set_state(0, 0, exact(at(-1)));
             for number in -1..steps as i32 {
-                let work = cell.advance(&program, at(number), at(number + 1), &any).expect("a smooth problem");
+                let work = cell.advance(&program, at(number), at(number + 1), &any, &mut scratch);
+                let work = work.expect("a smooth problem");
                 assert!(number < 0 || work.steps == 1, "{method:?}: {} steps", work.steps);
             }
             (cell.state(0, 0) / exact(6.0) - 1.0).abs()
@@ -94,11 +95,12 @@ fn populations_agree_with_single_solves() {
         (martiel_goldbeter(), Method::Rosenbrock),
     ] {
         let program = Program::new(&system).expect("no circles");
-        let mut population = Population::new(&program, 20, method);
+        let (mut population, mut scratch) = (Population::new(&program, 20, method), PopulationScratch::default());
         let tolerances = Tolerances { relative: 1e-8, absolute: 1e-10, ..Tolerances::default() };
         for window in 0..40 {
             let (from, until) = (0.1 * f64::from(window), 0.1 * f64::from(window + 1));
-            population.advance(&program, from, until, &tolerances).expect("oscillators do not blow up");
+            let advanced = population.advance(&program, from, until, &tolerances, &mut scratch);
+            advanced.expect("oscillators do not blow up");
         }
         let options = SolveOptions { relative: 1e-10, absolute: 1e-12, ..SolveOptions::default() };
         let solution = solve(&system, 0.0, 4.0, &[4.0], &options).expect("oscillators do not blow up");
@@ -122,9 +124,11 @@ fn crowd(cells: std::ops::Range<usize>, method: Method, threads: usize) -> Vec<u
         (0..4).for_each(|v| population.set_state(place, v, (cell as f64 * 0.37 + v as f64).sin() * 2.0));
     }
     pool.install(|| {
+        let mut scratch = PopulationScratch::default();
         for window in 0..10 {
             let (from, until) = (0.1 * f64::from(window), 0.1 * f64::from(window + 1));
-            population.advance(&program, from, until, &Tolerances::default()).expect("oscillators do not blow up");
+            let advanced = population.advance(&program, from, until, &Tolerances::default(), &mut scratch);
+            advanced.expect("oscillators do not blow up");
         }
     });
     (0..cells.len())
@@ -156,14 +160,15 @@ fn trouble_names_cell_time_and_variable_and_spares_the_neighbours() {
         let mut population = Population::new(&program, 40, method);
         population.set_state(30, 1, 2.0); // 1/(0.5 − t)
         population.set_state(20, 1, 1.25); // 1/(0.8 − t)
-        let trouble = population.advance(&program, 0.0, 1.0, &Tolerances::default()).expect_err("it blows up");
+        let (tolerances, mut scratch) = (Tolerances::default(), PopulationScratch::default());
+        let trouble = population.advance(&program, 0.0, 1.0, &tolerances, &mut scratch).expect_err("it blows up");
         assert_eq!((trouble.cell, trouble.variable.as_deref()), (Some(20), Some("growth")), "{method:?}: {trouble}");
         assert!((trouble.time - 0.8).abs() < 1e-6, "{method:?}: {trouble}");
         assert!(population.state(20, 1).is_finite(), "the last good state is kept");
         assert!((population.state(21, 0) - (-1.0_f64).exp()).abs() < 1e-5, "the neighbour has arrived");
         let mut pair = Population::new(&program, 2, method);
         pair.set_state(0, 1, 2.0);
-        let trouble = pair.advance(&program, 0.0, 1.0, &Tolerances::default()).expect_err("it blows up");
+        let trouble = pair.advance(&program, 0.0, 1.0, &tolerances, &mut scratch).expect_err("it blows up");
         assert_eq!((trouble.cell, trouble.variable.as_deref()), (Some(0), Some("growth")), "{method:?}: {trouble}");
         assert!((pair.state(1, 0) - (-1.0_f64).exp()).abs() < 1e-5, "the other has arrived");
     }
@@ -184,7 +189,8 @@ fn inputs_differ_between_cells() {
     let program = Program::new(&system).expect("no circles");
     let mut population = Population::new(&program, 33, Method::Rk45);
     (0..33).for_each(|cell| population.set_given(cell, 0, cell as f64));
-    population.advance(&program, 0.0, 2.0, &Tolerances::default()).expect("a straight line");
+    let mut scratch = PopulationScratch::default();
+    population.advance(&program, 0.0, 2.0, &Tolerances::default(), &mut scratch).expect("a straight line");
     (0..33)
         .for_each(|cell| assert!((population.state(cell, 0) - 2.0 * cell as f64).abs() < 1e-12 * (1.0 + cell as f64)));
 }
@@ -204,7 +210,7 @@ fn rates_kept_between_windows_change_no_bit() {
         let program = Program::new(&driven(rate)).expect("no circles");
         let mut kept = Population::new(&program, 37, method);
         (0..37).for_each(|cell| kept.set_state(cell, 1, 0.1 * cell as f64));
-        let mut anew = kept.clone();
+        let (mut anew, mut scratch) = (kept.clone(), PopulationScratch::default());
         let (mut work, mut all) = (0, 0);
         for window in 0..12 {
             let (from, until) = (0.3 * f64::from(window), 0.3 * f64::from(window + 1));
@@ -216,13 +222,11 @@ fn rates_kept_between_windows_change_no_bit() {
                     population.set_given(cell, 0, input);
                     population.set_state(cell, 0, population.state(cell, 0) + jump);
                 }
-                // There and back: nothing is known of the rates, and all else is the same.
-                let state = anew.state(cell, 1);
-                anew.set_state(cell, 1, state + 1.0);
-                anew.set_state(cell, 1, state);
             }
-            work += kept.advance(&program, from, until, &Tolerances::default()).expect("it stays small").rates;
-            all += anew.advance(&program, from, until, &Tolerances::default()).expect("it stays small").rates;
+            let tolerances = Tolerances::default();
+            work += kept.advance(&program, from, until, &tolerances, &mut scratch).expect("it stays small").rates;
+            let mut empty = PopulationScratch::default();
+            all += anew.advance(&program, from, until, &tolerances, &mut empty).expect("it stays small").rates;
             for (cell, v) in (0..37).flat_map(|cell| [(cell, 0), (cell, 1)]) {
                 let (a, b) = (kept.state(cell, v), anew.state(cell, v));
                 assert_eq!(a.to_bits(), b.to_bits(), "{rate}, window {window}, cell {cell}: {a} and {b}");
@@ -234,12 +238,44 @@ fn rates_kept_between_windows_change_no_bit() {
 }
 
 #[test]
+fn a_population_may_use_the_scratch_of_any_other() {
+    let [slow, fast] = ["k-x", "k-2*x"].map(|rate| {
+        let mut system = system("decay", &[("x", 1.0, rate)], &[("k", 0.0)]);
+        system.quantities[1] = ode_problems::quantity("k", pseudopod::equations::tree::Role::Input, 0.0);
+        Program::new(&system).expect("no circles")
+    });
+    for method in [Method::Rk45, Method::Rk65, Method::Rosenbrock, Method::Euler { step: 0.01 }] {
+        // Populations of two programs and of many sizes, one after the other, with one scratch and each with a fresh one.
+        let make = |cells: usize, program: &Program| {
+            let mut population = Population::new(program, cells, method);
+            (0..cells).for_each(|cell| population.set_given(cell, 0, (cell as f64).sin()));
+            population
+        };
+        let sizes = [(1, &slow), (2, &fast), (40, &slow), (40, &fast), (33, &fast), (2, &slow)];
+        let start: Vec<(Population, &Program)> = sizes.iter().map(|&(cells, p)| (make(cells, p), p)).collect();
+        let end = |share: bool| -> Vec<Population> {
+            let (mut all, mut shared) = (start.clone(), PopulationScratch::default());
+            for window in 0..4 {
+                let (from, until) = (f64::from(window), f64::from(window + 1));
+                for (population, program) in &mut all {
+                    let mut own = PopulationScratch::default();
+                    let scratch = if share { &mut shared } else { &mut own };
+                    population.advance(program, from, until, &Tolerances::default(), scratch).expect("a decay");
+                }
+            }
+            all.into_iter().map(|(population, _)| population).collect()
+        };
+        assert_eq!(end(true), end(false), "{method:?}");
+    }
+}
+
+#[test]
 fn rates_of_another_program_do_not_count() {
     let [slow, fast] =
         ["0-x", "0-2*x"].map(|rate| Program::new(&system("decay", &[("x", 1.0, rate)], &[])).expect("no circles"));
-    let mut cells = Population::new(&slow, 3, Method::Rk45);
-    cells.advance(&slow, 0.0, 1.0, &Tolerances::default()).expect("a decay");
-    cells.advance(&fast, 1.0, 2.0, &Tolerances::default()).expect("a decay");
+    let (mut cells, mut scratch) = (Population::new(&slow, 3, Method::Rk45), PopulationScratch::default());
+    cells.advance(&slow, 0.0, 1.0, &Tolerances::default(), &mut scratch).expect("a decay");
+    cells.advance(&fast, 1.0, 2.0, &Tolerances::default(), &mut scratch).expect("a decay");
     // Twenty tolerances.
     assert!((cells.state(1, 0) - (-3.0_f64).exp()).abs() < 2e-5, "{}", cells.state(1, 0));
 }

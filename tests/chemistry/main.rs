@@ -3,6 +3,7 @@
 mod eml;
 mod eml_write;
 mod engine_events;
+mod engine_members;
 mod engine_order;
 mod engine_program;
 mod engine_stiff;
@@ -11,6 +12,7 @@ mod fields;
 mod fields_analytic;
 mod sbml;
 mod sbml_features;
+mod xml;
 
 #[path = "../support/every_function.rs"]
 mod every_function;

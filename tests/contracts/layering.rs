@@ -10,9 +10,10 @@ const TABLE: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("random", &[]),
     ("recorded", &[]),
+    ("xml", &[]),
     ("geometry", &[]),
     ("mechanics", &["geometry"]),
-    ("equations", &[]),
+    ("equations", &["xml"]),
     ("ode", &["equations"]),
     ("field", &["equations", "ode"]),
     ("contact", &["geometry"]),
@@ -23,7 +24,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ("output", &[]),
     // Numbers and plots come from a finished file; the kinds of measures are words of the document.
     ("analysis", &["output", "experiment", "cell", "contact", "geometry"]),
-    ("picture", &["output", "experiment", "analysis", "cell", "geometry", "run"]),
+    ("picture", &["xml", "output", "experiment", "analysis", "cell", "geometry", "run"]),
     // The door for programs: it records frames, and writes none.
     ("simulation", &["experiment", "sim", "output", "cell", "equations", "contact", "geometry"]),
     ("run", &["simulation", "experiment", "sim", "output", "analysis"]),

@@ -2,8 +2,10 @@
 
 mod book;
 mod circles;
+mod examples;
 mod layering;
 mod run;
+mod simulation;
 mod transaction;
 mod volume;
 

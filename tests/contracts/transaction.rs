@@ -4,6 +4,7 @@
 use crate::everything::{Steps, after, everything};
 use pseudopod::Vec3;
 use pseudopod::equations::tree::Expr;
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
 use pseudopod::mechanics::integrator::StepSize;
 use pseudopod::sim::chemistry::{Control, Target};
@@ -45,6 +46,15 @@ fn scene(steps: Steps) -> (Model, State, Workspace) {
     (model, state, ws)
 }
 
+/// Gives the first load of the first kind another force, pN.
+fn load_with(model: &mut Model, force: f64) {
+    let loads = model.kinds[0]
+        .forces
+        .iter_mut()
+        .filter_map(|force| if let Force::Load(load) = force { Some(load) } else { None });
+    loads.take(1).for_each(|load| load.force = Course::constant(force));
+}
+
 #[test]
 fn a_step_that_succeeds_writes_every_part_of_the_state() {
     let (model, state, mut ws) = scene(Steps::Adaptive);
@@ -82,7 +92,7 @@ fn a_stage_of_mechanics_that_fails_leaves_every_byte() {
     deep.kinds[1].shift(&model.kinds[1], 0, &Vec3::new(-2.0, -2.0, 1.0));
     fails("depth", &model, &deep, &mut ws, |trouble| matches!(trouble, Trouble::Pressed { .. }));
     // Free motion.
-    let pulled = broken(&|model| model.kinds[0].loads[0].force = Course::constant(f64::NAN));
+    let pulled = broken(&|model| load_with(model, f64::NAN));
     fails("forces", &pulled, &state, &mut ws, |trouble| matches!(trouble, Trouble::NotFinite { .. }));
     // Contacts whose sweeps never come to rest.
     let restless = broken(&|model| {
@@ -106,7 +116,7 @@ fn a_stage_of_mechanics_that_fails_leaves_every_byte() {
     let (model, state, mut ws) = scene(Steps::Fixed);
     // Atoms that go farther than contacts allow.
     let mut fast = model.clone();
-    fast.kinds[0].loads[0].force = Course::constant(-4000.0);
+    load_with(&mut fast, -4000.0);
     fails("travel", &fast, &state, &mut ws, |trouble| matches!(trouble, Trouble::TooFast { .. }));
     // Where the step ends: cells that are deeper in each other than a part of the least edge. No edge, no depth.
     let mut touchy = model.clone();
@@ -154,7 +164,7 @@ fn the_start_of_chemistry_is_a_transaction_too() {
     assert!(bytes(&tried) == before);
     // The first step begins chemistry where that was not done, and leaves nothing of it behind when it fails later on.
     let mut pulled = good.clone();
-    pulled.kinds[0].loads[0].force = Course::constant(f64::NAN);
+    load_with(&mut pulled, f64::NAN);
     assert!(step(&pulled, &mut tried, &mut ws).is_err());
     assert!(bytes(&tried) == before);
     begin_chemistry(&good, &mut tried, &mut ws).unwrap();

@@ -4,6 +4,7 @@
 use pseudopod::experiment::{Compiled, Document, compile};
 use pseudopod::geometry::{self, Surface};
 use pseudopod::mechanics::course::Course;
+use pseudopod::mechanics::sum::measure_elastic;
 use pseudopod::sim::forces::add_forces;
 use pseudopod::sim::{Kind, Model, State, VolumeRule, Workspace, step};
 use std::path::Path;
@@ -116,7 +117,7 @@ fn worst_error(scene: &[&str], integrator: &[&str]) -> Result<f64, String> {
             }
             step(&model, &mut state, &mut ws).map_err(|trouble| format!("{population:?}: {trouble}"))?;
             let target = rest * if scene.contains(&DRIVEN) { driven(state.time) } else { 1.0 };
-            for cell in 0..kind.cells {
+            for cell in 0..state.kinds[0].cells() {
                 let error = (volume_of(kind, &state, cell) / target - 1.0).abs();
                 if error.is_nan() || error > TOLERANCE {
                     return Err(format!("{population:?}: cell {cell} is {error:.1e} off after step {number}"));
@@ -197,13 +198,13 @@ fn a_compressible_cell_under_an_outer_load_is_in_the_balance_of_its_equation_of_
     let attraction = [r#"cells.white.motility.attraction={ to = ["0 um", "0 um", "0 um"], stiffness = "0.5 pN/um" }"#];
     // Without elasticity a load on bare atoms gathers them, and a stronger one makes the shell buckle, slowly.
     let compiled = compressible(r#"shape_memory = { shape_modulus = "20 pN/um" }"#, &attraction);
-    let elasticity = compiled.model.kinds[0].elasticity.clone();
+    let forces = compiled.model.kinds[0].forces.clone();
     let (surface, pressure, rest) = at_rest(compiled);
     let (volume, positions) = (geometry::volume(&surface), surface.positions);
     println!("p = {pressure} Pa, V/V0 = {}", volume / rest);
     let flat: Vec<f64> = positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
     let mut force = vec![0.0; flat.len()];
-    elasticity.add_forces(1, &flat, &mut force, &mut [0.0]);
+    measure_elastic(&forces, 1, &flat, &mut force, &mut [0.0]);
     // Under a change of size the pressure works against the pull k x on every atom and the elastic forces F:
     // 3 p V = k Σ|x|² - Σ F·x, whatever the shape.
     let pull: f64 = 0.5 * flat.iter().map(|x| x * x).sum::<f64>();
@@ -238,7 +239,7 @@ fn root(f: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
 fn the_pressure_is_the_gradient_of_its_energy() {
     for cells in [1, 11] {
         let Compiled { mut model, mut state, .. } = compiled(CELL, &[&format!("cells.white.number={cells}")]);
-        model.kinds[0].elasticity = Default::default();
+        model.kinds[0].forces.clear();
         let course = Course::through(vec![(0.0, 1.0), (1.0, 1.5)]).unwrap();
         model.kinds[0].volume = VolumeRule::Compressible { modulus: 70.0, course };
         // Any shape but the one at rest.

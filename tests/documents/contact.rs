@@ -8,6 +8,7 @@ use pseudopod::recorded::{CONTACTS, Touch};
 use pseudopod::run::{Quiet, RunOptions, run};
 use pseudopod::sim::contact::Strength;
 use pseudopod::sim::{Workspace, begin_chemistry, step};
+use pseudopod::simulation::CancelToken;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -53,7 +54,7 @@ fn centres(compiled: &Compiled) -> Vec<(Vec3, f64)> {
     let of_kind = |(kind, now): (&pseudopod::sim::Kind, &pseudopod::sim::KindState)| -> Vec<(Vec3, f64)> {
         let radius = kind.rest.positions[0].norm();
         let mean = |cell| now.cell(kind, cell).iter().sum::<Vec3>() / kind.atoms() as f64;
-        (0..kind.cells).map(|cell| (mean(cell), radius)).collect()
+        (0..now.cells()).map(|cell| (mean(cell), radius)).collect()
     };
     kinds.flat_map(of_kind).collect()
 }
@@ -88,7 +89,7 @@ fn an_empty_table_turns_contacts_on_and_nothing_sticks() {
     let contact = model.contact.expect("contacts");
     assert!(contact.between.iter().chain(&contact.on_planes).all(|strength| *strength == Strength::default()));
     let smallest = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
-    assert_eq!(contact.scene.reach.proximity, 0.1 * smallest);
+    assert_eq!(contact.reach.proximity, 0.1 * smallest);
 }
 
 #[test]
@@ -103,7 +104,7 @@ fn cells_at_random_start_apart_and_above_the_planes() {
         }
     }
     let lowest = |kind: &pseudopod::sim::Kind, now: &pseudopod::sim::KindState| {
-        (0..kind.cells).flat_map(|cell| now.cell(kind, cell)).map(|p| p.z).fold(f64::INFINITY, f64::min)
+        (0..now.cells()).flat_map(|cell| now.cell(kind, cell)).map(|p| p.z).fold(f64::INFINITY, f64::min)
     };
     for (kind, now) in with.model.kinds.iter().zip(&with.state.kinds) {
         assert!(lowest(kind, now) > -1e-7, "an atom stands on the plane at most");
@@ -393,6 +394,71 @@ fn chemistry_feels_other_cells_the_same_with_every_scratch() {
         step(&model, &mut other, &mut Workspace::new(&model)).expect("a step");
         assert!(share(&state) == share(&other) && state == other, "at {} s", state.time);
     }
+}
+
+#[test]
+fn links_read_the_share_in_contact_that_is_recorded_and_planes_have_a_share_of_their_own() {
+    let eml = r#"<eml name="touch" level="cell"><input id="share" default="0"/><input id="ground" default="0"/>
+        <variable id="sum" initial="0" rate="share + ground"/>
+        <link from="cell.contact_share" to="system.share"/><link from="cell.plane_share" to="system.ground"/></eml>"#;
+    let planes = "[[planes]]\nname = \"floor\"\npoint = [0, 0, \"15 um\"]\nnormal = [0, 0, 1]\n";
+    let before = ROW.split_once("[output]").expect("the output").0;
+    let with_system = before.replace("mechanics =", "chemistry = [\"touch\"]\nmechanics =");
+    let text = format!("{with_system}{planes}[chemistry.touch]\ndocument = \"touch.eml\"\n");
+    let beside = BTreeMap::from([("touch.eml".to_owned(), eml.to_owned())]);
+    let document = Document::parse_beside("row.toml", &text, Path::new("."), &[], beside).expect("a good document");
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = folder.path().join("row.vtkhdf");
+    let options = RunOptions {
+        result: result.clone(),
+        overwrite: Overwrite::Refuse,
+        threads: Some(1),
+        cancel: CancelToken::default(),
+    };
+    run(&document, &options, &mut Quiet).expect("a run");
+    let file = ResultFile::open(&result).expect("a result");
+    let series = |name: &str| file.cell_series(name).expect("a series");
+    let (recorded, read, ground) = (series("contact_share"), series("touch.share"), series("touch.ground"));
+    assert!(recorded.iter().any(|share| *share > 0.0) && recorded == read, "{recorded} {read}");
+    assert!(ground.iter().all(|share| *share > 0.0), "all stand on the floor: {ground}");
+}
+
+/// Two cells drawn to one point.
+const DRAWN: &str = r#"
+title = "Drawn together"
+[run]
+until = "20 s"
+[cells.red]
+mesh = { shape = "icosphere", radius = "5 um", level = 1 }
+placement = { grid = [2, 1, 1], spacing = "11 um" }
+number = 2
+mechanics = { drag = "20 pN s/um", shape_memory = { stiffness = "1 pN/um" } }
+motility = { attraction = { to = [0, 0, 0], stiffness = "0.5 pN/um" } }
+[contact]
+"#;
+
+#[test]
+fn explicit_steps_that_nobody_names_are_as_short_as_contacts_need() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let end = |method: &str| {
+        let sets = [format!("run.integrator.method={method}")];
+        let document = Document::parse("drawn.toml", DRAWN, Path::new("."), &sets).expect("a good document");
+        let result = folder.path().join(format!("{method}.vtkhdf"));
+        let options = RunOptions {
+            result: result.clone(),
+            overwrite: Overwrite::Refuse,
+            threads: Some(1),
+            cancel: CancelToken::default(),
+        };
+        let outcome = run(&document, &options, &mut Quiet).expect("a run that comes to its end");
+        let file = ResultFile::open(&result).expect("a result");
+        let at = file.cell_series("position_x").expect("a series").row(file.frames() - 1).to_vec();
+        (outcome, at)
+    };
+    let ((explicit, one), (_, other)) = (end("explicit"), end("implicit"));
+    assert!(explicit.limited > 0, "the stable step is too long for contacts: {explicit:?}");
+    let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+    assert!(apart < 0.1, "the same place by both methods, to 1 % of a diameter: {one:?} {other:?}");
 }
 
 /// Two cells that loads press together; closed surfaces have no elastic force as a whole.

@@ -53,7 +53,7 @@ fn refused(text: &str) -> String {
 /// Positions of the atoms of all cells, `[cell][atom]`.
 fn cells(of: &Compiled) -> Vec<Vec<Vec3>> {
     let kinds = of.model.kinds.iter().zip(&of.state.kinds);
-    kinds.flat_map(|(kind, now)| (0..kind.cells).map(|cell| now.cell(kind, cell))).collect()
+    kinds.flat_map(|(kind, now)| (0..now.cells()).map(|cell| now.cell(kind, cell))).collect()
 }
 
 fn centres(of: &Compiled) -> Vec<Vec3> {
@@ -61,11 +61,12 @@ fn centres(of: &Compiled) -> Vec<Vec3> {
 }
 
 fn overlaps(of: &Compiled) -> usize {
-    find_overlaps(&of.model.contact.as_ref().expect("contacts").scene, &cells(of).concat()).len()
+    let contact = of.model.contact.as_ref().expect("contacts").scene_of(&of.state.kinds);
+    find_overlaps(&contact.scene, &cells(of).concat()).len()
 }
 
 fn proximity(of: &Compiled) -> f64 {
-    of.model.contact.as_ref().expect("contacts").scene.reach.proximity
+    of.model.contact.as_ref().expect("contacts").reach.proximity
 }
 
 #[test]

@@ -9,8 +9,10 @@ use std::path::Path;
 
 /// Runs a document and checks the claims beside it; prints each with what was found.
 fn experiment_keeps_its_word(folder: &str, document: &str) {
-    let (name, folder) = (document, Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments").join(folder));
-    let document = Document::read(&folder.join(document), &[]).unwrap();
+    let experiments = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments");
+    let (name, folder) = (document, experiments.join(folder));
+    let experiment = folder.join(document);
+    let document = Document::read(&experiment, &[]).unwrap();
     let scratch = tempfile::tempdir().unwrap();
     let result = scratch.path().join("result.h5");
     let options = RunOptions::new(&result);
@@ -30,6 +32,33 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
     assert!(results.iter().all(claims::ClaimResult::holds), "a claim does not hold; see above");
     let made = pseudopod::picture::make_defaults(&result).unwrap();
     assert!(made.iter().all(|path| path.metadata().is_ok_and(|file| file.len() > 1000)), "{made:?}");
+    for (_, made, shown) in SHOWN.iter().filter(|(about, ..)| experiments.join(about) == experiment) {
+        let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/pictures").join(shown);
+        let apart = mean_difference(&scratch.path().join(made), &shown);
+        assert!(apart < 0.5, "{} is not what the command makes: levels {apart:.2} apart", shown.display());
+    }
+}
+
+/// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
+const SHOWN: [(&str, &str, &str); 3] = [
+    ("optical_tweezers/red_cell.toml", "result.png", "red_cell.png"),
+    ("optical_tweezers/red_cell.toml", "result.force_diameter.png", "force_diameter.png"),
+    ("sphere_under_gravity/experiment.toml", "result.png", "spheres.png"),
+];
+
+/// How far the colours of two pictures of one size are apart, in levels of 255; round-off may move an edge by a pixel here and there.
+fn mean_difference(one: &Path, other: &Path) -> f64 {
+    let pixels = |path: &Path| {
+        let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        (info.width, info.height, pixels)
+    };
+    let ((width, height, one), (other_width, other_height, other)) = (pixels(one), pixels(other));
+    assert_eq!((width, height, one.len()), (other_width, other_height, other.len()));
+    let sum: u64 = one.iter().zip(&other).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / one.len() as f64
 }
 
 #[test]

@@ -3,15 +3,17 @@
 use pseudopod::Vec3;
 use pseudopod::contact::Reach;
 use pseudopod::geometry::{Topology, icosphere, mean_edge_length};
+use pseudopod::mechanics::Force;
+use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::random::{Purpose, Stream};
-use pseudopod::sim::contact::{ContactModel, Pull, Row, Strength, check_passed};
+use pseudopod::sim::contact::{ContactModel, Pull, Row, Strength, check_passed, help_at};
 use pseudopod::sim::observe::measure_cells;
-use pseudopod::sim::{Attraction, Kind, Load, Model, State, Trouble, VolumeRule, Workspace, step};
+use pseudopod::sim::{Kind, Model, State, Trouble, VolumeRule, Workspace, step};
 
 /// Radius of the cells, µm.
 const RADIUS: f64 = 5.0;
@@ -22,21 +24,18 @@ fn cell(name: &str, stiffness: f64) -> Kind {
     let topology = Topology::of(&rest);
     let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
     let energy = stiffness * mean_edge_length(&rest).powi(2);
-    let elasticity = Elasticity {
-        shape_memory: vec![ShapeMemory::new(&rest.positions, &rings, stiffness, Reaction::Exact)],
-        barrier: vec![Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy))],
-        ..Elasticity::default()
-    };
-    let mut kind = Kind::new(name, rest, elasticity);
+    let memory = ShapeMemory::new(&rest.positions, &rings, stiffness, Reaction::Exact);
+    let barrier = Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy));
+    let mut kind = Kind::new(name, rest, vec![Force::ShapeMemory(memory), Force::Barrier(barrier)]);
     kind.drag = 20.0 / 42.0;
     kind
 }
 
 /// A load on all atoms alike.
-fn load(direction: Vec3, force: &[(f64, f64)]) -> Load {
+fn load(direction: Vec3, force: &[(f64, f64)]) -> Force {
     let atoms = (0..42).map(|atom| (atom, 1.0 / 42.0)).collect();
     let force = Course::through(force.to_vec()).expect("times that rise");
-    Load { name: "load".into(), atoms, direction, force }
+    Force::Load(Load::new("load", atoms, direction, force))
 }
 
 fn adaptive(largest: f64) -> Integrator {
@@ -52,20 +51,13 @@ fn reach(edge: f64) -> Reach {
 
 /// A model of these kinds in which all stick with a strength.
 fn model(mut kinds: Vec<Kind>, integrator: Integrator, until: f64, strength: Strength) -> Model {
-    let mut first = 0;
     for kind in &mut kinds {
         kind.largest_stiffness = kind.measure_largest_stiffness();
         kind.bound_stiffness();
-        let cells = kind.cells;
-        kind.first_cell = first;
-        first += cells;
     }
     let mut contact = ContactModel::new(&kinds, &[], reach(kinds[0].edge));
     (0..kinds.len()).for_each(|one| (0..kinds.len()).for_each(|other| contact.stick(one, other, strength)));
-    let mut kinks: Vec<f64> = kinds.iter().flat_map(|kind| &kind.loads).flat_map(|load| load.force.kinks()).collect();
-    kinks.retain(|kink| *kink > 0.0);
-    kinks.sort_by(f64::total_cmp);
-    Model { contact: Some(contact), kinks, ..Model::of(kinds, integrator, until) }
+    Model { contact: Some(contact), ..Model::of(kinds, integrator, until) }
 }
 
 /// Cells of a kind at centres.
@@ -103,7 +95,7 @@ fn a_cell_that_hangs_on_a_rigid_one_is_held_with_its_load_whatever_the_step() {
             let mut rigid = cell("rigid", 5.0);
             (rigid.held, rigid.volume) = (vec![0.0; 126], VolumeRule::Free);
             let mut soft = cell("soft", 5.0);
-            soft.loads = vec![load(direction, &[(0.0, -8.0), (20.0, -8.0), (21.0, 8.0), (160.0, 8.0)])];
+            soft.forces.push(load(direction, &[(0.0, -8.0), (20.0, -8.0), (21.0, 8.0), (160.0, 8.0)]));
             let model = model(vec![rigid, soft], adaptive(largest), 160.0, GLUE);
             let centres = [Vec3::zeros(), Vec3::new(0.0, 0.0, 2.0 * RADIUS + 0.1)];
             let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
@@ -121,8 +113,7 @@ fn sheet(name: &str, side: f64, parts: u32) -> (Kind, Vec<f64>) {
     let topology = Topology::of(&rest);
     let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
     let memory = ShapeMemory::new(&rest.positions, &rings, 5.0, Reaction::Exact);
-    let elasticity = Elasticity { shape_memory: vec![memory], ..Elasticity::default() };
-    let mut kind = Kind::new(name, rest, elasticity);
+    let mut kind = Kind::new(name, rest, vec![Force::ShapeMemory(memory)]);
     kind.drag = 0.5;
     (kind, areas)
 }
@@ -133,7 +124,7 @@ fn sheets_part_at(tensile: f64, largest: f64, parts: u32) -> f64 {
     rigid.held = vec![0.0; 3 * own.len()];
     let atoms = areas.iter().zip(0..).map(|(area, atom)| (atom, area / 36.0)).collect();
     let force = Course::through(vec![(0.0, 0.0), (100.0, 60.0)]).unwrap();
-    soft.loads = vec![Load { name: "pull".into(), atoms, direction: Vec3::z(), force }];
+    soft.forces.push(Force::Load(Load::new("pull", atoms, Vec3::z(), force)));
     let model = model(vec![rigid, soft], adaptive(largest), 100.0, Strength { tensile, shear: 0.0, energy: 0.0 });
     let places = [(0, 0.0), (1, 0.02)].map(|(kind, height)| {
         let shifted = |x: &Vec3| x + Vec3::new(0.0, 0.0, height);
@@ -164,7 +155,7 @@ fn a_sheet_pressed_onto_another_stays_on_its_side() {
         rigid.held = vec![0.0; 3 * own.len()];
         let atoms = areas.iter().zip(0..).map(|(area, atom)| (atom, area / 36.0)).collect();
         let force = Course::through(vec![(0.0, 0.0), (50.0, 60.0)]).unwrap();
-        soft.loads = vec![Load { name: "press".into(), atoms, direction: -Vec3::z(), force }];
+        soft.forces.push(Force::Load(Load::new("press", atoms, -Vec3::z(), force)));
         let above: Vec<Vec3> = soft.rest.positions.iter().map(|x| x + Vec3::new(0.013, 0.007, 0.02)).collect();
         let (mut kinds, mut places) = (vec![rigid.clone(), soft], vec![vec![rigid.rest.positions], vec![above]]);
         if is_first {
@@ -190,8 +181,8 @@ fn a_sheet_pressed_onto_another_stays_on_its_side() {
 fn parting(tensile: f64, shear: f64, largest: f64) -> (f64, f64) {
     let mut pair = [cell("left", 5.0), cell("right", 5.0)];
     let course = [(0.0, 10.0), (20.0, 10.0), (21.0, 0.0), (121.0, -50.0)];
-    pair[0].loads = vec![load(Vec3::x(), &course)];
-    pair[1].loads = vec![load(-Vec3::x(), &course)];
+    pair[0].forces.push(load(Vec3::x(), &course));
+    pair[1].forces.push(load(-Vec3::x(), &course));
     let model = model(pair.into(), adaptive(largest), 121.0, Strength { tensile, shear, energy: 0.0 });
     let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
     let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
@@ -225,7 +216,7 @@ fn a_pair_parts_at_its_strength_and_not_at_its_step() {
 
 /// Two cells that were squeezed and pressed together, left alone.
 fn squeezed_pair(strength: f64, largest: f64) -> (Model, State) {
-    let kind = cell("cell", 5.0).with_cells(0, 2);
+    let kind = cell("cell", 5.0).for_cells(2);
     let model =
         model(vec![kind], adaptive(largest), 40.0, Strength { tensile: strength, shear: strength, energy: 0.0 });
     let squeeze = |x: &Vec3| Vec3::new(0.8 * x.x, 1.1 * x.y, 1.1 * x.z + 0.1 * x.x);
@@ -298,8 +289,8 @@ fn a_fixed_step_in_which_a_pair_would_gain_energy_is_made_in_shorter_ones_that_e
 /// Cells gathered by a pull to the middle, in a random start without overlaps.
 fn gathered(seed: u64, cells: usize, pull: f64, strength: Strength) -> (Model, State) {
     let mut kind = cell("cell", 5.0);
-    kind.attraction = Some(Attraction { to: Vec3::zeros(), stiffness: pull });
-    let model = model(vec![kind.with_cells(0, cells)], adaptive(1.0), f64::INFINITY, strength);
+    kind.forces.push(Force::Attraction(Attraction { to: Vec3::zeros(), stiffness: pull }));
+    let model = model(vec![kind.for_cells(cells)], adaptive(1.0), f64::INFINITY, strength);
     let mut dice = Stream::new(seed, Purpose::Placement, 0, 0);
     let mut centres: Vec<Vec3> = Vec::new();
     while centres.len() < cells {
@@ -370,7 +361,7 @@ fn contacts_are_state_and_nothing_else_is() {
 
 #[test]
 fn cells_inside_each_other_are_seen_whatever_their_contacts_say() {
-    let kind = cell("cell", 5.0).with_cells(0, 3);
+    let kind = cell("cell", 5.0).for_cells(3);
     let model = model(vec![kind], adaptive(0.1), 1.0, GLUE);
     let at = |x: f64| {
         let centres = [Vec3::zeros(), Vec3::new(30.0, 0.0, 0.0), Vec3::new(30.0 + x, 0.0, 0.0)];
@@ -381,15 +372,15 @@ fn cells_inside_each_other_are_seen_whatever_their_contacts_say() {
     for x in [0.5 * RADIUS, 1.5 * RADIUS] {
         let Err(Trouble::Pressed { cells, depth, .. }) = at(x) else { panic!("{x} um apart is not seen") };
         assert_eq!(cells.map(|(_, cell)| cell), [1, 2]);
-        assert!(depth > model.contact.as_ref().unwrap().scene.reach.depth, "{depth}");
+        assert!(depth > model.contact.as_ref().unwrap().reach.depth, "{depth}");
     }
 }
 
 #[test]
 fn contacts_that_do_not_come_to_rest_end_a_run_name_the_cells_and_leave_the_state() {
     let mut pair = [cell("left", 5.0), cell("right", 5.0)];
-    pair[0].loads = vec![load(Vec3::x(), &[(0.0, 10.0), (10.0, 10.0)])];
-    pair[1].loads = vec![load(-Vec3::x(), &[(0.0, 10.0), (10.0, 10.0)])];
+    pair[0].forces.push(load(Vec3::x(), &[(0.0, 10.0), (10.0, 10.0)]));
+    pair[1].forces.push(load(-Vec3::x(), &[(0.0, 10.0), (10.0, 10.0)]));
     let mut model = model(pair.into(), adaptive(0.1), 10.0, Strength::default());
     let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
     let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
@@ -408,12 +399,36 @@ fn contacts_that_do_not_come_to_rest_end_a_run_name_the_cells_and_leave_the_stat
     named.sort_unstable();
     assert_eq!((named, *sweeps), (vec!["left", "right"], 1));
     assert!(*left > 0.0);
-    assert_eq!(trouble.help().split(':').next(), Some("cells are pressed together harder than their volumes allow"));
+    let help = help_at(&trouble, &model, &state);
+    assert!(help.starts_with("nothing presses these cells together from around"), "two cells in the open: {help}");
     let cells = [("left", 0), ("right", 0)].map(|(kind, cell)| (kind.to_owned(), cell));
     let words = Trouble::Contact { cells, time: 1.5, left: 2e-4, sweeps: 200 }.to_string();
     let expected = "contacts and volumes do not come to rest at t = 1.500000 s: after 200 sweeps atoms of cell 0 of type `left` \
                     and of cell 0 of type `right`, which touch, still move by 2.0e-4 um";
     assert_eq!(words, expected);
+}
+
+#[test]
+fn the_help_for_contacts_that_fail_fits_what_the_cells_look_like() {
+    let advice = |model: &Model, state: &State| {
+        let cells = [("left".to_owned(), 0), ("right".to_owned(), 0)];
+        help_at(&Trouble::Pressed { cells, time: 0.0, depth: 0.1 }, model, state)
+    };
+    let kinds = || vec![cell("left", 5.0), cell("right", 5.0)];
+    let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
+    let model = model(kinds(), adaptive(0.1), 10.0, Strength::default());
+    let apart = |centres: &[Vec3]| [0, 1].map(|i| places(&model.kinds[i], &centres[i..=i]));
+    let open = advice(&model, &State::new(&model, &apart(&centres)));
+    assert!(open.contains("move or yield faster than contacts follow"), "{open}");
+    // An atom is pushed through to the other side of its cell.
+    let mut folded = apart(&centres);
+    folded[1][0][0] = 2.0 * centres[1] - folded[1][0][0];
+    let folded = State::new(&model, &folded);
+    let folded = advice(&model, &folded);
+    assert!(folded.starts_with("the surface of one of these cells is folded"), "{folded}");
+    // Nearly at the same place each has the other everywhere.
+    let crowded = advice(&model, &State::new(&model, &apart(&[Vec3::zeros(), Vec3::new(0.05, 0.0, 0.0)])));
+    assert!(crowded.starts_with("cells are pressed together harder than their volumes allow"), "{crowded}");
 }
 
 #[test]
@@ -428,7 +443,7 @@ fn a_cell_too_deep_in_itself_is_told_once() {
 fn explicit_steps_press_as_implicit_ones_do() {
     let (mut rigid, mut soft) = (cell("rigid", 5.0), cell("soft", 5.0));
     (rigid.held, rigid.volume) = (vec![0.0; 126], VolumeRule::Free);
-    soft.loads = vec![load(-Vec3::z(), &[(0.0, 8.0), (160.0, 8.0)])];
+    soft.forces.push(load(-Vec3::z(), &[(0.0, 8.0), (160.0, 8.0)]));
     let integrator = Integrator { method: Method::Explicit, size: StepSize::Fixed(5e-3) };
     let model = model(vec![rigid, soft], integrator, 160.0, GLUE);
     let centres = [Vec3::zeros(), Vec3::new(0.0, 0.0, 2.0 * RADIUS + 0.1)];

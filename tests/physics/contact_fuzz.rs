@@ -11,10 +11,12 @@ use crate::contact_scenes::{Purposed, Scene};
 use pseudopod::Vec3;
 use pseudopod::contact::{Sides, closest_on_facet, winding_number};
 use pseudopod::geometry::{atom_areas, bounding_box};
+use pseudopod::mechanics::Force;
+use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::integrator::StepSize;
 use pseudopod::sim::contact::{Pairing, check_passed, find_contacts};
 use pseudopod::sim::observe::{CellMeasure, measure_cells};
-use pseudopod::sim::{Attraction, Model, State, Trouble, VolumeRule, Workspace, step};
+use pseudopod::sim::{Model, State, Trouble, VolumeRule, Workspace, step};
 
 /// The deepest that one cell may be in another, over the mean edge.
 const DEEPEST: f64 = 0.02;
@@ -121,9 +123,9 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
         seen.contacts = seen.contacts.max(ws.contact.rows.len());
         seen.all_sweeps += u64::from(ws.contact.sweeps);
         seen.sweeps = seen.sweeps.max(ws.contact.sweeps);
-        check_cells(model, &cells, &mut seen).map_err(at)?;
+        check_cells(model, &state, &cells, &mut seen).map_err(at)?;
         seen.fill = fill(scene, model, &cells);
-        check_depth(model, &ws, &mut seen).map_err(at)?;
+        check_depth(model, &state, &ws, &mut seen).map_err(at)?;
         check_strength(scene, model, &state, &ws, &mut seen).map_err(at)?;
         if scene.purpose == Purposed::Alone {
             let energy = cells.iter().map(|cell| cell.energy).sum::<f64>()
@@ -146,9 +148,10 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
         return Ok((state, seen));
     }
     find_contacts(model, &state, &mut ws);
-    check_depth(model, &ws, &mut seen).map_err(|words| (format!("at the end: {words}"), None))?;
+    check_depth(model, &state, &ws, &mut seen).map_err(|words| (format!("at the end: {words}"), None))?;
     let cells = measure_cells(model, &state);
-    check_inside(model, &cells).map_err(|words| (format!("at the end: {words}, fill {:.3}", seen.fill), None))?;
+    check_inside(model, &state, &cells)
+        .map_err(|words| (format!("at the end: {words}, fill {:.3}", seen.fill), None))?;
     if scene.purpose == Purposed::Alone {
         // Round-off of positions of some 10 um in so many steps.
         let most = 1e-14 * seen.steps as f64;
@@ -167,7 +170,8 @@ fn press(scene: &Scene, model: &Model, start: &State) -> Result<State, Failure> 
     let (mut model, mut state) = (model.clone(), start.clone());
     if scene.pressed > 0.0 {
         for kind in &mut model.kinds {
-            kind.attraction = Some(Attraction { to: Vec3::zeros(), stiffness: scene.pressed });
+            kind.forces.retain(|force| !matches!(force, Force::Attraction(_)));
+            kind.forces.push(Force::Attraction(Attraction { to: Vec3::zeros(), stiffness: scene.pressed }));
             kind.bound_stiffness();
         }
         let mut ws = Workspace::new(&model);
@@ -180,9 +184,9 @@ fn press(scene: &Scene, model: &Model, start: &State) -> Result<State, Failure> 
 }
 
 /// Volumes that are kept are, facets have areas, all numbers are numbers.
-fn check_cells(model: &Model, cells: &[CellMeasure], seen: &mut Seen) -> Result<(), String> {
+fn check_cells(model: &Model, state: &State, cells: &[CellMeasure], seen: &mut Seen) -> Result<(), String> {
     for (number, cell) in cells.iter().enumerate() {
-        let kind = &model.kinds[model.kind_of(number).0];
+        let kind = &model.kinds[state.kind_of(number).0];
         if !cell.positions.iter().all(|x| x.iter().all(|a| a.is_finite())) || !cell.energy.is_finite() {
             return Err(format!("cell {number} has numbers that are none"));
         }
@@ -211,8 +215,8 @@ fn fill(scene: &Scene, model: &Model, cells: &[CellMeasure]) -> f64 {
 }
 
 /// Gaps where the step ended.
-fn check_depth(model: &Model, ws: &Workspace, seen: &mut Seen) -> Result<(), String> {
-    let (found, scene) = (&ws.contact.found, &model.contact.as_ref().unwrap().scene);
+fn check_depth(model: &Model, state: &State, ws: &Workspace, seen: &mut Seen) -> Result<(), String> {
+    let (found, scene) = (&ws.contact.found, &model.contact.as_ref().unwrap().scene_of(&state.kinds).scene);
     let body_of = |atom: u32| scene.body_of_atom(atom);
     let edge = |body: u32| model.kinds[scene.bodies[body as usize].shape as usize].edge;
     let of_atoms = found.atoms.iter().map(|near| (near.gap, body_of(near.atom), near.body(scene)));
@@ -236,7 +240,7 @@ fn check_depth(model: &Model, ws: &Workspace, seen: &mut Seen) -> Result<(), Str
 
 /// No contact pulls or shears more than its strength times its area, which the places share where an atom touches a cell.
 fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, seen: &mut Seen) -> Result<(), String> {
-    let (s, on) = (&ws.contact, &model.contact.as_ref().unwrap().scene);
+    let (s, on) = (&ws.contact, &model.contact.as_ref().unwrap().scene_of(&state.kinds).scene);
     let bodies = &on.bodies;
     // In the order of the rows.
     let bonds = &state.contact;
@@ -289,13 +293,13 @@ fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, s
 }
 
 /// Looks without contacts: points along all edges of all cells, whether they are inside another and how far from its surface.
-fn check_inside(model: &Model, cells: &[CellMeasure]) -> Result<(), String> {
-    let scene = &model.contact.as_ref().unwrap().scene;
+fn check_inside(model: &Model, state: &State, cells: &[CellMeasure]) -> Result<(), String> {
+    let scene = &model.contact.as_ref().unwrap().scene_of(&state.kinds).scene;
     let boxes: Vec<(Vec3, Vec3)> = cells.iter().map(|cell| bounding_box(&cell.positions).unwrap()).collect();
     for (one, cell) in cells.iter().enumerate() {
         for other in 0..cells.len() {
             let (shape, there) = (scene.shape(other as u32), &cells[other].positions);
-            let edge = model.kinds[model.kind_of(one).0].edge.min(model.kinds[model.kind_of(other).0].edge);
+            let edge = model.kinds[state.kind_of(one).0].edge.min(model.kinds[state.kind_of(other).0].edge);
             if one == other || shape.sides != Sides::Outer {
                 continue;
             }
@@ -324,7 +328,7 @@ fn check_inside(model: &Model, cells: &[CellMeasure]) -> Result<(), String> {
 /// Energy of the pressure of compressible cells, which is no part of that of their surfaces, pN um.
 fn pressed_energy(model: &Model, state: &State, cells: &[CellMeasure]) -> f64 {
     let of_cell = |(number, cell): (usize, &CellMeasure)| {
-        let (kind, own) = model.kind_of(number);
+        let (kind, own) = state.kind_of(number);
         match &model.kinds[kind].volume {
             VolumeRule::Compressible { modulus, .. } => {
                 0.5 * modulus * cell.volume_error.powi(2) * state.kinds[kind].rest_volumes[own]
@@ -338,7 +342,7 @@ fn pressed_energy(model: &Model, state: &State, cells: &[CellMeasure]) -> f64 {
 fn centre_of_drag(model: &Model, state: &State) -> Vec3 {
     let (mut sum, mut total) = (Vec3::zeros(), 0.0);
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-        for cell in 0..kind.cells {
+        for cell in 0..now.cells() {
             sum += now.cell(kind, cell).iter().sum::<Vec3>() * kind.drag;
             total += kind.drag * kind.atoms() as f64;
         }

@@ -5,17 +5,18 @@ use crate::same_bits::{go_on, through_a_checkpoint};
 use pseudopod::Vec3;
 use pseudopod::contact::{Contacts, Detector, Reach};
 use pseudopod::geometry::{Topology, icosphere, mean_edge_length};
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
-use pseudopod::sim::chemistry::Controls;
 use pseudopod::sim::contact::{
-    ContactModel, Law, Link, LinkTable, Penalty, Row, Strength, links_at, press, pull_links,
+    ContactModel, ContactScene, Law, Link, LinkTable, Penalty, Row, Strength, links_at, press, pull_links,
 };
+use pseudopod::sim::controls::Controls;
 use pseudopod::sim::observe::measure_cells;
-use pseudopod::sim::{Kind, Load, Model, State, VolumeRule, Workspace, step};
+use pseudopod::sim::{Kind, Model, State, VolumeRule, Workspace, step};
 
 /// Radius of the cells, µm.
 const RADIUS: f64 = 5.0;
@@ -29,24 +30,18 @@ fn cell(name: &str) -> Kind {
     let topology = Topology::of(&rest);
     let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
     let energy = 6.0 * mean_edge_length(&rest).powi(2);
-    let elasticity = Elasticity {
-        shape_memory: vec![ShapeMemory::new(&rest.positions, &rings, 6.0, Reaction::Exact)],
-        barrier: vec![Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy))],
-        ..Elasticity::default()
-    };
-    let mut kind = Kind::new(name, rest, elasticity);
+    let memory = ShapeMemory::new(&rest.positions, &rings, 6.0, Reaction::Exact);
+    let barrier = Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy));
+    let mut kind = Kind::new(name, rest, vec![Force::ShapeMemory(memory), Force::Barrier(barrier)]);
     kind.drag = 20.0 / 12.0;
     kind
 }
 
 /// A model of these kinds, in which kinds `i` and `j` are linked with `LINK` where `binds(i, j)`, up to a mean edge.
 fn model(mut kinds: Vec<Kind>, until: f64, binds: impl Fn(usize, usize) -> bool) -> Model {
-    let mut first = 0;
     for kind in &mut kinds {
         kind.largest_stiffness = kind.measure_largest_stiffness();
         kind.bound_stiffness();
-        kind.first_cell = first;
-        first += kind.cells;
     }
     let (number, edge) = (kinds.len(), kinds[0].edge);
     let near = 0.1 * edge;
@@ -58,13 +53,11 @@ fn model(mut kinds: Vec<Kind>, until: f64, binds: impl Fn(usize, usize) -> bool)
         }
     }
     contact.law = Law::Links(table);
-    let mut kinks: Vec<f64> = kinds.iter().flat_map(|kind| &kind.loads).flat_map(|load| load.force.kinks()).collect();
-    kinks.retain(|kink| *kink > 0.0);
     let integrator = Integrator {
         method: Method::Implicit { order: Order::Second },
         size: StepSize::Adaptive { tolerance: 1e-3, largest: 0.5 },
     };
-    Model { contact: Some(contact), kinks, ..Model::of(kinds, integrator, until) }
+    Model { contact: Some(contact), ..Model::of(kinds, integrator, until) }
 }
 
 /// The atoms of a cell of a kind around a centre, turned a little so that nothing is symmetric.
@@ -79,10 +72,9 @@ fn pair(model: &Model) -> State {
         let ahead = Vec3::new(gap, 0.4, -0.3);
         [vec![place(&model.kinds[0], Vec3::zeros(), 0.2)], vec![place(&model.kinds[1], ahead, 0.9)]]
     };
-    let contact = model.contact.as_ref().expect("contacts");
     let gap = |apart: f64| {
-        let all: Vec<Vec3> = places(apart).concat().concat();
-        detect(contact, &all).smallest_gap()
+        let state = State::new(model, &places(apart));
+        detect(&scene(model, &state), &positions(model, &state)).smallest_gap()
     };
     // Down from where nothing touches.
     let apart =
@@ -90,7 +82,12 @@ fn pair(model: &Model) -> State {
     State::new(model, &places(apart.expect("they touch")))
 }
 
-fn detect(contact: &ContactModel, positions: &[Vec3]) -> Contacts {
+/// Contacts of the cells of a state.
+fn scene<'a>(model: &'a Model, state: &State) -> ContactScene<'a> {
+    model.contact.as_ref().expect("contacts").scene_of(&state.kinds)
+}
+
+fn detect(contact: &ContactScene, positions: &[Vec3]) -> Contacts {
     let mut found = Contacts::default();
     Detector::default().detect(&contact.scene, positions, &mut found);
     found
@@ -98,12 +95,12 @@ fn detect(contact: &ContactModel, positions: &[Vec3]) -> Contacts {
 
 fn positions(model: &Model, state: &State) -> Vec<Vec3> {
     let kinds = model.kinds.iter().zip(&state.kinds);
-    kinds.flat_map(|(kind, now)| (0..kind.cells).flat_map(|cell| now.cell(kind, cell))).collect()
+    kinds.flat_map(|(kind, now)| (0..now.cells()).flat_map(|cell| now.cell(kind, cell))).collect()
 }
 
 /// The links at a state, with those before.
 fn links(model: &Model, state: &State) -> Vec<Link> {
-    let (contact, x) = (model.contact.as_ref().expect("contacts"), positions(model, state));
+    let (contact, x) = (&scene(model, state), positions(model, state));
     let mut links = Vec::new();
     let found = detect(contact, &x);
     links_at(contact, &Controls::default(), &state.contact.links, &found, &x, &mut Vec::new(), &mut links);
@@ -112,7 +109,7 @@ fn links(model: &Model, state: &State) -> Vec<Link> {
 
 /// Elastic energy of all cells and that of the links of a state, pN·µm.
 fn energy(model: &Model, state: &State) -> f64 {
-    let (contact, x) = (model.contact.as_ref().expect("contacts"), positions(model, state));
+    let (contact, x) = (&scene(model, state), positions(model, state));
     let mut force = vec![Vec3::zeros(); x.len()];
     let of_links = pull_links(contact, &Controls::default(), &links(model, state), &x, &mut force);
     of_links + measure_cells(model, state).iter().map(|cell| cell.energy).sum::<f64>()
@@ -121,7 +118,8 @@ fn energy(model: &Model, state: &State) -> f64 {
 #[test]
 fn forces_of_links_are_the_gradient_of_their_energy_without_net_force_or_torque() {
     let model = model(vec![cell("a"), cell("b")], 1.0, |_, _| true);
-    let (contact, state) = (model.contact.as_ref().unwrap(), pair(&model));
+    let state = pair(&model);
+    let contact = &scene(&model, &state);
     let (links, mut x) = (links(&model, &state), positions(&model, &state));
     assert!(!links.is_empty(), "they touch, so they are linked");
     let pull = |x: &[Vec3]| {
@@ -155,7 +153,7 @@ fn a_link_joins_every_atom_of_both_facets_by_the_nearest_pairs_and_a_facet_has_o
     let model = model(vec![cell("a"), cell("b")], 1.0, |_, _| true);
     let state = pair(&model);
     let (links, x) = (links(&model, &state), positions(&model, &state));
-    let scene = &model.contact.as_ref().unwrap().scene;
+    let scene = &scene(&model, &state).scene;
     let mut facets = Vec::new();
     for link in &links {
         facets.extend(link.facets);
@@ -218,7 +216,7 @@ fn hung(force: f64, until: f64) -> (Model, State) {
     let mut soft = cell("soft");
     let atoms = (0..12).map(|atom| (atom, 1.0 / 12.0)).collect();
     let course = Course::through(vec![(0.0, 0.0), (20.0, 0.0), (21.0, force), (until, force)]).expect("rising times");
-    soft.loads = vec![Load { name: "load".into(), atoms, direction: Vec3::x(), force: course }];
+    soft.forces.push(Force::Load(Load::new("load", atoms, Vec3::x(), course)));
     let model = model(vec![rigid, soft], until, |one, other| one != other);
     let state = pair(&model);
     (model, state)
@@ -233,7 +231,7 @@ fn links_bear_exactly_the_load_and_break_above_what_their_range_allows() {
     }
     let x = positions(&model, &state);
     let mut force = vec![Vec3::zeros(); 24];
-    pull_links(model.contact.as_ref().unwrap(), &Controls::default(), &state.contact.links, &x, &mut force);
+    pull_links(&scene(&model, &state), &Controls::default(), &state.contact.links, &x, &mut force);
     let rows = ws.contact.rows.iter().zip(&ws.contact.pulls);
     for (row, pull) in rows {
         for (atom, weight) in row.atoms.iter().zip(row.weights()) {
@@ -270,8 +268,8 @@ fn links_go_on_from_a_checkpoint_to_the_same_bits_with_any_number_of_threads() {
 fn penalty(until: f64, strength: f64) -> Model {
     let mut model = model(vec![cell("a"), cell("b")], until, |_, _| false);
     let contact = model.contact.as_mut().unwrap();
-    contact.law = Law::Penalty(Penalty { stiffness: 50.0, range: contact.scene.reach.proximity });
-    contact.scene.reach.depth = 0.5 * model.kinds[0].edge;
+    contact.law = Law::Penalty(Penalty { stiffness: 50.0, range: contact.reach.proximity });
+    contact.reach.depth = 0.5 * model.kinds[0].edge;
     contact.stick(0, 1, Strength { tensile: strength, shear: 0.0, energy: 0.0 });
     model
 }
@@ -298,7 +296,7 @@ fn press_together(model: &mut Model) {
     let atoms: Vec<(u32, f64)> = (0..12).map(|atom| (atom, 1.0 / 12.0)).collect();
     let course = || Course::through(vec![(0.0, 5.0), (40.0, 5.0), (41.0, 0.0), (100.0, 0.0)]).unwrap();
     for (kind, direction) in model.kinds.iter_mut().zip([Vec3::x(), -Vec3::x()]) {
-        kind.loads = vec![Load { name: "press".into(), atoms: atoms.clone(), direction, force: course() }];
+        kind.forces.push(Force::Load(Load::new("press", atoms.clone(), direction, course())));
     }
     model.kinks = vec![40.0, 41.0, 100.0];
 }
@@ -354,7 +352,7 @@ fn impulse_left(tolerance: f64) -> f64 {
     let mut state = pair(&model);
     let mut ws = Workspace::new(&model);
     let mean = |state: &State| positions(&model, state)[12..].iter().sum::<Vec3>() / 12.0;
-    let law = Penalty { stiffness: 50.0, range: model.contact.as_ref().unwrap().scene.reach.proximity };
+    let law = Penalty { stiffness: 50.0, range: model.contact.as_ref().unwrap().reach.proximity };
     // The push on the second cell with the contacts of a step, the mean of its begin and its end.
     let borne = |ws: &Workspace, state: &State| -> Vec3 {
         let at = |x: &[Vec3]| {

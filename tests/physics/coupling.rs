@@ -184,6 +184,72 @@ fn systems_read_each_other_and_the_means_of_types() {
 }
 
 #[test]
+fn what_links_read_of_other_systems_is_worked_out_once_for_all_who_read_it() {
+    let own = r#"<eml name="own" level="cell"><input id="x" default="0"/><variable id="u" initial="2" rate="-0.1*u"/>
+        <define id="w">u+x</define><link from="cell.position.x" to="system.x"/></eml>"#;
+    let other = r#"<eml name="other" level="cell"><input id="u" default="0"/><input id="w" default="0"/><input id="mean" default="0"/>
+        <define id="v">0*w</define>
+        <link from="cell.chemistry[own].u" to="system.u"/><link from="cell.chemistry[own].w" to="system.w"/>
+        <link from="type[cell].chemistry[own].u" to="system.mean"/><link from="system.v" to="cell.motility.bias.x"/></eml>"#;
+    let whole = r#"<eml name="whole"><input id="mean" default="0"/><input id="w" default="0"/>
+        <link from="type[cell].chemistry[own].u" to="system.mean"/><link from="type[cell].chemistry[own].w" to="system.w"/></eml>"#;
+    let blocks = |cells: u64| {
+        let some = format!(
+            "number = {cells}\nplacement = {{ random_from = [\"-90 um\", \"0 um\", \"0 um\"], random_to = [\"90 um\", \"0 um\", \"0 um\"] }}\n"
+        );
+        let text = one_cell("2 s", "0.5 s").replace("[\"own\"]", "[\"own\", \"other\"]") + &some;
+        let mut scene = scene(&[("own", own), ("other", other), ("whole", whole)], &text);
+        scene.run();
+        let (first, last) = (0, cells as usize - 1);
+        for cell in [first, last] {
+            let (u, w) = (scene.value(0, "u", cell), scene.value(0, "w", cell));
+            assert_eq!([scene.value(1, "u", cell), scene.value(1, "w", cell)], [u, w], "cell {cell} of {cells}");
+            assert!((w - u).abs() > 1e-3 && scene.value(1, "mean", cell) == scene.value(2, "mean", 0));
+        }
+        scene.ws.chemistry.blocks_observed()
+    };
+    // At the start and after each of four steps: `u` and `w` of `own`, one after the other, and `v` of `other`.
+    for cells in [16, 64, 256] {
+        assert_eq!(blocks(cells), 5 * 3 * cells / 16, "{cells} cells");
+    }
+}
+
+#[test]
+fn what_chemistry_knows_of_a_cell_comes_and_goes_with_it() {
+    let own = r#"<eml name="own" level="cell"><variable id="u" initial="2" rate="-u"/>
+        <event when="u lt 1" delay="100"><set id="u">3</set></event>
+        <link from="system.u" to="cell.stiffness"/><link from="system.u" to="cell.motility.bias.x"/>
+        <link from="system.u" to="cell.secretion[c]"/></eml>"#;
+    let field = r#"<eml name="field"><grid dimension="2" spacing="2" origin="-80 -80" size="160 160"/>
+        <field id="c" diffusion="30" initial="0"/></eml>"#;
+    let some = "placement = { at = [[\"-30 um\", \"0 um\", \"0 um\"], [\"0 um\", \"0 um\", \"0 um\"], [\"30 um\", \"0 um\", \"0 um\"]] }\n";
+    let other = "[cells.other]\nmesh = { shape = \"icosphere\", radius = \"5 um\", level = 1 }\nplacement = { at = [[\"0 um\", \"40 um\", \"0 um\"], [\"30 um\", \"40 um\", \"0 um\"]] }\n\
+        mechanics = { drag = \"20 pN s/um\", shape_memory = { shape_modulus = \"10 pN/um\" } }\nchemistry = [\"own\"]\n";
+    let mut scene = scene(&[("field", field), ("own", own)], &(one_cell("2 s", "0.25 s") + some + other));
+    scene.run();
+    let chemistry = &scene.compiled.model.chemistry;
+    let before = &scene.state().chemistry;
+    for (kind, local, cell) in [(0, 0, 0), (0, 3, 3), (1, 1, 4), (1, 2, 5)] {
+        let mut after = before.clone();
+        after.insert_cell(chemistry, &[3, 2], kind, local);
+        assert_eq!((after.populations[0].cells(), after.events[0].len(), after.controls.bias.len()), (6, 6, 6));
+        let new = (after.populations[0].state(cell, 0), after.controls.stiffness[cell], after.controls.bias[cell]);
+        assert_eq!((new, after.controls.secretion[0][cell]), ((2.0, 1.0, [0.0; 3]), 0.0), "as at the start");
+        let mut cells = [3, 2];
+        cells[kind] += 1;
+        after.retain_cells(chemistry, &cells, |other, at| (other, at) != (kind, local));
+        assert_eq!(after, *before, "cell {local} of kind {kind}");
+    }
+    let mut fewer = before.clone();
+    fewer.retain_cells(chemistry, &[3, 2], |kind, local| kind == 1 || local == 1);
+    assert_eq!(
+        fewer.events[0],
+        [before.events[0][1].clone(), before.events[0][3].clone(), before.events[0][4].clone()]
+    );
+    assert_eq!(fewer.controls.stiffness, [1, 3, 4].map(|cell| before.controls.stiffness[cell]));
+}
+
+#[test]
 fn a_system_that_blows_up_is_named_and_the_state_stays() {
     let own = r#"<eml name="own" level="cell"><input id="x" default="0"/>
         <variable id="U" initial="1" rate="U^2*x"/><link from="cell.position.x" to="system.x"/></eml>"#;

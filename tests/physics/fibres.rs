@@ -1,62 +1,25 @@
 //! Contractile fibres draw their ends together as far as they are active, and let go elastically.
 
 use crate::coupled_scene::{Scene, scene};
-use pseudopod::Vec3;
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::fibres::Fibres;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
-use pseudopod::mechanics::lanes::LANES;
 use pseudopod::sim::{Kind, Model, State, Trouble, VolumeRule, Workspace, step};
-
-fn trunk(pairs: &[[u32; 2]], activation: Course) -> Fibres {
-    Fibres { name: "trunk".into(), pairs: pairs.to_vec(), stiffness: 3.0, activation }
-}
-
-#[test]
-fn forces_are_the_gradient_of_the_energy_without_net_force_or_torque() {
-    let fibres = trunk(&[[0, 3], [1, 2], [3, 1]], Course::constant(1.0));
-    let mut activation = [0.0; LANES];
-    activation[..2].copy_from_slice(&[0.7, 0.2]);
-    // Two cells of four atoms, lane by lane.
-    let x: Vec<f64> = (0..24).map(|i| f64::from((i * 37 + 11) % 29) * 0.3 - 4.0).collect();
-    let measure = |x: &[f64]| {
-        let (mut f, mut energy) = (vec![0.0; 24], [0.0; 2]);
-        fibres.add_forces(2, &activation, x, &mut f, &mut energy);
-        (f, energy)
-    };
-    let (f, _) = measure(&x);
-    for i in 0..24 {
-        let moved = |step: f64| {
-            let mut x = x.clone();
-            x[i] += step;
-            measure(&x).1[i % 2]
-        };
-        let slope = (moved(1e-4) - moved(-1e-4)) / 2e-4;
-        assert!((f[i] + slope).abs() < 1e-7, "{i}: {} and {slope}", f[i]);
-    }
-    for lane in 0..2 {
-        let vector = |v: &[f64], atom: usize| Vec3::from_fn(|axis, _| v[(3 * atom + axis) * 2 + lane]);
-        let force: Vec3 = (0..4).map(|atom| vector(&f, atom)).sum();
-        let torque: Vec3 = (0..4).map(|atom| vector(&x, atom).cross(&vector(&f, atom))).sum();
-        assert!(force.norm() < 1e-12 && torque.norm() < 1e-12, "{force} {torque}");
-    }
-}
 
 /// The distance of two atoms that nothing but a fibre and drag acts on, µm, over that at the start, after 5 s.
 fn drawn_together(cells: usize, size: StepSize) -> f64 {
     let rest = pseudopod::geometry::icosphere(5.0, 1);
     let (from, to) = (rest.positions[0], rest.positions[20]);
-    let mut kind = Kind::new("cell", rest, Elasticity::default()).with_cells(0, cells);
-    kind.volume = VolumeRule::Free;
-    kind.drag = 2.0;
     // The documents' trunk: 0 to 1 in 2 s, back in half a second, then rest.
     let activation = Course::through(vec![(0.0, 0.0), (2.0, 1.0), (2.5, 0.0)]).unwrap();
-    kind.fibres = vec![trunk(&[[0, 20]], activation.clone())];
+    let trunk = Fibres::new("trunk", vec![[0, 20]], 3.0, activation);
+    let mut kind = Kind::new("cell", rest, vec![Force::Fibres(trunk)]).for_cells(cells);
+    kind.volume = VolumeRule::Free;
+    kind.drag = 2.0;
     kind.bound_stiffness();
     let integrator = Integrator { method: Method::Implicit { order: Order::Second }, size };
-    let mut model = Model::of(vec![kind], integrator, 5.0);
-    model.kinks = activation.kinks().filter(|kink| *kink > 0.0).collect();
+    let model = Model::of(vec![kind], integrator, 5.0);
     let places = vec![model.kinds[0].rest.positions.clone(); cells];
     let mut state = State::new(&model, &[places]);
     let mut ws = Workspace::new(&model);

@@ -3,7 +3,8 @@
 
 use pseudopod::Vec3;
 use pseudopod::geometry::{self, Surface, Topology, icosphere};
-use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::Force;
+use pseudopod::mechanics::gravity::Gravity;
 use pseudopod::mechanics::integrator::{Integrator, Method, StepSize};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::mechanics::springs::{Spring, Springs};
@@ -20,8 +21,7 @@ fn model(kind: Kind, method: Method, dt: f64, until: f64) -> Model {
 fn pair(drag: f64) -> Kind {
     let surface = Surface { positions: vec![Vec3::zeros(), Vec3::x(), Vec3::y()], facets: vec![[0, 1, 2]] };
     let spring = Spring { from: 0, to: 1, rest_length: 1.0, stiffness: 3.0 };
-    let elasticity = Elasticity { springs: vec![Springs::between(vec![spring])], ..Default::default() };
-    let mut kind = Kind::new("pair", surface, elasticity);
+    let mut kind = Kind::new("pair", surface, vec![Force::Springs(Springs::between(vec![spring]))]);
     (kind.drag, kind.mass, kind.volume) = (drag, 0.5, VolumeRule::Free);
     kind
 }
@@ -91,10 +91,10 @@ fn verlet_and_semi_implicit_euler_keep_the_energy_of_a_free_swing() {
 fn a_body_falls_as_gravity_and_drag_say() {
     let surface = icosphere(2.0, 1);
     for method in INERTIAL {
-        let mut kind = Kind::new("stone", surface.clone(), Elasticity::default());
+        let weight = Force::Gravity(Gravity { acceleration: Vec3::new(0.0, 0.0, -5.0) });
+        let mut kind = Kind::new("stone", surface.clone(), vec![weight]);
         (kind.drag, kind.mass) = (0.3, 0.6);
-        let mut model = model(kind, method, 1e-3, 2.0);
-        model.gravity = Vec3::new(0.0, 0.0, -5.0);
+        let model = model(kind, method, 1e-3, 2.0);
         let mut state = State::new(&model, &[vec![surface.positions.clone()]]);
         let mut ws = Workspace::new(&model);
         while state.time < 2.0 {
@@ -117,10 +117,10 @@ fn without_drag_a_body_falls_by_half_g_t_squared() {
     let surface = icosphere(2.0, 1);
     let (g, dt, until): (f64, f64, f64) = (5.0, 0.01, 2.0);
     for method in INERTIAL {
-        let mut kind = Kind::new("stone", surface.clone(), Elasticity::default());
+        let weight = Force::Gravity(Gravity { acceleration: Vec3::new(0.0, 0.0, -g) });
+        let mut kind = Kind::new("stone", surface.clone(), vec![weight]);
         (kind.drag, kind.mass) = (0.0, 0.6);
-        let mut model = model(kind, method, dt, until);
-        model.gravity = Vec3::new(0.0, 0.0, -g);
+        let model = model(kind, method, dt, until);
         let mut state = State::new(&model, &[vec![surface.positions.clone()]]);
         let mut ws = Workspace::new(&model);
         while state.time < until {
@@ -148,10 +148,10 @@ fn cell(cells: usize) -> Kind {
     let surface = icosphere(5.0, 1);
     let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
     let memory = ShapeMemory::new(&surface.positions, &rings, 10.0, Reaction::Exact);
-    let mut kind = Kind::new("cell", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    let mut kind = Kind::new("cell", surface, vec![Force::ShapeMemory(memory)]);
     (kind.drag, kind.mass) = (1.0, 0.3);
     kind.bound_stiffness();
-    kind.with_cells(0, cells)
+    kind.for_cells(cells)
 }
 
 fn stretched(kind: &Kind) -> Vec<Vec3> {

@@ -11,6 +11,7 @@ mod inertial;
 mod modulus;
 mod motility;
 mod ordering;
+mod population;
 mod sphere;
 mod stability_limits;
 mod step;
@@ -21,6 +22,8 @@ mod walk;
 mod contact_scenes;
 #[path = "../support/coupled_scene.rs"]
 mod coupled_scene;
+#[path = "../support/everything.rs"]
+mod everything;
 #[path = "../support/same_bits.rs"]
 mod same_bits;
 #[path = "../support/sbml_suite.rs"]

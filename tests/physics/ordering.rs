@@ -2,26 +2,25 @@
 
 use pseudopod::Vec3;
 use pseudopod::geometry::{self, Surface, icosphere};
-use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
-use pseudopod::mechanics::lanes::LANES;
 use pseudopod::mechanics::ordering::Ordering;
+use pseudopod::mechanics::sum::measure_elastic;
 use pseudopod::mechanics::tension::Tension;
 use pseudopod::sim::{Kind, Model, State, Workspace, step};
 
 const STIFFNESS: f64 = 5.0;
 const TENSION: f64 = 100.0;
 
-fn ordering(surface: &Surface) -> Ordering {
-    Ordering::new(surface.positions.len(), &surface.facets, STIFFNESS)
+fn ordering(surface: &Surface) -> Force {
+    Force::Ordering(Ordering::new(surface.positions.len(), &surface.facets, STIFFNESS))
 }
 
 /// Forces on the atoms of a surface, pN.
 fn forces(surface: &Surface) -> Vec<Vec3> {
-    let elasticity = Elasticity { ordering: vec![ordering(surface)], ..Default::default() };
     let x: Vec<f64> = surface.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
     let (mut f, mut energy) = (vec![0.0; x.len()], [0.0]);
-    elasticity.add_forces(1, &x, &mut f, &mut energy);
+    measure_elastic(&[ordering(surface)], 1, &x, &mut f, &mut energy);
     assert_eq!(energy[0], 0.0);
     f.chunks(3).map(Vec3::from_column_slice).collect()
 }
@@ -80,32 +79,11 @@ fn the_pull_vanishes_where_the_mesh_is_regular_and_is_less_than_that_of_one_edge
     assert!(worst(2) < 1.0 && worst(3) < 1.0, "{} {}", worst(2), worst(3));
 }
 
-#[test]
-fn eight_lanes_give_what_one_lane_gives() {
-    let shapes: Vec<Surface> = (0..LANES).map(|lane| shaken(&icosphere(5.0, 1), 0.05 * lane as f64)).collect();
-    let elasticity = Elasticity { ordering: vec![ordering(&shapes[0])], ..Default::default() };
-    let atoms = shapes[0].positions.len();
-    let mut x = vec![0.0; 3 * atoms * LANES];
-    for (lane, shape) in shapes.iter().enumerate() {
-        for (i, p) in shape.positions.iter().enumerate() {
-            (0..3).for_each(|axis| x[(3 * i + axis) * LANES + lane] = p[axis]);
-        }
-    }
-    let mut f = vec![0.0; x.len()];
-    elasticity.add_forces(LANES, &x, &mut f, &mut [0.0; LANES]);
-    for (lane, shape) in shapes.iter().enumerate() {
-        for (i, force) in forces(shape).iter().enumerate() {
-            (0..3).for_each(|axis| assert_eq!(f[(3 * i + axis) * LANES + lane], force[axis], "lane {lane} atom {i}"));
-        }
-    }
-}
-
 /// A ball of 162 atoms with tension and ordering that keeps its volume, begun in this shape (at its volume) and left alone for 40 s.
 fn settled(begin: &dyn Fn(&Vec3) -> Vec3) -> (Surface, Surface) {
     let rest = icosphere(5.0, 2);
     let tension = Tension::new(&rest.positions, &rest.facets, TENSION, 0.0);
-    let elasticity = Elasticity { tension: vec![tension], ordering: vec![ordering(&rest)], ..Default::default() };
-    let mut kind = Kind::new("drop", rest.clone(), elasticity);
+    let mut kind = Kind::new("drop", rest.clone(), vec![Force::Tension(tension), ordering(&rest)]);
     kind.bound_stiffness();
     let method = Method::Implicit { order: Order::Second };
     let integrator = Integrator { method, size: StepSize::Adaptive { tolerance: 1e-3, largest: 0.5 } };

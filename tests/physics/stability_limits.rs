@@ -60,8 +60,8 @@ fn course(cell: Cell, free: Free, atom: Atom, stiffness: f64, dt: f64, steps: us
     let mut compiled = compile(&document).unwrap();
     let number = compiled.model.kinds.iter().position(|kind| kind.name == name).unwrap();
     compiled.model.kinds = vec![compiled.model.kinds[number].clone()];
-    compiled.model.kinds[0].first_cell = 0;
     compiled.state.kinds = vec![compiled.state.kinds[number].clone()];
+    (compiled.state.kinds[0].first_cell, compiled.state.kinds[0].first_atom) = (0, 0);
     let rest = [6, 7].map(|slot: usize| compiled.state.kinds[0].positions[slot]);
     for (axis, held) in [(0, matches!(free, Free::Height)), (1, matches!(free, Free::Base))] {
         if !held {

@@ -2,18 +2,20 @@
 
 use pseudopod::Vec3;
 use pseudopod::geometry::{self, Topology, icosphere};
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::gravity::Gravity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
-use pseudopod::sim::{Kind, Load, Model, Plane, State, VolumeRule, Workspace, step};
+use pseudopod::sim::{Kind, Model, Plane, State, VolumeRule, Workspace, step};
 
 fn sphere_kind(level: u32, stiffness: f64) -> Kind {
     let surface = icosphere(5.0, level);
     let rings: Vec<Vec<u32>> = Topology::of(&surface).rings.into_iter().map(|ring| ring.atoms).collect();
     let memory = ShapeMemory::new(&surface.positions, &rings, stiffness, Reaction::Exact);
-    let mut kind = Kind::new("sphere", surface, Elasticity { shape_memory: vec![memory], ..Default::default() });
+    let mut kind = Kind::new("sphere", surface, vec![Force::ShapeMemory(memory)]);
     kind.bound_stiffness();
     kind
 }
@@ -100,8 +102,8 @@ fn each_scheme_converges_with_its_order() {
 fn a_constant_force_moves_a_cell_rigidly_at_force_over_drag() {
     let mut kind = sphere_kind(1, 10.0);
     kind.mass = 2.0;
-    let mut model = model_of(kind, SECOND, StepSize::Fixed(3.0), 30.0);
-    model.gravity = Vec3::new(0.1, 0.0, -0.3);
+    kind.forces.push(Force::Gravity(Gravity { acceleration: Vec3::new(0.1, 0.0, -0.3) }));
+    let model = model_of(kind, SECOND, StepSize::Fixed(3.0), 30.0);
     let places = model.kinds[0].rest.positions.clone();
     let (mut state, mut ws) = start(&model, vec![places.clone()]);
     run_until_end(&model, &mut state, &mut ws);
@@ -121,14 +123,11 @@ fn steps_of_a_long_pull(cells: usize) -> (u32, f64) {
         near.iter().map(|&atom| (atom, 1.0 / near.len() as f64)).collect()
     };
     let force = Course::through(vec![(0.0, 0.0), (1.0, 300.0)]).unwrap();
-    let pull =
-        |side: f64| Load { name: String::new(), atoms: poles(side), direction: side * Vec3::z(), force: force.clone() };
+    let pull = |side: f64| Force::Load(Load::new("", poles(side), side * Vec3::z(), force.clone()));
     let (up, down) = (pull(1.0), pull(-1.0));
-    let elasticity = Elasticity { membrane: vec![membrane], ..Default::default() };
-    let mut kind = Kind::new("sphere", surface, elasticity).with_cells(0, cells);
+    let mut kind = Kind::new("sphere", surface, vec![Force::Membrane(membrane), up, down]).for_cells(cells);
     kind.bound_stiffness();
     kind.drag = 0.01;
-    kind.loads = vec![up, down];
     let model = model_of(kind, SECOND, ADAPTIVE, 2.0);
     let places = model.kinds[0].rest.positions.clone();
     let (mut state, mut ws) = start(&model, vec![places; cells]);
@@ -149,7 +148,7 @@ fn a_stiffness_made_for_the_shape_saves_steps_and_changes_no_result() {
 
 #[test]
 fn eight_lanes_give_what_one_lane_gives() {
-    let kind = sphere_kind(1, 10.0).with_cells(0, 11);
+    let kind = sphere_kind(1, 10.0).for_cells(11);
     assert_eq!(kind.lanes, 8);
     let model = model_of(kind, SECOND, StepSize::Fixed(0.3), 3.0);
     let shapes: Vec<Vec<Vec3>> = (0..11).map(|i| stretched(&model.kinds[0], 1.05 + 0.03 * i as f64)).collect();
@@ -157,7 +156,7 @@ fn eight_lanes_give_what_one_lane_gives() {
     run_until_end(&model, &mut state, &mut ws);
     for cell in 0..11 {
         // Two cells run alone, each on one lane; a kind of one cell would make its stiffness again as it deforms.
-        let alone = model_of(sphere_kind(1, 10.0).with_cells(0, 2), SECOND, StepSize::Fixed(0.3), 3.0);
+        let alone = model_of(sphere_kind(1, 10.0).for_cells(2), SECOND, StepSize::Fixed(0.3), 3.0);
         assert_eq!(alone.kinds[0].lanes, 1);
         let (mut one, mut ws) = start(&alone, vec![shapes[cell].clone(), shapes[0].clone()]);
         run_until_end(&alone, &mut one, &mut ws);
@@ -168,7 +167,7 @@ fn eight_lanes_give_what_one_lane_gives() {
 
 #[test]
 fn scratch_is_scratch() {
-    let model = model_of(sphere_kind(1, 10.0).with_cells(0, 5), SECOND, ADAPTIVE, 100.0);
+    let model = model_of(sphere_kind(1, 10.0).for_cells(5), SECOND, ADAPTIVE, 100.0);
     let shapes: Vec<Vec<Vec3>> = (0..5).map(|i| stretched(&model.kinds[0], 1.1 + 0.05 * i as f64)).collect();
     let (mut clean, mut ws) = start(&model, shapes);
     let mut poisoned = clean.clone();
@@ -183,7 +182,7 @@ fn scratch_is_scratch() {
 
 #[test]
 fn threads_do_not_matter() {
-    let model = model_of(sphere_kind(1, 10.0).with_cells(0, 50), SECOND, ADAPTIVE, 100.0);
+    let model = model_of(sphere_kind(1, 10.0).for_cells(50), SECOND, ADAPTIVE, 100.0);
     let shapes: Vec<Vec<Vec3>> = (0..50).map(|i| stretched(&model.kinds[0], 1.1 + 0.01 * i as f64)).collect();
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -204,8 +203,8 @@ fn a_cell_on_a_plane_rests_in_balance_whatever_the_step() {
     for size in [StepSize::Fixed(0.5), StepSize::Fixed(4.0), ADAPTIVE] {
         let mut kind = sphere_kind(2, 40.0);
         kind.mass = 0.1;
+        kind.forces.push(Force::Gravity(Gravity { acceleration: -Vec3::z() }));
         let mut model = model_of(kind, SECOND, size, 400.0);
-        model.gravity = Vec3::new(0.0, 0.0, -1.0);
         let normal = Vec3::z();
         model.planes = vec![Plane { name: "ground".into(), point: Vec3::zeros(), normal }];
         let places = model.kinds[0].rest.positions.iter().map(|p| p + Vec3::new(0.0, 0.0, 5.0)).collect();

@@ -5,14 +5,15 @@ use crate::same_bits::{go_on, through_a_checkpoint};
 use pseudopod::Vec3;
 use pseudopod::contact::Reach;
 use pseudopod::geometry::{Surface, Topology, icosphere, mean_edge_length, sheet};
+use pseudopod::mechanics::Force;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::contact::{AdhesiveTable, ContactModel, Law, Zones};
 use pseudopod::sim::observe::measure_cells;
-use pseudopod::sim::{Kind, Load, Model, Plane, State, Workspace, step};
+use pseudopod::sim::{Kind, Model, Plane, State, Workspace, step};
 
 /// Drag of an atom, pN s/µm.
 const DRAG: f64 = 0.5;
@@ -24,9 +25,8 @@ fn kind(name: &str, rest: Surface) -> Kind {
     let energy = 5.0 * mean_edge_length(&rest).powi(2);
     let memory = ShapeMemory::new(&rest.positions, &rings, 5.0, Reaction::Exact);
     let barrier = Barrier::new(&rest.positions, &rest.facets, &topology.flaps, BarrierRules::with_energy(energy));
-    let barrier = if topology.is_closed() { vec![barrier] } else { Vec::new() };
-    let elasticity = Elasticity { shape_memory: vec![memory], barrier, ..Elasticity::default() };
-    let mut kind = Kind::new(name, rest, elasticity);
+    let barrier = topology.is_closed().then_some(Force::Barrier(barrier));
+    let mut kind = Kind::new(name, rest, [Force::ShapeMemory(memory)].into_iter().chain(barrier).collect());
     kind.drag = DRAG;
     kind
 }
@@ -40,17 +40,14 @@ fn cell(name: &str) -> Kind {
 fn pull(kind: &mut Kind, direction: Vec3, force: &[(f64, f64)]) {
     let atoms = (0..kind.atoms() as u32).map(|atom| (atom, 1.0)).collect();
     let force = Course::through(force.to_vec()).expect("times that rise");
-    kind.loads = vec![Load { name: "pull".into(), atoms, direction, force }];
+    kind.forces.push(Force::Load(Load::new("pull", atoms, direction, force)));
 }
 
 /// A model in which all kinds are glued alike, with fixed steps.
 fn model(mut kinds: Vec<Kind>, method: Method, dt: f64, until: f64, kappa: f64) -> Model {
-    let mut first = 0;
     for kind in &mut kinds {
         kind.largest_stiffness = kind.measure_largest_stiffness();
         kind.bound_stiffness();
-        kind.first_cell = first;
-        first += kind.cells;
     }
     let near = 0.1 * kinds[0].edge;
     let integrator = Integrator { method, size: StepSize::Fixed(dt) };
@@ -58,10 +55,7 @@ fn model(mut kinds: Vec<Kind>, method: Method, dt: f64, until: f64, kappa: f64) 
     contact = contact.suited_to(integrator.size);
     let (between, on_planes) = (vec![kappa; kinds.len() * kinds.len()], Vec::new());
     contact.law = Law::VirtualAdhesives(AdhesiveTable { between, on_planes, zones: Zones::Merged });
-    let mut kinks: Vec<f64> = kinds.iter().flat_map(|kind| &kind.loads).flat_map(|load| load.force.kinks()).collect();
-    kinks.retain(|kink| *kink > 0.0);
-    kinks.sort_by(f64::total_cmp);
-    Model { contact: Some(contact), kinks, ..Model::of(kinds, integrator, until) }
+    Model { contact: Some(contact), ..Model::of(kinds, integrator, until) }
 }
 
 const IMPLICIT: Method = Method::Implicit { order: Order::Second };
@@ -76,7 +70,7 @@ fn state(model: &Model, at: &[Vec3]) -> State {
 
 fn positions(model: &Model, state: &State) -> Vec<Vec3> {
     let kinds = model.kinds.iter().zip(&state.kinds);
-    kinds.flat_map(|(kind, now)| (0..kind.cells).flat_map(|cell| now.cell(kind, cell))).collect()
+    kinds.flat_map(|(kind, now)| (0..now.cells()).flat_map(|cell| now.cell(kind, cell))).collect()
 }
 
 /// Goes on to the end, or until something is so.
@@ -169,7 +163,7 @@ fn an_adhesive_moves_as_one_through_large_rotations_and_the_pair_as_drag_lets_it
     // One side of the pair is pushed, so that it turns.
     let (mut model, mut state) = sheets(IMPLICIT, 0.02, 10.0, &[(0.0, 0.0), (4.0, 0.0)]);
     let force = Course::through(vec![(0.0, 6.0), (4.0, 6.0)]).unwrap();
-    model.kinds[1].loads = vec![Load { name: "push".into(), atoms: vec![(0, 1.0)], direction: Vec3::z(), force }];
+    model.kinds[1].forces.push(Force::Load(Load::new("push", vec![(0, 1.0)], Vec3::z(), force)));
     let began = positions(&model, &state);
     run(&model, &mut state, |_, _| false);
     let now = positions(&model, &state);

@@ -6,18 +6,21 @@ use pseudopod::Vec3;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::contact::Reach;
 use pseudopod::geometry::{self, Surface, Topology};
+use pseudopod::mechanics::Force;
+use pseudopod::mechanics::attraction::Attraction;
 use pseudopod::mechanics::barrier::{Barrier, BarrierRules};
 use pseudopod::mechanics::bending::{Bending, RestAngle};
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::elasticity::Elasticity;
+use pseudopod::mechanics::gravity::Gravity;
 use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::mechanics::springs::Springs;
 use pseudopod::mechanics::stability::{Body, largest_stable_step};
+use pseudopod::mechanics::sum;
 use pseudopod::random::{Purpose, Stream};
 use pseudopod::sim::contact::{ContactModel, Strength};
-use pseudopod::sim::{Attraction, Kind, Model, Plane, State, VolumeRule};
+use pseudopod::sim::{Kind, Model, Plane, State, VolumeRule};
 
 /// What a scene is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -294,12 +297,11 @@ impl Scene {
         let mut dice = Dice::new(self.seed ^ 0x5eed_0000_0000);
         let mut kinds: Vec<Kind> = Vec::new();
         for (number, of) in self.types.iter().enumerate() {
-            let first = kinds.iter().map(|kind| kind.cells).sum();
-            kinds.push(self.kind(number, of).with_cells(first, of.cells));
+            kinds.push(self.kind(number, of).for_cells(of.cells));
         }
         let turn = dice.turn();
         let (places, half) = match self.purpose {
-            Purposed::Alone => (pair(&mut dice, &kinds), 0.0),
+            Purposed::Alone => (pair(&mut dice, self, &kinds), 0.0),
             _ => scatter(&mut dice, self, &kinds),
         };
         let places: Vec<Vec<Vec<Vec3>>> = places
@@ -316,6 +318,14 @@ impl Scene {
                 normal: turn * normal,
             })
             .collect();
+        if self.weight > 0.0 {
+            let weight = Gravity { acceleration: turn * Vec3::new(0.0, 0.0, -self.weight) };
+            for kind in &mut kinds {
+                // Before the pull to the middle, as documents have it.
+                let driven = kind.forces.iter().position(|force| !force.is_elastic());
+                kind.forces.insert(driven.unwrap_or(kind.forces.len()), Force::Gravity(weight));
+            }
+        }
         let edge = kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
         let near = self.proximity * edge;
         let mut contact = ContactModel::new(&kinds, &planes, Reach { proximity: near, depth: near, margin: near });
@@ -338,13 +348,8 @@ impl Scene {
             contact = contact.suited_to(size);
         }
         let integrator = Integrator { method: self.method, size };
-        let model = Model {
-            seed: self.seed,
-            contact: Some(contact),
-            gravity: turn * Vec3::new(0.0, 0.0, -self.weight),
-            planes,
-            ..Model::of(kinds, integrator, self.until)
-        };
+        let model =
+            Model { seed: self.seed, contact: Some(contact), planes, ..Model::of(kinds, integrator, self.until) };
         let state = State::new(&model, &places);
         (model, state)
     }
@@ -357,26 +362,27 @@ impl Scene {
         let is_sheet = matches!(of.mesh, Mesh::Sheet { .. });
         let topology = Topology::of(&rest);
         let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
-        let mut elasticity = Elasticity::default();
+        let mut forces = Vec::new();
         if of.skin == Skin::ShapeMemory || is_sheet {
             let memory = ShapeMemory::new(&rest.positions, &rings, of.stiffness, Reaction::Exact);
-            elasticity.shape_memory.push(memory);
+            forces.push(Force::ShapeMemory(memory));
         }
         if of.skin == Skin::Membrane {
             let law = MembraneLaw::Skalak { shear: of.stiffness, area: 3.0 * of.stiffness };
-            elasticity.membrane.push(Membrane::new(&rest.positions, &rest.facets, law));
+            forces.push(Force::Membrane(Membrane::new(&rest.positions, &rest.facets, law)));
             let rigidity = 0.1 * of.stiffness * geometry::mean_edge_length(&rest).powi(2);
-            elasticity.bending.push(Bending::new(&rest.positions, &topology.flaps, rigidity, RestAngle::Remembered));
+            let bending = Bending::new(&rest.positions, &topology.flaps, rigidity, RestAngle::Remembered);
+            forces.push(Force::Bending(bending));
         }
         if is_sheet {
-            elasticity.springs.push(Springs::on_edges(&rest.positions, &topology.edges, of.stiffness));
+            forces.push(Force::Springs(Springs::on_edges(&rest.positions, &topology.edges, of.stiffness)));
         }
         let edge = geometry::mean_edge_length(&rest);
-        let matrix = elasticity.stiffness(&rest.positions, &rest.positions);
+        let matrix = sum::stiffness(&forces, true, &rest.positions, &rest.positions);
         let stiffest = (0..rest.positions.len()).map(|atom| matrix.diagonal(atom)).fold(0.0, f64::max);
         let rules = BarrierRules::with_energy(0.1 * stiffest * edge * edge);
-        elasticity.barrier.push(Barrier::new(&rest.positions, &rest.facets, &topology.flaps, rules));
-        let mut kind = Kind::new(&format!("type {number}"), rest, elasticity);
+        forces.push(Force::Barrier(Barrier::new(&rest.positions, &rest.facets, &topology.flaps, rules)));
+        let mut kind = Kind::new(&format!("type {number}"), rest, forces);
         kind.drag = of.drag;
         kind.volume = match of.volume {
             Volume::Free => VolumeRule::Free,
@@ -393,7 +399,8 @@ impl Scene {
             }
             kind.held = held;
         }
-        kind.attraction = (of.pull > 0.0).then_some(Attraction { to: Vec3::zeros(), stiffness: of.pull });
+        let pull = Force::Attraction(Attraction { to: Vec3::zeros(), stiffness: of.pull });
+        kind.forces.extend((of.pull > 0.0).then_some(pull));
         kind.brownian =
             (of.speed > 0.0).then_some(BrownianMotility { speed: of.speed, persistence: 10.0, space: Space::Volume });
         kind.largest_stiffness = kind.measure_largest_stiffness();
@@ -426,9 +433,10 @@ fn stable_step(kinds: &[Kind]) -> f64 {
 }
 
 /// Two cells, each turned and squeezed without a change of its volume, that just touch.
-fn pair(dice: &mut Dice, kinds: &[Kind]) -> Vec<Vec<Vec<Vec3>>> {
+fn pair(dice: &mut Dice, scene: &Scene, kinds: &[Kind]) -> Vec<Vec<Vec<Vec3>>> {
     let mut cells: Vec<Vec<Vec3>> = Vec::new();
-    for kind in kinds.iter().flat_map(|kind| std::iter::repeat_n(kind, kind.cells)) {
+    let of_types = kinds.iter().zip(&scene.types);
+    for kind in of_types.flat_map(|(kind, of)| std::iter::repeat_n(kind, of.cells)) {
         let turn = dice.turn();
         let [a, b] = [0; 2].map(|_| dice.between(0.85, 1.15));
         let lean = dice.between(-0.1, 0.1);
@@ -451,13 +459,13 @@ fn scatter(dice: &mut Dice, scene: &Scene, kinds: &[Kind]) -> (Vec<Vec<Vec<Vec3>
     let closed: Vec<usize> = (0..kinds.len()).filter(|number| !is_sheet(*number)).collect();
     let largest = closed.iter().map(|number| radius(&kinds[*number])).fold(0.0, f64::max);
     let filled: f64 =
-        closed.iter().map(|number| kinds[*number].cells as f64 * (2.0 * radius(&kinds[*number])).powi(3)).sum();
+        closed.iter().map(|number| scene.types[*number].cells as f64 * (2.0 * radius(&kinds[*number])).powi(3)).sum();
     let mut half = 0.5 * filled.cbrt();
     let mut taken: Vec<(Vec3, f64)> = Vec::new();
     let mut places = vec![Vec::new(); kinds.len()];
     for &number in &closed {
         let (kind, own) = (&kinds[number], radius(&kinds[number]));
-        for _ in 0..kind.cells {
+        for _ in 0..scene.types[number].cells {
             let centre = loop {
                 let centre = Vec3::from_fn(|_, _| dice.between(-half, half));
                 if taken.iter().all(|(other, its)| (centre - other).norm() > own + its + 0.02 * kind.edge) {

@@ -131,6 +131,10 @@ pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fa
     if options.scheme.is_implicit() && variables > MOST_IMPLICIT {
         faults.push(too_large(&document.name, variables, name, "take --scheme rk45"));
     }
+    if !options.scheme.is_built_in() {
+        let fault = Fault::new(format!("this program was built without diffsol, which has the scheme {name}"));
+        faults.push(fault.help("take --scheme rosenbrock, or build with `--features diffsol`"));
+    }
     if options.scheme == Scheme::Bdf && !document.system.events.is_empty() {
         let fault = Fault::new(format!("the scheme bdf takes no events, and {} has some", document.name));
         faults.push(fault.help("take --scheme rosenbrock: it is for stiff systems too"));

@@ -1,8 +1,8 @@
 //! Second reading: expressions are resolved, their units checked, and the system is put together.
 
 use super::circles::circles;
+use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
-use super::desk::Desk;
 use super::document::Level;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
@@ -26,14 +26,14 @@ pub(super) enum Use {
 
 /// The second reader.
 pub(super) struct Builder<'a, 'd> {
-    pub(super) desk: &'d mut Desk,
+    pub(super) context: &'d mut Context,
     pub(super) known: Declarations<'a>,
     start: Scope,
     fixed: Scope,
 }
 
 impl<'a, 'd> Builder<'a, 'd> {
-    pub(super) fn new(desk: &'d mut Desk, known: Declarations<'a>) -> Self {
+    pub(super) fn new(context: &'d mut Context, known: Declarations<'a>) -> Self {
         let no_time = "only rates, definitions, events and transfers can use the time".to_owned();
         let start = Scope { no_time: no_time.clone(), ..known.scope.clone() };
         let mut fixed = Scope { no_time, ..known.scope.clone() };
@@ -42,7 +42,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         for id in known.scope.quantities.keys().filter(|id| !is_parameter(id)) {
             fixed.absent.insert(id.clone(), "this must keep one value: use numbers and parameters".to_owned());
         }
-        Self { desk, known, start, fixed }
+        Self { context, known, start, fixed }
     }
 
     fn scope(&self, allowed: Use) -> &Scope {
@@ -56,7 +56,7 @@ impl<'a, 'd> Builder<'a, 'd> {
     /// Reads an expression; `expected` is its unit and what it is for. A number alone is taken in that unit.
     pub(super) fn expression(&mut self, text: &Text, allowed: Use, expected: Option<(&Unit, &str)>) -> Option<Expr> {
         let (node, troubles) = parse(&text.text);
-        troubles.iter().for_each(|trouble| tell(self.desk, text, trouble));
+        troubles.iter().for_each(|trouble| tell(self.context, text, trouble));
         let resolved = self.scope(allowed).resolve(&node);
         match resolved {
             Ok(expr) if troubles.is_empty() => {
@@ -67,7 +67,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             }
             Ok(_) => None,
             Err(more) => {
-                more.iter().for_each(|trouble| tell(self.desk, text, trouble));
+                more.iter().for_each(|trouble| tell(self.context, text, trouble));
                 None
             }
         }
@@ -80,7 +80,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             Some((unit, what)) => units.expect(node, unit, what, &mut troubles),
             None => drop(units.measure(node, &mut troubles)),
         }
-        troubles.iter().for_each(|trouble| tell(self.desk, text, trouble));
+        troubles.iter().for_each(|trouble| tell(self.context, text, trouble));
     }
 
     /// The expression in an attribute; nothing when it is absent or at fault.
@@ -101,7 +101,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         let value = text.text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
         if value.is_none() {
             let message = format!("`{name}` is \"{}\"; a number was expected", text.text.trim());
-            self.desk.fault(text.whole(), &message, "not a number", "write a number such as 0.1 or 1e-6");
+            self.context.fault(text.whole(), &message, "not a number", "write a number such as 0.1 or 1e-6");
         }
         value
     }
@@ -111,7 +111,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         let value = self.number(element, name)?;
         if value <= 0.0 {
             let message = format!("`{name}` is {value}; a number above 0 was expected");
-            self.desk.fault(element.place(name), &message, "not above 0", "write a number such as 0.1 or 1e-6");
+            self.context.fault(element.place(name), &message, "not above 0", "write a number such as 0.1 or 1e-6");
             return None;
         }
         Some(value)
@@ -158,7 +158,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                 unit: element.word("unit"),
                 id,
             });
-            places.push(self.desk.place(element.place("id"), "declared here"));
+            places.push(self.context.place(element.place("id"), "declared here"));
         }
         if self.known.level == Level::Field {
             for name in POSITION {
@@ -171,7 +171,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                     initial,
                     unit,
                 });
-                places.push(self.desk.place(root.at.clone(), "the position"));
+                places.push(self.context.place(root.at.clone(), "the position"));
             }
         }
         (quantities, places)
@@ -203,14 +203,14 @@ impl<'a, 'd> Builder<'a, 'd> {
                 ),
                 None => {
                     let variables = self.known.ids().filter(|id| self.known.sort(id) == Some("variable"));
-                    let near = self.desk.meant(&id, variables);
+                    let near = self.context.meant(&id, variables);
                     let help = near.map_or(format!("declare <variable id=\"{id}\" initial=\"…\">"), |near| {
                         format!("did you mean `{near}`?")
                     });
                     (format!("there is no variable `{id}`"), help)
                 }
             };
-            self.desk.fault(element.place("of"), &message, "this equation", &help);
+            self.context.fault(element.place("of"), &message, "this equation", &help);
         }
         found
     }
@@ -219,7 +219,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         let text = match (element.attribute("rate"), equation) {
             (Some(_), Some(equation)) => {
                 let message = format!("`{id}` has a rate and an equation");
-                self.desk.fault(equation.place("of"), &message, "a second equation", "remove one of them");
+                self.context.fault(equation.place("of"), &message, "a second equation", "remove one of them");
                 return None;
             }
             (Some(rate), None) => rate.clone(),
@@ -227,7 +227,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             (None, None) => {
                 let help =
                     format!("write <equation of=\"{id}\">…</equation>, or rate=\"0\" for what only events change");
-                self.desk.fault(element.place("id"), &format!("`{id}` has no equation"), "changes how?", &help);
+                self.context.fault(element.place("id"), &format!("`{id}` has no equation"), "changes how?", &help);
                 return None;
             }
         };
@@ -241,7 +241,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         let Some(reaction) = reactions.next() else { return Some(Expr::Number(0.0)) };
         if let Some(second) = reactions.next() {
             let message = format!("`{id}` has two reactions");
-            self.desk.fault(second.at.clone(), &message, "a second reaction", "write their sum in one <reaction>");
+            self.context.fault(second.at.clone(), &message, "a second reaction", "write their sum in one <reaction>");
         }
         let unit = self.per_time(id);
         let what = format!("the reaction of `{id}`");
@@ -269,21 +269,21 @@ impl<'a, 'd> Builder<'a, 'd> {
         let found = circles(system.quantities.len(), &uses);
         for circle in &found {
             let id = |number: &usize| format!("`{}`", system.quantities[*number].id);
-            let way: Vec<String> = circle.iter().chain([&circle[0]]).map(id).collect();
+            let path: Vec<String> = circle.iter().chain([&circle[0]]).map(id).collect();
             let defined = |number: &usize| matches!(system.quantities[*number].role, Role::Defined { .. });
             let what = if circle.iter().all(defined) { "definitions" } else { "initial values" };
-            let message = format!("{what} go in a circle: {}", way.join(" → "));
+            let message = format!("{what} go in a circle: {}", path.join(" → "));
             let at = self.known.quantities[circle[0]].element.place("id");
             let help = "let one of them be a number, or a <variable> with an equation";
-            self.desk.fault(at, &message, "in the circle", help);
+            self.context.fault(at, &message, "in the circle", help);
         }
         if found.is_empty() {
             let lengths = super::start::lengths(system.quantities.len(), &uses);
             if let Some(number) = lengths.iter().position(|length| *length > LONGEST_CHAIN) {
                 let at = self.known.quantities[number].element.place("id");
                 let message = format!("more than {LONGEST_CHAIN} quantities in a row use each other to be computed");
-                self.desk.fault(at, &message, "too far down", "let expressions do more at once");
-            } else if self.desk.is_clean() {
+                self.context.fault(at, &message, "too far down", "let expressions do more at once");
+            } else if self.context.is_clean() {
                 self.check_finite(system);
             }
         }
@@ -302,7 +302,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             if !value.is_finite() {
                 let message = format!("`{attribute}` of `{}` is {value}, which is not finite", declared.id);
                 let at = declared.element.place(attribute);
-                self.desk.fault(at, &message, &value.to_string(), "correct it: a run must start from numbers");
+                self.context.fault(at, &message, &value.to_string(), "correct it: a run must start from numbers");
             }
         }
     }

@@ -1,6 +1,6 @@
 //! First reading of a document: what has an identifier, its unit, and the functions.
 
-use super::desk::Desk;
+use super::context::Context;
 use super::document::Level;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Function, Scope, Trouble, Unit, is_identifier, is_reserved, parse};
@@ -57,30 +57,31 @@ impl<'a> Declarations<'a> {
 }
 
 /// Tells a trouble of an expression at its place in the document.
-pub(super) fn tell(desk: &mut Desk, text: &Text, trouble: &Trouble) {
-    desk.fault(text.place(&trouble.at), &trouble.message, &trouble.label, &trouble.help);
+pub(super) fn tell(context: &mut Context, text: &Text, trouble: &Trouble) {
+    context.fault(text.place(&trouble.at), &trouble.message, &trouble.label, &trouble.help);
 }
 
 /// Reads the unit in an attribute.
-pub(super) fn unit(desk: &mut Desk, element: &Element, attribute: &str) -> Option<Unit> {
+pub(super) fn unit(context: &mut Context, element: &Element, attribute: &str) -> Option<Unit> {
     let text = element.attribute(attribute)?;
     match Unit::read(&text.text) {
         Ok(unit) => Some(unit),
         Err(error) => {
-            desk.fault(text.place(&error.at), &error.message, "this unit", &error.help);
+            context.fault(text.place(&error.at), &error.message, "this unit", &error.help);
             None
         }
     }
 }
 
 /// Reads all declarations of a document.
-pub(super) fn declare<'a>(desk: &mut Desk, root: &'a Element) -> Declarations<'a> {
-    let level = level(desk, root);
-    let (time_text, time) = base_unit(desk, root, "time_unit", "s", &Unit::read("s").unwrap_or_else(|_| Unit::plain()));
+pub(super) fn declare<'a>(context: &mut Context, root: &'a Element) -> Declarations<'a> {
+    let level = level(context, root);
+    let (time_text, time) =
+        base_unit(context, root, "time_unit", "s", &Unit::read("s").unwrap_or_else(|_| Unit::plain()));
     let grid = root.all("grid").next();
     let micrometre = Unit::read("um").unwrap_or_else(|_| Unit::plain());
     let (length_text, length) = match grid {
-        Some(grid) => base_unit(desk, grid, "unit", "um", &micrometre),
+        Some(grid) => base_unit(context, grid, "unit", "um", &micrometre),
         None => ("um".to_owned(), micrometre),
     };
     let mut found = Declarations {
@@ -100,28 +101,28 @@ pub(super) fn declare<'a>(desk: &mut Desk, root: &'a Element) -> Declarations<'a
         let id = element.word("id");
         let quantity = QUANTITIES.contains(&element.kind.name);
         let position = level == Level::Field && POSITION.contains(&id.as_str());
-        if !usable(desk, element, &id, position) || !unique(desk, element, &id, &mut lines) || !quantity {
+        if !usable(context, element, &id, position) || !unique(context, element, &id, &mut lines) || !quantity {
             continue;
         }
-        if let Some(unit) = unit(desk, element, "unit") {
+        if let Some(unit) = unit(context, element, "unit") {
             found.units.insert(id.clone(), unit);
         }
         found.scope.quantities.insert(id.clone(), found.quantities.len() as QuantityId);
         found.quantities.push(Declared { id, element });
     }
     if level == Level::Field {
-        for (place, name) in POSITION.iter().enumerate() {
-            found.scope.quantities.insert((*name).to_owned(), (found.quantities.len() + place) as QuantityId);
+        for (index, name) in POSITION.iter().enumerate() {
+            found.scope.quantities.insert((*name).to_owned(), (found.quantities.len() + index) as QuantityId);
             if found.measured {
                 found.units.insert((*name).to_owned(), found.length.clone());
             }
         }
     }
-    functions(desk, root, &mut found.scope);
+    functions(context, root, &mut found.scope);
     found
 }
 
-fn level(desk: &mut Desk, root: &Element) -> Level {
+fn level(context: &mut Context, root: &Element) -> Level {
     let has_fields = root.all("field").next().is_some();
     let level = match root.word("level").as_str() {
         "scene" => Level::Scene,
@@ -131,7 +132,7 @@ fn level(desk: &mut Desk, root: &Element) -> Level {
         "" => Level::Scene,
         other => {
             let message = format!("there is no level \"{other}\"");
-            desk.fault(root.place("level"), &message, "unknown level", "write \"scene\", \"cell\" or \"field\"");
+            context.fault(root.place("level"), &message, "unknown level", "write \"scene\", \"cell\" or \"field\"");
             return if has_fields { Level::Field } else { Level::Scene };
         }
     };
@@ -144,7 +145,7 @@ fn level(desk: &mut Desk, root: &Element) -> Level {
     };
     for element in root.children.iter().filter(|child| misplaced.contains(&child.kind.name)) {
         let message = format!("<{}> cannot stand in a document of level {}", element.kind.name, name_of(level));
-        desk.fault(element.at.clone(), &message, "not at this level", help);
+        context.fault(element.at.clone(), &message, "not at this level", help);
     }
     level
 }
@@ -158,21 +159,21 @@ fn name_of(level: Level) -> &'static str {
 }
 
 /// A unit that must measure the same as a base unit.
-fn base_unit(desk: &mut Desk, element: &Element, attribute: &str, usual: &str, base: &Unit) -> (String, Unit) {
+fn base_unit(context: &mut Context, element: &Element, attribute: &str, usual: &str, base: &Unit) -> (String, Unit) {
     let usual = || (usual.to_owned(), base.clone());
-    let Some(found) = unit(desk, element, attribute) else { return usual() };
+    let Some(found) = unit(context, element, attribute) else { return usual() };
     if found.dimension() == base.dimension() {
         return (element.word(attribute), found);
     }
     let wanted = base.dimension().map_or(String::new(), |dimension| dimension.with_article());
     let told = found.dimension().map_or(String::new(), |dimension| dimension.with_article());
     let message = format!("`{attribute}` is {told}; {wanted} was expected");
-    desk.fault(element.place(attribute), &message, &told, &format!("write a unit such as \"{}\"", base.text()));
+    context.fault(element.place(attribute), &message, &told, &format!("write a unit such as \"{}\"", base.text()));
     usual()
 }
 
 /// Whether a word can be an identifier here.
-fn usable(desk: &mut Desk, element: &Element, id: &str, position: bool) -> bool {
+fn usable(context: &mut Context, element: &Element, id: &str, position: bool) -> bool {
     let (message, help) = if !is_identifier(id) {
         (format!("\"{id}\" is no identifier"), "write letters, digits and _, beginning with a letter")
     } else if is_reserved(id) {
@@ -185,15 +186,15 @@ fn usable(desk: &mut Desk, element: &Element, id: &str, position: bool) -> bool 
     } else {
         return true;
     };
-    desk.fault(element.place("id"), &message, "this identifier", help);
+    context.fault(element.place("id"), &message, "this identifier", help);
     false
 }
 
-fn unique(desk: &mut Desk, element: &Element, id: &str, lines: &mut BTreeMap<String, usize>) -> bool {
+fn unique(context: &mut Context, element: &Element, id: &str, lines: &mut BTreeMap<String, usize>) -> bool {
     let at = element.place("id");
     if let Some(line) = lines.get(id) {
         let label = format!("already declared in line {line}");
-        desk.fault(
+        context.fault(
             at,
             &format!("two things have the identifier `{id}`"),
             &label,
@@ -201,30 +202,30 @@ fn unique(desk: &mut Desk, element: &Element, id: &str, lines: &mut BTreeMap<Str
         );
         return false;
     }
-    let line = desk.line(at.start);
+    let line = context.line(at.start);
     lines.insert(id.to_owned(), line);
     true
 }
 
 /// Reads the functions and checks their bodies and that none calls itself.
-fn functions(desk: &mut Desk, root: &Element, scope: &mut Scope) {
+fn functions(context: &mut Context, root: &Element, scope: &mut Scope) {
     let mut elements: BTreeMap<String, &Element> = BTreeMap::new();
     for element in root.all("function") {
         let id = element.word("id");
         if !is_identifier(&id) || is_reserved(&id) || elements.contains_key(&id) {
             continue;
         }
-        let arguments = arguments(desk, element);
+        let arguments = arguments(context, element);
         let (body, troubles) = parse(&element.text.text);
-        troubles.iter().for_each(|trouble| tell(desk, &element.text, trouble));
+        troubles.iter().for_each(|trouble| tell(context, &element.text, trouble));
         scope.functions.insert(id.clone(), Function { arguments, body });
         elements.insert(id, element);
     }
     for circle in circles(scope) {
         let element = elements[&circle[0]];
-        let way: Vec<String> = circle.iter().chain([&circle[0]]).map(|id| format!("`{id}`")).collect();
-        let message = format!("functions call each other in a circle: {}", way.join(" → "));
-        desk.fault(
+        let path: Vec<String> = circle.iter().chain([&circle[0]]).map(|id| format!("`{id}`")).collect();
+        let message = format!("functions call each other in a circle: {}", path.join(" → "));
+        context.fault(
             element.place("id"),
             &message,
             "in the circle",
@@ -242,13 +243,13 @@ fn functions(desk: &mut Desk, root: &Element, scope: &mut Scope) {
         let arguments: BTreeMap<String, Expr> =
             function.arguments.iter().map(|name| (name.clone(), Expr::Number(1.0))).collect();
         for trouble in scope.resolve_with(&function.body, &arguments).err().unwrap_or_default() {
-            tell(desk, &element.text, &trouble);
+            tell(context, &element.text, &trouble);
         }
     }
 }
 
 /// Names of a function's arguments.
-fn arguments(desk: &mut Desk, element: &Element) -> Vec<String> {
+fn arguments(context: &mut Context, element: &Element) -> Vec<String> {
     let Some(text) = element.attribute("args") else { return Vec::new() };
     let mut names: Vec<String> = Vec::new();
     let mut start = 0;
@@ -258,7 +259,7 @@ fn arguments(desk: &mut Desk, element: &Element) -> Vec<String> {
         start += part.len() + 1;
         if !is_identifier(name) || is_reserved(name) || names.iter().any(|known| known == name) {
             let message = format!("\"{name}\" cannot be the name of an argument");
-            desk.fault(at, &message, "this argument", "write different names between commas, such as args=\"x, K\"");
+            context.fault(at, &message, "this argument", "write different names between commas, such as args=\"x, K\"");
         }
         names.push(name.to_owned());
     }

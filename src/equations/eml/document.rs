@@ -182,7 +182,7 @@ impl LinkDescription {
 pub struct Endpoint {
     /// What it belongs to.
     pub root: Root,
-    /// The way from there; empty for the system, whose quantity is in the root.
+    /// The path from there; empty for the system, whose quantity is in the root.
     pub path: Vec<Step>,
     /// As written.
     pub text: String,

@@ -10,10 +10,10 @@ impl Builder<'_, '_> {
     /// The events of the document.
     pub(super) fn events(&mut self, root: &Element) -> Vec<Event> {
         let elements = root.all("event").enumerate();
-        elements.filter_map(|(place, element)| self.event(element, place)).collect()
+        elements.filter_map(|(index, element)| self.event(element, index)).collect()
     }
 
-    fn event(&mut self, element: &Element, place: usize) -> Option<Event> {
+    fn event(&mut self, element: &Element, index: usize) -> Option<Event> {
         let time = self.known.time.clone();
         let trigger = self.attribute(element, "when", Use::All, None);
         let delay = self.attribute(element, "delay", Use::All, Some((&time, "the delay")));
@@ -24,7 +24,7 @@ impl Builder<'_, '_> {
         let persistent = self.choice(element, "persistent", &["true", "false"]) == 0;
         if element.all("set").next().is_none() {
             let help = "write <set id=\"…\">…</set> in the event";
-            self.desk.fault(element.at.clone(), "the event sets nothing", "without <set>", help);
+            self.context.fault(element.at.clone(), "the event sets nothing", "without <set>", help);
         }
         let mut assignments: Vec<(QuantityId, Expr)> = Vec::new();
         let mut targets: HashSet<QuantityId> = HashSet::new();
@@ -33,11 +33,11 @@ impl Builder<'_, '_> {
             let target = value.as_ref().map(|(target, _)| *target);
             if target.is_some_and(|target| !targets.insert(target)) {
                 let message = format!("the event sets `{}` twice", set.word("id"));
-                self.desk.fault(set.place("id"), &message, "a second time", "remove one of the two");
+                self.context.fault(set.place("id"), &message, "a second time", "remove one of the two");
             }
             assignments.extend(value);
         }
-        let id = if element.attribute("id").is_some() { element.word("id") } else { format!("event_{}", place + 1) };
+        let id = if element.attribute("id").is_some() { element.word("id") } else { format!("event_{}", index + 1) };
         let true_before_start = !fires_at_start;
         let trigger = trigger?;
         Some(Event { id, trigger, true_before_start, delay, priority, values_from_firing, persistent, assignments })
@@ -53,13 +53,13 @@ impl Builder<'_, '_> {
                     format!("declare <variable id=\"{id}\" initial=\"…\" rate=\"0\"/>"),
                 ),
                 None => {
-                    let near = self.desk.meant(&id, self.known.ids());
+                    let near = self.context.meant(&id, self.known.ids());
                     let help =
                         near.map_or("declare it as a <variable>".to_owned(), |near| format!("did you mean `{near}`?"));
                     (format!("nothing has the identifier `{id}`"), help)
                 }
             };
-            self.desk.fault(set.place("id"), &message, "set here", &help);
+            self.context.fault(set.place("id"), &message, "set here", &help);
         }
         let unit = self.unit_of(&id);
         let what = format!("the new value of `{id}`");
@@ -82,7 +82,7 @@ impl Builder<'_, '_> {
                 format!("write {}", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or "))
             }
         };
-        self.desk.fault(text.whole(), &message, "unknown word", &help);
+        self.context.fault(text.whole(), &message, "unknown word", &help);
         0
     }
 }

@@ -13,13 +13,13 @@ impl Builder<'_, '_> {
         let Some(element) = elements.next() else {
             if let Some(field) = root.all("field").next() {
                 let help = "write <grid dimension=\"2\" spacing=\"1\"/>";
-                self.desk.fault(field.at.clone(), "the fields have no grid", "which grid?", help);
+                self.context.fault(field.at.clone(), "the fields have no grid", "which grid?", help);
             }
             return None;
         };
         if let Some(second) = elements.next() {
             let help = "the fields of a document share one grid; use a second document for another";
-            self.desk.fault(second.at.clone(), "there are two grids", "a second one", help);
+            self.context.fault(second.at.clone(), "there are two grids", "a second one", help);
         }
         let dimension = 2 + self.choice(element, "dimension", &["2", "3"]);
         let spacing = self.positive(element, "spacing");
@@ -29,7 +29,7 @@ impl Builder<'_, '_> {
             && size[..dimension].iter().any(|side| *side < spacing.unwrap_or(0.0).max(f64::MIN_POSITIVE))
         {
             let help = "write lengths that hold several points";
-            self.desk.fault(element.place("size"), "a side is shorter than the spacing", "too short", help);
+            self.context.fault(element.place("size"), "a side is shorter than the spacing", "too short", help);
         }
         Some(GridDescription {
             dimension,
@@ -38,7 +38,7 @@ impl Builder<'_, '_> {
             size,
             unit: self.known.length_text.clone(),
             micrometres: self.known.length.size(),
-            place: self.desk.place(element.at.clone(), "the grid"),
+            place: self.context.place(element.at.clone(), "the grid"),
         })
     }
 
@@ -57,7 +57,7 @@ impl Builder<'_, '_> {
             _ => {
                 let message = format!("`{name}` is \"{}\"; {dimension} numbers were expected", text.text.trim());
                 let example = if dimension == 2 { "100 100" } else { "100 100 50" };
-                self.desk.fault(
+                self.context.fault(
                     text.whole(),
                     &message,
                     "here",
@@ -96,25 +96,25 @@ impl Builder<'_, '_> {
             initial: initial?,
             range,
             walls,
-            place: self.desk.place(element.place("id"), "the field"),
+            place: self.context.place(element.place("id"), "the field"),
             id,
         })
     }
 
     fn profile(&mut self, element: &Element) -> Option<Profile> {
-        let ways = ["initial", "image", "dataset"];
-        let given: Vec<&str> = ways.into_iter().filter(|name| element.attribute(name).is_some()).collect();
+        let starts = ["initial", "image", "dataset"];
+        let given: Vec<&str> = starts.into_iter().filter(|name| element.attribute(name).is_some()).collect();
         match given[..] {
             [] => {
                 let message = format!("the field `{}` has no initial value", element.word("id"));
                 let help =
                     "write initial=\"0\" or an expression of x, y, z, or image=\"…\" or dataset=\"FILE:/DATASET\"";
-                self.desk.fault(element.place("id"), &message, "starts how?", help);
+                self.context.fault(element.place("id"), &message, "starts how?", help);
                 return None;
             }
             [_, second, ..] => {
                 let message = format!("the field `{}` starts in {} ways", element.word("id"), given.len());
-                self.desk.fault(
+                self.context.fault(
                     element.place(second),
                     &message,
                     "a second way",
@@ -124,7 +124,7 @@ impl Builder<'_, '_> {
             _ => {}
         }
         let scale = self.number(element, "scale").unwrap_or(1.0);
-        let place = self.desk.place(element.place(given[0]), "the start");
+        let place = self.context.place(element.place(given[0]), "the start");
         Some(match given[0] {
             // The system has the expression, and has been told of its faults.
             "initial" => Profile::Expression(Expr::Number(0.0)),
@@ -133,7 +133,7 @@ impl Builder<'_, '_> {
                 let text = element.word("dataset");
                 let Some((file, dataset)) = text.rsplit_once(":/") else {
                     let help = "write dataset=\"FILE:/DATASET\", such as \"start.h5:/fields/U\"";
-                    self.desk.fault(
+                    self.context.fault(
                         element.place("dataset"),
                         "the dataset of the file is not named",
                         "which dataset?",
@@ -158,20 +158,20 @@ impl Builder<'_, '_> {
                     1 => ("a fixed wall has no value", "write value=\"…\""),
                     _ => ("only a fixed wall has a value", "write kind=\"fixed\", or remove `value`"),
                 };
-                self.desk.fault(wall.place("kind"), message, "this kind", help);
+                self.context.fault(wall.place("kind"), message, "this kind", help);
             }
             let side = wall.word("side");
-            let Some(place) = SIDES[..2 * dimension].iter().position(|known| *known == side) else {
+            let Some(index) = SIDES[..2 * dimension].iter().position(|known| *known == side) else {
                 let sides = SIDES[..2 * dimension].join(", ");
                 let message = format!("a grid of {dimension} dimensions has no side \"{side}\"");
-                self.desk.fault(wall.place("side"), &message, "unknown side", &format!("its sides are {sides}"));
+                self.context.fault(wall.place("side"), &message, "unknown side", &format!("its sides are {sides}"));
                 continue;
             };
-            if walls[place].is_some() {
+            if walls[index].is_some() {
                 let message = format!("`{id}` has two walls at {side}");
-                self.desk.fault(wall.place("side"), &message, "a second one", "remove one of them");
+                self.context.fault(wall.place("side"), &message, "a second one", "remove one of them");
             }
-            walls[place] = Some(match kind {
+            walls[index] = Some(match kind {
                 0 => Wall::NoFlux,
                 1 => Wall::Fixed(value.unwrap_or(Expr::Number(0.0))),
                 _ => Wall::Periodic,
@@ -186,7 +186,7 @@ impl Builder<'_, '_> {
                 let other = SIDES[2 * axis + usize::from(periodic[0])];
                 let message = format!("`{id}` is periodic at {alone} and not at {other}");
                 let help = format!("write <wall side=\"{other}\" kind=\"periodic\"/> too");
-                self.desk.fault(wall.place("side"), &message, "what leaves here comes in where?", &help);
+                self.context.fault(wall.place("side"), &message, "what leaves here comes in where?", &help);
             }
         }
         walls
@@ -197,7 +197,7 @@ impl Builder<'_, '_> {
         for field in fields.iter_mut().filter(|field| matches!(field.initial, Profile::Expression(_))) {
             field.initial = Profile::Expression(system.quantities[field.quantity as usize].initial.clone());
         }
-        if !self.desk.is_clean() {
+        if !self.context.is_clean() {
             return;
         }
         let values = super::start::values(system);
@@ -211,7 +211,7 @@ impl Builder<'_, '_> {
                         "decay" => "what grows belongs into <reaction>",
                         _ => "a field that gathers by itself has no solution; attraction belongs into <reaction>",
                     };
-                    self.desk.fault(element.place(name), &message, "not 0 or more", help);
+                    self.context.fault(element.place(name), &message, "not 0 or more", help);
                 }
             }
         }

@@ -41,7 +41,7 @@ impl Builder<'_, '_> {
             to,
             transfer: transfer?,
             gain: gain.unwrap_or(1.0),
-            place: self.desk.place(element.at.clone(), "this link"),
+            place: self.context.place(element.at.clone(), "this link"),
         })
     }
 
@@ -50,7 +50,7 @@ impl Builder<'_, '_> {
         match (&from.root, &to.root) {
             (Root::System(_), Root::System(_)) => {
                 let help = "inside a system write expressions; a link joins it to scene, cell, type or field";
-                self.desk.fault(
+                self.context.fault(
                     element.place("to"),
                     "both ends of the link are in the system",
                     "the same system",
@@ -64,12 +64,12 @@ impl Builder<'_, '_> {
                     let message =
                         format!("a link cannot set `{}`, which is a <{}>", target.id, target.element.kind.name);
                     let help = format!("declare <input id=\"{}\" default=\"…\"/> and use it in an equation", target.id);
-                    self.desk.fault(element.place("to"), &message, "set from outside", &help);
+                    self.context.fault(element.place("to"), &message, "set from outside", &help);
                 }
             }
             _ => {
                 let help = "let one end be system.ID: a link joins this system to the model";
-                self.desk.fault(element.place("from"), "no end of the link is in the system", "this link", help);
+                self.context.fault(element.place("from"), "no end of the link is in the system", "this link", help);
             }
         }
     }
@@ -78,10 +78,10 @@ impl Builder<'_, '_> {
         let Some(text) = element.attribute("transfer") else { return Some(Expr::Quantity(LinkDescription::VALUE)) };
         let names = BTreeMap::from([(VALUE.to_owned(), Expr::Quantity(LinkDescription::VALUE))]);
         let (node, troubles) = parse(&text.text);
-        troubles.iter().for_each(|trouble| tell(self.desk, text, trouble));
+        troubles.iter().for_each(|trouble| tell(self.context, text, trouble));
         match self.known.scope.resolve_with(&node, &names) {
             Err(more) => {
-                more.iter().for_each(|trouble| tell(self.desk, text, trouble));
+                more.iter().for_each(|trouble| tell(self.context, text, trouble));
                 None
             }
             Ok(_) if !troubles.is_empty() => None,
@@ -102,17 +102,17 @@ impl Builder<'_, '_> {
         let units = UnitScope { units: &self.known.units, scope, time: self.known.time_in_units() };
         let mut troubles: Vec<Trouble> = Vec::new();
         units.measure_with(node, &BTreeMap::from([(VALUE.to_owned(), measure)]), &mut troubles);
-        troubles.iter().for_each(|trouble| tell(self.desk, text, trouble));
+        troubles.iter().for_each(|trouble| tell(self.context, text, trouble));
     }
 
     fn endpoint(&mut self, text: &Text) -> Option<Endpoint> {
         match end_of(&text.text, self.known.ids(), |id| self.find(id)) {
             Ok((root, path)) => {
-                let place = self.desk.place(text.whole(), "this end");
+                let place = self.context.place(text.whole(), "this end");
                 Some(Endpoint { root, path, text: text.text.trim().to_owned(), place })
             }
             Err(trouble) => {
-                tell(self.desk, text, &trouble);
+                tell(self.context, text, &trouble);
                 None
             }
         }
@@ -146,7 +146,7 @@ pub fn read_transfer(text: &str, system: &System) -> Result<Expr, Vec<Trouble>> 
     }
 }
 
-/// What an end belongs to and the way from there; `ids` are the system's, `find` looks one up.
+/// What an end belongs to and the path from there; `ids` are the system's, `find` looks one up.
 fn end_of<'a>(
     text: &str,
     ids: impl Iterator<Item = &'a str>,

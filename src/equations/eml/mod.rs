@@ -7,12 +7,11 @@
 
 mod build;
 mod circles;
+mod context;
 mod declare;
-mod desk;
 mod document;
 mod events;
 mod fields;
-mod guard;
 mod links;
 mod solver;
 mod start;
@@ -24,16 +23,16 @@ pub use document::{
     Document, Endpoint, FieldDescription, GridDescription, Index, Level, LinkDescription, Profile, Root, SIDES, Scheme,
     SolverChoice, Step, Wall,
 };
-pub use guard::{DEEPEST_ELEMENT, LARGEST_DOCUMENT, MOST_NODES};
 pub use links::{read_end, read_transfer};
 pub use solver::SCHEMES;
 pub use vocabulary::{ELEMENTS, Kind};
 pub use write::{Written, write};
+pub use xml::{DEEPEST_ELEMENT, LARGEST_DOCUMENT, MOST_ATTRIBUTES, MOST_NODES};
 
 use super::tree::System;
 use crate::error::{Result, Source};
 use build::Builder;
-use desk::Desk;
+use context::Context;
 use std::sync::Arc;
 
 /// Reads a document. A caller that reads files refuses those above [`LARGEST_DOCUMENT`] bytes unread.
@@ -42,17 +41,14 @@ use std::sync::Arc;
 /// [`crate::error::Error::Input`] with every fault: what is no XML, unknown elements, attributes and identifiers, faults
 /// of expressions, units that do not fit, circles, values that are missing or not finite.
 pub fn read(source: Arc<Source>) -> Result<Document> {
-    let mut desk = Desk::new(source);
-    if !guard::admit(&mut desk) {
-        return Err(desk.error());
-    }
-    let Some(root) = xml::tree(&mut desk) else { return Err(desk.error()) };
-    let known = declare::declare(&mut desk, &root);
-    if known.quantities.is_empty() && desk.is_clean() {
+    let mut context = Context::new(source);
+    let Some(root) = xml::tree(&mut context) else { return Err(context.error()) };
+    let known = declare::declare(&mut context, &root);
+    if known.quantities.is_empty() && context.is_clean() {
         let help = "declare <variable id=\"U\" initial=\"1\" rate=\"-0.1*U\"/>";
-        desk.fault(root.at.clone(), "the document declares nothing", "empty", help);
+        context.fault(root.at.clone(), "the document declares nothing", "empty", help);
     }
-    let mut builder = Builder::new(&mut desk, known);
+    let mut builder = Builder::new(&mut context, known);
     let (quantities, places) = builder.quantities(&root);
     let events = builder.events(&root);
     let grid = builder.grid(&root);
@@ -63,8 +59,8 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     builder.check_values(&system);
     builder.finish_fields(&mut fields, &system);
     let (level, time_unit, seconds) = (builder.known.level, builder.known.time_text.clone(), builder.known.time.size());
-    if !desk.is_clean() {
-        return Err(desk.error());
+    if !context.is_clean() {
+        return Err(context.error());
     }
     let name = root.word("name");
     Ok(Document { name, level, time_unit, seconds, system, places, grid, fields, links, solver })

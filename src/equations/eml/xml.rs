@@ -1,10 +1,19 @@
-//! XML as the rest needs it: elements and attributes of the vocabulary, each text with the way back to its place.
+//! XML as the rest needs it: elements and attributes of the vocabulary, each text with its places in the source.
 
-use super::desk::Desk;
-use super::guard::{MOST_NODES, tag_end};
+use super::context::Context;
 use super::vocabulary::{Kind, kind_of};
 use crate::error::words::{any_of, meant};
+use crate::xml::{Characters, Document, Limits, Node, Trouble, What};
 use std::ops::Range;
+
+/// The largest document that is read, bytes. A caller that reads a file looks at its length first.
+pub const LARGEST_DOCUMENT: usize = 4 << 20;
+/// The most levels of elements.
+pub const DEEPEST_ELEMENT: usize = 16;
+/// The most elements and texts.
+pub const MOST_NODES: usize = 100_000;
+/// The most attributes of an element.
+pub const MOST_ATTRIBUTES: usize = 1000;
 
 /// A text of the document, with escapes and comments taken out, and where each of its bytes came from.
 #[derive(Debug, Clone, Default)]
@@ -33,59 +42,19 @@ impl Text {
         self.place(&(start..start + trimmed.len()))
     }
 
-    fn push(&mut self, c: char, start: usize, length: usize) {
+    fn push(&mut self, c: char, at: Range<usize>) {
         self.text.push(c);
-        self.origin.extend(std::iter::repeat_n((start, start + length), c.len_utf8()));
+        self.origin.extend(std::iter::repeat_n((at.start, at.end), c.len_utf8()));
     }
 
-    /// Takes a raw piece of XML that begins at `start` in the source.
-    fn decode(raw: &str, start: usize) -> Self {
+    /// Takes pieces of the source; where there are none the text is empty and stands at `start`.
+    fn decode(source: &str, start: usize, pieces: impl Iterator<Item = Range<usize>>) -> Self {
         let mut found = Self { start, ..Self::default() };
-        let mut position = 0;
-        while let Some(c) = raw[position..].chars().next() {
-            let rest = &raw[position..];
-            let here = start + position;
-            if rest.starts_with("<!--") {
-                position += rest.find("-->").map_or(rest.len(), |end| end + 3);
-            } else if let Some(inner) = rest.strip_prefix("<![CDATA[") {
-                let end = inner.find("]]>").unwrap_or(inner.len());
-                for (at, c) in inner[..end].char_indices() {
-                    found.push(c, here + 9 + at, c.len_utf8());
-                }
-                position += (9 + end + 3).min(rest.len());
-            } else if let Some((c, length)) = escape(rest) {
-                found.push(c, here, length);
-                position += length;
-            } else {
-                found.push(c, here, c.len_utf8());
-                position += c.len_utf8();
-            }
+        for (c, at) in pieces.flat_map(|piece| Characters::new(source, piece)) {
+            found.push(c, at);
         }
         found
     }
-}
-
-/// The character that an escape at the start of a text stands for, and the bytes it takes.
-fn escape(rest: &str) -> Option<(char, usize)> {
-    let inner = rest.strip_prefix('&')?;
-    let end = inner.find(';').filter(|end| *end <= 10)?;
-    let name = &inner[..end];
-    let c = match name {
-        "lt" => '<',
-        "gt" => '>',
-        "amp" => '&',
-        "quot" => '"',
-        "apos" => '\'',
-        _ => {
-            let number = name.strip_prefix('#')?;
-            let code = match number.strip_prefix('x') {
-                Some(hex) => u32::from_str_radix(hex, 16).ok()?,
-                None => number.parse().ok()?,
-            };
-            char::from_u32(code)?
-        }
-    };
-    Some((c, end + 2))
 }
 
 /// An element that the vocabulary knows.
@@ -120,92 +89,107 @@ impl Element {
     }
 }
 
-/// The root element; faults are told to the desk. Nothing when there is no tree.
-pub(super) fn tree(desk: &mut Desk) -> Option<Element> {
-    let source = desk.source.clone();
-    let options = roxmltree::ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..Default::default() };
-    let tree = match roxmltree::Document::parse_with_options(&source.text, options) {
-        Ok(tree) => tree,
-        Err(error) => {
-            broken(desk, &error);
-            return None;
-        }
-    };
-    let root = tree.root_element();
-    let name = root.tag_name().name();
-    if name != "eml" {
-        let help = match name {
+/// The root element; faults are told to the context. Nothing when there is no tree.
+pub(super) fn tree(context: &mut Context) -> Option<Element> {
+    let source = context.source.clone();
+    let limits =
+        Limits { bytes: LARGEST_DOCUMENT, depth: DEEPEST_ELEMENT, nodes: MOST_NODES, attributes: MOST_ATTRIBUTES };
+    let tree = Document::read(&source.text, limits).map_err(|trouble| broken(context, trouble)).ok()?;
+    let root = tree.root();
+    if root.name() != "eml" {
+        let help = match root.name() {
             "sbml" => {
                 "this is an SBML model: give it where SBML is read, or translate it with `pseudopod eml from-sbml`"
             }
-            _ => "an EML document is <eml name=\"…\"> … </eml>",
+            _ => EXAMPLE,
         };
-        desk.fault(name_place(&root), &format!("the document is a <{name}> and not an <eml>"), "not EML", help);
+        context.fault(
+            root.name_at(),
+            &format!("the document is a <{}> and not an <eml>", root.name()),
+            "not EML",
+            help,
+        );
         return None;
     }
-    kind_of(name).map(|kind| element(desk, &root, kind))
+    kind_of("eml").map(|kind| element(context, root, kind))
 }
 
-fn name_place(node: &roxmltree::Node) -> Range<usize> {
-    let start = node.range().start + 1;
-    start..start + node.tag_name().name().len()
-}
+const EXAMPLE: &str = "an EML document is <eml name=\"…\"> … </eml>";
 
-/// Tells what makes the text no XML.
-fn broken(desk: &mut Desk, error: &roxmltree::Error) {
-    let position = error.pos();
-    let source = desk.source.clone();
-    let before: usize = source.text.split_inclusive('\n').take(position.row.max(1) as usize - 1).map(str::len).sum();
-    let line = source.text[before..].lines().next().unwrap_or_default();
-    let column = line.char_indices().nth(position.col.max(1) as usize - 1).map_or(line.len(), |(at, _)| at);
-    let at = before + column;
-    let told = error.to_string();
-    let told = told.rsplit_once(" at ").map_or(told.as_str(), |(told, _)| told);
-    let length = source.text[at..].chars().next().filter(|c| *c != '\n').map_or(0, char::len_utf8);
-    if !source.text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
-        let help = "an EML document is <eml name=\"…\"> … </eml>, an SBML model begins with <sbml; an experiment (TOML) is checked by `pseudopod check`";
-        desk.fault(at..at + length, "this is not XML", "XML begins with <", help);
-        return;
-    }
-    let help = "close every element, quote every attribute, write &lt; for < and &amp; for & (or `lt` and `and`)";
-    desk.fault(at..at + length, &format!("this is not well-formed XML: {told}"), "here", help);
-}
-
-fn element(desk: &mut Desk, node: &roxmltree::Node, kind: &'static Kind) -> Element {
-    let at = name_place(node);
-    let attributes = attributes(desk, node, kind, &at);
-    let mut children = Vec::new();
-    for child in node.children().filter(roxmltree::Node::is_element) {
-        let name = child.tag_name().name();
-        match kind_of(name).filter(|child| kind.children.contains(&child.name)) {
-            Some(child_kind) => children.push(element(desk, &child, child_kind)),
-            None => unknown_child(desk, kind, name, name_place(&child)),
+/// Tells why there is no tree.
+fn broken(context: &mut Context, trouble: Trouble) {
+    let at = trouble.at;
+    match trouble.what {
+        What::TooLong => {
+            let message =
+                format!("the document has {} bytes; at most {LARGEST_DOCUMENT} are read", context.source.text.len());
+            // The place would carry the whole text into the message: there is none.
+            context.lost(message, "equations need far less: keep data in files of their own");
+        }
+        What::NotXml => {
+            let others = "an SBML model begins with <sbml; an experiment (TOML) is checked by `pseudopod check`";
+            context.fault(at, "this is not XML", "XML begins with <", &format!("{EXAMPLE}, {others}"));
+        }
+        What::DocumentType => {
+            let message = "a document type and entities of its own are not read";
+            context.fault(at, message, "begins here", "remove the <!DOCTYPE …>; EML needs none");
+        }
+        What::TooDeep => {
+            let message = format!("elements are nested more than {DEEPEST_ELEMENT} deep");
+            context.fault(at, &message, "too deep", "EML has three levels; close elements with </…> or />");
+        }
+        What::TooManyNodes => {
+            let message = format!("the document has more than {MOST_NODES} elements and texts");
+            context.fault(at, &message, "too many", "equations need far less: write what spreads in space as a field");
+        }
+        What::TooManyAttributes => {
+            let message = format!("an element has more than {MOST_ATTRIBUTES} attributes");
+            context.fault(at, &message, "this element", "the chapter on EML lists the few that each element has");
+        }
+        What::Malformed { message, label, help } => {
+            // A sign that expressions have and XML keeps for itself.
+            let words = match &context.source.text[at.clone()] {
+                "<" => " (expressions take `lt` and `le` for < and <=)",
+                sign if sign.starts_with('&') => " (expressions take `and` for &&)",
+                _ => "",
+            };
+            let message = format!("this is not well-formed XML: {message}");
+            context.fault(at, &message, label, &format!("{help}{words}"));
         }
     }
-    let text = inner_text(desk, node, kind);
+}
+
+fn element(context: &mut Context, node: Node, kind: &'static Kind) -> Element {
+    let at = node.name_at();
+    let attributes = attributes(context, node, kind, &at);
+    let mut children = Vec::new();
+    for child in node.elements() {
+        let name = child.name();
+        match kind_of(name).filter(|child| kind.children.contains(&child.name)) {
+            Some(child_kind) => children.push(element(context, child, child_kind)),
+            None => unknown_child(context, kind, name, child.name_at()),
+        }
+    }
+    let text = inner_text(context, node, kind);
     Element { kind, at, attributes, text, children }
 }
 
-fn attributes(
-    desk: &mut Desk,
-    node: &roxmltree::Node,
-    kind: &'static Kind,
-    at: &Range<usize>,
-) -> Vec<(&'static str, Text)> {
+fn attributes(context: &mut Context, node: Node, kind: &'static Kind, at: &Range<usize>) -> Vec<(&'static str, Text)> {
     let known = || kind.required.iter().chain(kind.optional).copied();
+    let source = context.source.clone();
     let mut found = Vec::new();
-    for attribute in node.attributes().filter(|attribute| attribute.namespace().is_none()) {
-        let range = attribute.range_value();
-        match known().find(|name| *name == attribute.name()) {
-            Some(name) => found.push((name, Text::decode(&desk.source.text[range.clone()], range.start))),
+    for attribute in node.attributes().iter().filter(|attribute| attribute.namespace.is_none()) {
+        let value = attribute.value_at();
+        match known().find(|name| *name == attribute.name) {
+            Some(name) => found.push((name, Text::decode(&source.text, value.start, std::iter::once(value)))),
             None => {
-                let name = attribute.name();
+                let name = attribute.name;
                 let message = format!("<{}> has no attribute `{name}`", kind.name);
                 let help = match meant(name, known()) {
                     Some(near) => format!("did you mean `{near}`?"),
                     None => format!("it has {}", any_of(known())),
                 };
-                desk.fault(attribute.range_qname(), &message, "unknown attribute", &help);
+                context.fault(attribute.name_at(&source.text), &message, "unknown attribute", &help);
             }
         }
     }
@@ -215,7 +199,7 @@ fn attributes(
             ("input", "default") => "the input has no default: the value that stands until one is given".to_owned(),
             (element, name) => format!("<{element}> has no `{name}`"),
         };
-        desk.fault(
+        context.fault(
             at.clone(),
             &message,
             &format!("`{name}` is missing"),
@@ -225,7 +209,7 @@ fn attributes(
     found
 }
 
-fn unknown_child(desk: &mut Desk, kind: &Kind, name: &str, at: Range<usize>) {
+fn unknown_child(context: &mut Context, kind: &Kind, name: &str, at: Range<usize>) {
     let message = format!("<{name}> cannot stand in <{}>", kind.name);
     let help = match meant(name, kind.children.iter().copied()) {
         Some(near) => format!("did you mean <{near}>?"),
@@ -233,31 +217,27 @@ fn unknown_child(desk: &mut Desk, kind: &Kind, name: &str, at: Range<usize>) {
         None => format!("it holds {}", any_of(kind.children.iter().copied())),
     };
     let label = if kind_of(name).is_some() { "not here" } else { "unknown element" };
-    desk.fault(at, &message, label, &help);
+    context.fault(at, &message, label, &help);
 }
 
 /// The text inside an element; text where none belongs is told.
-fn inner_text(desk: &mut Desk, node: &roxmltree::Node, kind: &Kind) -> Text {
-    let range = node.range();
-    let raw = &desk.source.text[range.clone()];
-    let first = tag_end(raw);
+fn inner_text(context: &mut Context, node: Node, kind: &Kind) -> Text {
+    let texts = || node.children().filter(|child| !child.is_element());
     if kind.text {
-        let last = raw.rfind("</").unwrap_or(first).max(first);
         // Without children: a child element has been told already.
-        if node.children().any(|child| child.is_element()) {
+        if node.elements().next().is_some() {
             return Text::default();
         }
-        return Text::decode(&raw[first.min(last)..last], range.start + first.min(last));
+        let start = texts().next().map_or(node.tag_at().end, |text| text.at().start);
+        return Text::decode(&context.source.text, start, texts().map(Node::at));
     }
-    let stray =
-        node.children().find(|child| child.is_text() && child.text().is_some_and(|text| !text.trim().is_empty()));
-    if let Some(stray) = stray {
-        let range = stray.range();
-        let text = &desk.source.text[range.clone()];
+    if let Some(stray) = texts().find(|child| child.text().is_some_and(|text| !text.trim().is_empty())) {
+        let range = stray.at();
+        let text = &context.source.text[range.clone()];
         let start = range.start + text.len() - text.trim_start().len();
-        let at = start..start + text.trim().len().min(40).min(text.trim().lines().next().map_or(0, str::len));
+        let shown: usize = text.trim().lines().next().unwrap_or_default().chars().take(40).map(char::len_utf8).sum();
         let help = "remove it, or make it a comment: <!-- … -->";
-        desk.fault(at, &format!("text in <{}>, which holds none", kind.name), "this text", help);
+        context.fault(start..start + shown, &format!("text in <{}>, which holds none", kind.name), "this text", help);
     }
     Text::default()
 }

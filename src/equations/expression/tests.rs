@@ -1,4 +1,4 @@
-//! What expressions promise: precedence, places of faults, the way back to text, units.
+//! What expressions promise: precedence, places of faults, writing them as text, units.
 
 use super::*;
 use crate::equations::tree::{Binary, Expr, Unary};

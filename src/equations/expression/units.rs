@@ -140,13 +140,13 @@ fn factors(text: &str) -> Vec<(String, f64)> {
         return vec![(format!("({text})"), 1.0)];
     }
     let mut unit = Unit::plain();
-    for (place, part) in text.split('/').enumerate() {
+    for (index, part) in text.split('/').enumerate() {
         for word in part.split([' ', '*', '·', '×']).filter(|word| !word.is_empty() && *word != "1") {
             let (name, power) = match word.split_once('^') {
                 Some((name, power)) => (name.to_owned(), power.parse().unwrap_or(1.0)),
                 None => (word.to_owned(), 1.0),
             };
-            let sign = if place == 0 { 1.0 } else { -1.0 };
+            let sign = if index == 0 { 1.0 } else { -1.0 };
             let factor = Unit { written: vec![(name, sign * power)], ..Unit::plain() };
             unit = unit.times(&factor);
         }

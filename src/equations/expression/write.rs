@@ -107,8 +107,8 @@ fn number(value: f64, strength: u8, text: &mut String) {
 fn call(function: &str, arguments: &[&Expr], name: &impl Fn(QuantityId) -> String, text: &mut String) {
     text.push_str(function);
     text.push('(');
-    for (place, argument) in arguments.iter().enumerate() {
-        if place > 0 {
+    for (index, argument) in arguments.iter().enumerate() {
+        if index > 0 {
             text.push_str(", ");
         }
         part(argument, name, 0, text);

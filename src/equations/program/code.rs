@@ -57,7 +57,7 @@ pub struct Constants {
 }
 
 impl Constants {
-    fn place(&mut self, value: f64) -> usize {
+    fn slot(&mut self, value: f64) -> usize {
         let same = |known: &f64| known.to_bits() == value.to_bits();
         self.values.iter().position(same).unwrap_or_else(|| {
             self.values.push(value);
@@ -69,7 +69,7 @@ impl Constants {
     pub fn collect(&mut self, graph: &Graph, roots: &[NodeId]) {
         for (id, _) in graph.needed(roots).iter().enumerate().filter(|(_, needed)| **needed) {
             if let Some(value) = graph.value(id as NodeId) {
-                self.place(value);
+                self.slot(value);
             }
         }
     }
@@ -106,8 +106,8 @@ impl Code {
                 Node::Select(a, b, c) => (Action::Select, [a, b, c]),
             };
             let [a, b, c] = operands.map(|operand| register[operand as usize]);
-            for (place, operand) in operands.iter().enumerate() {
-                let first = !operands[..place].contains(operand);
+            for (index, operand) in operands.iter().enumerate() {
+                let first = !operands[..index].contains(operand);
                 let is_result = graph.operands(*operand).next().is_some();
                 if first && is_result && last_use[*operand as usize] == id {
                     free.push(register[*operand as usize]);

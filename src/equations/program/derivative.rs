@@ -200,7 +200,7 @@ mod tests {
         let size = at(expr, time, x, y).abs();
         for (value, difference) in derivatives(expr, time, x, y).into_iter().zip(differences) {
             // The difference errs by h² times a third derivative (of the size of the first for these functions, with
-            // room for steep ones) and by round-off over h.
+            // a margin for steep ones) and by round-off over h.
             let error = 1e-6 * (1.0 + value.abs()) * (1.0 + value.abs()).sqrt() + 1e-10 * size;
             assert!((value - difference).abs() <= error, "{expr:?}: {value} against {difference}");
         }

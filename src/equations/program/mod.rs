@@ -47,7 +47,7 @@ pub struct Program {
     pub timeless: bool,
     /// Whether the rates never read the clock, not even for a switch: at the same state and open values they are the same.
     pub rates_stand_still: bool,
-    /// A number that programs with other rates or registers do not share.
+    /// A number that programs with other rates, slots, constants or registers do not share.
     pub mark: u64,
     /// Row and column of the Jacobian's entries that are not always zero, row after row.
     pub pattern: Vec<(u32, u32)>,
@@ -117,7 +117,7 @@ impl Program {
             sizes: sizes(system, &initial),
             initial,
             rates_stand_still: !rates.reads(0),
-            mark: mark(&rates, &constants.values, registers),
+            mark: mark(&rates, &constants.values, slots, registers),
             rates,
             linear,
             timeless,
@@ -139,12 +139,12 @@ impl Program {
         1 + self.variables.len()
     }
 
-    /// The place of an open quantity among the open ones.
+    /// The index of an open quantity among the open ones.
     pub fn open_place(&self, quantity: QuantityId) -> Option<usize> {
         self.open.iter().position(|&open| open == quantity)
     }
 
-    /// The place of a variable in the state.
+    /// The index of a variable in the state.
     pub fn variable_place(&self, quantity: QuantityId) -> Option<usize> {
         self.variables.iter().position(|&variable| variable == quantity)
     }
@@ -170,10 +170,10 @@ impl Program {
     }
 }
 
-/// A number made of the rates' operations, the constants and the number of registers.
-fn mark(rates: &Code, constants: &[f64], registers: usize) -> u64 {
+/// A number made of the rates' operations, the constants and the numbers of slots and registers.
+fn mark(rates: &Code, constants: &[f64], slots: usize, registers: usize) -> u64 {
     let mut hasher = std::hash::DefaultHasher::new();
-    (rates, registers).hash(&mut hasher);
+    (rates, slots, registers).hash(&mut hasher);
     constants.iter().for_each(|constant| constant.to_bits().hash(&mut hasher));
     hasher.finish()
 }
@@ -203,8 +203,8 @@ fn quantity_nodes(
     // Slots first, so that their nodes have the smallest numbers.
     graph.slot(0);
     let mut nodes = vec![NodeId::MAX; system.quantities.len()];
-    for (place, &quantity) in variables.iter().chain(open).enumerate() {
-        nodes[quantity as usize] = graph.slot(1 + place as u32);
+    for (index, &quantity) in variables.iter().chain(open).enumerate() {
+        nodes[quantity as usize] = graph.slot(1 + index as u32);
     }
     for (number, quantity) in system.quantities.iter().enumerate() {
         if matches!(quantity.role, Role::Parameter) && nodes[number] == NodeId::MAX {
@@ -227,7 +227,7 @@ fn rate_nodes(system: &System, graph: &mut Graph, variables: &[QuantityId], node
     variables.iter().map(rate).collect()
 }
 
-/// Rates, derivatives by time, and the Jacobian's entries with their places.
+/// Rates, derivatives by time, and the Jacobian's entries with their positions.
 fn linear_nodes(graph: &mut Graph, rates: &[NodeId]) -> (Vec<NodeId>, Vec<(u32, u32)>) {
     let mut nodes = rates.to_vec();
     nodes.extend(rates.iter().map(|&rate| graph.derivative(rate, 0)).collect::<Vec<_>>());

@@ -7,7 +7,7 @@ impl Plan<'_, '_> {
     /// A value that is missing is a fault where it can never come, or is needed at once; else it is told of.
     pub fn check_values(&self, events: &[Event]) {
         let mut used = vec![false; self.quantities.len()];
-        let mut mark = |place: QuantityId| used[place as usize] = true;
+        let mut mark = |quantity_id: QuantityId| used[quantity_id as usize] = true;
         for quantity in &self.quantities {
             match &quantity.role {
                 Role::Defined { rule } => rule.each_quantity(&mut mark),
@@ -23,14 +23,14 @@ impl Plan<'_, '_> {
             let values = event.assignments.iter().map(|(_, value)| value);
             formulas.into_iter().flatten().chain(values).for_each(|formula| formula.each_quantity(&mut mark));
         }
-        for &place in &self.unset {
-            let quantity = &self.quantities[place as usize];
+        for &quantity_id in &self.unset {
+            let quantity = &self.quantities[quantity_id as usize];
             let id = &quantity.id;
             let flows = matches!(&quantity.role, Role::Variable { .. } if self.rules.contains_key(id.as_str()));
-            let fixed = matches!(quantity.role, Role::Parameter) && used[place as usize];
+            let fixed = matches!(quantity.role, Role::Parameter) && used[quantity_id as usize];
             if flows || fixed {
                 let found = format!("`{id}` has no value");
-                self.page.fault(self.places[place as usize], found, "add `value=\"…\"` or an initial assignment");
+                self.page.fault(self.nodes[quantity_id as usize], found, "add `value=\"…\"` or an initial assignment");
             } else {
                 self.page.notice(format!("parameter `{id}` has no value: it is not a number until an event sets it"));
             }
@@ -45,21 +45,21 @@ impl Plan<'_, '_> {
                 && let Some(circle) = self.circle_from(start, &mut mark)
             {
                 let names: Vec<&str> =
-                    circle.iter().map(|&place| self.quantities[place as usize].id.as_str()).collect();
+                    circle.iter().map(|&quantity_id| self.quantities[quantity_id as usize].id.as_str()).collect();
                 let found = match names.as_slice() {
                     [one] => format!("`{one}` is defined by itself"),
                     _ => format!("definitions go in a circle: {} → {}", names.join(" → "), names[0]),
                 };
                 let help = "give one of them a value that does not depend on the others";
-                self.page.fault(self.places[circle[0] as usize], found, help);
+                self.page.fault(self.nodes[circle[0] as usize], found, help);
                 return;
             }
         }
     }
 
     /// What must be known at the start before a quantity is.
-    fn needs(&self, place: QuantityId) -> Vec<QuantityId> {
-        let quantity = &self.quantities[place as usize];
+    fn needs(&self, quantity_id: QuantityId) -> Vec<QuantityId> {
+        let quantity = &self.quantities[quantity_id as usize];
         let mut needs = Vec::new();
         match &quantity.role {
             Role::Defined { rule } => rule.each_quantity(&mut |other| needs.push(other)),
@@ -72,9 +72,9 @@ impl Plan<'_, '_> {
     fn circle_from(&self, start: QuantityId, mark: &mut [Mark]) -> Option<Vec<QuantityId>> {
         let mut path = vec![(start, self.needs(start))];
         mark[start as usize] = Mark::Open;
-        while let Some((place, needs)) = path.last_mut() {
+        while let Some((quantity_id, needs)) = path.last_mut() {
             let Some(next) = needs.pop() else {
-                mark[*place as usize] = Mark::Done;
+                mark[*quantity_id as usize] = Mark::Done;
                 path.pop();
                 continue;
             };

@@ -113,8 +113,9 @@ pub struct Document<'a> {
 }
 
 /// Reads all elements of a model; what cannot be had is noted as a fault.
-pub fn read<'a>(page: &Page<'a>, root: Node<'a>) -> Document<'a> {
-    packages(page, root);
+pub fn read<'a>(page: &Page<'a>, xml: &'a crate::xml::Document<'a>) -> Document<'a> {
+    let root = xml.root();
+    packages(page, root, xml.namespaces());
     units(page, root);
     let Some(model) = page.child(root, "model") else {
         page.fault(root, "there is no model in the document", "put one `<model>` into `<sbml>`");
@@ -126,7 +127,7 @@ pub fn read<'a>(page: &Page<'a>, root: Node<'a>) -> Document<'a> {
         ..Document::default()
     };
     for list in page.children(model) {
-        match list.tag_name().name() {
+        match list.name() {
             "listOfFunctionDefinitions" => {
                 document.functions = items(page, list, "functionDefinition", function);
             }
@@ -141,7 +142,7 @@ pub fn read<'a>(page: &Page<'a>, root: Node<'a>) -> Document<'a> {
             "listOfReactions" => document.reactions = items(page, list, "reaction", reaction),
             "listOfEvents" => document.events = items(page, list, "event", event),
             "listOfConstraints" => {
-                if page.children(list).any(|child| child.tag_name().name() == "constraint") {
+                if page.children(list).any(|child| child.name() == "constraint") {
                     page.notice("constraints are not watched: they change no solution");
                 }
             }
@@ -156,7 +157,7 @@ pub fn read<'a>(page: &Page<'a>, root: Node<'a>) -> Document<'a> {
 fn items<'a, T>(page: &Page<'a>, list: Node<'a>, name: &str, read: impl Fn(&Page<'a>, Node<'a>) -> T) -> Vec<T> {
     let mut found = Vec::new();
     for child in page.children(list) {
-        match child.tag_name().name() {
+        match child.name() {
             "notes" | "annotation" => {}
             given if given == name => found.push(read(page, child)),
             _ => unknown(page, child),
@@ -166,8 +167,8 @@ fn items<'a, T>(page: &Page<'a>, list: Node<'a>, name: &str, read: impl Fn(&Page
 }
 
 fn unknown(page: &Page<'_>, node: Node<'_>) {
-    let parent = node.parent_element().map_or("sbml", |parent| parent.tag_name().name());
-    let found = format!("<{}> is not known in <{parent}>", node.tag_name().name());
+    let parent = node.parent().map_or("sbml", |parent| parent.name());
+    let found = format!("<{}> is not known in <{parent}>", node.name());
     page.fault(node, found, "delete it, or correct its name; only the core of SBML is read");
 }
 
@@ -179,16 +180,16 @@ fn package(space: &str) -> Option<&str> {
 }
 
 /// Packages that the model needs are refused, others told of. One that does not say whether it is needed must say so.
-fn packages<'a>(page: &Page<'a>, root: Node<'a>) {
-    let spaces = root.descendants().flat_map(|node| node.namespaces()).map(|space| space.uri());
-    let mut spaces: Vec<&str> = spaces.filter(|space| package(space).is_some()).collect();
+fn packages<'a>(page: &Page<'a>, root: Node<'a>, namespaces: impl Iterator<Item = &'a str>) {
+    let mut spaces: Vec<&str> = namespaces.filter(|space| package(space).is_some()).collect();
     // Told by its attribute though the namespace has another form.
-    spaces.extend(root.attributes().filter(|a| a.name() == "required").filter_map(|a| a.namespace()));
+    let with_prefix = root.attributes().iter().filter(|a| a.name == "required").filter_map(|a| a.namespace);
+    spaces.extend(with_prefix.map(|namespace| root.name_of(namespace)));
     spaces.sort_unstable();
     spaces.dedup();
     for space in spaces {
         let name = package(space).unwrap_or(space);
-        match root.attribute((space, "required")).map(str::trim) {
+        match root.attribute_of(space, "required").map(str::trim) {
             Some("false" | "0") => page.notice(format!(
                 "the package `{name}` is not read; the model says that it does not change the equations"
             )),
@@ -212,10 +213,11 @@ fn packages<'a>(page: &Page<'a>, root: Node<'a>) {
 /// Units anywhere in the model are told of once.
 fn units<'a>(page: &Page<'a>, root: Node<'a>) {
     let has_units = |node: Node<'_>| {
-        node.tag_name().name() == "unitDefinition"
+        node.name() == "unitDefinition"
             || node
                 .attributes()
-                .any(|a| a.name().to_lowercase().ends_with("units") && a.name() != "hasOnlySubstanceUnits")
+                .iter()
+                .any(|a| a.name.to_lowercase().ends_with("units") && a.name != "hasOnlySubstanceUnits")
     };
     if root.descendants().any(|node| node.is_element() && has_units(node)) {
         page.notice("units are neither checked nor converted: all numbers are taken as they stand");
@@ -276,7 +278,7 @@ fn function<'a>(page: &Page<'a>, node: Node<'a>) -> Function<'a> {
 }
 
 fn rule<'a>(page: &Page<'a>, node: Node<'a>) -> Option<(RuleKind, Assignment<'a>)> {
-    match node.tag_name().name() {
+    match node.name() {
         "assignmentRule" => Some((RuleKind::Assignment, assignment(page, node, "variable"))),
         "rateRule" => Some((RuleKind::Rate, assignment(page, node, "variable"))),
         "algebraicRule" => {
@@ -299,7 +301,7 @@ fn reaction<'a>(page: &Page<'a>, node: Node<'a>) -> Reaction<'a> {
         page.fault_in(node, "fast", format!("reaction `{}` is fast: fast reactions are not supported", read.id), help);
     }
     for child in page.children(node) {
-        match child.tag_name().name() {
+        match child.name() {
             "listOfReactants" => {
                 read.participants.extend(items(page, child, "speciesReference", |p, n| participant(p, n, -1.0)))
             }
@@ -334,7 +336,7 @@ fn participant<'a>(page: &Page<'a>, node: Node<'a>, sign: f64) -> Participant<'a
 fn law<'a>(page: &Page<'a>, node: Node<'a>) -> Law<'a> {
     let mut locals = Vec::new();
     for child in page.children(node) {
-        match child.tag_name().name() {
+        match child.name() {
             "listOfParameters" => locals.extend(items(page, child, "parameter", parameter)),
             "listOfLocalParameters" => locals.extend(items(page, child, "localParameter", parameter)),
             "notes" | "annotation" => {}
@@ -357,7 +359,7 @@ fn event<'a>(page: &Page<'a>, node: Node<'a>) -> Event<'a> {
         assignments: Vec::new(),
     };
     for child in page.children(node) {
-        match child.tag_name().name() {
+        match child.name() {
             "trigger" => {
                 read.trigger = page.math(child);
                 read.initially_true = page.flag(child, "initialValue", true);

@@ -6,7 +6,7 @@ use super::plan::{Change, Kind, Plan};
 use crate::equations::tree::{Binary, Event, Expr, QuantityId, Role};
 use std::collections::HashMap;
 
-/// New values that an event gives at once.
+/// New values that an event sets at once.
 type Values = HashMap<QuantityId, Expr>;
 
 impl<'a> Plan<'_, 'a> {
@@ -51,32 +51,32 @@ impl<'a> Plan<'_, 'a> {
         let mut values = Values::new();
         let mut order = Vec::new();
         for assignment in &event.assignments {
-            let Some(&place) = self.reader.symbols.get(assignment.symbol) else { continue };
+            let Some(&quantity_id) = self.reader.symbols.get(assignment.symbol) else { continue };
             let Some(math) = assignment.math else { continue };
-            if values.insert(place, self.reader.formula(math)).is_some() {
+            if values.insert(quantity_id, self.reader.formula(math)).is_some() {
                 let found = format!("the event sets `{}` twice", assignment.symbol);
                 self.page.fault_in(assignment.node, "variable", found, "keep one of the two");
             }
-            order.push((place, assignment.symbol));
+            order.push((quantity_id, assignment.symbol));
         }
         let (mut made, mut later) = (Vec::new(), Vec::new());
-        for (place, symbol) in order {
-            let value = values[&place].clone();
+        for (quantity_id, symbol) in order {
+            let value = values[&quantity_id].clone();
             let Some(Kind::Species(number)) = self.kinds.get(symbol).copied() else {
-                made.push((place, value));
+                made.push((quantity_id, value));
                 continue;
             };
             let species = &self.document.species[number];
-            let places = self.species_places(number);
+            let ids = self.species_ids(number);
             if species.only_amount || self.keeps_concentration(species) {
-                made.push((place, value));
+                made.push((quantity_id, value));
                 continue;
             }
             if self.mixes_times(event, symbol) {
-                later.push((places, value));
+                later.push((ids, value));
             } else {
-                let size = self.after(&places.size(), &values);
-                made.push((places.amount, product(value, size)));
+                let size = self.after(&ids.size(), &values);
+                made.push((ids.amount, product(value, size)));
             }
         }
         let follower = if later.is_empty() { None } else { Some(self.follower(id, later, &mut made)) };
@@ -87,14 +87,14 @@ impl<'a> Plan<'_, 'a> {
     fn follower(
         &self,
         id: &str,
-        later: Vec<(super::species::Places, Expr)>,
+        later: Vec<(super::species::SpeciesIds, Expr)>,
         made: &mut Vec<(QuantityId, Expr)>,
     ) -> Event {
         let mut assignments = Vec::new();
-        for (places, value) in later {
-            let kept = self.helper(&format!("{id}.{}", self.quantities[places.amount as usize].id));
+        for (ids, value) in later {
+            let kept = self.helper(&format!("{id}.{}", self.quantities[ids.amount as usize].id));
             made.push((kept, value));
-            assignments.push((places.amount, product(quantity(kept), places.size())));
+            assignments.push((ids.amount, product(quantity(kept), ids.size())));
         }
         let due = self.helper(&format!("{id}.due"));
         made.push((due, number(1.0)));
@@ -111,7 +111,7 @@ impl<'a> Plan<'_, 'a> {
         }
     }
 
-    /// Makes room for what followers keep, before rates of change are numbered.
+    /// Adds quantities for what followers keep, before rates of change are numbered.
     pub fn declare_helpers(&mut self) {
         let document = self.document;
         for (index, event) in document.events.iter().enumerate() {
@@ -121,8 +121,8 @@ impl<'a> Plan<'_, 'a> {
             let kept: Vec<&str> = kept.into_iter().filter(|symbol| self.mixes_times(event, symbol)).collect();
             let due = (!kept.is_empty()).then_some("due");
             for name in kept.into_iter().chain(due) {
-                let place = self.quantity(format!("{id}.{name}"), event.node);
-                let entry = &mut self.quantities[place as usize];
+                let quantity_id = self.quantity(format!("{id}.{name}"), event.node);
+                let entry = &mut self.quantities[quantity_id as usize];
                 entry.name.clear();
                 (entry.role, entry.initial) = (Role::Variable { rate: number(0.0) }, number(0.0));
             }
@@ -148,11 +148,11 @@ impl<'a> Plan<'_, 'a> {
 
     /// What an expression is worth after an event has given its values.
     fn after(&self, expr: &Expr, values: &Values) -> Expr {
-        replaced(expr, &|place| {
-            if let Some(value) = values.get(&place) {
+        replaced(expr, &|quantity_id| {
+            if let Some(value) = values.get(&quantity_id) {
                 return Some(value.clone());
             }
-            match &self.quantities[place as usize].role {
+            match &self.quantities[quantity_id as usize].role {
                 Role::Defined { rule } if self.depends(rule, values) => Some(self.after(rule, values)),
                 _ => None,
             }
@@ -162,13 +162,13 @@ impl<'a> Plan<'_, 'a> {
     /// Whether an expression uses what an event sets, directly or by rules.
     fn depends(&self, expr: &Expr, values: &Values) -> bool {
         let mut used = Vec::new();
-        expr.each_quantity(&mut |place| used.push(place));
-        used.into_iter().any(|place| {
-            let by_rule = match &self.quantities[place as usize].role {
+        expr.each_quantity(&mut |quantity_id| used.push(quantity_id));
+        used.into_iter().any(|quantity_id| {
+            let by_rule = match &self.quantities[quantity_id as usize].role {
                 Role::Defined { rule } => self.depends(rule, values),
                 _ => false,
             };
-            values.contains_key(&place) || by_rule
+            values.contains_key(&quantity_id) || by_rule
         })
     }
 }

@@ -76,17 +76,17 @@ impl<'p, 'a> Reader<'p, 'a> {
         if level > DEPTH_LIMIT || !self.take(1) {
             return self.too_large(node);
         }
-        if node.tag_name().namespace() != Some(MATHML) {
-            let found = format!("<{}> is not MathML", node.tag_name().name());
+        if node.namespace() != Some(MATHML) {
+            let found = format!("<{}> is not MathML", node.name());
             return self.fault(node, found, format!("formulas are in the namespace {MATHML}"));
         }
-        match node.tag_name().name() {
+        match node.name() {
             "cn" => self.number(node),
             "ci" => self.symbol(node, scope, level),
             "csymbol" => self.constant_symbol(node),
             "apply" => self.apply(node, scope, level),
             "piecewise" => self.piecewise(node, scope, level),
-            "semantics" => match node.first_element_child() {
+            "semantics" => match node.elements().next() {
                 Some(child) => self.expr(child, scope, level + 1),
                 None => self.fault(node, "<semantics> has no formula", "put the formula first"),
             },
@@ -123,9 +123,9 @@ impl<'p, 'a> Reader<'p, 'a> {
     fn number(&self, node: Node<'a>) -> Option<Expr> {
         let mut texts = vec![String::new()];
         for child in node.children() {
-            match child.text().filter(|_| child.is_text()) {
+            match child.text() {
                 Some(text) => texts.last_mut().expect("one text at least").push_str(text),
-                None if child.tag_name().name() == "sep" => texts.push(String::new()),
+                None if child.name() == "sep" => texts.push(String::new()),
                 None => {}
             }
         }
@@ -195,19 +195,19 @@ impl<'p, 'a> Reader<'p, 'a> {
     }
 
     fn apply(&self, node: Node<'a>, scope: &Scope<'a>, level: usize) -> Option<Expr> {
-        let mut parts = node.children().filter(|child| child.is_element());
+        let mut parts = node.elements();
         let Some(head) = parts.next() else {
             return self.fault(node, "an <apply> is empty", "put an operator and its operands into it");
         };
         let parts: Vec<Node<'a>> = parts.collect();
-        match head.tag_name().name() {
+        match head.name() {
             "ci" => self.call(head, &parts, scope, level),
             "csymbol" => self.call_symbol(head, &parts, scope, level),
             _ => {
-                let is_qualifier = |part: &Node<'a>| matches!(part.tag_name().name(), "logbase" | "degree");
+                let is_qualifier = |part: &Node<'a>| matches!(part.name(), "logbase" | "degree");
                 let (qualifiers, operands): (Vec<Node<'a>>, Vec<Node<'a>>) = parts.into_iter().partition(is_qualifier);
                 let qualifier = match qualifiers.first() {
-                    Some(found) => match found.first_element_child() {
+                    Some(found) => match found.elements().next() {
                         Some(value) => Some(self.expr(value, scope, level + 1)?),
                         None => {
                             return self.fault(*found, "there is no value in it", "put a number or a formula into it");
@@ -281,19 +281,19 @@ impl<'p, 'a> Reader<'p, 'a> {
     /// The quantity that holds the rate of change of a quantity.
     fn rate_of(&self, id: QuantityId, node: Node<'a>) -> QuantityId {
         let mut rates = self.rates.borrow_mut();
-        let place = rates.iter().position(|(other, _)| *other == id).unwrap_or_else(|| {
+        let position = rates.iter().position(|(other, _)| *other == id).unwrap_or_else(|| {
             rates.push((id, node));
             rates.len() - 1
         });
-        self.first_rate + place as QuantityId
+        self.first_rate + position as QuantityId
     }
 
     fn piecewise(&self, node: Node<'a>, scope: &Scope<'a>, level: usize) -> Option<Expr> {
         let mut branches = Vec::new();
         let mut otherwise = number(f64::NAN);
-        for child in node.children().filter(|child| child.is_element()) {
-            let parts: Vec<Node<'a>> = child.children().filter(|part| part.is_element()).collect();
-            match (child.tag_name().name(), parts.as_slice()) {
+        for child in node.elements() {
+            let parts: Vec<Node<'a>> = child.elements().collect();
+            match (child.name(), parts.as_slice()) {
                 ("piece", [value, condition]) => {
                     let value = self.expr(*value, scope, level + 2)?;
                     branches.push((self.expr(*condition, scope, level + 2)?, value));
@@ -315,7 +315,7 @@ impl<'p, 'a> Reader<'p, 'a> {
 
 /// The name in a `<ci>`, around which there may be comments.
 pub fn name(node: Node<'_>) -> &str {
-    let texts = node.children().filter(|child| child.is_text()).filter_map(|child| child.text());
+    let texts = node.children().filter_map(Node::text);
     texts.map(str::trim).find(|text| !text.is_empty()).unwrap_or_default()
 }
 

@@ -84,9 +84,8 @@ pub fn is_sbml(text: &str) -> bool {
 /// that are not known, contradicting statements, definitions in a circle.
 pub fn read(source: &Arc<Source>) -> Result<Model> {
     let xml = xml::parse(source)?;
-    let root = xml.root_element();
-    let page = xml::Page::new(source, root)?;
-    let document = document::read(&page, root);
+    let page = xml::Page::new(source, xml.root())?;
+    let document = document::read(&page, &xml);
     let mut plan = plan::Plan::new(&page, &document);
     plan.plain_quantities();
     plan.reactions();
@@ -97,18 +96,18 @@ pub fn read(source: &Arc<Source>) -> Result<Model> {
     plan.check_circles();
     let notices = page.finish()?;
 
-    let place = |id: &str| plan.reader.symbols[id];
+    let quantity_id = |id: &str| plan.reader.symbols[id];
     let species = document.species.iter().enumerate().map(|(number, species)| Species {
         id: species.id.to_owned(),
         amount: plan.amounts[number],
         concentration: plan.amounts[number] + 1,
-        compartment: place(species.compartment),
+        compartment: quantity_id(species.compartment),
     });
     Ok(Model {
         species: species.collect(),
-        compartments: document.compartments.iter().map(|compartment| place(compartment.id)).collect(),
-        parameters: document.parameters.iter().map(|parameter| place(parameter.id)).collect(),
-        reactions: document.reactions.iter().map(|reaction| place(reaction.id)).collect(),
+        compartments: document.compartments.iter().map(|compartment| quantity_id(compartment.id)).collect(),
+        parameters: document.parameters.iter().map(|parameter| quantity_id(parameter.id)).collect(),
+        reactions: document.reactions.iter().map(|reaction| quantity_id(reaction.id)).collect(),
         system: System { name: document.name.to_owned(), quantities: plan.quantities, events },
         notices,
     })

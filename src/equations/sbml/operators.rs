@@ -12,7 +12,7 @@ pub fn apply<'a>(
     operands: Vec<Expr>,
     qualifier: Option<Expr>,
 ) -> Option<Expr> {
-    let name = head.tag_name().name();
+    let name = head.name();
     let Some((least, most)) = arity(name) else {
         let found = format!("<{name}> is not an operator of SBML");
         return reader.fault(head, found, "the chapter on SBML lists those that are read");

@@ -31,14 +31,14 @@ pub enum Change {
     Defined,
 }
 
-/// A model on its way from the document to the system.
+/// A model between the document and the system.
 pub struct Plan<'p, 'a> {
     pub page: &'p Page<'a>,
     pub document: &'p Document<'a>,
     pub reader: Reader<'p, 'a>,
     pub quantities: Vec<Quantity>,
     /// The element that declares each quantity.
-    pub places: Vec<Node<'a>>,
+    pub nodes: Vec<Node<'a>>,
     pub kinds: HashMap<&'a str, Kind>,
     /// Rules that have a formula, by the symbol they are for.
     pub rules: HashMap<&'a str, (RuleKind, Node<'a>)>,
@@ -48,8 +48,8 @@ pub struct Plan<'p, 'a> {
     pub set_by_events: HashSet<&'a str>,
     /// The amount of each species; its concentration is the quantity after it.
     pub amounts: Vec<QuantityId>,
-    /// Local parameters by their elements.
-    pub locals: HashMap<roxmltree::NodeId, QuantityId>,
+    /// Local parameters by the indices of their elements.
+    pub locals: HashMap<usize, QuantityId>,
     /// Quantities without a value of their own.
     pub unset: Vec<QuantityId>,
 }
@@ -62,7 +62,7 @@ impl<'p, 'a> Plan<'p, 'a> {
             document,
             reader: Reader::new(page),
             quantities: Vec::new(),
-            places: Vec::new(),
+            nodes: Vec::new(),
             kinds: HashMap::new(),
             rules: HashMap::new(),
             initial: HashMap::new(),
@@ -83,7 +83,7 @@ impl<'p, 'a> Plan<'p, 'a> {
         let name = node.attribute("name").unwrap_or_default().to_owned();
         let (role, initial) = (Role::Parameter, Expr::Number(f64::NAN));
         self.quantities.push(Quantity { id, name, role, initial, unit: String::new() });
-        self.places.push(node);
+        self.nodes.push(node);
         self.quantities.len() as QuantityId - 1
     }
 
@@ -130,14 +130,14 @@ impl<'p, 'a> Plan<'p, 'a> {
         }
         for (number, reaction) in document.reactions.iter().enumerate() {
             self.symbol(reaction.id, reaction.node, Kind::Reaction(number));
-            for (place, participant) in reaction.participants.iter().enumerate() {
+            for (position, participant) in reaction.participants.iter().enumerate() {
                 if let Some(id) = participant.id {
-                    self.symbol(id, participant.node, Kind::Reference(number, place));
+                    self.symbol(id, participant.node, Kind::Reference(number, position));
                 }
             }
             for local in reaction.law.iter().flat_map(|law| &law.locals) {
                 let quantity = self.quantity(format!("{}.{}", reaction.id, local.id), local.node);
-                self.locals.insert(local.node.id(), quantity);
+                self.locals.insert(local.node.index(), quantity);
             }
         }
         for event in &document.events {
@@ -151,17 +151,17 @@ impl<'p, 'a> Plan<'p, 'a> {
     fn function(&self, lambda: Option<Node<'a>>) -> Function<'a> {
         let mut read = Function { arguments: Vec::new(), body: None };
         let Some(mut node) = lambda else { return read };
-        if node.tag_name().name() == "semantics" {
-            node = node.first_element_child().unwrap_or(node);
+        if node.name() == "semantics" {
+            node = node.elements().next().unwrap_or(node);
         }
-        if node.tag_name().name() != "lambda" {
-            let found = format!("a function is a <lambda>, not <{}>", node.tag_name().name());
+        if node.name() != "lambda" {
+            let found = format!("a function is a <lambda>, not <{}>", node.name());
             self.page.fault(node, found, "put <lambda> around the arguments (each in a <bvar>) and the formula");
             return read;
         }
-        for child in node.children().filter(|child| child.is_element()) {
-            if child.tag_name().name() == "bvar" {
-                let name = child.first_element_child().map(super::math::name).unwrap_or_default();
+        for child in node.elements() {
+            if child.name() == "bvar" {
+                let name = child.elements().next().map(super::math::name).unwrap_or_default();
                 if name.is_empty() || read.arguments.contains(&name) {
                     let help = "each <bvar> holds one <ci> with a name of its own";
                     self.page.fault(child, "an argument has no name, or one that is taken", help);
@@ -251,7 +251,7 @@ impl<'p, 'a> Plan<'p, 'a> {
             Kind::Compartment(number) => document.compartments[number].constant,
             Kind::Species(number) => document.species[number].constant,
             Kind::Parameter(number) => document.parameters[number].constant,
-            Kind::Reference(reaction, place) => document.reactions[reaction].participants[place].constant,
+            Kind::Reference(reaction, position) => document.reactions[reaction].participants[position].constant,
             Kind::Reaction(_) | Kind::Function | Kind::Event => true,
         };
         if constant {

@@ -29,10 +29,10 @@ impl<'a> Plan<'_, 'a> {
                 self.page.notice(format!("species reference `{id}` has no stoichiometry: it is taken as 1"));
             }
             self.plain(id, Some(participant.stoichiometry.unwrap_or(1.0)));
-            if let (Some(math), Some(&place), false) =
+            if let (Some(math), Some(&quantity_id), false) =
                 (participant.math, self.reader.symbols.get(id), self.is_defined(id))
             {
-                self.quantities[place as usize].role = Role::Defined { rule: self.reader.formula(math) };
+                self.quantities[quantity_id as usize].role = Role::Defined { rule: self.reader.formula(math) };
             }
         }
     }
@@ -40,8 +40,8 @@ impl<'a> Plan<'_, 'a> {
     /// The formula of an initial assignment. A concentration that the model gives stands for its number, so that the size
     /// of its compartment may depend on it.
     pub fn start_formula(&self, math: Node<'a>) -> Expr {
-        replaced(&self.reader.formula(math), &|place| {
-            let index = self.amounts.binary_search(&place.checked_sub(1)?).ok()?;
+        replaced(&self.reader.formula(math), &|quantity_id| {
+            let index = self.amounts.binary_search(&quantity_id.checked_sub(1)?).ok()?;
             let species = &self.document.species[index];
             let by_other =
                 species.amount.is_some() || self.initial.contains_key(species.id) || self.is_defined(species.id);
@@ -51,12 +51,12 @@ impl<'a> Plan<'_, 'a> {
 
     /// Role and start of what is its own quantity: by its rule, its initial assignment, the events, its value.
     fn plain(&mut self, id: &'a str, value: Option<f64>) {
-        let Some(&place) = self.reader.symbols.get(id) else { return };
+        let Some(&quantity_id) = self.reader.symbols.get(id) else { return };
         let initial = match self.initial.get(id) {
             Some(math) => self.start_formula(*math),
             None => {
                 if value.is_none() && !self.is_defined(id) {
-                    self.unset.push(place);
+                    self.unset.push(quantity_id);
                 }
                 number(value.unwrap_or(f64::NAN))
             }
@@ -67,7 +67,7 @@ impl<'a> Plan<'_, 'a> {
             None if self.set_by_events.contains(id) => Role::Variable { rate: number(0.0) },
             None => Role::Parameter,
         };
-        let quantity = &mut self.quantities[place as usize];
+        let quantity = &mut self.quantities[quantity_id as usize];
         (quantity.initial, quantity.role) = (initial, role);
     }
 
@@ -78,8 +78,8 @@ impl<'a> Plan<'_, 'a> {
             let mut scope = Scope::default();
             let law = reaction.law.as_ref();
             for local in law.into_iter().flat_map(|law| &law.locals) {
-                let place = self.local(local);
-                if scope.names.insert(local.id, quantity(place)).is_some() {
+                let quantity_id = self.local(local);
+                if scope.names.insert(local.id, quantity(quantity_id)).is_some() {
                     let found = format!("`{}` is declared twice", local.id);
                     self.page.fault_in(local.node, "id", found, "rename one of the two");
                 }
@@ -91,31 +91,31 @@ impl<'a> Plan<'_, 'a> {
                     number(0.0)
                 }
             };
-            if let Some(&place) = self.reader.symbols.get(reaction.id) {
-                self.quantities[place as usize].role = Role::Defined { rule };
+            if let Some(&quantity_id) = self.reader.symbols.get(reaction.id) {
+                self.quantities[quantity_id as usize].role = Role::Defined { rule };
             }
         }
     }
 
     /// The start of a local parameter.
     fn local(&mut self, local: &Parameter<'a>) -> QuantityId {
-        let place = self.locals[&local.node.id()];
-        self.quantities[place as usize].initial = number(local.value.unwrap_or(f64::NAN));
+        let quantity_id = self.locals[&local.node.index()];
+        self.quantities[quantity_id as usize].initial = number(local.value.unwrap_or(f64::NAN));
         if local.value.is_none() {
-            self.unset.push(place);
+            self.unset.push(quantity_id);
         }
-        place
+        quantity_id
     }
 
     /// The stoichiometry of a participant.
-    pub fn stoichiometry(&self, reaction: usize, place: usize) -> Expr {
-        let participant = &self.document.reactions[reaction].participants[place];
+    pub fn stoichiometry(&self, reaction: usize, position: usize) -> Expr {
+        let participant = &self.document.reactions[reaction].participants[position];
         let named = participant.id.and_then(|id| self.reader.symbols.get(id).map(|&quantity| (id, quantity)));
-        if let Some((id, place)) = named {
+        if let Some((id, quantity_id)) = named {
             let fixed =
-                matches!(self.quantities[place as usize].role, Role::Parameter) && !self.initial.contains_key(id);
+                matches!(self.quantities[quantity_id as usize].role, Role::Parameter) && !self.initial.contains_key(id);
             if !fixed {
-                return quantity(place);
+                return quantity(quantity_id);
             }
         } else if let Some(math) = participant.math {
             return self.reader.formula(math);

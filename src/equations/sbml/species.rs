@@ -10,30 +10,30 @@ use super::plan::{Change, Kind, Plan};
 use super::xml::Node;
 use crate::equations::tree::{Expr, QuantityId, Role};
 
-/// The places of a species and its compartment among the quantities.
+/// The quantities of a species and of its compartment.
 #[derive(Clone, Copy)]
-pub struct Places {
+pub struct SpeciesIds {
     pub amount: QuantityId,
     pub concentration: QuantityId,
     /// None when the compartment is not known.
     pub size: Option<QuantityId>,
 }
 
-impl Places {
+impl SpeciesIds {
     pub fn size(&self) -> Expr {
         self.size.map_or(number(1.0), quantity)
     }
 }
 
 impl<'a> Plan<'_, 'a> {
-    /// The places of a species.
-    pub fn species_places(&self, number: usize) -> Places {
+    /// The quantities of a species.
+    pub fn species_ids(&self, number: usize) -> SpeciesIds {
         let amount = self.amounts[number];
         let compartment = self.document.species[number].compartment;
-        Places { amount, concentration: amount + 1, size: self.compartment_place(compartment) }
+        SpeciesIds { amount, concentration: amount + 1, size: self.compartment_id(compartment) }
     }
 
-    fn compartment_place(&self, id: &str) -> Option<QuantityId> {
+    fn compartment_id(&self, id: &str) -> Option<QuantityId> {
         let known = matches!(self.kinds.get(id), Some(Kind::Compartment(_)));
         self.reader.symbols.get(id).copied().filter(|_| known)
     }
@@ -48,17 +48,17 @@ impl<'a> Plan<'_, 'a> {
     pub fn all_species(&mut self) {
         let document = self.document;
         let mut terms = self.reaction_terms();
-        for (place, species) in document.species.iter().enumerate() {
-            let places = self.species_places(place);
-            if places.size.is_none() && !species.compartment.is_empty() {
+        for (index, species) in document.species.iter().enumerate() {
+            let ids = self.species_ids(index);
+            if ids.size.is_none() && !species.compartment.is_empty() {
                 let found = format!("there is no compartment `{}`", species.compartment);
                 self.page.fault_in(species.node, "compartment", found, "name one of the <listOfCompartments>");
             }
-            let amount = self.start(species, places);
-            let (amount_role, concentration_role) = self.roles(species, places, std::mem::take(&mut terms[place]));
-            let concentration = quotient(amount.clone(), places.size());
+            let amount = self.start(species, ids);
+            let (amount_role, concentration_role) = self.roles(species, ids, std::mem::take(&mut terms[index]));
+            let concentration = quotient(amount.clone(), ids.size());
             for (entry, role, initial) in
-                [(places.amount, amount_role, amount), (places.concentration, concentration_role, concentration)]
+                [(ids.amount, amount_role, amount), (ids.concentration, concentration_role, concentration)]
             {
                 let entry = &mut self.quantities[entry as usize];
                 (entry.role, entry.initial) = (role, initial);
@@ -67,14 +67,14 @@ impl<'a> Plan<'_, 'a> {
     }
 
     /// The amount at the start.
-    fn start(&mut self, species: &Species<'a>, places: Places) -> Expr {
+    fn start(&mut self, species: &Species<'a>, ids: SpeciesIds) -> Expr {
         if let Some(math) = self.initial.get(species.id) {
             let value = self.start_formula(*math);
-            return if species.only_amount { value } else { product(value, places.size()) };
+            return if species.only_amount { value } else { product(value, ids.size()) };
         }
         match (species.amount, species.concentration) {
             (Some(amount), _) => number(amount),
-            (None, Some(concentration)) => product(number(concentration), places.size()),
+            (None, Some(concentration)) => product(number(concentration), ids.size()),
             (None, None) => {
                 if !self.is_defined(species.id) {
                     self.page.notice(format!("species `{}` has no initial value: it starts at 0", species.id));
@@ -85,10 +85,10 @@ impl<'a> Plan<'_, 'a> {
     }
 
     /// Roles of amount and concentration.
-    fn roles(&self, species: &Species<'a>, places: Places, terms: Vec<Expr>) -> (Role, Role) {
-        let size = places.size();
-        let as_concentration = Role::Defined { rule: quotient(quantity(places.amount), size.clone()) };
-        let as_amount = Role::Defined { rule: product(quantity(places.concentration), size.clone()) };
+    fn roles(&self, species: &Species<'a>, ids: SpeciesIds, terms: Vec<Expr>) -> (Role, Role) {
+        let size = ids.size();
+        let as_concentration = Role::Defined { rule: quotient(quantity(ids.amount), size.clone()) };
+        let as_amount = Role::Defined { rule: product(quantity(ids.concentration), size.clone()) };
         match self.rules.get(species.id) {
             Some((RuleKind::Assignment, math)) => {
                 let rule = Role::Defined { rule: self.reader.formula(*math) };
@@ -103,9 +103,9 @@ impl<'a> Plan<'_, 'a> {
                     return (as_amount, Role::Variable { rate });
                 }
                 let mut rate = product(rate, size);
-                if let (Change::Flows, Some(size)) = (self.change(species.compartment), places.size) {
+                if let (Change::Flows, Some(size)) = (self.change(species.compartment), ids.size) {
                     let flow = self.rate(size).unwrap_or(number(f64::NAN));
-                    rate = sum(rate, product(quantity(places.concentration), flow));
+                    rate = sum(rate, product(quantity(ids.concentration), flow));
                 }
                 (Role::Variable { rate }, as_concentration)
             }
@@ -121,7 +121,7 @@ impl<'a> Plan<'_, 'a> {
         let mut terms = vec![Vec::new(); document.species.len()];
         for (number_of, reaction) in document.reactions.iter().enumerate() {
             let happens = reaction.law.as_ref().is_some_and(|law| law.math.is_some());
-            for (place, participant) in reaction.participants.iter().enumerate() {
+            for (position, participant) in reaction.participants.iter().enumerate() {
                 let Some(Kind::Species(index)) = self.kinds.get(participant.species).copied() else {
                     if !participant.species.is_empty() {
                         let found = format!("there is no species `{}`", participant.species);
@@ -130,7 +130,7 @@ impl<'a> Plan<'_, 'a> {
                     continue;
                 };
                 let species = &document.species[index];
-                let stoichiometry = self.stoichiometry(number_of, place);
+                let stoichiometry = self.stoichiometry(number_of, position);
                 if species.boundary || species.constant || !happens {
                     continue;
                 }
@@ -154,7 +154,7 @@ impl<'a> Plan<'_, 'a> {
     fn conversion(&self, species: &Species<'a>) -> Expr {
         let Some(id) = species.factor.or(self.document.factor) else { return number(1.0) };
         match (self.kinds.get(id), self.reader.symbols.get(id)) {
-            (Some(Kind::Parameter(_)), Some(&place)) => quantity(place),
+            (Some(Kind::Parameter(_)), Some(&quantity_id)) => quantity(quantity_id),
             _ => {
                 let found = format!("the conversion factor `{id}` is not a parameter");
                 self.page.fault_in(species.node, "conversionFactor", found, "name one of the <listOfParameters>");
@@ -164,12 +164,12 @@ impl<'a> Plan<'_, 'a> {
     }
 
     /// The rate of change of a quantity as an expression; none when an assignment rule hides it.
-    pub fn rate(&self, place: QuantityId) -> Option<Expr> {
-        match &self.quantities[place as usize].role {
+    pub fn rate(&self, quantity_id: QuantityId) -> Option<Expr> {
+        match &self.quantities[quantity_id as usize].role {
             Role::Parameter | Role::Input => Some(number(0.0)),
             Role::Variable { rate } => Some(rate.clone()),
             Role::Defined { .. } => {
-                let index = self.amounts.iter().position(|amount| amount + 1 == place)?;
+                let index = self.amounts.iter().position(|amount| amount + 1 == quantity_id)?;
                 if self
                     .rules
                     .get(self.document.species[index].id)
@@ -177,33 +177,33 @@ impl<'a> Plan<'_, 'a> {
                 {
                     return None;
                 }
-                let places = self.species_places(index);
-                let change = self.rate(places.amount)?;
-                let flow = places.size.map_or(Some(number(0.0)), |size| self.rate(size))?;
+                let ids = self.species_ids(index);
+                let change = self.rate(ids.amount)?;
+                let flow = ids.size.map_or(Some(number(0.0)), |size| self.rate(size))?;
                 let diluted = match flow {
                     Expr::Number(0.0) => change,
-                    flow => difference(change, product(quantity(places.concentration), flow)),
+                    flow => difference(change, product(quantity(ids.concentration), flow)),
                 };
-                Some(quotient(diluted, places.size()))
+                Some(quotient(diluted, ids.size()))
             }
         }
     }
 
     /// Gives the rates that formulas ask for their quantities.
     pub fn rates(&mut self) {
-        for (place, node) in self.reader.rates() {
-            let rule = self.rate(place).unwrap_or_else(|| self.no_rate(place, node));
-            let id = format!("rateOf({})", self.quantities[place as usize].id);
+        for (quantity_id, node) in self.reader.rates() {
+            let rule = self.rate(quantity_id).unwrap_or_else(|| self.no_rate(quantity_id, node));
+            let id = format!("rateOf({})", self.quantities[quantity_id as usize].id);
             let made = self.quantity(id, node);
             self.quantities[made as usize].role = Role::Defined { rule };
             self.quantities[made as usize].name.clear();
         }
     }
 
-    fn no_rate(&self, place: QuantityId, node: Node<'a>) -> Expr {
+    fn no_rate(&self, quantity_id: QuantityId, node: Node<'a>) -> Expr {
         let found = format!(
             "rateOf is asked for `{}`, which follows from an assignment rule",
-            self.quantities[place as usize].id
+            self.quantities[quantity_id as usize].id
         );
         self.page.fault(node, found, "only what a rate rule or reactions change has a rate in SBML");
         number(f64::NAN)

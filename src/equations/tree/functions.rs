@@ -194,8 +194,8 @@ mod tests {
 
     #[test]
     fn the_lists_hold_every_function_at_its_place() {
-        assert!(Unary::ALL.iter().enumerate().all(|(place, &function)| function as usize == place));
-        assert!(Binary::ALL.iter().enumerate().all(|(place, &function)| function as usize == place));
+        assert!(Unary::ALL.iter().enumerate().all(|(index, &function)| function as usize == index));
+        assert!(Binary::ALL.iter().enumerate().all(|(index, &function)| function as usize == index));
         // A new function at the end is to be named here.
         assert_eq!((Unary::ALL.len(), Binary::ALL.len()), (Unary::Factorial as usize + 1, Binary::Xor as usize + 1));
     }

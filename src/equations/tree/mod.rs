@@ -183,7 +183,7 @@ impl Expr {
         }
     }
 
-    /// The value, the plain way: the oracle of the compiled programs. `value` gives the value of a quantity.
+    /// The value, computed directly: the oracle of the compiled programs. `value` gives the value of a quantity.
     pub fn evaluate(&self, time: f64, value: &impl Fn(QuantityId) -> f64) -> f64 {
         match self {
             Self::Number(number) => *number,

@@ -2,7 +2,7 @@
 
 mod chemistry;
 mod contact;
-mod elasticity;
+mod forces;
 mod mesh;
 mod notices;
 mod overlap;
@@ -15,16 +15,16 @@ mod steps;
 pub use notices::notices;
 pub use start::{PushedApart, settle_start};
 
-use super::{CellType, Document, Experiment, Space, Spread, VolumeRule as Rule};
+use super::{CellType, Document, Experiment, Space, VolumeRule as Rule};
 use crate::Vec3;
 use crate::cell::motility::{BrownianMotility, Space as WalkSpace};
 use crate::error::{Error, Fault, Result};
 use crate::field::Fields;
 use crate::geometry::{self, Surface};
 use crate::mechanics::course::Course;
-use crate::mechanics::fibres::Fibres;
 use crate::sim::chemistry::ChemistryState;
-use crate::sim::{Attraction, Kind, Load, Model, Plane, State, VolumeRule};
+use crate::sim::kind::kinks;
+use crate::sim::{Kind, Model, Plane, State, VolumeRule};
 
 /// When the run records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,7 +69,7 @@ impl Prepared {
         let cells = model.kinds.iter().zip(&centres);
         let positions: Vec<_> = cells.map(|(kind, centres)| place::atoms_at(kind, centres)).collect();
         let mut state = State::new(&model, &positions);
-        state.chemistry = ChemistryState::new(&model, &fields);
+        state.chemistry = ChemistryState::new(&model, &state.counts(), &fields);
         Compiled { model, state, schedule }
     }
 }
@@ -90,7 +90,7 @@ pub fn compile(document: &Document) -> Result<Compiled> {
 pub fn prepare(document: &Document) -> Result<Prepared> {
     let experiment = &document.experiment;
     let (mut kinds, mut faults) = (Vec::new(), Vec::new());
-    let mut first_cell = 0;
+    let mut counts = Vec::new();
     for (name, cell) in &experiment.cells {
         let before = faults.len();
         let Some(surface) = mesh::surface(document, name, cell, &mut faults) else { continue };
@@ -98,13 +98,15 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         if faults.len() > before {
             continue;
         }
-        let kind = kind.with_cells(first_cell, cell.count());
-        first_cell += cell.count();
-        kinds.push(kind);
+        kinds.push(kind.for_cells(cell.count()));
+        counts.push(cell.count());
     }
     // Atoms that do not exist have been told; links look at kinds and must see them all.
-    let (chemistry, fields) =
-        if faults.is_empty() { chemistry::chemistry(document, &mut kinds, &mut faults) } else { Default::default() };
+    let (chemistry, fields) = if faults.is_empty() {
+        chemistry::chemistry(document, &counts, &mut kinds, &mut faults)
+    } else {
+        Default::default()
+    };
     kinds.iter_mut().for_each(Kind::bound_stiffness);
     if !faults.is_empty() {
         return Err(Error::Input(faults));
@@ -113,7 +115,8 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let centres = match reach {
         Some(reach) => room::centres_apart(document, &kinds, &planes, reach.proximity)?,
         None => {
-            experiment.cells.values().zip(&kinds).map(|(cell, kind)| place::centres(experiment, cell, kind)).collect()
+            let cells = experiment.cells.values().zip(&kinds).zip(place::first_cells(experiment));
+            cells.map(|((cell, kind), first)| place::centres(experiment, cell, kind, first)).collect()
         }
     };
     let integrator = steps::integrator(document, &mut kinds)?;
@@ -121,12 +124,12 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),
+        changes: Vec::new(),
         integrator,
         contact: contact.map(|contact| contact.suited_to(integrator.size)),
         kinds,
         chemistry,
         planes,
-        gravity: vector(experiment.environment.gravity.map_or([0.0; 3], |g| g.map(|a| a.value()))),
         until: experiment.run.until.value(),
     };
     let schedule = steps::schedule(document, &model)?;
@@ -152,17 +155,14 @@ fn compile_kind(
 ) -> Kind {
     let key = format!("cells.{name}");
     let mut drawn_links = Vec::new();
-    let elasticity = elasticity::elasticity(document, &key, cell, &surface, &mut drawn_links, faults);
-    let fibres = fibres(document, &key, cell, &surface, faults);
-    drawn_links.extend(fibres.iter().flat_map(|fibres| &fibres.pairs));
+    let forces = forces::forces(document, &key, cell, &surface, &mut drawn_links, faults);
     let atoms = surface.turned.positions.len() as f64;
-    let mut kind = Kind::new(name, surface.turned, elasticity);
-    (kind.drawn_links, kind.fibres) = (drawn_links, fibres);
+    let mut kind = Kind::new(name, surface.turned, forces);
+    kind.drawn_links = drawn_links;
     kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
     kind.held = held(document, &key, cell, &kind.rest, faults);
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
-    kind.loads = loads(document, &key, cell, &kind.rest, faults);
     kind.brownian = cell.motility.brownian.as_ref().map(|brownian| BrownianMotility {
         speed: brownian.speed.value(),
         persistence: brownian.persistence.value(),
@@ -170,10 +170,6 @@ fn compile_kind(
             Space::Plane => WalkSpace::Plane,
             Space::Volume => WalkSpace::Volume,
         },
-    });
-    kind.attraction = cell.motility.attraction.as_ref().map(|attraction| Attraction {
-        to: vector(attraction.to.map(|x| x.value())),
-        stiffness: attraction.stiffness.value(),
     });
     kind
 }
@@ -191,44 +187,6 @@ fn held(document: &Document, key: &str, cell: &CellType, rest: &Surface, faults:
         }
     }
     factors
-}
-
-fn loads(document: &Document, key: &str, cell: &CellType, rest: &Surface, faults: &mut Vec<Fault>) -> Vec<Load> {
-    let areas = geometry::atom_areas(rest);
-    let mut loads = Vec::new();
-    for (i, load) in cell.loads.iter().enumerate() {
-        let atoms = select::atoms(document, &format!("{key}.loads[{i}]"), &load.selection, rest, faults);
-        let heights = select::heights(&load.selection, unit(load.direction), rest);
-        let weight = |atom: u32| match load.spread {
-            Spread::Equal => 1.0,
-            Spread::Area => areas[atom as usize],
-            Spread::Tapered => areas[atom as usize] * heights[atom as usize],
-        };
-        let total: f64 = atoms.iter().map(|&atom| weight(atom)).sum();
-        loads.push(Load {
-            name: load.name.clone(),
-            atoms: atoms.into_iter().map(|atom| (atom, weight(atom) / total)).collect(),
-            direction: unit(load.direction),
-            force: course(load.force.points()),
-        });
-    }
-    loads
-}
-
-fn fibres(
-    document: &Document,
-    key: &str,
-    cell: &CellType,
-    surface: &mesh::Built,
-    faults: &mut Vec<Fault>,
-) -> Vec<Fibres> {
-    let compile = |(i, fibre): (usize, &super::Fibre)| Fibres {
-        name: fibre.name.clone(),
-        pairs: elasticity::linked_pairs(document, &format!("{key}.fibres[{i}]"), &fibre.linked, surface, faults),
-        stiffness: fibre.stiffness.value(),
-        activation: course(fibre.activation.points()),
-    };
-    cell.fibres.iter().enumerate().map(compile).collect()
 }
 
 /// The document's checks have made sure that times rise.
@@ -272,20 +230,4 @@ fn planes(experiment: &Experiment) -> Vec<Plane> {
         normal: unit(plane.normal),
     };
     experiment.planes.iter().map(plane).collect()
-}
-
-/// All times at which a course bends, rising.
-fn kinks(kinds: &[Kind]) -> Vec<f64> {
-    let mut kinks: Vec<f64> = Vec::new();
-    for kind in kinds {
-        kind.loads.iter().for_each(|load| kinks.extend(load.force.kinks()));
-        kind.fibres.iter().for_each(|fibres| kinks.extend(fibres.activation.kinks()));
-        if let VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } = &kind.volume {
-            kinks.extend(course.kinks());
-        }
-    }
-    kinks.retain(|&kink| kink > 0.0);
-    kinks.sort_by(f64::total_cmp);
-    kinks.dedup();
-    kinks
 }

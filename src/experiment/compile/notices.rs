@@ -4,8 +4,8 @@ use super::super::{Document, Mesh};
 use super::Prepared;
 use crate::Vec3;
 use crate::geometry::bounding_box;
-use crate::mechanics::course::Course;
-use crate::sim::{Kind, Model, VolumeRule};
+use crate::mechanics::Force;
+use crate::sim::{Kind, Model};
 use crate::units::{Dimension, pretty};
 
 /// The widths of cells, µm: from the smallest bacterium to the largest egg of a frog and more.
@@ -59,12 +59,13 @@ fn unusual_width(document: &Document, kind: &Kind) -> Option<String> {
 
 /// Whether two cells may come to the same place; false only where that is plain to see.
 fn may_meet(model: &Model, centres: &[Vec<Vec3>]) -> bool {
-    if model.cells() < 2 {
+    let cells: usize = centres.iter().map(Vec::len).sum();
+    if cells < 2 {
         return false;
     }
     let reaches: Option<Vec<f64>> = model.kinds.iter().map(|kind| reach(model, kind)).collect();
     let Some(reaches) = reaches else { return true };
-    let mut boxes: Vec<[Vec3; 2]> = Vec::with_capacity(model.cells());
+    let mut boxes: Vec<[Vec3; 2]> = Vec::with_capacity(cells);
     for ((kind, centres), reach) in model.kinds.iter().zip(centres).zip(reaches) {
         let Some((low, high)) = bounding_box(&kind.rest.positions) else { continue };
         let (low, high) = (low.add_scalar(-reach), high.add_scalar(reach));
@@ -75,13 +76,9 @@ fn may_meet(model: &Model, centres: &[Vec<Vec3>]) -> bool {
 
 /// How far cells of a kind may come in the run, µm; none where forces move them or change their size.
 fn reach(model: &Model, kind: &Kind) -> Option<f64> {
-    let keeps = |course: &Course| course.kinks().next().is_none();
-    let steady = match &kind.volume {
-        VolumeRule::Free => true,
-        VolumeRule::Exact(course) | VolumeRule::Compressible { course, .. } => keeps(course),
-    };
-    let driven = kind.biased || kind.attraction.is_some() || !kind.loads.is_empty() || !kind.fibres.is_empty();
-    let still = steady && !driven && model.chemistry.is_empty() && model.gravity.norm_squared() == 0.0;
+    let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
+    let driven = kind.biased || !kind.forces.iter().all(Force::is_elastic);
+    let still = steady && !driven && model.chemistry.is_empty();
     let walks = kind.brownian.map_or(0.0, |brownian| brownian.speed * model.until);
     still.then_some(walks)
 }

@@ -5,8 +5,8 @@ use crate::Vec3;
 use crate::contact::{Overlap, Scene, centre_is_inside};
 use crate::error::{Error, Fault, Result, short};
 use crate::geometry::bounding_box;
-use crate::sim::Model;
-use crate::sim::contact::ContactModel;
+use crate::sim::contact::ContactScene;
+use crate::sim::{Model, State};
 
 /// Overlaps that a message lists.
 const MOST: usize = 5;
@@ -52,13 +52,13 @@ pub fn too_deep(scene: &Scene, positions: &[Vec3], overlap: &Overlap) -> bool {
     overlap.nested().is_some() || is_in(first, second, inside_second) || is_in(second, first, inside_first)
 }
 
-fn name_of(model: &Model, body: u32) -> String {
-    let (kind, cell) = model.kind_of(body as usize);
+fn name_of(model: &Model, state: &State, body: u32) -> String {
+    let (kind, cell) = state.kind_of(body as usize);
     format!("cell {cell} of type `{}`", model.kinds[kind].name)
 }
 
 /// What overlaps how.
-pub fn told(model: &Model, overlap: &Overlap) -> Found {
+pub fn told(model: &Model, state: &State, overlap: &Overlap) -> Found {
     let [first, second] = overlap.bodies;
     let [inside_second, inside_first] = overlap.atoms_inside;
     let (inner, outer, inside) = match overlap.nested() {
@@ -66,32 +66,32 @@ pub fn told(model: &Model, overlap: &Overlap) -> Found {
         None if inside_second > inside_first => (first, second, inside_second),
         _ => (second, first, inside_first),
     };
-    let (inner_name, outer_name) = (name_of(model, inner), name_of(model, outer));
+    let (inner_name, outer_name) = (name_of(model, state, inner), name_of(model, state, outer));
     let words = match (overlap.nested(), inside) {
         (Some(_), _) => format!("{inner_name} is wholly inside {outer_name}"),
         (None, 0) => format!("edges of {inner_name} pass through {outer_name} at {} places", overlap.crossings),
         (None, _) => {
-            let atoms = model.kinds[model.kind_of(inner as usize).0].atoms();
+            let atoms = model.kinds[state.kind_of(inner as usize).0].atoms();
             format!("{inner_name} has {inside} of its {atoms} atoms inside {outer_name}")
         }
     };
-    Found { kind: model.kind_of(second as usize).0, words }
+    Found { kind: state.kind_of(second as usize).0, words }
 }
 
 /// Cells that reach farther behind a plane than a step may move an atom.
-pub fn behind_planes(model: &Model, contact: &ContactModel, positions: &[Vec3]) -> Vec<Found> {
+pub fn behind_planes(model: &Model, state: &State, contact: &ContactScene, positions: &[Vec3]) -> Vec<Found> {
     let mut found = Vec::new();
     let mut atoms = positions;
-    for body in 0..model.cells() as u32 {
-        let number = model.kind_of(body as usize).0;
+    for body in 0..state.cells() as u32 {
+        let number = state.kind_of(body as usize).0;
         let kind = &model.kinds[number];
         let (own, others) = atoms.split_at(kind.atoms());
         atoms = others;
         for plane in &model.planes {
             let height = |p: &Vec3| (p - plane.point).dot(&plane.normal);
             let depth = -own.iter().map(height).fold(f64::INFINITY, f64::min);
-            if depth > contact.scene.safe_travel() {
-                let (name, depth) = (name_of(model, body), short(depth));
+            if depth > contact.reach.safe_travel() {
+                let (name, depth) = (name_of(model, state, body), short(depth));
                 let words = format!("{name} reaches {depth} um behind the plane `{}`", plane.name);
                 found.push(Found { kind: number, words });
             }

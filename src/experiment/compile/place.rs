@@ -15,8 +15,16 @@ pub fn atoms_at(kind: &Kind, centres: &[Vec3]) -> Vec<Vec<Vec3>> {
     centres.iter().map(at).collect()
 }
 
-/// The centres of all cells of a kind.
-pub fn centres(experiment: &Experiment, cell: &CellType, kind: &Kind) -> Vec<Vec3> {
+/// The number of the first cell of each type in the order of all cells.
+pub fn first_cells(experiment: &Experiment) -> impl Iterator<Item = usize> {
+    experiment.cells.values().scan(0, |next, cell| {
+        *next += cell.count();
+        Some(*next - cell.count())
+    })
+}
+
+/// The centres of all cells of a kind, of which the first has this number among all cells.
+pub fn centres(experiment: &Experiment, cell: &CellType, kind: &Kind, first_cell: usize) -> Vec<Vec3> {
     let number = cell.count();
     let mut centres: Vec<Vec3> = match &cell.placement {
         Some(Placement::At { at }) => at.iter().map(|x| vector(x.map(|x| x.value()))).collect(),
@@ -25,7 +33,7 @@ pub fn centres(experiment: &Experiment, cell: &CellType, kind: &Kind) -> Vec<Vec
         }
         Some(Placement::Random { random_from, random_to }) => {
             let (low, high) = (vector(random_from.map(|x| x.value())), vector(random_to.map(|x| x.value())));
-            (0..number).map(|i| random_place(experiment.seed, (kind.first_cell + i) as u32, low, high)).collect()
+            (0..number).map(|i| random_place(experiment.seed, (first_cell + i) as u32, low, high)).collect()
         }
         None => {
             let side = (number as f64).sqrt().ceil() as u32;

@@ -7,8 +7,8 @@ use crate::Vec3;
 use crate::contact::{Overlap, Yielding, find_overlaps, push_apart};
 use crate::error::{Result, short};
 use crate::geometry::{area, bounding_box};
-use crate::sim::contact::ContactModel;
-use crate::sim::{Kind, Model};
+use crate::sim::contact::ContactScene;
+use crate::sim::{Kind, Model, State};
 
 /// Rounds of pushing after which cells that still overlap are refused.
 const ROUNDS: u32 = 200;
@@ -45,28 +45,32 @@ impl PushedApart {
 /// [`crate::error::Error::Input`] with the cells that cannot be parted so, and with those behind planes.
 pub fn settle_start(document: &Document, compiled: &mut Compiled) -> Result<PushedApart> {
     let Compiled { model, state, .. } = compiled;
-    let Some(contact) = &model.contact else { return Ok(PushedApart::default()) };
+    let Some(contact) = &model.contact.as_ref().map(|contact| contact.scene_of(&state.kinds)) else {
+        return Ok(PushedApart::default());
+    };
     let cells = model.kinds.iter().zip(&state.kinds);
     let mut positions: Vec<Vec3> =
-        cells.flat_map(|(kind, now)| (0..kind.cells).flat_map(|cell| now.cell(kind, cell))).collect();
+        cells.flat_map(|(kind, now)| (0..now.cells()).flat_map(|cell| now.cell(kind, cell))).collect();
     let overlaps = find_overlaps(&contact.scene, &positions);
-    refuse_what_cannot_move(document, model, contact, &positions, &overlaps)?;
+    refuse_what_cannot_move(document, model, state, contact, &positions, &overlaps)?;
     if overlaps.is_empty() {
         return Ok(PushedApart::default());
     }
-    let resistance: Vec<f64> = of_cells(model, |kind| if kind.is_held() { f64::INFINITY } else { area(&kind.rest) });
-    let gap = GAP * contact.scene.reach.proximity;
+    let resistance: Vec<f64> =
+        of_cells(model, state, |kind| if kind.is_held() { f64::INFINITY } else { area(&kind.rest) });
+    let gap = GAP * contact.reach.proximity;
     let yielding = Yielding { resistance: &resistance, gap, stride: stride(model), rounds: ROUNDS };
     let (moves, left) = push_apart(&contact.scene, &mut positions, &yielding);
-    let list = |overlaps: &[Overlap]| overlaps.iter().map(|overlap| told(model, overlap)).collect::<Vec<Found>>();
+    let list =
+        |overlaps: &[Overlap]| overlaps.iter().map(|overlap| told(model, state, overlap)).collect::<Vec<Found>>();
     let head = format!("cells overlap at the start, and {ROUNDS} rounds of pushing have not parted them all: ");
     let room = if model.planes.is_empty() { "" } else { ", or give them more room between the planes" };
     refusal(document, model, &head, &list(&left), room)?;
-    let far = too_far(model, &moves);
+    let far = too_far(model, state, &moves);
     let head = "cells overlap at the start, and to part them some would have to move farther than their radius: ";
     refusal(document, model, head, &far, "")?;
     for (body, way) in moves.iter().enumerate() {
-        let (kind, cell) = model.kind_of(body);
+        let (kind, cell) = state.kind_of(body);
         state.kinds[kind].shift(&model.kinds[kind], cell, way);
     }
     // Pushes from both sides may leave round-off.
@@ -78,14 +82,15 @@ pub fn settle_start(document: &Document, compiled: &mut Compiled) -> Result<Push
 fn refuse_what_cannot_move(
     document: &Document,
     model: &Model,
-    contact: &ContactModel,
+    state: &State,
+    contact: &ContactScene,
     positions: &[Vec3],
     overlaps: &[Overlap],
 ) -> Result<()> {
     let found = |is: &dyn Fn(&Overlap) -> bool| -> Vec<Found> {
-        overlaps.iter().filter(|overlap| is(overlap)).map(|overlap| told(model, overlap)).collect()
+        overlaps.iter().filter(|overlap| is(overlap)).map(|overlap| told(model, state, overlap)).collect()
     };
-    let behind = behind_planes(model, contact, positions);
+    let behind = behind_planes(model, state, contact, positions);
     if !behind.is_empty() {
         let all: Vec<Found> = found(&|_| true).into_iter().chain(behind).collect();
         return refusal(
@@ -98,7 +103,7 @@ fn refuse_what_cannot_move(
     }
     let deep = found(&|overlap| too_deep(&contact.scene, positions, overlap));
     refusal(document, model, "cells overlap at the start, too deep in each other to be pushed apart: ", &deep, "")?;
-    let is_held = |body: u32| model.kinds[model.kind_of(body as usize).0].is_held();
+    let is_held = |body: u32| model.kinds[state.kind_of(body as usize).0].is_held();
     let held = found(&|overlap| overlap.bodies.iter().all(|body| is_held(*body)));
     refusal(
         document,
@@ -110,8 +115,9 @@ fn refuse_what_cannot_move(
 }
 
 /// A number of each cell's kind for each cell.
-fn of_cells(model: &Model, number: impl Fn(&Kind) -> f64) -> Vec<f64> {
-    model.kinds.iter().flat_map(|kind| std::iter::repeat_n(number(kind), kind.cells)).collect()
+fn of_cells(model: &Model, state: &State, number: impl Fn(&Kind) -> f64) -> Vec<f64> {
+    let cells = model.kinds.iter().zip(&state.kinds);
+    cells.flat_map(|(kind, now)| std::iter::repeat_n(number(kind), now.cells())).collect()
 }
 
 /// Extents of a kind at rest.
@@ -128,11 +134,11 @@ fn stride(model: &Model) -> f64 {
 }
 
 /// Cells that would be moved farther than half of their largest extent.
-fn too_far(model: &Model, moves: &[Vec3]) -> Vec<Found> {
-    let radii = of_cells(model, |kind| 0.5 * extents(kind).max());
+fn too_far(model: &Model, state: &State, moves: &[Vec3]) -> Vec<Found> {
+    let radii = of_cells(model, state, |kind| 0.5 * extents(kind).max());
     let far = moves.iter().zip(radii).enumerate().filter(|(_, (way, radius))| way.norm() > *radius);
     let words = |(body, (way, radius)): (usize, (&Vec3, f64))| {
-        let (kind, cell) = model.kind_of(body);
+        let (kind, cell) = state.kind_of(body);
         let (name, far) = (&model.kinds[kind].name, short(way.norm()));
         Found { kind, words: format!("cell {cell} of type `{name}` by {far} um of {} um", short(radius)) }
     };

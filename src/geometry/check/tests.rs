@@ -167,7 +167,7 @@ fn many_faults_of_a_kind_are_one_with_their_number_and_the_first_places() {
     surface.positions.extend((0..25).map(|k| Vec3::x() * (2.0 + f64::from(k))));
     let found = faults(&surface, &SurfaceRules::CELL);
     assert_eq!(found, ["the mesh has 25 atoms without facets: atom 42; atom 43; atom 44; …"]);
-    surface.facets.drain(..6);
+    surface.facets.pop();
     let found = faults(&surface, &SurfaceRules::CELL);
     assert_eq!(found.len(), 2, "one for the hole, one for the atoms: {found:?}");
 }

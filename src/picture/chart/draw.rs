@@ -11,6 +11,7 @@ use super::{Chart, Legend, Series, svg_to_png};
 use crate::error::Result;
 use crate::picture::Image;
 use crate::picture::colour::Colour;
+use crate::picture::svg::svg_to_pixels;
 use crate::picture::text::{self, Anchor, Style, Weight, write_text, write_turned_text};
 use crate::picture::ticks;
 
@@ -28,7 +29,7 @@ pub(super) fn to_png(chart: &Chart, svg: &str, [width, height]: [f64; 2], scale:
     let Some(heat) = &chart.heat else { return svg_to_png(svg, scale as f32) };
     // Our own drawing of SVG knows no pictures inside: the heat is painted first, the rest laid over it.
     let (svg, frame) = compose(chart, width, height, Page::Lines);
-    let mut pixels = text::svg_to_pixels(&svg, scale as f32)?;
+    let mut pixels = svg_to_pixels(&svg, scale as f32)?;
     let mut image = Image::filled(pixels.width() as usize, pixels.height() as usize, Colour([255; 3]));
     let pixel = |at: f64| (at * scale).round().max(0.0) as usize;
     let (left, top) = (pixel(frame.left), pixel(frame.top));
@@ -75,7 +76,7 @@ fn compose(chart: &Chart, width: f64, height: f64, page: Page) -> (String, Frame
         text::FONT_FAMILY
     );
     if page == Page::Whole {
-        svg.push_str("<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n");
+        let _ = writeln!(svg, r##"<rect width="{width}" height="{height}" fill="#ffffff"/>"##);
     }
     match &chart.heat {
         None => write_grid(&mut svg, &frame),

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use super::colour::Colour;
 use super::image::write_file;
-use super::text;
+use super::svg::svg_to_pixels;
 use crate::error::Result;
 
 pub use draw::to_svg;
@@ -261,12 +261,13 @@ impl Series {
     }
 }
 
-/// The bytes of a PNG picture of an SVG document, `scale` pixels for each of its units, on white.
+/// The bytes of a PNG picture of a drawing that [`to_svg`] made, `scale` pixels for each of its units, on white. Other SVG is
+/// drawn as far as it is made of the same elements.
 ///
 /// # Errors
 /// When the text is not SVG or its size is zero or enormous.
 pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>> {
-    let mut pixels = text::svg_to_pixels(svg, scale)?;
+    let mut pixels = svg_to_pixels(svg, scale)?;
     let mut image = super::Image::filled(pixels.width() as usize, pixels.height() as usize, Colour([255; 3]));
     image.lay_over(pixels.data_mut());
     image.to_png()

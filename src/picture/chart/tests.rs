@@ -1,7 +1,6 @@
 //! What a chart promises.
 
 use super::*;
-use resvg::usvg::roxmltree;
 
 fn walk(seed: u32, steps: usize) -> Vec<[f64; 2]> {
     // A small generator is enough for a picture that has to look the same every time.

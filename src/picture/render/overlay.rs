@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::camera::{Camera, Insets};
 use crate::picture::Image;
 use crate::picture::colour::{Colour, ColourMap};
+use crate::picture::svg::svg_to_pixels;
 use crate::picture::text::{self, Anchor, Style, Weight, text_width, write_text};
 use crate::picture::ticks::{self, Ends, nice_below, short};
 
@@ -102,7 +103,7 @@ impl Overlay {
             return;
         }
         let svg = self.to_svg(image.width, image.height, camera.pixels_per_micron(image.height));
-        if let Ok(mut pixels) = text::svg_to_pixels(&svg, 1.0) {
+        if let Ok(mut pixels) = svg_to_pixels(&svg, 1.0) {
             image.lay_over(pixels.data_mut());
         }
     }

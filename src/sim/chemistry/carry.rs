@@ -1,18 +1,18 @@
 //! Links: numbers go from chemistry to cells and from cells and fields to chemistry.
 
-use rayon::prelude::*;
-
 use super::super::model::Model;
 use super::super::state::{State, index, vector};
 use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
+use super::census::{cell_of_member, cells_of, member_of_cell, names_nobody};
+use super::exchange::is_due;
+use super::links::{Control, Observation, Owner, Target};
 use super::measure::measure_cells;
-use super::model::{Control, Link, Owner, Source, Target, Whole};
-use super::scratch::{ChemistryScratch, cells_of};
-use super::stages::is_due;
-use crate::cell::ends::{Reading, Sense};
+use super::observe::{observe, read_cell};
+use super::scratch::ChemistryScratch;
 use crate::equations::eml::LinkDescription;
 use crate::field::Sensed;
+use crate::mechanics::CONTROLLED;
 
 /// Carries the numbers of all links whose system exchanges with the model at `time`.
 /// The values of the fields must be with their solvers. At the start every system exchanges.
@@ -28,16 +28,18 @@ pub(super) fn carry_links(
 ) -> Result<(), Trouble> {
     let chemistry = &model.chemistry;
     if chemistry.measures_cells {
-        measure_cells(model, state, &ws.contact.found.atoms, &mut ws.chemistry.cells);
+        let contact = ws.contact.scene(model, &state.kinds);
+        measure_cells(model, state, contact.as_ref(), &ws.contact.found.atoms, &mut ws.chemistry.cells);
     }
     sense_fields(model, state, &mut ws.chemistry);
-    for link in &chemistry.links {
+    ws.chemistry.observed.forget(&chemistry.observations);
+    for (number, link) in chemistry.links.iter().enumerate() {
         let due = match link.owner {
             Owner::Reactor(number) => start || is_due(&chemistry.reactors[number], time),
             Owner::Field(_) => true,
         };
         if due {
-            carry(model, link, time, state, &mut ws.chemistry)?;
+            carry(model, number, time, state, &mut ws.chemistry)?;
         }
     }
     Ok(())
@@ -48,7 +50,7 @@ fn sense_fields(model: &Model, state: &State, scratch: &mut ChemistryScratch) {
     for (&(field, species), cells) in model.chemistry.sensed.iter().zip(&mut scratch.sensed) {
         for (kind, now) in model.kinds.iter().zip(&state.kinds) {
             let atoms = kind.atoms();
-            for cell in 0..kind.cells {
+            for cell in 0..now.cells() {
                 scratch.places.clear();
                 scratch.places.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
                 scratch.senses.resize(atoms, Sensed::default());
@@ -58,48 +60,56 @@ fn sense_fields(model: &Model, state: &State, scratch: &mut ChemistryScratch) {
                     gradient: sum.gradient + one.gradient,
                 });
                 let share = 1.0 / atoms as f64;
-                cells[kind.first_cell + cell] = Sensed { value: sum.value * share, gradient: sum.gradient * share };
+                cells[now.first_cell + cell] = Sensed { value: sum.value * share, gradient: sum.gradient * share };
             }
         }
     }
 }
 
-/// Carries the numbers of one link, for every member of its system.
+/// Carries the numbers of one link, for every member of its system; nothing where it reads cells that are no more.
 fn carry(
     model: &Model,
-    link: &Link,
+    number: usize,
     time: f64,
     state: &mut State,
     scratch: &mut ChemistryScratch,
 ) -> Result<(), Trouble> {
-    let chemistry = &model.chemistry;
-    let (members, number) = match link.owner {
-        Owner::Reactor(number) => (chemistry.reactors[number].members.len(), Some(number)),
-        Owner::Field(_) => (1, None),
-    };
-    if let Some(number) = number {
-        observe(model, number, &link.uses, state, &mut scratch.observed);
+    if model.chemistry.links[number].from.whose().is_some_and(|whose| names_nobody(state, whose)) {
+        return Ok(());
     }
+    observe(model, number, time, state, scratch);
+    let chemistry = &model.chemistry;
+    let (link, seen) = (&chemistry.links[number], &chemistry.observations.links[number]);
+    let (reactor, members) = match link.owner {
+        Owner::Reactor(number) => (Some(&chemistry.reactors[number]), state.chemistry.populations[number].cells()),
+        Owner::Field(_) => (None, 1),
+    };
+    let seconds = reactor.map_or(1.0, |reactor| reactor.seconds);
     for member in 0..members {
-        let own = number.and_then(|number| chemistry.reactors[number].members.cell(member));
+        let own = reactor.and_then(|reactor| cell_of_member(&state.kinds, &reactor.members, member));
         let used = |quantity: u32| match link.owner {
             Owner::Field(field) => chemistry.fields[field].constants[quantity as usize],
             Owner::Reactor(_) => {
                 let at = link.uses.iter().position(|used| *used == quantity).expect("all that is used is observed");
-                scratch.observed[at][member]
+                scratch.observed.quantity(seen.quantities[at], member)
             }
         };
-        let value = match link.from {
-            Source::Own(quantity) => used(quantity),
-            other => read(model, &other, own, time, state, scratch),
+        let value = match seen.from {
+            Observation::Own(slot) => scratch.observed.quantity(slot, member),
+            Observation::Shared(slot) => scratch.observed.shared(slot),
+            Observation::Cell => own.map_or(f64::NAN, |cell| read_cell(model, &link.from, cell, state, scratch)),
+            Observation::OfOwnCell(slot) => {
+                let members = &chemistry.reactors[chemistry.observations.quantities[slot].0].members;
+                let other = own.and_then(|cell| member_of_cell(&state.kinds, members, cell));
+                other.map_or(f64::NAN, |other| scratch.observed.quantity(slot, other))
+            }
         };
-        let seconds = number.map_or(1.0, |number| chemistry.reactors[number].seconds);
         let carried = link.transfer.evaluate(time / seconds, &|quantity| {
             if quantity == LinkDescription::VALUE { value } else { used(quantity) }
         });
         let carried = link.gain * carried;
         if let Some(expected) = missed(link.to, carried) {
-            let owner = own.map(|cell| model.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
+            let owner = own.map(|cell| state.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
             return Err(Trouble::Link { link: link.text.clone(), owner, value: carried, expected, time });
         }
         match (link.to, link.owner) {
@@ -108,11 +118,14 @@ fn carry(
             }
             (Target::Own(input), Owner::Field(field)) => state.chemistry.fields[field].inputs[input] = carried,
             (Target::Cell(whose, control), _) => {
-                for cell in cells_of(model, whose, own) {
+                for cell in cells_of(state, whose, own) {
                     set_control(model, cell, control, carried, state);
                 }
             }
         }
+    }
+    if let Target::Cell(_, Control::Atom(..)) = link.to {
+        scratch.observed.forget_at_atoms(&chemistry.observations);
     }
     Ok(())
 }
@@ -126,78 +139,11 @@ pub fn missed(target: Target, value: f64) -> Option<&'static str> {
         Target::Cell(_, Control::MotilitySpeed | Control::Stiffness | Control::Adhesion) if value < 0.0 => {
             Some("a number not below 0")
         }
-        Target::Cell(_, Control::Fibre(_)) if !(0.0..=1.0).contains(&value) => Some("a number from 0 to 1"),
+        Target::Cell(_, Control::Force(handle, _)) if !CONTROLLED[handle].allows(value) => {
+            Some(CONTROLLED[handle].expected)
+        }
         Target::Cell(_, Control::RestVolume | Control::RestVolumeRatio) if value <= 0.0 => Some("a number above 0"),
         _ => None,
-    }
-}
-
-/// Values of quantities of a system, for all its members.
-fn observe(model: &Model, number: usize, uses: &[u32], state: &State, observed: &mut Vec<Vec<f64>>) {
-    let (reactor, population) = (&model.chemistry.reactors[number], &state.chemistry.populations[number]);
-    observed.resize_with(observed.len().max(uses.len()), Vec::new);
-    for (quantity, values) in uses.iter().zip(observed.iter_mut()) {
-        values.resize(population.cells(), 0.0);
-        let time = state.chemistry.times[number] / reactor.seconds;
-        population.observe(&reactor.program, *quantity, time, values);
-    }
-}
-
-/// A number of the model.
-fn read(model: &Model, from: &Source, own: Option<usize>, time: f64, state: &State, scratch: &ChemistryScratch) -> f64 {
-    let mean = |whose, one: &dyn Fn(usize) -> f64| {
-        let cells = cells_of(model, whose, own);
-        let number = cells.len() as f64;
-        cells.map(one).sum::<f64>() / number
-    };
-    match *from {
-        Source::Own(_) => f64::NAN,
-        Source::Time => time,
-        Source::Cell(whose, Reading::Atom(atom, axis)) => mean(whose, &|cell| {
-            let (kind, local) = model.kind_of(cell);
-            vector(&model.kinds[kind], &state.kinds[kind].positions, local, atom)[axis]
-        }),
-        Source::Cell(whose, reading) => mean(whose, &|cell| scratch.cells[cell].read(reading)),
-        Source::Sensed(whose, channel, sense) => mean(whose, &|cell| pick(&scratch.sensed[channel][cell], sense)),
-        Source::AtAtom(whose, atom, field, species, sense) => mean(whose, &|cell| {
-            let (kind, local) = model.kind_of(cell);
-            let place = vector(&model.kinds[kind], &state.kinds[kind].positions, local, atom);
-            pick(&scratch.fields[field].sense(species, place), sense)
-        }),
-        Source::Whole(field, species, what) => {
-            let fields = &scratch.fields[field];
-            let values = fields.values(species);
-            match what {
-                Whole::Amount => fields.amount(species),
-                // Sums of whole fields run in a fixed order of pieces, so that threads do not matter.
-                Whole::Mean => {
-                    let sums: Vec<f64> = values.par_chunks(4096).map(|part| part.iter().sum()).collect();
-                    sums.iter().sum::<f64>() / values.len() as f64
-                }
-                Whole::Largest => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-                Whole::Smallest => values.iter().copied().fold(f64::INFINITY, f64::min),
-            }
-        }
-        Source::Other(number, quantity, whose) => {
-            let reactor = &model.chemistry.reactors[number];
-            let (population, time) = (&state.chemistry.populations[number], state.chemistry.times[number]);
-            let mut values = vec![0.0; population.cells()];
-            population.observe(&reactor.program, quantity, time / reactor.seconds, &mut values);
-            match &reactor.members {
-                super::Members::Scene => values[0],
-                super::Members::Cells(cells) => {
-                    mean(whose, &|cell| cells.binary_search(&(cell as u32)).map_or(f64::NAN, |member| values[member]))
-                }
-            }
-        }
-    }
-}
-
-fn pick(sensed: &Sensed, sense: Sense) -> f64 {
-    match sense {
-        Sense::Value => sensed.value,
-        Sense::Gradient(axis) => sensed.gradient[axis],
-        Sense::Steepness => sensed.gradient.norm(),
     }
 }
 
@@ -209,16 +155,15 @@ pub fn set_control(model: &Model, cell: usize, control: Control, value: f64, sta
         Control::Bias(axis) => controls.bias[cell][axis] = value,
         Control::Stiffness => controls.stiffness[cell] = value,
         Control::Adhesion => controls.adhesion[cell] = value,
-        Control::Load(load) => controls.loads[load][cell] = value,
-        Control::Fibre(fibre) => controls.fibres[fibre][cell] = value,
+        Control::Force(handle, number) => controls.forces[handle][number][cell] = value,
         Control::Secretion(channel) => controls.secretion[channel][cell] = value,
         Control::RestVolume | Control::RestVolumeRatio => {
-            let (kind, local) = model.kind_of(cell);
+            let (kind, local) = state.kind_of(cell);
             let unit = if control == Control::RestVolume { 1.0 } else { model.chemistry.rest[kind][0] };
             state.kinds[kind].rest_volumes[local] = value * unit;
         }
         Control::Atom(atom, axis) => {
-            let (kind, local) = model.kind_of(cell);
+            let (kind, local) = state.kind_of(cell);
             let at = index(&model.kinds[kind], local, atom, axis);
             state.kinds[kind].positions[at] = value;
         }

@@ -2,8 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::super::model::{Kind, Model};
-use super::super::state::{State, vector};
+use super::super::contact::ContactScene;
+use super::super::kind::Kind;
+use super::super::model::Model;
+use super::super::state::{KindState, State, vector};
 use crate::Vec3;
 use crate::cell::ends::Reading;
 use crate::contact::AtomContact;
@@ -59,17 +61,22 @@ impl CellNumbers {
 
 /// Measures all cells. What touches is what was found last: under
 /// adhesives where the step ended, and else where it began.
-pub(super) fn measure_cells(model: &Model, state: &State, found: &[AtomContact], cells: &mut [CellNumbers]) {
+pub(super) fn measure_cells(
+    model: &Model,
+    state: &State,
+    contact: Option<&ContactScene>,
+    found: &[AtomContact],
+    cells: &mut [CellNumbers],
+) {
     for ((kind, now), rest) in model.kinds.iter().zip(&state.kinds).zip(&model.chemistry.rest) {
-        let out = &mut cells[kind.first_cell..kind.first_cell + kind.cells];
+        let out = &mut cells[now.numbers()];
         out.par_iter_mut().enumerate().for_each(|(cell, out)| {
-            let (first, near) = near_cell(model, found, kind.first_cell + cell);
+            let (first, near) = near_cell(kind, now, found, cell);
             *out = measure(model, kind, &now.positions, cell, |atom| {
                 let at = near.partition_point(|contact| contact.atom < first + atom);
                 let mut of_atom = near[at..].iter().take_while(|contact| contact.atom == first + atom);
-                let scene = model.contact.as_ref().map(|contact| &contact.scene);
-                let is_other = |scene, contact: &AtomContact| contact.body(scene) as usize != kind.first_cell + cell;
-                scene.is_some_and(|scene| of_atom.any(|contact| is_other(scene, contact)))
+                let own = now.first_cell + cell;
+                contact.is_some_and(|contact| of_atom.any(|near| near.body(&contact.scene) as usize != own))
             });
             out.rest = *rest;
             out.velocity = Vec3::from(now.mean_velocities[cell]);
@@ -78,10 +85,8 @@ pub(super) fn measure_cells(model: &Model, state: &State, found: &[AtomContact],
 }
 
 /// The number of the first atom of a cell among all, and the contacts of its atoms.
-fn near_cell<'a>(model: &Model, found: &'a [AtomContact], cell: usize) -> (u32, &'a [AtomContact]) {
-    let Some(contact) = &model.contact else { return (0, &[]) };
-    let bodies = &contact.scene.bodies;
-    let begin = |cell: usize| bodies.get(cell).map_or(contact.scene.atoms as u32, |body| body.first_atom);
+fn near_cell<'a>(kind: &Kind, now: &KindState, found: &'a [AtomContact], cell: usize) -> (u32, &'a [AtomContact]) {
+    let begin = |cell: usize| (now.first_atom + cell * kind.atoms()) as u32;
     let of_cell = [begin(cell), begin(cell + 1)].map(|atom| found.partition_point(|contact| contact.atom < atom));
     (begin(cell), &found[of_cell[0]..of_cell[1]])
 }

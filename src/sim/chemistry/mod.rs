@@ -5,16 +5,23 @@
 //! links stands still.
 
 mod carry;
+mod census;
+mod exchange;
+mod links;
 mod measure;
 mod model;
+mod observe;
+mod observed;
 mod scratch;
 mod stages;
 mod state;
+mod turnover;
 
 pub use carry::{missed, set_control};
-pub use model::{
-    Chemistry, Control, FieldReactor, FieldStepping, Link, Members, Owner, Reactor, Source, Target, Whole, Whose,
-};
+pub use census::member_cells;
+pub use exchange::next_exchange;
+pub use links::{Control, Link, LinkObservations, Observation, Observations, Owner, Source, Target, Whole, Whose};
+pub use model::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
 pub use scratch::ChemistryScratch;
-pub use stages::{advance_chemistry, begin_chemistry, next_exchange};
-pub use state::{ChemistryState, Controls, FieldState};
+pub use stages::{advance_chemistry, begin_chemistry};
+pub use state::{ChemistryState, FieldState};

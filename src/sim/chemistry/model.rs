@@ -1,8 +1,8 @@
 //! What chemistry means: compiled systems, fields and links. Nothing here changes during a run.
 
-use crate::cell::ends::{Reading, Sense};
+use super::links::{Link, Observations};
 use crate::equations::program::Program;
-use crate::equations::tree::{Expr, QuantityId};
+use crate::equations::tree::QuantityId;
 use crate::field::{FieldSystem, Stepping};
 use crate::ode::{EventPlan, Method, Tolerances};
 
@@ -13,8 +13,10 @@ pub struct Chemistry {
     pub reactors: Vec<Reactor>,
     /// Fields, in the order of the document.
     pub fields: Vec<FieldReactor>,
-    /// Links in an order in which each comes after those whose numbers it uses in the same instant.
+    /// Links in an order in which each comes after those whose numbers it uses in the same instant; see [`Self::set_links`].
     pub links: Vec<Link>,
+    /// What these links read, each thing once.
+    pub observations: Observations,
     /// Species that links sense as a mean over cells: (field, species).
     pub sensed: Vec<(usize, usize)>,
     /// Species that cells secrete: (field, species).
@@ -51,33 +53,20 @@ pub struct Reactor {
 }
 
 /// Who has a system.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Members {
     /// The scene, once.
     Scene,
-    /// These cells (numbers in the order of all cells), rising.
-    Cells(Vec<u32>),
+    /// Every cell of these kinds (rising numbers), in the order of all cells.
+    Kinds(Vec<usize>),
 }
 
 impl Members {
-    /// How many copies of the system there are.
-    pub fn len(&self) -> usize {
+    /// How many copies of the system there are, where `cells` says how many cells a kind has.
+    pub fn count(&self, cells: impl Fn(usize) -> usize) -> usize {
         match self {
             Self::Scene => 1,
-            Self::Cells(cells) => cells.len(),
-        }
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The cell that has a copy; none for the scene.
-    pub fn cell(&self, member: usize) -> Option<usize> {
-        match self {
-            Self::Scene => None,
-            Self::Cells(cells) => Some(cells[member] as usize),
+            Self::Kinds(kinds) => kinds.iter().map(|&kind| cells(kind)).sum(),
         }
     }
 }
@@ -120,112 +109,14 @@ impl FieldStepping {
     }
 }
 
-/// A link: a number goes from one end through the transfer to the other at each exchange.
-#[derive(Debug, Clone)]
-pub struct Link {
-    /// The document's own words for it, for messages.
-    pub text: String,
-    /// Whose link it is.
-    pub owner: Owner,
-    /// Where the number comes from.
-    pub from: Source,
-    /// Where it goes.
-    pub to: Target,
-    /// What becomes of it: an expression of the owner's quantities and of the value.
-    pub transfer: Expr,
-    /// Quantities of the owner that the transfer uses.
-    pub uses: Vec<QuantityId>,
-    /// Factor of the transfer.
-    pub gain: f64,
-}
-
-/// Whose link it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Owner {
-    /// A system.
-    Reactor(usize),
-    /// A document of fields.
-    Field(usize),
-}
-
-/// Which cells an end names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Whose {
-    /// The cell that has the system.
-    Own,
-    /// This cell, in the order of all cells.
-    Cell(usize),
-    /// All cells of a kind: their mean where it is read, each of them where it is set.
-    Kind(usize),
-}
-
-/// Where a number comes from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Source {
-    /// A quantity of the owner.
-    Own(QuantityId),
-    /// Simulated time, s.
-    Time,
-    /// A measure of a cell.
-    Cell(Whose, Reading),
-    /// A field as a cell senses it: the mean over its atoms of a channel of [`Chemistry::sensed`].
-    Sensed(Whose, usize, Sense),
-    /// A field at an atom: (whose, atom, field, species, what).
-    AtAtom(Whose, usize, usize, usize, Sense),
-    /// A number of a whole field: (field, species, what).
-    Whole(usize, usize, Whole),
-    /// A quantity of another system: (reactor, quantity, whose copy); the scene's only one for systems of the scene.
-    Other(usize, QuantityId, Whose),
-}
-
-/// A number of a whole field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Whole {
-    /// Mean value.
-    Mean,
-    /// Largest value.
-    Largest,
-    /// Smallest value.
-    Smallest,
-    /// Amount on the grid.
-    Amount,
-}
-
-/// Where a number goes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Target {
-    /// An open quantity of the owner: its place among the inputs.
-    Own(usize),
-    /// Something that mechanics reads of a cell.
-    Cell(Whose, Control),
-}
-
-/// What mechanics reads of a cell.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Control {
-    /// Speed of the walk, µm/s.
-    MotilitySpeed,
-    /// A component of the velocity added to the walk, µm/s.
-    Bias(usize),
-    /// Factor of elastic forces.
-    Stiffness,
-    /// Factor of the strength of contacts.
-    Adhesion,
-    /// Rest volume, µm³.
-    RestVolume,
-    /// Rest volume over that of the mesh at rest.
-    RestVolumeRatio,
-    /// Factor of the load with this number in the kind's list.
-    Load(usize),
-    /// Activation of the fibres with this number in the kind's list.
-    Fibre(usize),
-    /// A component of an atom's position, µm.
-    Atom(usize, usize),
-    /// Amount released per second into a channel of [`Chemistry::secreted`].
-    Secretion(usize),
-}
-
 impl Chemistry {
+    /// Takes links, in an order in which they can carry.
+    pub fn set_links(&mut self, links: Vec<Link>) {
+        let of_cells = |number: usize| self.reactors[number].members != Members::Scene;
+        self.observations = Observations::of(&links, of_cells);
+        self.links = links;
+    }
+
     /// Whether there is nothing to do.
     pub fn is_empty(&self) -> bool {
         self.reactors.is_empty() && self.fields.is_empty()

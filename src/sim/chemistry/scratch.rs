@@ -1,11 +1,13 @@
 //! Scratch paper of chemistry: sized once, never saved, never read before it is written.
 
 use super::super::model::Model;
+use super::super::state::State;
 use super::measure::CellNumbers;
-use super::model::Whose;
+use super::observed::Observed;
 use super::state::ChemistryState;
 use crate::Vec3;
 use crate::field::{Fields, Sensed};
+use crate::ode::PopulationScratch;
 
 /// What the stages of chemistry need beside the state.
 #[derive(Debug, Clone, Default)]
@@ -16,8 +18,10 @@ pub struct ChemistryScratch {
     pub(super) cells: Vec<CellNumbers>,
     /// Means over the atoms of each cell, one list for each species sensed.
     pub(super) sensed: Vec<Vec<Sensed>>,
-    /// Values of the quantities that a link uses: `[quantity][member]`.
-    pub(super) observed: Vec<Vec<f64>>,
+    /// Buffers of the systems.
+    pub(super) populations: Vec<PopulationScratch>,
+    /// What links read.
+    pub(super) observed: Observed,
     /// Positions of atoms, what is sensed at them, and amounts released at them.
     pub(super) places: Vec<Vec3>,
     pub(super) senses: Vec<Sensed>,
@@ -34,18 +38,32 @@ impl ChemistryScratch {
         let fields = chemistry.fields.iter().map(|field| field.system.empty());
         Self {
             fields: fields.collect(),
-            cells: vec![CellNumbers::default(); if chemistry.measures_cells { model.cells() } else { 0 }],
-            sensed: vec![vec![Sensed::default(); model.cells()]; chemistry.sensed.len()],
+            populations: chemistry.reactors.iter().map(|_| PopulationScratch::default()).collect(),
+            sensed: vec![Vec::new(); chemistry.sensed.len()],
             ..Self::default()
         }
     }
 
+    /// Makes lists as long as the cells need that there are.
+    pub fn suit(&mut self, model: &Model, state: &State) {
+        let measured = if model.chemistry.measures_cells { state.cells() } else { 0 };
+        self.cells.resize(measured, CellNumbers::default());
+        self.sensed.iter_mut().for_each(|cells| cells.resize(state.cells(), Sensed::default()));
+    }
+
     /// Writes NaN over all scratch numbers: a step must not notice.
     pub fn poison(&mut self, model: &Model) {
-        *self = Self::new(model);
-        self.cells.fill(CellNumbers::poisoned());
         let nothing = Sensed { value: f64::NAN, gradient: Vec3::repeat(f64::NAN) };
+        self.cells.fill(CellNumbers::poisoned());
         self.sensed.iter_mut().for_each(|cells| cells.fill(nothing));
+        let (cells, sensed) = (std::mem::take(&mut self.cells), std::mem::take(&mut self.sensed));
+        *self = Self { cells, sensed, ..Self::new(model) };
+        self.fields.iter_mut().for_each(Fields::poison);
+    }
+
+    /// How many blocks of cells have had their equations evaluated for links to read quantities of systems, ever: the cost of links.
+    pub fn blocks_observed(&self) -> u64 {
+        self.observed.blocks
     }
 
     /// Lends the values of all fields to their solvers, or takes them back.
@@ -53,18 +71,6 @@ impl ChemistryScratch {
         for (fields, field) in self.fields.iter_mut().zip(&mut state.fields) {
             fields.exchange_values(&mut field.values);
             fields.set_time(time);
-        }
-    }
-}
-
-/// The cells that an end names: one or a range of them.
-pub(super) fn cells_of(model: &Model, whose: Whose, own: Option<usize>) -> std::ops::Range<usize> {
-    match whose {
-        Whose::Own => own.map_or(0..0, |cell| cell..cell + 1),
-        Whose::Cell(cell) => cell..cell + 1,
-        Whose::Kind(kind) => {
-            let kind = &model.kinds[kind];
-            kind.first_cell..kind.first_cell + kind.cells
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The stages of chemistry in a step, and when systems exchange numbers with the model.
+//! The stages of chemistry in a step.
 
 use super::super::constraints::enforce_constraints;
 use super::super::contact::locate_contacts;
@@ -9,20 +9,23 @@ use super::super::trouble::Trouble;
 use super::super::velocity::measure_velocities;
 use super::super::workspace::Workspace;
 use super::carry::carry_links;
-use super::model::{Members, Reactor};
+use super::census::cell_of_member;
+use super::exchange::is_due;
+use super::model::Reactor;
 use crate::error::Error;
-use crate::ode::{Eventful, OdeTrouble};
+use crate::ode::{Eventful, OdeTrouble, PopulationScratch};
 
 /// Lets the links carry the numbers of the start, and executes the events of the start, in `state`; after an error that holds
 /// anything.
 pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
     let time = state.time;
+    ws.suit(model, state);
     // Links read what touches; no step has looked for it yet.
     locate_contacts(model, state, ws);
     ws.chemistry.exchange_values(&mut state.chemistry, time);
     carry_links(model, time, true, state, ws)?;
     // What events change at the start goes through the links at once, so that the start shows it.
-    if begin_events(model, state)? {
+    if begin_events(model, state, &mut ws.chemistry.populations)? {
         carry_links(model, time, true, state, ws)?;
     }
     ws.chemistry.exchange_values(&mut state.chemistry, time);
@@ -45,7 +48,7 @@ pub fn advance_chemistry(
     }
     let (start, end) = (from.time, from.time + dt);
     ws.chemistry.exchange_values(&mut to.chemistry, start);
-    advance_systems(model, end, to)?;
+    advance_systems(model, end, to, &mut ws.chemistry.populations)?;
     deposit_secretion(model, dt, to, ws);
     advance_fields(model, dt, to, ws)?;
     carry_links(model, end, false, to, ws)?;
@@ -57,24 +60,15 @@ pub fn advance_chemistry(
     Ok(())
 }
 
-/// The next time after `time` at which a system exchanges numbers with the model, s; a step ends there.
-pub fn next_exchange(model: &Model, time: f64) -> f64 {
-    let next = |every: f64| ((time / every * (1.0 + 1e-12)).floor() + 1.0) * every;
-    model.chemistry.reactors.iter().filter_map(|reactor| reactor.exchange).map(next).fold(f64::INFINITY, f64::min)
-}
-
-/// Whether a system exchanges numbers with the model at a time.
-pub(super) fn is_due(reactor: &Reactor, time: f64) -> bool {
-    reactor.exchange.is_none_or(|every| {
-        let count = time / every;
-        (count - count.round()).abs() <= 1e-9 * count.abs().max(1.0)
-    })
-}
-
 /// Advances all systems that are due, each from the time that it has reached.
-fn advance_systems(model: &Model, end: f64, state: &mut State) -> Result<(), Trouble> {
-    let chemistry = &mut state.chemistry;
+fn advance_systems(
+    model: &Model,
+    end: f64,
+    state: &mut State,
+    scratch: &mut [PopulationScratch],
+) -> Result<(), Trouble> {
     for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
+        let chemistry = &mut state.chemistry;
         let from = chemistry.times[number];
         if !is_due(reactor, end) || from >= end {
             continue;
@@ -82,24 +76,27 @@ fn advance_systems(model: &Model, end: f64, state: &mut State) -> Result<(), Tro
         let population = &mut chemistry.populations[number];
         let window = (from / reactor.seconds, end / reactor.seconds);
         let advanced = match reactor.events.is_empty() {
-            true => population.advance(&reactor.program, window.0, window.1, &reactor.tolerances),
-            false => eventful(model, reactor).advance(population, &mut chemistry.events[number], window.0, window.1),
+            true => population.advance(&reactor.program, window.0, window.1, &reactor.tolerances, &mut scratch[number]),
+            false => {
+                let (events, scratch) = (&mut chemistry.events[number], &mut scratch[number]);
+                eventful(model, reactor).advance(population, events, window.0, window.1, scratch)
+            }
         };
-        advanced.map_err(|trouble| system_trouble(model, reactor, &trouble))?;
-        chemistry.times[number] = end;
+        advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?;
+        state.chemistry.times[number] = end;
     }
     Ok(())
 }
 
 /// Executes the events of the start. Returns whether there were any.
-fn begin_events(model: &Model, state: &mut State) -> Result<bool, Trouble> {
-    let chemistry = &mut state.chemistry;
+fn begin_events(model: &Model, state: &mut State, scratch: &mut [PopulationScratch]) -> Result<bool, Trouble> {
     let mut any = false;
     for (number, reactor) in model.chemistry.reactors.iter().enumerate().filter(|(_, r)| !r.events.is_empty()) {
+        let chemistry = &mut state.chemistry;
         let now = chemistry.times[number] / reactor.seconds;
         let (population, memories) = (&mut chemistry.populations[number], &mut chemistry.events[number]);
-        let advanced = eventful(model, reactor).advance(population, memories, now, now);
-        any |= advanced.map_err(|trouble| system_trouble(model, reactor, &trouble))?.events > 0;
+        let advanced = eventful(model, reactor).advance(population, memories, now, now, &mut scratch[number]);
+        any |= advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?.events > 0;
     }
     Ok(any)
 }
@@ -111,15 +108,9 @@ fn eventful<'a>(model: &Model, reactor: &'a Reactor) -> Eventful<'a> {
 }
 
 /// Which cell of which type, when and in which variable.
-fn system_trouble(model: &Model, reactor: &Reactor, trouble: &OdeTrouble) -> Trouble {
-    let cell = match (&reactor.members, trouble.cell) {
-        (Members::Cells(cells), Some(member)) => cells.get(member).map(|&cell| cell as usize),
-        _ => None,
-    };
-    let owner = cell.and_then(|cell| {
-        let kind = model.kinds.iter().find(|kind| (kind.first_cell..kind.first_cell + kind.cells).contains(&cell))?;
-        Some((kind.name.clone(), cell - kind.first_cell))
-    });
+fn system_trouble(model: &Model, state: &State, reactor: &Reactor, trouble: &OdeTrouble) -> Trouble {
+    let cell = trouble.cell.and_then(|member| cell_of_member(&state.kinds, &reactor.members, member));
+    let owner = cell.map(|cell| state.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
     Trouble::System {
         system: reactor.name.clone(),
         owner,
@@ -138,8 +129,8 @@ fn deposit_secretion(model: &Model, dt: f64, state: &State, ws: &mut Workspace) 
             let atoms = kind.atoms();
             scratch.amounts.clear();
             scratch.places.clear();
-            for cell in 0..kind.cells {
-                let rate = rates[kind.first_cell + cell];
+            for cell in 0..now.cells() {
+                let rate = rates[now.first_cell + cell];
                 if rate != 0.0 {
                     scratch.places.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
                     scratch.amounts.resize(scratch.places.len(), rate * dt / atoms as f64);

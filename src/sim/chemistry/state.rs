@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::super::controls::Controls;
 use super::super::model::Model;
-use super::model::{Control, Reactor, Target};
+use super::model::Reactor;
 use crate::field::Fields;
 use crate::ode::{EventMemory, Population};
 
@@ -35,34 +36,16 @@ pub struct FieldState {
     pub inputs: Vec<f64>,
 }
 
-/// What links set for mechanics, one number a cell in the order of all cells. A list that no link writes is empty.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Controls {
-    /// Speed of the walk, µm/s; NaN where the type's own speed stands.
-    pub speed: Vec<f64>,
-    /// Velocity added to the walk, µm/s.
-    pub bias: Vec<[f64; 3]>,
-    /// Factor of elastic forces.
-    pub stiffness: Vec<f64>,
-    /// Factor of the strength with which a cell sticks; empty without a link to one.
-    pub adhesion: Vec<f64>,
-    /// Factors of loads, one list a load number.
-    pub loads: Vec<Vec<f64>>,
-    /// Activation of fibres, one list a number of fibres; below 0 where their own course stands.
-    pub fibres: Vec<Vec<f64>>,
-    /// Amount released per second, one list for each species secreted.
-    pub secretion: Vec<Vec<f64>>,
-}
-
 impl ChemistryState {
-    /// The start: systems at their initial values, `fields` as they start.
-    pub fn new(model: &Model, fields: &[Fields]) -> Self {
+    /// The start of so many cells of each kind: systems at their initial values, `fields` as they start.
+    pub fn new(model: &Model, cells: &[usize], fields: &[Fields]) -> Self {
         let chemistry = &model.chemistry;
         let reactors = &chemistry.reactors;
-        let populations = reactors.iter().map(|r| Population::new(&r.program, r.members.len(), r.method));
+        let members = |reactor: &Reactor| reactor.members.count(|kind| cells[kind]);
+        let populations = reactors.iter().map(|r| Population::new(&r.program, members(r), r.method));
         let events = |reactor: &Reactor| match reactor.events.is_empty() {
             true => Vec::new(),
-            false => vec![reactor.events.before_start(); reactor.members.len()],
+            false => vec![reactor.events.before_start(); members(reactor)],
         };
         let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
             values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
@@ -74,15 +57,15 @@ impl ChemistryState {
             events: reactors.iter().map(events).collect(),
             times: vec![0.0; reactors.len()],
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
-            controls: Controls::new(model),
+            controls: controls_of(model, cells.iter().sum()),
             carried: false,
         }
     }
 
     /// Copies another of the same shape without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        self.populations.clone_from(&other.populations);
-        self.events.clone_from(&other.events);
+        copy_each(&mut self.populations, &other.populations, Population::copy_from);
+        copy_each(&mut self.events, &other.events, |to, from| copy_each(to, from, EventMemory::copy_from));
         self.times.clone_from(&other.times);
         if self.fields.len() != other.fields.len() {
             self.fields.clone_from(&other.fields);
@@ -123,74 +106,18 @@ impl ChemistryState {
     }
 }
 
-impl Controls {
-    fn new(model: &Model) -> Self {
-        let (mut controls, cells) = (Self::default(), model.cells());
-        controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
-        for link in &model.chemistry.links {
-            if let Target::Cell(_, control) = link.to {
-                controls.admit(control, cells);
-            }
-        }
-        controls
-    }
+/// Makes a list the same as another, its first things without allocating, where `copy` does not.
+fn copy_each<T: Clone>(to: &mut Vec<T>, from: &[T], copy: impl Fn(&mut T, &T)) {
+    to.truncate(from.len());
+    to.iter_mut().zip(from).for_each(|(to, from)| copy(to, from));
+    to.extend_from_slice(&from[to.len()..]);
+}
 
-    /// Makes the list that a control is written to, with one number for each of `cells`, where there is none: numbers that
-    /// change nothing until they are set.
-    pub fn admit(&mut self, control: Control, cells: usize) {
-        let lists = |lists: &mut Vec<Vec<f64>>, number: usize, value: f64| {
-            lists.resize(lists.len().max(number + 1), vec![value; cells]);
-        };
-        let list = |list: &mut Vec<f64>, value: f64| list.resize(cells, value);
-        match control {
-            Control::MotilitySpeed => list(&mut self.speed, f64::NAN),
-            Control::Bias(_) => self.bias.resize(cells, [0.0; 3]),
-            Control::Stiffness => list(&mut self.stiffness, 1.0),
-            Control::Adhesion => list(&mut self.adhesion, 1.0),
-            Control::Load(number) => lists(&mut self.loads, number, 1.0),
-            Control::Fibre(number) => lists(&mut self.fibres, number, -1.0),
-            Control::Secretion(channel) => lists(&mut self.secretion, channel, 0.0),
-            Control::RestVolume | Control::RestVolumeRatio | Control::Atom(..) => {}
-        }
-    }
-
-    fn copy_from(&mut self, other: &Self) {
-        self.speed.clone_from(&other.speed);
-        self.bias.clone_from(&other.bias);
-        self.stiffness.clone_from(&other.stiffness);
-        self.adhesion.clone_from(&other.adhesion);
-        self.loads.clone_from(&other.loads);
-        self.fibres.clone_from(&other.fibres);
-        self.secretion.clone_from(&other.secretion);
-    }
-
-    /// The velocity added to a cell's walk, µm/s.
-    pub fn bias_of(&self, cell: usize) -> [f64; 3] {
-        self.bias.get(cell).copied().unwrap_or_default()
-    }
-
-    /// The speed that a link asks of a cell, µm/s.
-    pub fn speed_of(&self, cell: usize) -> Option<f64> {
-        self.speed.get(cell).copied().filter(|speed| !speed.is_nan())
-    }
-
-    /// Factor of a cell's elastic forces.
-    pub fn stiffness_of(&self, cell: usize) -> f64 {
-        self.stiffness.get(cell).copied().unwrap_or(1.0)
-    }
-
-    /// Factor of the strength with which a cell sticks.
-    pub fn adhesion_of(&self, cell: usize) -> f64 {
-        self.adhesion.get(cell).copied().unwrap_or(1.0)
-    }
-
-    /// Factor of a load of a cell.
-    pub fn load_of(&self, load: usize, cell: usize) -> f64 {
-        self.loads.get(load).and_then(|cells| cells.get(cell)).copied().unwrap_or(1.0)
-    }
-
-    /// The activation that a link asks of fibres of a cell, 0 to 1.
-    pub fn activation_of(&self, fibre: usize, cell: usize) -> Option<f64> {
-        self.fibres.get(fibre).and_then(|cells| cells.get(cell)).copied().filter(|activation| *activation >= 0.0)
-    }
+/// The lists that the links of a model write, at numbers that change nothing.
+fn controls_of(model: &Model, cells: usize) -> Controls {
+    let mut controls = Controls::default();
+    controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
+    let set = model.chemistry.links.iter().filter_map(|link| link.to.control());
+    set.for_each(|control| controls.admit(control, cells));
+    controls
 }

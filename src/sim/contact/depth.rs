@@ -2,10 +2,13 @@
 
 use super::find::write_contacts;
 use super::gather::gather_positions;
-use super::model::{ContactModel, Law};
+use super::law::Law;
 use super::remember::find_at;
+use super::scene::ContactScene;
+use crate::Vec3;
 use crate::contact::{Contacts, Sides, find_deeper, winding_number};
 use crate::sim::model::Model;
+use crate::sim::population_trouble::PopulationTrouble;
 use crate::sim::state::State;
 use crate::sim::trouble::Trouble;
 use crate::sim::workspace::Workspace;
@@ -19,8 +22,8 @@ const DEEPEST: f64 = 0.5;
 ///
 /// # Errors
 /// The two cells that are too deep in each other.
-pub fn check_depth(model: &Model, state: &State, ws: &Workspace) -> Result<(), Trouble> {
-    let Some(contact) = &model.contact else { return Ok(()) };
+pub fn check_depth(model: &Model, state: &State, ws: &mut Workspace) -> Result<(), Trouble> {
+    let Some(contact) = &ws.contact.scene(model, &state.kinds) else { return Ok(()) };
     let found = &ws.contact.found;
     let of_atoms = found.atoms.iter().map(|near| (near.gap, near.atom, near.body(&contact.scene)));
     let of_edges = found.edges.iter().map(|near| {
@@ -28,16 +31,16 @@ pub fn check_depth(model: &Model, state: &State, ws: &Workspace) -> Result<(), T
         (near.gap, contact.scene.bodies[own as usize].first_atom, other)
     });
     let deepest = of_atoms.chain(of_edges).min_by(|one, other| one.0.total_cmp(&other.0));
-    let most = contact.scene.reach.depth;
+    let most = contact.reach.depth;
     let too_deep = deepest.filter(|(gap, ..)| -gap > DEEPEST * most).map(|(gap, atom, body)| (-gap, atom, body));
     let lost = || lost_inside(contact, state, ws).map(|(atom, body)| (most, atom, body));
     let Some((depth, atom, body)) = too_deep.or_else(lost) else { return Ok(()) };
-    Err(pressed(model, [contact.body_of(atom), body], state.time, depth))
+    Err(pressed(model, state, [contact.body_of(atom), body], depth))
 }
 
 /// The trouble of two bodies that are so deep in each other, µm.
-fn pressed(model: &Model, bodies: [u32; 2], time: f64, depth: f64) -> Trouble {
-    let cells = bodies.map(|body| model.kind_of(body as usize));
+fn pressed(model: &Model, state: &State, bodies: [u32; 2], depth: f64) -> Trouble {
+    let (time, cells) = (state.time, bodies.map(|body| state.kind_of(body as usize)));
     let cells = cells.map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
     Trouble::Pressed { cells, time, depth }
 }
@@ -66,16 +69,16 @@ impl Deepened {
     }
 
     /// The trouble that this is where no step is short enough.
-    pub fn trouble(&self, model: &Model, time: f64) -> Trouble {
-        pressed(model, self.deepest.bodies, time, self.deepest.depth)
+    pub fn trouble(&self, model: &Model, from: &State) -> Trouble {
+        pressed(model, from, self.deepest.bodies, self.deepest.depth)
     }
 }
 
 /// Finds what touches where a step ends, and says whether cells are deep in each other there. The next step begins with what is
 /// found, and with what contacts carry now, which is written before.
 pub fn look_for_depth(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> Option<Deepened> {
-    let contact = model.contact.as_ref().filter(|contact| contact.law == Law::Adhesives)?;
     let s = &mut ws.contact;
+    let contact = &s.scene(model, &from.kinds).filter(|contact| contact.law == Law::Adhesives)?;
     let before = Deepest::of(model, contact, &s.found);
     write_contacts(contact, &from.chemistry.controls, &mut to.contact, s);
     gather_positions(model, contact, &to.kinds, &mut s.start);
@@ -101,7 +104,7 @@ struct Deepest {
 
 impl Deepest {
     /// That of all contacts; none where nothing is inside.
-    fn of(model: &Model, contact: &ContactModel, found: &Contacts) -> Option<Self> {
+    fn of(model: &Model, contact: &ContactScene, found: &Contacts) -> Option<Self> {
         let edge = |body: u32| model.kinds[contact.kind_of(body)].edge;
         let of_atoms = found.atoms.iter().filter(|near| near.gap < 0.0);
         let of_atoms = of_atoms.map(|near| (near.gap, [contact.body_of(near.atom), near.body(&contact.scene)]));
@@ -118,7 +121,7 @@ impl Deepest {
 }
 
 /// An atom that touched a body in the step before, and is now so deep in it that no contact is found, with the body.
-fn lost_inside(contact: &ContactModel, state: &State, ws: &Workspace) -> Option<(u32, u32)> {
+fn lost_inside(contact: &ContactScene, state: &State, ws: &Workspace) -> Option<(u32, u32)> {
     let (found, scene) = (&ws.contact.found.atoms, &contact.scene);
     let is_found = |atom: u32, body: u32| {
         let at = found.partition_point(|near| near.atom < atom);
@@ -143,7 +146,7 @@ fn lost_inside(contact: &ContactModel, state: &State, ws: &Workspace) -> Option<
 /// # Errors
 /// The first two cells that are inside each other.
 pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
-    let Some(contact) = &model.contact else { return Ok(()) };
+    let Some(contact) = &model.contact.as_ref().map(|contact| contact.scene_of(&state.kinds)) else { return Ok(()) };
     let scene = &contact.scene;
     let mut places = Vec::new();
     gather_positions(model, contact, &state.kinds, &mut places);
@@ -153,5 +156,41 @@ pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
         _ => scene.reach.depth,
     };
     let passed = find_deeper(scene, &places, most);
-    passed.map_or(Ok(()), |(body, other, depth)| Err(pressed(model, [body, other], state.time, depth)))
+    passed.map_or(Ok(()), |(body, other, depth)| Err(pressed(model, state, [body, other], depth)))
+}
+
+/// Refuses cells that were just added behind the others of their kind where they overlap others, or are behind planes.
+///
+/// # Errors
+/// The first that is where it cannot be.
+pub fn check_added(model: &Model, state: &State, kind: usize, added: usize) -> Result<(), PopulationTrouble> {
+    let Some(contact) = &model.contact.as_ref().map(|contact| contact.scene_of(&state.kinds)) else { return Ok(()) };
+    let name = |body: u32| {
+        let (kind, cell) = state.kind_of(body as usize);
+        (model.kinds[kind].name.clone(), state.kinds[kind].ids[cell])
+    };
+    let end = state.kinds[kind].numbers().end;
+    let is_new = |body: u32| (end - added..end).contains(&(body as usize));
+    let mut positions = Vec::new();
+    gather_positions(model, contact, &state.kinds, &mut positions);
+    let edge = |body: u32| model.kinds[contact.kind_of(body)].edge;
+    let most = |one: u32, other: u32| match is_new(one) || is_new(other) {
+        true => PROMISED * edge(one).min(edge(other)),
+        false => f64::INFINITY,
+    };
+    if let Some((one, other, depth)) = find_deeper(&contact.scene, &positions, most) {
+        return Err(PopulationTrouble::Overlap { cells: [name(one), name(other)], depth });
+    }
+    for body in (end - added..end).map(|body| body as u32) {
+        let first = contact.scene.bodies[body as usize].first_atom as usize;
+        let atoms = &positions[first..first + contact.scene.shape(body).atoms];
+        for plane in &model.planes {
+            let height = |x: &Vec3| (x - plane.point).dot(&plane.normal);
+            let depth = -atoms.iter().map(height).fold(f64::INFINITY, f64::min);
+            if depth > contact.reach.safe_travel() {
+                return Err(PopulationTrouble::BehindPlane { cell: name(body), plane: plane.name.clone(), depth });
+            }
+        }
+    }
+    Ok(())
 }

@@ -1,18 +1,21 @@
 //! What touches where a step begins, and what it carried in the step before.
 
+use super::assemble::write_rows;
 use super::gather::gather_positions;
 use super::give::given_after;
+use super::law::Law;
 use super::links::{links_at, pull_links};
-use super::model::{ContactModel, Law};
 use super::penalty::press;
 use super::remember::find_at;
-use super::rows::{Pull, Row, write_rows};
+use super::rows::{Pull, Row};
+use super::scene::ContactScene;
 use super::scratch::{ContactForces, ContactScratch, empty_for};
 use super::spread::{add_spreading, releases_energy};
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
 use crate::Vec3;
 use crate::contact::{AtomContact, Contacts, PlaneContact};
-use crate::sim::chemistry::Controls;
+use crate::sim::controls::Controls;
+use crate::sim::kind::Kind;
 use crate::sim::model::Model;
 use crate::sim::state::{KindState, State};
 use crate::sim::workspace::Workspace;
@@ -25,8 +28,8 @@ pub fn find_contacts(model: &Model, state: &State, ws: &mut Workspace) {
 
 /// Finds the contacts of a step. Those that were there before go on carrying what they carried.
 pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
-    let Some(contact) = &model.contact else { return };
     let s = &mut ws.contact;
+    let Some(contact) = &s.scene(model, &state.kinds) else { return };
     let is_where_it_ended = gather_positions(model, contact, &state.kinds, &mut s.start);
     if !(std::mem::take(&mut s.has_looked) && is_where_it_ended) {
         find_at(contact, &state.contact, &s.start, &mut s.detector, &mut s.found);
@@ -43,8 +46,8 @@ pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
 
 /// Sets the forces that contacts carry where the step begins. The state must be that of which they were found.
 pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
-    let Some(contact) = &model.contact else { return };
     let s = &mut ws.contact;
+    let Some(contact) = &s.scene(model, &state.kinds) else { return };
     let has_looked = std::mem::take(&mut s.has_looked);
     if has_looked || releases_energy(contact) {
         gather_positions(model, contact, &state.kinds, &mut s.start);
@@ -75,7 +78,7 @@ pub fn has_live_forces(model: &Model) -> bool {
 /// Sets the forces of links and penalties where the atoms are now: they change while a step is made, and its error estimate
 /// must see that.
 pub fn pull_contacts(model: &Model, controls: &Controls, cells: &[KindState], s: &mut ContactScratch) {
-    let Some(contact) = model.contact.as_ref().filter(|_| has_live_forces(model)) else { return };
+    let Some(contact) = &s.scene(model, cells).filter(|_| has_live_forces(model)) else { return };
     gather_positions(model, contact, cells, &mut s.positions);
     let live = &mut s.forces.live;
     live.clear();
@@ -87,13 +90,12 @@ pub fn pull_contacts(model: &Model, controls: &Controls, cells: &[KindState], s:
 }
 
 /// Adds the force that contacts carried, and what links and penalties do, to the forces of a block of a kind.
-pub fn add_contact_forces(model: &Model, number: usize, block: usize, forces: &ContactForces, f: &mut [f64]) {
-    let (Some(contact), kind) = (&model.contact, &model.kinds[number]) else { return };
-    let atoms = contact.atoms_of(number);
+pub fn add_contact_forces(kind: &Kind, cells: &KindState, block: usize, forces: &ContactForces, f: &mut [f64]) {
+    let atoms = cells.atoms(kind);
     let Some(carried) = forces.carried.get(atoms.clone()) else { return };
     let pulls = forces.live.get(atoms);
     for lane in 0..kind.lanes {
-        let cell = (block * kind.lanes + lane).min(kind.cells - 1);
+        let cell = (block * kind.lanes + lane).min(cells.cells() - 1);
         let own = cell * kind.atoms()..(cell + 1) * kind.atoms();
         for (atom, number) in own.enumerate() {
             for axis in 0..3 {
@@ -106,15 +108,15 @@ pub fn add_contact_forces(model: &Model, number: usize, block: usize, forces: &C
 
 /// Keeps what contacts carry for the next step, where that was not done to look at the end of this one.
 pub fn keep_contacts(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) {
-    let Some(contact) = &model.contact else { return };
-    if !ws.contact.has_looked {
-        write_contacts(contact, &from.chemistry.controls, &mut to.contact, &mut ws.contact);
+    let s = &mut ws.contact;
+    if let Some(contact) = &s.scene(model, &from.kinds).filter(|_| !s.has_looked) {
+        write_contacts(contact, &from.chemistry.controls, &mut to.contact, s);
     }
 }
 
 /// Writes all that contacts carry from a step to the next.
 pub(super) fn write_contacts(
-    contact: &ContactModel,
+    contact: &ContactScene,
     controls: &Controls,
     to: &mut ContactState,
     s: &mut ContactScratch,

@@ -1,8 +1,9 @@
 //! Between the blocks of lanes of the kinds and one list of all atoms.
 
-use super::model::ContactModel;
+use super::scene::ContactScene;
 use crate::Vec3;
-use crate::sim::model::{Kind, Model};
+use crate::sim::kind::Kind;
+use crate::sim::model::Model;
 use crate::sim::state::{KindState, index, vector};
 
 /// Takes the vectors of a kind in the order of its cells, and what `make` makes of each.
@@ -17,7 +18,7 @@ pub fn gather<T>(kind: &Kind, values: &[f64], to: &mut [T], make: impl Fn(Vec3) 
 }
 
 /// Takes the positions of all atoms in the order of cells. Returns whether they were the same already.
-pub fn gather_positions(model: &Model, contact: &ContactModel, cells: &[KindState], positions: &mut Vec<Vec3>) -> bool {
+pub fn gather_positions(model: &Model, contact: &ContactScene, cells: &[KindState], positions: &mut Vec<Vec3>) -> bool {
     let mut same = positions.len() == contact.scene.atoms;
     positions.resize(contact.scene.atoms, Vec3::zeros());
     for (number, (kind, now)) in model.kinds.iter().zip(cells).enumerate() {
@@ -33,9 +34,9 @@ pub fn gather_positions(model: &Model, contact: &ContactModel, cells: &[KindStat
 }
 
 /// Puts the vectors of a kind back, `from` the numbers of a cell and an atom of it; lanes beyond the last cell repeat it.
-pub fn scatter(kind: &Kind, from: impl Fn(usize, usize) -> Vec3, values: &mut [f64]) {
-    for slot in 0..kind.blocks() * kind.lanes {
-        let cell = slot.min(kind.cells - 1);
+pub fn scatter(kind: &Kind, cells: usize, from: impl Fn(usize, usize) -> Vec3, values: &mut [f64]) {
+    for slot in 0..cells.next_multiple_of(kind.lanes) {
+        let cell = slot.min(cells - 1);
         let first = index(kind, slot, 0, 0);
         for atom in 0..kind.atoms() {
             let x = from(cell, atom);

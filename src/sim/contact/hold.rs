@@ -1,16 +1,20 @@
 //! The projection: atoms are moved so that contacts and volumes hold.
 
+use std::ops::Range;
+
 use super::gather::{gather, scatter};
 use super::give::set_give;
-use super::model::{ContactModel, Law};
+use super::law::Law;
 use super::momentum::go_on;
 use super::rows::{Pull, Row};
+use super::scene::ContactScene;
 use super::scratch::{ContactScratch, SweepRules};
 use super::sweep::{Change, V4, VolumeRow, sweep_contacts, sweep_depths, sweep_volumes};
 use crate::Vec3;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
-use crate::sim::model::{Kind, Model, VolumeRule};
+use crate::sim::kind::{Kind, VolumeRule};
+use crate::sim::model::Model;
 use crate::sim::rooms::Rooms;
 use crate::sim::state::{State, vector};
 use crate::sim::trouble::Trouble;
@@ -35,8 +39,8 @@ pub fn hold_contacts(
     to: &mut State,
     ws: &mut Workspace,
 ) -> Result<(), Trouble> {
-    let Some(contact) = &model.contact else { return Ok(()) };
     let Workspace { contact: s, kinds, rooms, .. } = ws;
+    let Some(contact) = &s.scene(model, &from.kinds) else { return Ok(()) };
     s.sweeps = 0;
     if s.rows.is_empty() || matches!(contact.law, Law::Penalty(_)) {
         return Ok(());
@@ -58,21 +62,21 @@ pub fn hold_contacts(
 }
 
 /// Puts the atoms where their displacements take them.
-pub(super) fn put_back(model: &Model, contact: &ContactModel, s: &ContactScratch, from: &State, to: &mut State) {
+pub(super) fn put_back(model: &Model, contact: &ContactScene, s: &ContactScratch, from: &State, to: &mut State) {
     for (number, ((kind, now), next)) in model.kinds.iter().zip(&from.kinds).zip(&mut to.kinds).enumerate() {
         let moved = &s.moved[contact.atoms_of(number)];
         let position = |cell: usize, atom: usize| {
             let [x, y, z, _] = moved[cell * kind.atoms() + atom];
             vector(kind, &now.positions, cell, atom) + Vec3::new(x, y, z)
         };
-        scatter(kind, position, &mut next.positions);
+        scatter(kind, now.cells(), position, &mut next.positions);
     }
 }
 
 /// Displacements, mobilities and volumes before the first sweep.
 fn prepare(
     model: &Model,
-    contact: &ContactModel,
+    contact: &ContactScene,
     dt: f64,
     from: &State,
     to: &State,
@@ -97,9 +101,9 @@ fn prepare(
                 *moved = [change.x, change.y, change.z, mobility];
             }
         }
-        hold_atoms(kind, range.start, s);
+        hold_atoms(kind, now.cells(), range.start, s);
         if matches!(kind.volume, VolumeRule::Exact(_)) {
-            add_volumes(kind, &next.positions, range.start, mobility, s, w, rooms);
+            add_volumes(kind, &next.positions, range, mobility, s, w, rooms);
         }
     }
     s.adhesives.begin();
@@ -117,8 +121,8 @@ fn load_rows(rules: SweepRules, s: &mut ContactScratch) {
 }
 
 /// Lists what is held of a kind; atoms that are held along every axis get no mobility.
-fn hold_atoms(kind: &Kind, first: usize, s: &mut ContactScratch) {
-    for cell in 0..kind.cells {
+fn hold_atoms(kind: &Kind, cells: usize, first: usize, s: &mut ContactScratch) {
+    for cell in 0..cells {
         for (atom, factors) in kind.held.chunks_exact(3).enumerate() {
             let number = first + cell * kind.atoms() + atom;
             if factors.iter().all(|factor| *factor == 0.0) {
@@ -135,14 +139,14 @@ fn hold_atoms(kind: &Kind, first: usize, s: &mut ContactScratch) {
 fn add_volumes(
     kind: &Kind,
     x: &[f64],
-    first: usize,
+    atoms: Range<usize>,
     mobility: f64,
     s: &mut ContactScratch,
     w: &mut KindScratch,
     rooms: &Rooms,
 ) {
     let KindScratch { free_volume, target, .. } = w;
-    let own = &mut s.gradient[first..first + kind.cells * kind.atoms()];
+    let (first, own) = (atoms.start, &mut s.gradient[atoms]);
     let (length, per_block) = (kind.block_len(), kind.lanes * kind.atoms());
     for ((x, volumes), own) in
         (x.chunks_exact(length)).zip(free_volume.chunks_exact_mut(kind.lanes)).zip(own.chunks_mut(per_block))
@@ -175,14 +179,14 @@ struct Part<'a> {
 /// Does something for each kind, in their order, with what is there of it.
 fn for_each_part(
     model: &Model,
-    contact: &ContactModel,
+    contact: &ContactScene,
     (volumes, gradient, moved): (&[VolumeRow], &[[f64; 3]], &mut [V4]),
     mut work: impl FnMut(Part),
 ) {
     let mut next = 0;
     for (number, kind) in model.kinds.iter().enumerate() {
-        let count = if matches!(kind.volume, VolumeRule::Exact(_)) { kind.cells } else { 0 };
         let range = contact.atoms_of(number);
+        let count = if matches!(kind.volume, VolumeRule::Exact(_)) { range.len() / kind.atoms() } else { 0 };
         let volumes = &volumes[next..next + count];
         work(Part { volumes, gradient: &gradient[range.clone()], moved: &mut moved[range] });
         next += count;
@@ -190,7 +194,7 @@ fn for_each_part(
 }
 
 /// Sweeps until nothing moves any more; returns what the last sweep changed.
-fn sweep(model: &Model, contact: &ContactModel, rules: SweepRules, s: &mut ContactScratch) -> Change {
+fn sweep(model: &Model, contact: &ContactScene, rules: SweepRules, s: &mut ContactScratch) -> Change {
     // Adhesives that are bodies move from where the step began.
     let keeps_start = contact.law != Law::Adhesives;
     let mut before = std::mem::take(if keeps_start { &mut s.before } else { &mut s.start });
@@ -225,12 +229,12 @@ fn sweep(model: &Model, contact: &ContactModel, rules: SweepRules, s: &mut Conta
 }
 
 /// Pushes out what is inside.
-fn mend(model: &Model, contact: &ContactModel, s: &mut ContactScratch) {
+fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
     let is_deep = |(_, row): &(u32, &Row)| row.give > 0.0 && row.gap() < 0.0;
     s.deep.clear();
     s.deep.extend((0..).zip(&s.rows).filter(is_deep).map(|(number, _)| (number, 0.0)));
     for _ in 0..MENDING {
-        sweep_depths(&s.rows, &mut s.deep, &mut s.moved, MENDED * contact.scene.safe_travel());
+        sweep_depths(&s.rows, &mut s.deep, &mut s.moved, MENDED * contact.reach.safe_travel());
         s.adhesives.place_all(&s.start, &mut s.moved);
         for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |part| {
             sweep_volumes(part.volumes, part.gradient, part.moved, &mut Change::default());
@@ -244,11 +248,11 @@ pub fn travel(model: &Model, from: &State, to: &State) -> f64 {
     let mut farthest: f64 = 0.0;
     for ((kind, now), next) in model.kinds.iter().zip(&from.kinds).zip(&to.kinds) {
         // Lanes beyond the last cell may go elsewhere.
-        for cell in 0..kind.cells {
+        for cell in 0..now.cells() {
             let position = |x: &[f64], atom: usize| vector(kind, x, cell, atom);
             let ways = (0..kind.atoms()).map(|atom| position(&next.positions, atom) - position(&now.positions, atom));
             farthest = ways.map(|way| way.norm_squared()).fold(farthest, f64::max);
         }
     }
-    farthest.sqrt() / contact.scene.safe_travel()
+    farthest.sqrt() / contact.reach.safe_travel()
 }

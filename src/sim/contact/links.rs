@@ -1,47 +1,15 @@
 //! Dynamic links (Promayon, Martiel and Tracqui 2003): facets of two cells that collide are joined by springs between their
 //! atoms, and let each other go when they are too far apart.
 
-use serde::{Deserialize, Serialize};
-
-use super::model::{ContactModel, Law};
+use super::law::Law;
+use super::scene::ContactScene;
+use super::state::Link;
 use crate::Vec3;
 use crate::contact::{AtomContact, Contacts, EdgeContact, Scene};
-use crate::sim::chemistry::Controls;
-
-/// Which kinds are linked, and how.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LinkTable {
-    /// Stiffness of the spring between two atoms, pN/µm: `stiffness[kind * kinds + other]`, symmetric; 0 binds nothing.
-    pub stiffness: Vec<f64>,
-    /// Root mean square of the lengths of its three springs above which a link breaks, µm.
-    pub range: f64,
-}
-
-/// Two facets of two cells, each atom of the one joined to an atom of the other, eq. (adhesion.11).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Link {
-    /// The facets, numbered through all cells, the smaller first.
-    pub facets: [u32; 2],
-    /// Their bodies.
-    pub bodies: [u32; 2],
-    /// The pairs of atoms, numbered through all cells; the first of each belongs to the first facet.
-    pub pairs: [[u32; 2]; 3],
-}
+use crate::sim::controls::Controls;
 
 /// Ways to give each corner of a facet one of another.
 const WAYS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
-
-impl LinkTable {
-    /// A table that links nothing.
-    pub fn new(kinds: usize, range: f64) -> Self {
-        Self { stiffness: vec![0.0; kinds * kinds], range }
-    }
-
-    /// Whether the springs of a link hold, of this summed squared length (µm²).
-    fn holds(&self, squared: f64) -> bool {
-        squared <= 3.0 * self.range * self.range
-    }
-}
 
 impl Link {
     /// Joins two facets by the pairs of atoms that are nearest to each other taken together.
@@ -66,7 +34,7 @@ impl Link {
 /// The links at an instant: those that hold of the ones before, and new ones between facets that collide. A facet has one link at most.
 /// `taken` is scratch.
 pub fn links_at(
-    model: &ContactModel,
+    model: &ContactScene,
     controls: &Controls,
     before: &[Link],
     found: &Contacts,
@@ -150,7 +118,7 @@ fn facing_at_edges(scene: &Scene, near: &EdgeContact, positions: &[Vec3]) -> Opt
 /// Adds the forces of links to those of all atoms, eq. (adhesion.11), and returns their energy, pN·µm: less than nothing where
 /// they hold, and nothing where they break.
 pub fn pull_links(
-    model: &ContactModel,
+    model: &ContactScene,
     controls: &Controls,
     links: &[Link],
     positions: &[Vec3],

@@ -7,19 +7,25 @@
 //! Three other models are there to compare with: springs that link facets in place of strengths, penalties in place of the
 //! projection, whose forces are those of where the atoms are in each stage of a step, and zones of contact that are rigid.
 
+mod adhesives;
+mod assemble;
+mod cause;
 mod depth;
 mod find;
 mod gather;
 mod give;
 mod hold;
+mod law;
 mod links;
 mod model;
 mod momentum;
 mod penalty;
 mod recruit;
 mod remember;
+mod renumber;
 mod rigid;
 mod rows;
+mod scene;
 mod scratch;
 mod settle;
 mod spread;
@@ -29,17 +35,20 @@ mod sweep;
 mod sweep_tests;
 mod zones;
 
-pub use depth::{Deepened, check_depth, check_passed, look_for_depth};
+pub use adhesives::AdhesiveScratch;
+pub use cause::help_at;
+pub use depth::{Deepened, check_added, check_depth, check_passed, look_for_depth};
 pub use find::{
     add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, locate_contacts, pull_contacts,
 };
 pub use give::energy_of_give;
 pub use hold::{hold_contacts, travel};
-pub use links::{Link, LinkTable, links_at, pull_links};
-pub use model::{ContactModel, Law, Strength};
-pub use penalty::{Penalty, press};
+pub use law::{AdhesiveTable, Law, LinkTable, Penalty, Strength, Zones};
+pub use links::{links_at, pull_links};
+pub use model::ContactModel;
+pub use penalty::press;
 pub use rows::{Pairing, Pull, Row};
+pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
-pub use state::{AtomBond, ContactState, EdgeBond, PlaneBond};
-pub use zones::{AdhesiveAtom, AdhesiveScratch, AdhesiveTable, Zones};
+pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Link, PlaneBond};

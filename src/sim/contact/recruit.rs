@@ -1,21 +1,22 @@
 //! Recruits atoms to virtual adhesives: who touches what sticks is cloned, and joins what it touches and its neighbours.
 
-use super::model::{ContactModel, Law};
+use super::adhesives::{AdhesiveScratch, NONE, Role};
+use super::law::{AdhesiveTable, Law, Zones};
+use super::scene::ContactScene;
 use super::state::ContactState;
-use super::zones::{AdhesiveScratch, AdhesiveTable, NONE, Role, Zones};
 use crate::contact::{AtomContact, Contacts};
-use crate::sim::chemistry::Controls;
+use crate::sim::controls::Controls;
 
 /// How well surfaces are glued, with the factors that chemistry sets.
 pub(super) struct Glue<'a> {
-    model: &'a ContactModel,
+    model: &'a ContactScene<'a>,
     table: &'a AdhesiveTable,
     controls: &'a Controls,
 }
 
 impl<'a> Glue<'a> {
     /// That of a model; none under other laws.
-    pub(super) fn of(model: &'a ContactModel, controls: &'a Controls) -> Option<Self> {
+    pub(super) fn of(model: &'a ContactScene<'a>, controls: &'a Controls) -> Option<Self> {
         let Law::VirtualAdhesives(table) = &model.law else { return None };
         Some(Self { model, table, controls })
     }

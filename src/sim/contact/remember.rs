@@ -1,14 +1,14 @@
 //! What contacts remember from step to step beside their forces: positions alone do not tell on which side of a sheet an atom is, and
 //! contacts that come and go with every tremor move their load about.
 
-use super::model::ContactModel;
+use super::scene::ContactScene;
 use super::state::{AtomBond, ContactState};
 use crate::Vec3;
 use crate::contact::{Contacts, Detector, Facing, Feature, Normal, add_walls_of_grooves, edges_still_touch};
 
 /// Finds what touches at these positions, with what is remembered of contacts that were there before.
 pub fn find_at(
-    contact: &ContactModel,
+    contact: &ContactScene,
     before: &ContactState,
     positions: &[Vec3],
     detector: &mut Detector,
@@ -25,7 +25,7 @@ const PASSED: f64 = 0.1;
 
 /// Leaves atoms on the side where they were of surfaces that have two outsides. Sweeps leave an atom at a distance that is zero but
 /// for what they do not resolve; by its position alone it would then be on the other side, and would go on there.
-fn keep_sides(contact: &ContactModel, before: &ContactState, found: &mut Contacts) {
+fn keep_sides(contact: &ContactScene, before: &ContactState, found: &mut Contacts) {
     let mut bonds = before.atoms.iter().filter(|bond| bond.facing != Facing::Any).peekable();
     for near in found.atoms.iter_mut().filter(|near| near.facing != Facing::Any) {
         while bonds.next_if(|bond| bond.atom < near.atom).is_some() {}
@@ -50,7 +50,7 @@ fn keep_sides(contact: &ContactModel, before: &ContactState, found: &mut Contact
 
 /// Adds edges that carried a force and still touch to those found: between surfaces that are nearly flat they come and
 /// go with every tremor.
-fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3], found: &mut Contacts) {
+fn keep_edges(contact: &ContactScene, before: &ContactState, positions: &[Vec3], found: &mut Contacts) {
     let count = found.edges.len();
     for bond in before.edges.iter().filter(|bond| bond.force != [0.0; 3]) {
         if found.edges[..count].binary_search_by(|edge| edge.edges.cmp(&bond.edges)).is_err() {
@@ -63,26 +63,30 @@ fn keep_edges(contact: &ContactModel, before: &ContactState, positions: &[Vec3],
 
 #[cfg(test)]
 mod tests {
+    use super::super::model::ContactModel;
     use super::super::state::EdgeBond;
     use super::*;
     use crate::contact::Reach;
     use crate::geometry::{Surface, icosphere, sheet};
-    use crate::mechanics::elasticity::Elasticity;
-    use crate::sim::model::Kind;
+    use crate::sim::kind::Kind;
+    use crate::sim::state::KindState;
 
     const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
 
     fn scene(surfaces: Vec<Surface>) -> (ContactModel, Vec<Vec3>) {
-        let kinds: Vec<Kind> = (surfaces.into_iter().enumerate())
-            .map(|(number, rest)| Kind::new("body", rest, Elasticity::default()).with_cells(number, 1))
-            .collect();
+        let kinds: Vec<Kind> = surfaces.into_iter().map(|rest| Kind::new("body", rest, Vec::new())).collect();
         let positions = kinds.iter().flat_map(|kind| kind.rest.positions.clone()).collect();
         (ContactModel::new(&kinds, &[], REACH), positions)
     }
 
+    /// One cell of each kind.
+    fn of_one_each(model: &ContactModel) -> ContactScene<'_> {
+        model.scene_of(&vec![KindState { ids: vec![0], ..KindState::default() }; model.shapes.len()])
+    }
+
     fn found(model: &ContactModel, before: &ContactState, positions: &[Vec3]) -> Contacts {
         let (mut detector, mut found) = (Detector::default(), Contacts::default());
-        find_at(model, before, positions, &mut detector, &mut found);
+        find_at(&of_one_each(model), before, positions, &mut detector, &mut found);
         found
     }
 
@@ -113,8 +117,12 @@ mod tests {
         let (model, positions) = ball_over_a_sheet(0.01);
         let above = found(&model, &ContactState::default(), &positions);
         let touches = |found: &Contacts| {
-            let lowest =
-                found.atoms.iter().find(|near| near.body(&model.scene) == 0).copied().expect("the lowest atom touches");
+            let lowest = found
+                .atoms
+                .iter()
+                .find(|near| near.body(&of_one_each(&model).scene) == 0)
+                .copied()
+                .expect("the lowest atom touches");
             (lowest.gap, lowest.normal.wide().z, lowest.facing)
         };
         let (gap, up, front) = touches(&above);

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
 
-use super::sweep::{Change, V4};
-use super::zones::{AdhesiveAtom, AdhesiveScratch};
+use super::state::AdhesiveAtom;
+use super::sweep::V4;
 use crate::Vec3;
 
 /// Drag of an atom that is held over the largest of the others: it stays where it is.
@@ -23,7 +23,7 @@ pub(super) struct Rigid {
     first: usize,
     end: usize,
     /// Centre of drag where the step began, µm.
-    centre: Vec3,
+    pub(super) centre: Vec3,
     /// Drag of all, pN·s/µm.
     drag: f64,
     /// Inverse of the resistance to turning; nothing along what turns nothing.
@@ -70,7 +70,12 @@ impl Rigid {
 
     /// The mean displacement and the small rotation nearest to displacements of its atoms, each given with its place from the centre, in the
     /// norm of the drag, eq. (adhesion.14); `turned` is how the body stands now.
-    fn fit(&self, turned: &Rotation3<f64>, drags: &[f64], moved: impl Iterator<Item = (Vec3, Vec3)>) -> (Vec3, Vec3) {
+    pub(super) fn fit(
+        &self,
+        turned: &Rotation3<f64>,
+        drags: &[f64],
+        moved: impl Iterator<Item = (Vec3, Vec3)>,
+    ) -> (Vec3, Vec3) {
         if self.grounded {
             return (Vec3::zeros(), Vec3::zeros());
         }
@@ -109,7 +114,7 @@ impl Rigid {
     }
 
     /// Moves its atoms as one, with a rotation of any size; returns the farthest that this took one, µm.
-    fn place(&self, atoms: &[AdhesiveAtom], drags: &[f64], positions: &[Vec3], moved: &mut [V4]) -> f64 {
+    pub(super) fn place(&self, atoms: &[AdhesiveAtom], drags: &[f64], positions: &[Vec3], moved: &mut [V4]) -> f64 {
         let motion = self.motion(atoms, drags, positions, moved);
         let mut farthest: f64 = 0.0;
         for one in atoms {
@@ -131,49 +136,6 @@ impl Motion {
     }
 }
 
-impl AdhesiveScratch {
-    /// Begins sweeps with the forces that the adhesives carry.
-    pub(super) fn begin(&mut self) {
-        self.forces.clear();
-        self.forces.extend(self.atoms.iter().map(|one| Vec3::from(one.force)));
-        for list in [&mut self.changes, &mut self.ways] {
-            list.clear();
-            list.resize(self.atoms.len(), Vec3::zeros());
-        }
-    }
-
-    /// One sweep: every adhesive moves as one, to first order; forces first go on along their last direction by `share`, as the
-    /// displacements did.
-    pub(super) fn sweep(&mut self, positions: &[Vec3], moved: &mut [V4], share: f64, change: &mut Change) {
-        for body in &self.bodies {
-            let (atoms, drags) = (&self.atoms[body.range()], &self.drags[body.range()]);
-            let arm = |one: &AdhesiveAtom| positions[one.atom as usize] - body.centre;
-            let now = atoms.iter().map(|one| (arm(one), vector(&moved[one.atom as usize])));
-            let (shift, turn) = body.fit(&Rotation3::identity(), drags, now);
-            for (number, one) in body.range().zip(atoms) {
-                let slot = &mut moved[one.atom as usize];
-                if slot[3] == 0.0 {
-                    continue;
-                }
-                let way = shift + turn.cross(&arm(one)) - vector(slot);
-                (0..3).for_each(|axis| slot[axis] += way[axis]);
-                let step = way / slot[3];
-                self.forces[number] += share * self.ways[number] + step;
-                self.ways[number] = share * self.ways[number] + self.changes[number];
-                self.changes[number] = step;
-                change.largest = change.largest.max(way.norm());
-                change.work += way.dot(&step);
-            }
-        }
-    }
-
-    /// Moves every adhesive as one without a change of its shape; returns the farthest that this took an atom, µm.
-    pub(super) fn place_all(&self, positions: &[Vec3], moved: &mut [V4]) -> f64 {
-        let place = |body: &Rigid| body.place(&self.atoms[body.range()], &self.drags[body.range()], positions, moved);
-        self.bodies.iter().map(place).fold(0.0, f64::max)
-    }
-}
-
-fn vector(numbers: &V4) -> Vec3 {
+pub(super) fn vector(numbers: &V4) -> Vec3 {
     Vec3::new(numbers[0], numbers[1], numbers[2])
 }

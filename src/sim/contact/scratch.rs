@@ -1,12 +1,15 @@
 //! Scratch of the contacts.
 
-use super::links::Link;
+use super::adhesives::AdhesiveScratch;
 use super::momentum::Momentum;
 use super::rows::{Pull, Row};
+use super::scene::{ContactScene, Surfaces};
+use super::state::Link;
 use super::sweep::{V4, VolumeRow};
-use super::zones::AdhesiveScratch;
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
+use crate::sim::model::Model;
+use crate::sim::state::KindState;
 
 /// Forces of contacts on all atoms while these move freely, pN, in the order of cells; empty where there are none.
 #[derive(Debug, Clone, Default)]
@@ -31,6 +34,8 @@ pub struct SweepRules {
 /// Scratch of the contacts; arrays over all atoms stand in the order of cells.
 #[derive(Debug, Clone, Default)]
 pub struct ContactScratch {
+    /// The surfaces of the cells that there are.
+    surfaces: Option<Surfaces>,
     /// Pairs that are near.
     pub detector: Detector,
     /// What touches: under adhesives where the step ended, once it has, and else where it began.
@@ -73,11 +78,27 @@ pub struct ContactScratch {
 }
 
 impl ContactScratch {
+    /// The contacts of the cells that there are; made again where these are others than last time. None in a model without contacts.
+    pub(crate) fn scene<'a>(&mut self, model: &'a Model, cells: &[KindState]) -> Option<ContactScene<'a>> {
+        let rules = model.contact.as_ref()?;
+        if !self.surfaces.as_ref().is_some_and(|surfaces| surfaces.are_of(cells)) {
+            self.forget();
+            self.surfaces = Some(Surfaces::of(rules, cells));
+        }
+        self.surfaces.as_ref().map(|surfaces| surfaces.with(rules))
+    }
+
+    /// Forgets what was found, so that the next look finds it anew.
+    pub fn forget(&mut self) {
+        self.detector.forget();
+        self.has_looked = false;
+    }
+
     /// Writes NaN over all scratch numbers and forgets all pairs.
     pub fn poison(&mut self) {
-        self.detector.forget();
+        self.forget();
+        self.surfaces = None;
         self.found.clear();
-        self.has_looked = false;
         self.rows.clear();
         self.pulls.clear();
         self.volumes.clear();

@@ -1,7 +1,7 @@
 //! The shapes of virtual adhesives after exact volumes have moved their atoms.
 
 use super::hold::put_back;
-use super::model::ContactModel;
+use super::scene::ContactScene;
 use super::scratch::ContactScratch;
 use crate::sim::model::Model;
 use crate::sim::state::{State, vector};
@@ -14,7 +14,7 @@ const SETTLED: f64 = 1e-3;
 /// be made exact again.
 pub fn settle_adhesives(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> bool {
     let s = &mut ws.contact;
-    let Some(contact) = &model.contact else { return false };
+    let Some(contact) = &s.scene(model, &from.kinds) else { return false };
     if s.adhesives.atoms.is_empty() {
         return false;
     }
@@ -27,7 +27,7 @@ pub fn settle_adhesives(model: &Model, from: &State, to: &mut State, ws: &mut Wo
 }
 
 /// Displacements over the step as the atoms stand now; what is kept beside them stays.
-fn take_displacements(model: &Model, contact: &ContactModel, to: &State, s: &mut ContactScratch) {
+fn take_displacements(model: &Model, contact: &ContactScene, to: &State, s: &mut ContactScratch) {
     for (number, (kind, now)) in model.kinds.iter().zip(&to.kinds).enumerate() {
         let range = contact.atoms_of(number);
         let (first, moved) = (range.start, &mut s.moved[range]);

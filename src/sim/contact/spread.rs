@@ -1,14 +1,15 @@
 //! The energy of adhesion: surfaces in contact release energy with their area, which spreads contacts until surfaces under
 //! tension meet at the angle of eq. (adhesion.10).
 
-use super::model::{ContactModel, Strength};
-use super::rows::SHARE;
+use super::assemble::SHARE;
+use super::law::Strength;
+use super::scene::ContactScene;
 use crate::Vec3;
 use crate::contact::Contacts;
-use crate::sim::chemistry::Controls;
+use crate::sim::controls::Controls;
 
 /// Whether any surfaces in contact release energy.
-pub fn releases_energy(model: &ContactModel) -> bool {
+pub fn releases_energy(model: &ContactScene) -> bool {
     let releases = |strength: &Strength| strength.energy > 0.0;
     model.between.iter().chain(&model.on_planes).any(releases)
 }
@@ -16,7 +17,7 @@ pub fn releases_energy(model: &ContactModel) -> bool {
 /// Adds the forces of the energy that contacts release, eq. (adhesion.9), to those of all atoms. `relief` is scratch, one number an
 /// atom.
 pub fn add_spreading(
-    model: &ContactModel,
+    model: &ContactScene,
     found: &Contacts,
     controls: &Controls,
     positions: &[Vec3],
@@ -54,7 +55,7 @@ fn spread(facets: &[[u32; 3]], relief: &[f64], x: &[Vec3], force: &mut [Vec3]) {
 }
 
 /// What the surface at each atom releases an area, pN/µm: the most of what its contacts do.
-fn relieve(model: &ContactModel, found: &Contacts, controls: &Controls, relief: &mut Vec<f64>) {
+fn relieve(model: &ContactScene, found: &Contacts, controls: &Controls, relief: &mut Vec<f64>) {
     let scene = &model.scene;
     relief.clear();
     relief.resize(scene.atoms, 0.0);

@@ -1,7 +1,5 @@
 //! What contacts carry from one step to the next.
 
-use super::links::Link;
-use super::zones::AdhesiveAtom;
 use crate::contact::{Facing, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +47,30 @@ pub struct PlaneBond {
     pub force: [f32; 3],
     /// What went into its give and has not come back, pN·µm, eq. (adhesion.5).
     pub given: f32,
+}
+
+/// Two facets of two cells, each atom of the one joined to an atom of the other, eq. (adhesion.11).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Link {
+    /// The facets, numbered through all cells, the smaller first.
+    pub facets: [u32; 2],
+    /// Their bodies.
+    pub bodies: [u32; 2],
+    /// The pairs of atoms, numbered through all cells; the first of each belongs to the first facet.
+    pub pairs: [[u32; 2]; 3],
+}
+
+/// An atom in an adhesive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AdhesiveAtom {
+    /// The adhesive: the number of the least of its atoms.
+    pub adhesive: u32,
+    /// The atom, numbered through all cells.
+    pub atom: u32,
+    /// When it was cloned, s.
+    pub since: f64,
+    /// Force of the adhesive on it, pN; those of an adhesive have neither sum nor torque.
+    pub force: [f64; 3],
 }
 
 /// All contacts that carry a force, in the order in which they are found, links and virtual adhesives.

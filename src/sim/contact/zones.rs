@@ -1,99 +1,22 @@
 //! Virtual adhesives (Carra, Martiel and Promayon 2007): atoms of cells that touch are cloned into rigid bodies, which recruit,
 //! merge, lose atoms and die.
 
-use serde::{Deserialize, Serialize};
-
-use super::model::ContactModel;
+use super::adhesives::{AdhesiveScratch, NONE, Role};
 use super::recruit::{Glue, reset, root};
 use super::rigid::Rigid;
 use super::rows::{Pairing, Pull, Row};
-use super::state::ContactState;
+use super::scene::ContactScene;
+use super::state::{AdhesiveAtom, ContactState};
 use crate::Vec3;
 use crate::contact::Contacts;
-use crate::sim::chemistry::Controls;
-use crate::sim::model::Kind;
-
-/// Which surfaces are glued, and how well.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AdhesiveTable {
-    /// What an atom's own displacement in a step may differ from that of its adhesive, µm: `between[kind * kinds + other]`,
-    /// symmetric; 0 glues nothing.
-    pub between: Vec<f64>,
-    /// The same for kinds and planes: `on_planes[kind * planes + plane]`.
-    pub on_planes: Vec<f64>,
-    /// Which adhesives merge.
-    pub zones: Zones,
-}
-
-/// Which adhesives grow together where their atoms are neighbours on the mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Zones {
-    /// All, as printed.
-    #[default]
-    Merged,
-    /// Those of the same two objects; an atom that touches several belongs to the nearest.
-    Pairs,
-}
-
-/// An atom in an adhesive.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct AdhesiveAtom {
-    /// The adhesive: the number of the least of its atoms.
-    pub adhesive: u32,
-    /// The atom, numbered through all cells.
-    pub atom: u32,
-    /// When it was cloned, s.
-    pub since: f64,
-    /// Force of the adhesive on it, pN; those of an adhesive have neither sum nor torque.
-    pub force: [f64; 3],
-}
-
-/// No number.
-pub(super) const NONE: u32 = u32::MAX;
-
-/// What an atom is in a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
-    /// It touches nothing that sticks.
-    Far,
-    /// It touches, but was released and not pressed since.
-    Released,
-    /// It has a clone.
-    Cloned,
-}
-
-/// The adhesives of a step, and what is needed to find them; empty under other laws.
-#[derive(Debug, Clone, Default)]
-pub struct AdhesiveScratch {
-    /// Their atoms, adhesive by adhesive, with the forces that they carried where the step began.
-    pub atoms: Vec<AdhesiveAtom>,
-    /// The adhesives as rigid bodies.
-    pub(super) bodies: Vec<Rigid>,
-    /// Drag of each of their atoms, pN·s/µm.
-    pub(super) drags: Vec<f64>,
-    /// Force on each now, pN.
-    pub(super) forces: Vec<Vec3>,
-    /// What the last sweep changed of it.
-    pub(super) changes: Vec<Vec3>,
-    /// The direction that speeds the sweeps up.
-    pub(super) ways: Vec<Vec3>,
-    /// For all atoms: where they stand in `atoms`, or `NONE`.
-    pub(super) place: Vec<u32>,
-    pub(super) roles: Vec<Role>,
-    pub(super) kappa: Vec<f64>,
-    /// An atom of the same adhesive; the least one in the end.
-    pub(super) parent: Vec<u32>,
-    /// The nearest two objects, and how near.
-    pub(super) pair: Vec<([u32; 2], f64)>,
-    /// Atoms that touch a plane that sticks.
-    pub(super) grounded: Vec<bool>,
-}
+use crate::sim::controls::Controls;
+use crate::sim::kind::Kind;
 
 impl AdhesiveScratch {
     /// Finds the adhesives of a step: those before, with what touches now.
     pub(super) fn find(
         &mut self,
-        model: &ContactModel,
+        model: &ContactScene,
         kinds: &[Kind],
         controls: &Controls,
         before: &ContactState,
@@ -133,11 +56,11 @@ impl AdhesiveScratch {
     }
 
     /// The adhesives as rigid bodies that resist as the drag of their atoms does, and carried forces without sum and torque.
-    fn make_bodies(&mut self, model: &ContactModel, kinds: &[Kind], positions: &[Vec3]) {
+    fn make_bodies(&mut self, model: &ContactScene, kinds: &[Kind], positions: &[Vec3]) {
         self.drags.clear();
         for one in &self.atoms {
             let kind = model.owner(one.atom).0;
-            let atom = (one.atom as usize - model.first_atom[kind]) % kinds[kind].atoms();
+            let atom = model.within(kind, one.atom);
             let held = kinds[kind].held.get(3 * atom..3 * atom + 3).is_some_and(|axes| axes == [0.0; 3]);
             self.drags.push(if held { f64::INFINITY } else { kinds[kind].drag });
         }
@@ -185,7 +108,7 @@ impl AdhesiveScratch {
     /// force of all atoms as its fourth number.
     pub(super) fn keep(
         &mut self,
-        model: &ContactModel,
+        model: &ContactScene,
         controls: &Controls,
         found: &Contacts,
         moved: &[[f64; 4]],
@@ -219,11 +142,6 @@ impl AdhesiveScratch {
         kept.released.extend((0..).zip(roles).filter(|(_, role)| **role == Role::Released).map(|(atom, _)| atom));
         kept.adhesives.extend(self.atoms.iter().filter(|one| roles[one.atom as usize] == Role::Cloned));
         keep_living(&mut kept.adhesives, |atom| self.grounded[atom as usize]);
-    }
-
-    /// Forgets everything.
-    pub(super) fn poison(&mut self) {
-        *self = Self::default();
     }
 }
 

@@ -77,8 +77,8 @@ impl<'a> Writer<'a> {
         for number in 0..document.system.quantities.len() {
             self.quantity(number as QuantityId);
         }
-        for (place, event) in document.system.events.iter().enumerate() {
-            self.event(event, place);
+        for (index, event) in document.system.events.iter().enumerate() {
+            self.event(event, index);
         }
         self.grid();
         self.solver();
@@ -164,14 +164,14 @@ impl<'a> Writer<'a> {
         self.expression(&quantity.initial)
     }
 
-    fn event(&mut self, event: &Event, place: usize) {
+    fn event(&mut self, event: &Event, index: usize) {
         if event.assignments.is_empty() {
             let notice = format!("the event `{}` sets nothing and is left out", event.id);
             return self.names.notices.push(notice);
         }
         let mut head = String::new();
-        if !self.names.events[place].is_empty() {
-            head.push_str(&attribute("id", &self.names.events[place]));
+        if !self.names.events[index].is_empty() {
+            head.push_str(&attribute("id", &self.names.events[index]));
         }
         head.push_str(&attribute("when", &self.expression(&event.trigger)));
         for (name, value) in [("delay", &event.delay), ("priority", &event.priority)] {

@@ -10,7 +10,7 @@ use std::collections::HashSet;
 pub(super) struct Names {
     /// Of each quantity.
     pub(super) quantities: Vec<String>,
-    /// Of each event; empty for one whose identifier is made from its place.
+    /// Of each event; empty for one whose identifier is made from its index.
     pub(super) events: Vec<String>,
     /// What is called otherwise, one sentence for each kind.
     pub(super) notices: Vec<String>,
@@ -40,10 +40,10 @@ impl Names {
         }
         let mut seen: HashSet<&str> = HashSet::new();
         let mut events = Vec::with_capacity(system.events.len());
-        for (place, event) in system.events.iter().enumerate() {
+        for (index, event) in system.events.iter().enumerate() {
             let free = stands(&event.id) && !quantities.contains(&event.id) && seen.insert(&event.id);
             events.push(match () {
-                () if event.id == format!("event_{}", place + 1) => String::new(),
+                () if event.id == format!("event_{}", index + 1) => String::new(),
                 () if free => event.id.clone(),
                 () => new_name(&event.id, &mut told),
             });

@@ -5,6 +5,8 @@ use crate::cell::ends::{self, Reading, Sense, Setting};
 use crate::equations::eml::{Endpoint, Index, LinkDescription, Root, Step};
 use crate::error::words;
 use crate::error::{Fault, short};
+use crate::mechanics::CONTROLLED;
+use crate::mechanics::control::Handle;
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, Control, Source, Target, Whole, Whose};
 
@@ -22,6 +24,8 @@ pub(super) struct Ends<'a, 'b> {
     pub(super) parts: &'a [Part<'a>],
     pub(super) part: &'a Part<'a>,
     pub(super) kinds: &'b [Kind],
+    /// How many cells of each kind there are at the start.
+    pub(super) counts: &'b [usize],
     pub(super) chemistry: &'b mut Chemistry,
     /// Whether the experiment has contacts.
     pub(super) touching: bool,
@@ -123,8 +127,10 @@ impl Ends<'_, '_> {
         let whose = self.whose(end, Side::To)?;
         let Some(setting) = ends::setting(&end.path) else {
             let message = format!("`{}` is nothing that can be set", end.text);
-            let help = format!("of a cell can be set {}", words::all_of(ends::SETTABLE));
-            return Err(within(&end.place, &meant(end, ends::SETTABLE), message, help));
+            let known = ends::settable();
+            let known = || known.iter().map(String::as_str);
+            let help = format!("of a cell can be set {}", words::all_of(known()));
+            return Err(within(&end.place, &meant(end, known()), message, help));
         };
         self.check_setting(end, whose, &setting)?;
         let control = match setting {
@@ -135,14 +141,7 @@ impl Ends<'_, '_> {
             Setting::RestVolume => Control::RestVolume,
             Setting::RestVolumeRatio => Control::RestVolumeRatio,
             Setting::Atom(atom, axis) => Control::Atom(atom, axis),
-            Setting::Load(name) => {
-                let loads = |kind: &Kind| kind.loads.iter().map(|load| load.name.clone()).collect();
-                Control::Load(self.named(end, whose, ["load", "loads"], &name, loads)?)
-            }
-            Setting::Fibre(name) => {
-                let fibres = |kind: &Kind| kind.fibres.iter().map(|fibres| fibres.name.clone()).collect();
-                Control::Fibre(self.named(end, whose, ["fibre", "fibres"], &name, fibres)?)
-            }
+            Setting::Force(handle, name) => Control::Force(handle, self.numbered(end, whose, handle, &name)?),
             Setting::Secretion(name) => {
                 let channel = self.species(end, &Index::Name(name))?;
                 let secreted = &mut self.chemistry.secreted;
@@ -171,7 +170,7 @@ impl Ends<'_, '_> {
                 Setting::RestVolume | Setting::RestVolumeRatio if free => {
                     ("has no volume that is kept", "give it a closed mesh and the volume rule exact or compressible")
                 }
-                Setting::Atom(..) if matches!(whose, Whose::Cell(_)) && kind.cells > 1 => {
+                Setting::Atom(..) if matches!(whose, Whose::Cell(_)) && self.counts[number] > 1 => {
                     ("has other cells whose atom would be held with it", "make the cell a type of its own")
                 }
                 _ => continue,
@@ -185,24 +184,18 @@ impl Ends<'_, '_> {
         Ok(())
     }
 
-    /// The number of a load or of fibres by their name, the same in all kinds concerned; `words` are one and many of them.
-    fn named(
-        &self,
-        end: &Endpoint,
-        whose: Whose,
-        [one, many]: [&str; 2],
-        name: &str,
-        names: impl Fn(&Kind) -> Vec<String>,
-    ) -> Result<usize, Fault> {
+    /// The number of a force by its name among those with a handle, the same in all kinds concerned.
+    fn numbered(&self, end: &Endpoint, whose: Whose, handle: usize, name: &str) -> Result<usize, Fault> {
+        let Handle { word: one, key: many, .. } = CONTROLLED[handle];
         let mut found = None;
         for kind in self.kinds_of(whose) {
             let kind = &self.kinds[kind];
-            let known = names(kind);
-            let Some(number) = known.iter().position(|known| known == name) else {
+            let known: Vec<&str> = kind.controlled(handle).collect();
+            let Some(number) = known.iter().position(|known| *known == name) else {
                 let message = format!("type `{}` has no {one} `{name}`", kind.name);
                 let help = match known.is_empty() {
                     true => format!("add [[cells.{}.{many}]] with that name to the experiment", kind.name),
-                    false => format!("its {many} are {}", words::all_of(known.iter().map(String::as_str))),
+                    false => format!("its {many} are {}", words::all_of(known)),
                 };
                 return Err(within(&end.place, &format!("no such {one}"), message, help));
             };
@@ -250,12 +243,12 @@ impl Ends<'_, '_> {
         let shared = self.part.kinds.is_empty();
         let whose = match &end.root {
             Root::Cell(Some(Index::Number(cell))) => {
-                let cells = self.kinds.iter().map(|kind| kind.cells).sum::<usize>();
+                let cells = self.counts.iter().sum::<usize>();
                 if *cell >= cells {
                     let message = format!("there is no cell {cell}: the experiment has {cells}");
                     return Err(within(&end.place, "no such cell", message, "cells are numbered from 0"));
                 }
-                Whose::Cell(*cell)
+                Whose::Cell(*cell as u64)
             }
             Root::Cell(Some(Index::Name(name))) => {
                 let message = format!("cells have numbers, not names such as `{name}`");
@@ -303,10 +296,7 @@ impl Ends<'_, '_> {
         match whose {
             Whose::Own => self.part.kinds.clone(),
             Whose::Kind(kind) => vec![kind],
-            Whose::Cell(cell) => {
-                let of = |kind: &Kind| (kind.first_cell..kind.first_cell + kind.cells).contains(&cell);
-                self.kinds.iter().position(of).into_iter().collect()
-            }
+            Whose::Cell(cell) => kind_of_cell(self.counts, cell).into_iter().collect(),
         }
     }
 
@@ -392,11 +382,20 @@ fn unknown_of_field(end: &Endpoint) -> Fault {
 }
 
 /// The word that was meant by the path of an end.
-fn meant<const N: usize>(end: &Endpoint, known: [&'static str; N]) -> String {
+fn meant<'a>(end: &Endpoint, known: impl IntoIterator<Item = &'a str>) -> String {
     let path = end.text.split_once('.').map_or("", |(_, path)| path);
     words::meant(path, known).map_or("not known".to_owned(), |near| format!("did you mean `{near}`?"))
 }
 
 fn parts_of(path: &[Step]) -> Vec<(&str, Option<&Index>)> {
     path.iter().map(|step| (step.name.as_str(), step.index.as_ref())).collect()
+}
+
+/// The kind of a cell by its id, where there are so many of each kind at the start.
+pub(super) fn kind_of_cell(counts: &[usize], cell: u64) -> Option<usize> {
+    let ends = counts.iter().scan(0, |end, count| {
+        *end += *count as u64;
+        Some(*end)
+    });
+    ends.enumerate().find(|(_, end)| cell < *end).map(|(kind, _)| kind)
 }

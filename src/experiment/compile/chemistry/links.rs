@@ -1,7 +1,7 @@
 //! Links: those in the documents of equations and those that the experiment adds, joined to the model.
 
 use super::super::super::{ChemistryLink, Document};
-use super::ends::{Ends, Side};
+use super::ends::{Ends, Side, kind_of_cell};
 use super::order::order;
 use super::{Part, at, within};
 use crate::equations::eml::{self, Endpoint, LinkDescription, Root};
@@ -33,6 +33,7 @@ pub(super) fn open_linked_parameters(parts: &mut [Part]) {
 pub(super) fn links(
     document: &Document,
     parts: &[Part],
+    counts: &[usize],
     kinds: &mut [Kind],
     chemistry: &mut Chemistry,
     faults: &mut Vec<Fault>,
@@ -45,7 +46,7 @@ pub(super) fn links(
         for (description, place) in own {
             let place = place.unwrap_or_else(|key| nowhere(document, &key));
             let touching = document.experiment.contact.is_some();
-            let mut ends = Ends { parts, part, kinds, chemistry, touching };
+            let mut ends = Ends { parts, part, kinds, counts, chemistry, touching };
             match link(&mut ends, &description) {
                 Ok(link) => links.push((link, place)),
                 Err(fault) => faults.push(fault),
@@ -61,9 +62,9 @@ pub(super) fn links(
     match order(&plain, &systems, &chemistry.reactors) {
         Ok(order) => {
             for &number in &order {
-                act(&plain[number], chemistry, kinds);
+                act(&plain[number], chemistry, counts, kinds);
             }
-            chemistry.links = order.into_iter().map(|number| plain[number].clone()).collect();
+            chemistry.set_links(order.into_iter().map(|number| plain[number].clone()).collect());
         }
         Err(circle) => {
             let texts: Vec<&str> = circle.iter().map(|&number| plain[number].text.as_str()).collect();
@@ -81,12 +82,12 @@ fn nowhere(document: &Document, key: &str) -> Place {
 }
 
 /// What links do to the model as a whole.
-fn act(link: &Link, chemistry: &mut Chemistry, kinds: &mut [Kind]) {
+fn act(link: &Link, chemistry: &mut Chemistry, counts: &[usize], kinds: &mut [Kind]) {
     if let crate::sim::chemistry::Source::Cell(_, reading) = link.from {
         chemistry.measures_cells |= !matches!(reading, crate::cell::ends::Reading::Atom(..));
     }
     let Target::Cell(whose, control) = link.to else { return };
-    let cells = link_kinds(link.owner, whose, chemistry, kinds);
+    let cells = link_kinds(link.owner, whose, chemistry, counts);
     for kind in cells {
         let kind = &mut kinds[kind];
         match control {
@@ -104,19 +105,19 @@ fn act(link: &Link, chemistry: &mut Chemistry, kinds: &mut [Kind]) {
 }
 
 /// The kinds whose cells a link sets.
-fn link_kinds(owner: Owner, whose: crate::sim::chemistry::Whose, chemistry: &Chemistry, kinds: &[Kind]) -> Vec<usize> {
+fn link_kinds(
+    owner: Owner,
+    whose: crate::sim::chemistry::Whose,
+    chemistry: &Chemistry,
+    counts: &[usize],
+) -> Vec<usize> {
     use crate::sim::chemistry::{Members, Whose};
-    let kind_of = |cell: usize| kinds.iter().position(|kind| cell < kind.first_cell + kind.cells);
     match (whose, owner) {
         (Whose::Kind(kind), _) => vec![kind],
-        (Whose::Cell(cell), _) => kind_of(cell).into_iter().collect(),
+        (Whose::Cell(cell), _) => kind_of_cell(counts, cell).into_iter().collect(),
         (Whose::Own, Owner::Reactor(number)) => match &chemistry.reactors[number].members {
             Members::Scene => Vec::new(),
-            Members::Cells(cells) => {
-                let mut found: Vec<usize> = cells.iter().filter_map(|&cell| kind_of(cell as usize)).collect();
-                found.dedup();
-                found
-            }
+            Members::Kinds(kinds) => kinds.clone(),
         },
         (Whose::Own, Owner::Field(_)) => Vec::new(),
     }

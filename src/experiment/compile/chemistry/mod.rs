@@ -44,8 +44,14 @@ impl Part<'_> {
     }
 }
 
-/// The chemistry of an experiment, and the fields as they start. Marks the kinds that links act on.
-pub fn chemistry(document: &Document, kinds: &mut [Kind], faults: &mut Vec<Fault>) -> (Chemistry, Vec<Fields>) {
+/// The chemistry of an experiment that starts with so many cells of each kind, and the fields as they start. Marks the kinds that links
+/// act on.
+pub fn chemistry(
+    document: &Document,
+    counts: &[usize],
+    kinds: &mut [Kind],
+    faults: &mut Vec<Fault>,
+) -> (Chemistry, Vec<Fields>) {
     let before = faults.len();
     let mut chemistry = Chemistry::default();
     if document.experiment.chemistry.is_empty() {
@@ -71,11 +77,11 @@ pub fn chemistry(document: &Document, kinds: &mut [Kind], faults: &mut Vec<Fault
     }
     links::open_linked_parameters(&mut parts);
     for part in parts.iter().filter(|part| !part.is_field()) {
-        chemistry.reactors.extend(reactor(document, part, kinds, faults));
+        chemistry.reactors.extend(reactor(document, part, faults));
     }
     // Ends of links name systems and fields by their numbers, which stand only when all are there.
     if faults.len() == before {
-        links::links(document, &parts, kinds, &mut chemistry, faults);
+        links::links(document, &parts, counts, kinds, &mut chemistry, faults);
         names::check(document, &chemistry, faults);
     }
     (chemistry, fields)
@@ -99,7 +105,7 @@ fn tell(error: Error, faults: &mut Vec<Fault>) {
     }
 }
 
-fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fault>) -> Option<Reactor> {
+fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<Reactor> {
     let (entry, eml) = (part.entry, &part.document);
     let method = method(document, part, faults)?;
     let variables = eml.system.variables().len();
@@ -121,14 +127,7 @@ fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fa
             return None;
         }
     };
-    let members = match &part.kinds[..] {
-        [] => Members::Scene,
-        some => {
-            let cells =
-                |kind: &usize| kinds[*kind].first_cell as u32..(kinds[*kind].first_cell + kinds[*kind].cells) as u32;
-            Members::Cells(some.iter().flat_map(cells).collect())
-        }
-    };
+    let members = if part.kinds.is_empty() { Members::Scene } else { Members::Kinds(part.kinds.clone()) };
     let exchange = entry.exchange.map(|time| time.value()).or(eml.solver.step.map(|step| step * eml.seconds));
     let set_by_events = assigned_parameters(&eml.system);
     let kept = |number: u32, role: &Role| match role {

@@ -1,12 +1,13 @@
 //! Collects faults with their places, so that a reader hears of all of them.
 
+use crate::equations::fault::at_place;
 use crate::error::words::meant;
 use crate::error::{Error, Fault, Place, Source};
 use std::ops::Range;
 use std::sync::Arc;
 
 /// The source and the faults found so far.
-pub(super) struct Desk {
+pub(super) struct Context {
     pub(super) source: Arc<Source>,
     faults: Vec<Fault>,
     /// Where each line begins.
@@ -19,10 +20,8 @@ pub(super) struct Desk {
 const MOST_FAULTS: usize = 100;
 /// The most words among which the one that was meant is looked for.
 const MOST_KNOWN: usize = 5000;
-/// The longest line, in bytes, that is shown with a fault.
-const LONGEST_LINE: usize = 2000;
 
-impl Desk {
+impl Context {
     pub(super) fn new(source: Arc<Source>) -> Self {
         let ends = source.text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         let lines = std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect();
@@ -40,16 +39,7 @@ impl Desk {
             self.untold += 1;
             return;
         }
-        let text = &self.source.text;
-        let start = text[..at.start].rfind('\n').map_or(0, |end| end + 1);
-        let line = text[at.start..].find('\n').map_or(text.len(), |end| at.start + end) - start;
-        if line > LONGEST_LINE {
-            let column = 1 + text[start..at.start].chars().count();
-            let message = format!("{}:{}:{column}: {message}", self.source.name, self.line(at.start));
-            return self.lost(message, help);
-        }
-        let place = self.place(at, label);
-        self.faults.push(Fault::new(message).at(place).help(help));
+        self.faults.push(at_place(&self.source, at, message.to_owned(), label, help));
     }
 
     /// A fault without a place.

@@ -1,51 +1,68 @@
-//! Builds the elastic forces of a type of cells.
+//! Builds the forces on a type of cells, in the order in which they are added up.
 
 use super::super::{
     BendingRest, CellType, Document, Form, Law, LinkPattern, Linked, Membrane as MembraneText,
-    Reaction as ReactionText, Rest, ShapeStrength,
+    Reaction as ReactionText, Rest, ShapeStrength, Spread,
 };
 use super::mesh::Built;
 use super::select::{self, mirrored};
+use super::{course, unit, vector};
 use crate::Vec3;
 use crate::error::Fault;
 use crate::geometry::{self, Surface, Topology};
+use crate::mechanics::Force;
 use crate::mechanics::angles::Angles;
+use crate::mechanics::attraction::Attraction;
 use crate::mechanics::barrier::{Barrier, BarrierRules};
 use crate::mechanics::bending::{Bending, RestAngle};
-use crate::mechanics::elasticity::Elasticity;
+use crate::mechanics::fibres::Fibres;
+use crate::mechanics::gravity::Gravity;
+use crate::mechanics::load::Load;
 use crate::mechanics::membrane::{Membrane, MembraneLaw};
 use crate::mechanics::ordering::Ordering;
 use crate::mechanics::shape_memory::{Reaction, ShapeMemory};
 use crate::mechanics::shape_modulus::stiffness_of_modulus;
 use crate::mechanics::springs::{Spring, Springs};
+use crate::mechanics::sum;
 use crate::mechanics::tension::Tension;
 
 /// The energy scale of the barrier where the document names none: this part of the elastic energy that moves an atom
 /// by an edge, so that the barrier is as stiff as the cell that it guards.
 const BARRIER_SHARE: f64 = 0.1;
 
-/// All elastic forces of a type; the pairs of its links go to `drawn_links`, faults are what only the mesh can tell.
-pub fn elasticity(
+/// All forces on a type; the pairs of its links and fibres go to `drawn_links`, faults are what only the mesh can tell.
+pub fn forces(
     document: &Document,
     key: &str,
     cell: &CellType,
     built: &Built,
     drawn_links: &mut Vec<[u32; 2]>,
     faults: &mut Vec<Fault>,
-) -> Elasticity {
+) -> Vec<Force> {
     let rest = &built.turned;
     let topology = Topology::of(rest);
-    let mut elasticity = Elasticity::default();
-    add_shape_memory(document, key, cell, rest, &topology, &mut elasticity, faults);
+    let mut forces = Vec::new();
+    add_shape_memory(document, key, cell, rest, &topology, &mut forces, faults);
     if let Some(membrane) = &cell.mechanics.membrane {
-        add_membrane(document, key, membrane, rest, &topology, &mut elasticity, faults);
+        add_membrane(document, key, membrane, rest, &topology, &mut forces, faults);
     }
     if let Some(springs) = &cell.mechanics.springs {
-        elasticity.springs.push(Springs::on_edges(&rest.positions, &topology.edges, springs.stiffness.value()));
+        let springs = Springs::on_edges(&rest.positions, &topology.edges, springs.stiffness.value());
+        forces.push(Force::Springs(springs));
     }
-    drawn_links.extend(add_links(document, key, cell, built, &mut elasticity, faults));
-    add_barrier(cell, rest, &topology, &mut elasticity);
-    elasticity
+    drawn_links.extend(add_links(document, key, cell, built, &mut forces, faults));
+    add_barrier(cell, rest, &topology, &mut forces);
+    add_loads(document, key, cell, rest, &mut forces, faults);
+    drawn_links.extend(add_fibres(document, key, cell, built, &mut forces, faults));
+    let gravity = document.experiment.environment.gravity.map_or([0.0; 3], |g| g.map(|a| a.value()));
+    if gravity != [0.0; 3] {
+        forces.push(Force::Gravity(Gravity { acceleration: vector(gravity) }));
+    }
+    if let Some(attraction) = &cell.motility.attraction {
+        let (to, stiffness) = (vector(attraction.to.map(|x| x.value())), attraction.stiffness.value());
+        forces.push(Force::Attraction(Attraction { to, stiffness }));
+    }
+    forces
 }
 
 fn add_shape_memory(
@@ -54,7 +71,7 @@ fn add_shape_memory(
     cell: &CellType,
     rest: &Surface,
     topology: &Topology,
-    elasticity: &mut Elasticity,
+    forces: &mut Vec<Force>,
     faults: &mut Vec<Fault>,
 ) {
     let Some(memory) = &cell.mechanics.shape_memory else { return };
@@ -90,9 +107,9 @@ fn add_shape_memory(
                 let place = document.place(&format!("{key}.mechanics.shape_memory"), "acts on no atom of this mesh");
                 faults.push(place.into_iter().fold(fault, Fault::at));
             }
-            elasticity.shape_memory.push(triplets);
+            forces.push(Force::ShapeMemory(triplets));
         }
-        Form::Angles => elasticity.angles.push(Angles::new(&rest.positions, &rings, stiffness)),
+        Form::Angles => forces.push(Force::Angles(Angles::new(&rest.positions, &rings, stiffness))),
     }
 }
 
@@ -102,7 +119,7 @@ fn add_membrane(
     text: &MembraneText,
     rest: &Surface,
     topology: &Topology,
-    elasticity: &mut Elasticity,
+    forces: &mut Vec<Force>,
     faults: &mut Vec<Fault>,
 ) {
     let (shear, area) = (text.shear.value(), text.area.value());
@@ -117,15 +134,16 @@ fn add_membrane(
         faults.push(place.into_iter().fold(fault, Fault::at));
     }
     if shear > 0.0 || area > 0.0 {
-        elasticity.membrane.push(Membrane::new(&rest.positions, &rest.facets, law));
+        forces.push(Force::Membrane(Membrane::new(&rest.positions, &rest.facets, law)));
     }
     if text.tension.value() != 0.0 || text.total_area.value() != 0.0 {
         let (tension, total) = (text.tension.value(), text.total_area.value());
-        elasticity.tension.push(Tension::new(&rest.positions, &rest.facets, tension, total));
+        forces.push(Force::Tension(Tension::new(&rest.positions, &rest.facets, tension, total)));
     }
     if text.ordering.value() > 0.0 {
         if topology.is_closed() {
-            elasticity.ordering.push(Ordering::new(rest.positions.len(), &rest.facets, text.ordering.value()));
+            let ordering = Ordering::new(rest.positions.len(), &rest.facets, text.ordering.value());
+            forces.push(Force::Ordering(ordering));
         } else {
             let fault = Fault::new("a surface with a border cannot be ordered: its border would be drawn inwards")
                 .help("take `ordering` out, or give the membrane a small `shear` and `area`");
@@ -138,7 +156,8 @@ fn add_membrane(
             BendingRest::Shape => RestAngle::Remembered,
             BendingRest::Flat => RestAngle::Flat,
         };
-        elasticity.bending.push(Bending::new(&rest.positions, &topology.flaps, text.bending.value(), angle));
+        let bending = Bending::new(&rest.positions, &topology.flaps, text.bending.value(), angle);
+        forces.push(Force::Bending(bending));
     }
 }
 
@@ -147,7 +166,7 @@ fn add_links(
     key: &str,
     cell: &CellType,
     built: &Built,
-    elasticity: &mut Elasticity,
+    forces: &mut Vec<Force>,
     faults: &mut Vec<Fault>,
 ) -> Vec<[u32; 2]> {
     let mut drawn = Vec::new();
@@ -162,13 +181,13 @@ fn add_links(
             springs.push(Spring { from, to, rest_length, stiffness: link.stiffness.value() });
         }
         drawn.extend(springs.iter().map(|spring| [spring.from, spring.to]));
-        elasticity.springs.push(Springs::between(springs));
+        forces.push(Force::Springs(Springs::between(springs)));
     }
     drawn
 }
 
 /// The pairs of atoms that are linked; those that the mesh does not have are faults.
-pub(super) fn linked_pairs(
+fn linked_pairs(
     document: &Document,
     key: &str,
     linked: &Linked,
@@ -196,13 +215,13 @@ pub(super) fn linked_pairs(
     pairs
 }
 
-fn add_barrier(cell: &CellType, rest: &Surface, topology: &Topology, elasticity: &mut Elasticity) {
+fn add_barrier(cell: &CellType, rest: &Surface, topology: &Topology, forces: &mut Vec<Force>) {
     let text = &cell.mechanics.barrier;
     let edge = geometry::mean_edge_length(rest);
     let stiffness = match text.stiffness {
         Some(stiffness) => stiffness.value(),
         None => {
-            let matrix = elasticity.stiffness(&rest.positions, &rest.positions);
+            let matrix = sum::stiffness(forces, true, &rest.positions, &rest.positions);
             BARRIER_SHARE * (0..rest.positions.len()).map(|i| matrix.diagonal(i)).fold(0.0, f64::max)
         }
     };
@@ -210,5 +229,47 @@ fn add_barrier(cell: &CellType, rest: &Surface, topology: &Topology, elasticity:
         return;
     }
     let rules = BarrierRules { energy: stiffness * edge * edge, area_share: text.area, fold_angle: text.angle.value() };
-    elasticity.barrier.push(Barrier::new(&rest.positions, &rest.facets, &topology.flaps, rules));
+    forces.push(Force::Barrier(Barrier::new(&rest.positions, &rest.facets, &topology.flaps, rules)));
+}
+
+fn add_loads(
+    document: &Document,
+    key: &str,
+    cell: &CellType,
+    rest: &Surface,
+    forces: &mut Vec<Force>,
+    faults: &mut Vec<Fault>,
+) {
+    let areas = geometry::atom_areas(rest);
+    for (i, load) in cell.loads.iter().enumerate() {
+        let atoms = select::atoms(document, &format!("{key}.loads[{i}]"), &load.selection, rest, faults);
+        let heights = select::heights(&load.selection, unit(load.direction), rest);
+        let weight = |atom: u32| match load.spread {
+            Spread::Equal => 1.0,
+            Spread::Area => areas[atom as usize],
+            Spread::Tapered => areas[atom as usize] * heights[atom as usize],
+        };
+        let total: f64 = atoms.iter().map(|&atom| weight(atom)).sum();
+        let shares = atoms.into_iter().map(|atom| (atom, weight(atom) / total)).collect();
+        let load = Load::new(&load.name, shares, unit(load.direction), course(load.force.points()));
+        forces.push(Force::Load(load));
+    }
+}
+
+fn add_fibres(
+    document: &Document,
+    key: &str,
+    cell: &CellType,
+    built: &Built,
+    forces: &mut Vec<Force>,
+    faults: &mut Vec<Fault>,
+) -> Vec<[u32; 2]> {
+    let mut drawn = Vec::new();
+    for (i, fibre) in cell.fibres.iter().enumerate() {
+        let pairs = linked_pairs(document, &format!("{key}.fibres[{i}]"), &fibre.linked, built, faults);
+        drawn.extend(&pairs);
+        let activation = course(fibre.activation.points());
+        forces.push(Force::Fibres(Fibres::new(&fibre.name, pairs, fibre.stiffness.value(), activation)));
+    }
+    drawn
 }

@@ -1,0 +1,99 @@
+//! What populations work in: kept from window to window so that nothing is allocated on the way, and never saved.
+
+use std::sync::Mutex;
+
+use super::cells::kept_numbers;
+use super::course::CourseBuffers;
+use super::events::{EventBuffers, EventMemory};
+use super::narrow::Narrow;
+use super::scratch::Scratch;
+use super::stepper::StepperBuffers;
+use super::{Method, OdeTrouble, Work};
+use crate::equations::program::{LANES, Lanes, Program};
+
+/// Scratch of a population. No result depends on what is in it: it may be poisoned, made anew or used for another population at any
+/// time. It is cheapest when the same population uses it window after window.
+#[derive(Debug, Default)]
+pub struct PopulationScratch {
+    /// What the buffers were made for.
+    key: Option<Key>,
+    /// One for each thread.
+    pub(super) threads: Vec<Mutex<ThreadBuffers>>,
+    /// Cells at the end of a window with events.
+    pub(super) arrived: Vec<Arrived>,
+    /// The same for cells that are advanced one by one.
+    pub(super) narrow: Option<Box<Narrow>>,
+    /// Rates at which cells left their last window, with what they were worked out from; empty where the rates read the clock or the
+    /// method does not begin with those at the end of the step before. See [`Kept`](super::cells::Kept).
+    pub(super) kept: Vec<Lanes<LANES>>,
+    /// Registers for looking at quantities.
+    pub(super) file: Vec<Lanes<LANES>>,
+}
+
+/// What one thread works in.
+#[derive(Debug, Default)]
+pub(super) struct ThreadBuffers {
+    /// Registers, stages and matrices of one block of cells.
+    pub block: Option<Box<Scratch<LANES>>>,
+    /// For a cell with events.
+    pub single: CellBuffers,
+}
+
+/// A cell at the end of a window.
+#[derive(Debug, Default)]
+pub(super) struct Arrived {
+    pub state: Vec<f64>,
+    pub open: Vec<f64>,
+    pub pace: (f64, f64),
+    pub memory: EventMemory,
+    pub work: Work,
+    pub trouble: Option<OdeTrouble>,
+}
+
+/// What one thread works in, a cell after the other.
+#[derive(Debug, Default)]
+pub(super) struct CellBuffers {
+    pub stepper: Option<StepperBuffers>,
+    pub course: CourseBuffers,
+    pub events: EventBuffers,
+}
+
+/// The program, and whether its linear systems are solved.
+type Key = (u64, bool);
+
+impl Clone for PopulationScratch {
+    /// Empty scratch: nothing in it outlasts a window.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl PopulationScratch {
+    /// Makes the buffers fit so many blocks of cells of a program. Nothing is allocated where they do.
+    pub(super) fn suit(&mut self, program: &Program, method: Method, blocks: usize) {
+        let key = Some((program.mark, method.is_implicit()));
+        if self.key != key {
+            *self = Self { key, ..Self::default() };
+        }
+        if self.file.is_empty() {
+            self.file = program.file();
+        }
+        let keeps = method.keeps_rates() && program.rates_stand_still;
+        let length = if keeps { blocks * kept_numbers(program.size(), program.open.len()) } else { 0 };
+        if self.kept.len() != length {
+            self.kept.clear();
+            self.kept.resize(length, [f64::NAN; LANES]);
+        }
+    }
+
+    /// Makes buffers for all threads.
+    pub(super) fn suit_threads(&mut self) {
+        let threads = rayon::current_num_threads().max(self.threads.len());
+        self.threads.resize_with(threads, Mutex::default);
+    }
+
+    /// Forgets everything.
+    pub fn poison(&mut self) {
+        *self = Self::default();
+    }
+}

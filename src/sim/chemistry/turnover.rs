@@ -1,0 +1,78 @@
+//! Cells come and go between steps: what chemistry knows of each comes and goes with it, and stands in the order of the cells.
+
+use super::super::controls::Controls;
+use super::model::{Chemistry, Members};
+use super::state::ChemistryState;
+use crate::mechanics::CONTROLLED;
+
+impl ChemistryState {
+    /// A cell comes: every system of its kind gets a member at the system's start, and no link has set anything of it. It stands before
+    /// the cell with the number `local` among those of its kind; `cells` says how many each kind has without it.
+    ///
+    /// # Panics
+    /// When there is no such kind, or it has fewer cells.
+    pub fn insert_cell(&mut self, chemistry: &Chemistry, cells: &[usize], kind: usize, local: usize) {
+        assert!(local <= cells[kind], "before cell {local} of {}", cells[kind]);
+        for (number, reactor) in chemistry.reactors.iter().enumerate() {
+            let Members::Kinds(kinds) = &reactor.members else { continue };
+            let Some(at) = kinds.iter().position(|&other| other == kind) else { continue };
+            let member = kinds[..at].iter().map(|&kind| cells[kind]).sum::<usize>() + local;
+            self.populations[number].insert_default(&reactor.program, member);
+            if !reactor.events.is_empty() {
+                self.events[number].insert(member, reactor.events.before_start());
+            }
+        }
+        self.controls.insert_cell(cells[..kind].iter().sum::<usize>() + local);
+        // Where there was no cell before, lists that links write were as empty as those that none does.
+        let all = cells.iter().sum::<usize>() + 1;
+        chemistry
+            .links
+            .iter()
+            .filter_map(|link| link.to.control())
+            .for_each(|control| self.controls.admit(control, all));
+    }
+
+    /// Cells go: those of which `keep` (of a kind, and a number among its cells) says no. `cells` says how many each kind has before.
+    pub fn retain_cells(&mut self, chemistry: &Chemistry, cells: &[usize], keep: impl Fn(usize, usize) -> bool) {
+        let all = |kind: usize| (0..cells[kind]).map(move |local| (kind, local));
+        for (number, reactor) in chemistry.reactors.iter().enumerate() {
+            let Members::Kinds(kinds) = &reactor.members else { continue };
+            let stays: Vec<bool> = kinds.iter().flat_map(|&kind| all(kind)).map(|(kind, at)| keep(kind, at)).collect();
+            self.populations[number].retain(|member| stays[member]);
+            retain(&mut self.events[number], &stays);
+        }
+        let stays: Vec<bool> = (0..cells.len()).flat_map(all).map(|(kind, at)| keep(kind, at)).collect();
+        self.controls.retain_cells(&stays);
+    }
+}
+
+impl Controls {
+    /// Adds a cell to all lists that are there, with numbers that change nothing.
+    fn insert_cell(&mut self, at: usize) {
+        for (list, nothing) in [(&mut self.speed, f64::NAN), (&mut self.stiffness, 1.0), (&mut self.adhesion, 1.0)] {
+            if !list.is_empty() {
+                list.insert(at, nothing);
+            }
+        }
+        if !self.bias.is_empty() {
+            self.bias.insert(at, [0.0; 3]);
+        }
+        for (lists, handle) in self.forces.iter_mut().zip(CONTROLLED) {
+            lists.iter_mut().for_each(|list| list.insert(at, handle.unset));
+        }
+        self.secretion.iter_mut().for_each(|list| list.insert(at, 0.0));
+    }
+
+    fn retain_cells(&mut self, stays: &[bool]) {
+        let single = [&mut self.speed, &mut self.stiffness, &mut self.adhesion];
+        let many = self.forces.iter_mut().flatten().chain(&mut self.secretion);
+        single.into_iter().chain(many).for_each(|list| retain(list, stays));
+        retain(&mut self.bias, stays);
+    }
+}
+
+/// Keeps what stays of a list with one thing a cell; an empty one stays so.
+fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
+    let mut stays = stays.iter();
+    list.retain(|_| stays.next().copied().unwrap_or(false));
+}

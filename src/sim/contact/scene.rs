@@ -1,0 +1,127 @@
+//! The surfaces of the cells that there are, with what a model says of their contacts.
+
+use std::ops::{Deref, Range};
+use std::sync::Arc;
+
+use super::law::{LinkTable, Strength};
+use super::model::ContactModel;
+use crate::contact::{Scene, Sides};
+use crate::sim::controls::Controls;
+use crate::sim::state::KindState;
+
+/// The surfaces of the cells that there are: body `i` is cell `i`, shape `i` is kind `i`.
+#[derive(Debug, Clone)]
+pub(super) struct Surfaces {
+    scene: Arc<Scene>,
+    /// Number of the first atom of each kind among all atoms, and how many there are.
+    first_atom: Arc<[usize]>,
+}
+
+/// Contacts of the cells that there are: what a model says of all contacts, and their surfaces.
+#[derive(Debug, Clone)]
+pub struct ContactScene<'a> {
+    rules: &'a ContactModel,
+    /// All surfaces and planes: body `i` is cell `i`, shape `i` is kind `i`.
+    pub scene: Arc<Scene>,
+    first_atom: Arc<[usize]>,
+}
+
+impl Deref for ContactScene<'_> {
+    type Target = ContactModel;
+
+    fn deref(&self) -> &ContactModel {
+        self.rules
+    }
+}
+
+impl Surfaces {
+    /// Those of so many cells of each kind.
+    pub fn of(rules: &ContactModel, cells: &[KindState]) -> Self {
+        let bodies = cells.iter().enumerate().flat_map(|(kind, now)| std::iter::repeat_n(kind, now.cells()));
+        let shape_of_body: Vec<usize> = bodies.collect();
+        let scene = Scene::new(rules.shapes.clone(), &shape_of_body, rules.planes.clone(), rules.reach);
+        let mut first_atom = vec![0];
+        let mut end = 0;
+        first_atom.extend(cells.iter().zip(&*rules.shapes).map(|(now, shape)| {
+            end += now.cells() * shape.atoms;
+            end
+        }));
+        Self { scene: Arc::new(scene), first_atom: first_atom.into() }
+    }
+
+    /// Whether they are those of so many cells of each kind.
+    pub fn are_of(&self, cells: &[KindState]) -> bool {
+        let counts = self.first_atom.windows(2).zip(&*self.scene.shapes);
+        self.first_atom.len() == cells.len() + 1
+            && counts.zip(cells).all(|((first, shape), now)| first[1] - first[0] == now.cells() * shape.atoms)
+    }
+
+    /// With what a model says.
+    pub fn with<'a>(&self, rules: &'a ContactModel) -> ContactScene<'a> {
+        ContactScene { rules, scene: self.scene.clone(), first_atom: self.first_atom.clone() }
+    }
+}
+
+impl ContactModel {
+    /// The surfaces of the cells that there are, made anew; the step keeps its own.
+    pub fn scene_of(&self, cells: &[KindState]) -> ContactScene<'_> {
+        Surfaces::of(self, cells).with(self)
+    }
+}
+
+impl ContactScene<'_> {
+    /// The stiffness of the springs between two bodies, pN/µm.
+    pub(super) fn link_stiffness(&self, table: &LinkTable, bodies: [u32; 2], controls: &Controls) -> f64 {
+        let [kind, other] = bodies.map(|body| self.kind_of(body));
+        let factors = bodies.map(|body| controls.adhesion_of(body as usize));
+        table.stiffness[kind * self.areas.len() + other] * factors[0] * factors[1]
+    }
+
+    /// How strongly two bodies stick.
+    pub(super) fn strength_between(&self, body: usize, other: usize) -> Strength {
+        let [kind, other] = [body, other].map(|body| self.kind_of(body as u32));
+        self.between[kind * self.areas.len() + other]
+    }
+
+    /// How strongly a body sticks to a plane.
+    pub(super) fn strength_on(&self, body: usize, plane: u32) -> Strength {
+        self.on_planes[self.kind_of(body as u32) * self.planes.len() + plane as usize]
+    }
+
+    /// The numbers of the atoms of a kind.
+    pub(super) fn atoms_of(&self, kind: usize) -> Range<usize> {
+        self.first_atom[kind]..self.first_atom[kind + 1]
+    }
+
+    /// The area at rest of an atom, µm².
+    pub fn area_of(&self, atom: u32) -> f64 {
+        let kind = self.owner(atom).0;
+        self.areas[kind][(atom as usize - self.first_atom[kind]) % self.areas[kind].len()]
+    }
+
+    /// The kind of an atom and the number of its cell within that.
+    pub(super) fn owner(&self, atom: u32) -> (usize, usize) {
+        let kind = self.first_atom.partition_point(|first| *first <= atom as usize) - 1;
+        (kind, (atom as usize - self.first_atom[kind]) / self.areas[kind].len())
+    }
+
+    /// The number of an atom within its cell.
+    pub(super) fn within(&self, kind: usize, atom: u32) -> usize {
+        (atom as usize - self.first_atom[kind]) % self.areas[kind].len()
+    }
+
+    /// The body of an atom.
+    pub(super) fn body_of(&self, atom: u32) -> u32 {
+        self.scene.body_of_atom(atom)
+    }
+
+    /// Whether both sides of a body are outside.
+    pub(super) fn is_thin(&self, body: u32) -> bool {
+        self.scene.shape(body).sides == Sides::Both
+    }
+
+    /// The kind of a body.
+    pub(super) fn kind_of(&self, body: u32) -> usize {
+        self.scene.bodies[body as usize].shape as usize
+    }
+}

@@ -1,0 +1,76 @@
+//! What chemistry sets for mechanics.
+
+use serde::{Deserialize, Serialize};
+
+use super::chemistry::Control;
+use crate::mechanics::CONTROLLED;
+
+/// What links set for mechanics, one number a cell in the order of all cells. A list that no link writes is empty.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Controls {
+    /// Speed of the walk, µm/s; NaN where the type's own speed stands.
+    pub speed: Vec<f64>,
+    /// Velocity added to the walk, µm/s.
+    pub bias: Vec<[f64; 3]>,
+    /// Factor of elastic forces.
+    pub stiffness: Vec<f64>,
+    /// Factor of the strength with which a cell sticks; empty without a link to one.
+    pub adhesion: Vec<f64>,
+    /// What is set of forces: for each handle of [`CONTROLLED`] one list for each such force of a kind, in its order.
+    pub forces: Vec<Vec<Vec<f64>>>,
+    /// Amount released per second, one list for each species secreted.
+    pub secretion: Vec<Vec<f64>>,
+}
+
+impl Controls {
+    /// Makes the list that a control is written to, with one number for each of `cells`, where there is none: numbers that
+    /// change nothing until they are set.
+    pub fn admit(&mut self, control: Control, cells: usize) {
+        let lists = |lists: &mut Vec<Vec<f64>>, number: usize, value: f64| {
+            lists.resize(lists.len().max(number + 1), vec![value; cells]);
+        };
+        let list = |list: &mut Vec<f64>, value: f64| list.resize(cells, value);
+        match control {
+            Control::MotilitySpeed => list(&mut self.speed, f64::NAN),
+            Control::Bias(_) => self.bias.resize(cells, [0.0; 3]),
+            Control::Stiffness => list(&mut self.stiffness, 1.0),
+            Control::Adhesion => list(&mut self.adhesion, 1.0),
+            Control::Force(handle, number) => {
+                self.forces.resize(CONTROLLED.len(), Vec::new());
+                lists(&mut self.forces[handle], number, CONTROLLED[handle].unset);
+            }
+            Control::Secretion(channel) => lists(&mut self.secretion, channel, 0.0),
+            Control::RestVolume | Control::RestVolumeRatio | Control::Atom(..) => {}
+        }
+    }
+
+    /// Copies another without allocating where it is as large.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.speed.clone_from(&other.speed);
+        self.bias.clone_from(&other.bias);
+        self.stiffness.clone_from(&other.stiffness);
+        self.adhesion.clone_from(&other.adhesion);
+        self.forces.clone_from(&other.forces);
+        self.secretion.clone_from(&other.secretion);
+    }
+
+    /// The velocity added to a cell's walk, µm/s.
+    pub fn bias_of(&self, cell: usize) -> [f64; 3] {
+        self.bias.get(cell).copied().unwrap_or_default()
+    }
+
+    /// The speed that a link asks of a cell, µm/s.
+    pub fn speed_of(&self, cell: usize) -> Option<f64> {
+        self.speed.get(cell).copied().filter(|speed| !speed.is_nan())
+    }
+
+    /// Factor of a cell's elastic forces.
+    pub fn stiffness_of(&self, cell: usize) -> f64 {
+        self.stiffness.get(cell).copied().unwrap_or(1.0)
+    }
+
+    /// Factor of the strength with which a cell sticks.
+    pub fn adhesion_of(&self, cell: usize) -> f64 {
+        self.adhesion.get(cell).copied().unwrap_or(1.0)
+    }
+}
