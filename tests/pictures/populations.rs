@@ -27,8 +27,7 @@ fn record(folder: &Path) -> (ResultFile, Document) {
     let mut writer = ResultWriter::create(&path, &header, &layout, Overwrite::Replace).unwrap();
     for (number, ids) in IDS.iter().enumerate() {
         let centre = |id: u64| [12.0 * id as f64, 2.0 * number as f64, 5.0];
-        let cells: Vec<Cell> =
-            ids.iter().map(|&(id, kind)| Cell { id, kind, parent: (id > 0).then_some(0) }).collect();
+        let cells: Vec<Cell> = ids.iter().map(|&(id, kind)| Cell { id, kind, parent: (id > 0).then_some(0) }).collect();
         let moved = |id: u64| sphere.positions.iter().map(move |p| std::array::from_fn(|k| p[k] + centre(id)[k]));
         let frame = Frame {
             time: number as f64,
