@@ -4,7 +4,7 @@
 #[path = "support/everything.rs"]
 mod everything;
 
-use everything::{Steps, after, everything};
+use everything::{after, everything};
 use pseudopod::Vec3;
 use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
@@ -123,7 +123,7 @@ fn allocations_of_everything() -> usize {
         .exit_handler(|_| WORKS.set(false))
         .build()
         .unwrap();
-    let (model, start) = everything(Steps::Fixed, "1000 h");
+    let (model, start) = everything(Some("0.05 s"), "1000 h");
     pool.install(|| {
         // Until the cells lie where they stay, and lists of contacts are as long as they become.
         let (mut state, mut ws) = after(&model, start, 100);

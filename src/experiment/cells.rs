@@ -3,6 +3,7 @@
 use super::loads::Applied;
 use super::mechanics::Mechanics;
 use super::motility::Motility;
+use super::population::{Added, Removed};
 use super::values::{Colour, LengthUnit};
 use crate::units::{Angle, Length};
 use schemars::JsonSchema;
@@ -13,9 +14,9 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("unevaluatedProperties" = false))]
 pub struct CellType {
-    /// How many cells; without it as many as the placement says, or one.
+    /// How many cells at the start; without it as many as the placement says, or one. None where all are added later.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 4_294_967_295_u32))]
+    #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub number: Option<u32>,
     /// The colour in pictures, "#c0392b"; chosen when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -28,6 +29,12 @@ pub struct CellType {
     /// Where the cells start; at the origin if there is one, else on a square grid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub placement: Option<Placement>,
+    /// Cells that come during the run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub added: Vec<Added>,
+    /// Cells that go during the run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub removed: Vec<Removed>,
     /// What the cells are made of.
     pub mechanics: Mechanics,
     /// What is done to some of its atoms.
@@ -50,6 +57,8 @@ impl CellType {
             mesh,
             orientation: None,
             placement: None,
+            added: Vec::new(),
+            removed: Vec::new(),
             mechanics,
             applied: Applied::default(),
             motility: Motility::default(),
@@ -57,14 +66,10 @@ impl CellType {
         }
     }
 
-    /// How many cells there are: `number` if given, else one for each place of the placement, else one.
+    /// How many cells there are at the start: `number` if given, else one for each position of the placement, else one.
     pub fn count(&self) -> usize {
-        let places = match &self.placement {
-            Some(Placement::At { at }) => at.len(),
-            Some(Placement::Grid { grid, .. }) => grid.iter().map(|n| *n as usize).fold(1, usize::saturating_mul),
-            Some(Placement::Random { .. }) | None => 1,
-        };
-        self.number.map_or(places, |number| number as usize)
+        let positions = self.placement.as_ref().map_or(1, Placement::positions);
+        self.number.map_or(positions, |number| number as usize)
     }
 }
 
@@ -179,4 +184,15 @@ pub enum Placement {
         /// The corner with the largest coordinates.
         random_to: [Length; 3],
     },
+}
+
+impl Placement {
+    /// How many cells it has positions for; one where they are drawn.
+    pub fn positions(&self) -> usize {
+        match self {
+            Self::At { at } => at.len(),
+            Self::Grid { grid, .. } => grid.iter().map(|n| *n as usize).fold(1, usize::saturating_mul),
+            Self::Random { .. } => 1,
+        }
+    }
 }

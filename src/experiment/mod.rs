@@ -42,6 +42,7 @@ mod mechanics;
 mod membrane;
 mod motility;
 mod pictures;
+mod population;
 mod scene;
 mod schema;
 mod selection;
@@ -66,6 +67,7 @@ pub use mechanics::{Barrier, Form, Mechanics, Reaction, ShapeMemory, ShapeStreng
 pub use membrane::{BendingRest, Law, Membrane};
 pub use motility::{Attraction, Brownian, Motility, Space};
 pub use pictures::{FieldLine, Picture, Plot, PlotKind, PlotTable, View};
+pub use population::{Added, Removed};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
 pub use schema::schema;
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};

@@ -27,7 +27,7 @@ pub(super) fn check(document: &Document) -> Vec<Fault> {
     for (name, cell) in &document.experiment.cells {
         let path = format!("cells.{name}");
         check.drag_and_mass(&path, cell);
-        check.places(&path, cell);
+        check.placements(&path, cell);
         check.volume(&path, cell);
         check.remembering_atoms(&path, cell);
         check.applied(&path, &cell.applied);

@@ -170,9 +170,9 @@ pub const CATALOGUE: &[Entry] = &[
     row("/VTKHDF/Steps/CellOffsets", "1", "frame, 4", Counters(|i| [0, i.offsets(Shared::LinkOffsets), i.offsets(Shared::FacetOffsets), 0]), "First vertex, line, polygon and strip of a frame (VTKHDF): its Offsets begin as many rows later as PartOffsets says."),
     row("/VTKHDF/Steps/ConnectivityIdOffsets", "1", "frame, 4", Counters(|i| [0, i.block(Shared::LinkAtoms), i.block(Shared::FacetAtoms), 0]), "First row of a frame in the connectivity of vertices, lines, polygons and strips."),
     row("/VTKHDF/Steps/PointDataOffsets/cell", "1", "frame", Counter(|i| i.block(Shared::PointCell)), "First row of a frame in PointData/cell."),
-    row("/VTKHDF/Steps/PointDataOffsets/type", "1", "frame", Counter(|i| i.block(Shared::PointType)), "First row of a frame in PointData/type."),
+    row("/VTKHDF/Steps/PointDataOffsets/type", "1", "frame", Link("/VTKHDF/Steps/PointDataOffsets/cell"), "First row of a frame in PointData/type."),
     row("/VTKHDF/Steps/CellDataOffsets/cell", "1", "frame", Counter(|i| i.block(Shared::DrawnCell)), "First row of a frame in CellData/cell."),
-    row("/VTKHDF/Steps/CellDataOffsets/type", "1", "frame", Counter(|i| i.block(Shared::DrawnType)), "First row of a frame in CellData/type."),
+    row("/VTKHDF/Steps/CellDataOffsets/type", "1", "frame", Link("/VTKHDF/Steps/CellDataOffsets/cell"), "First row of a frame in CellData/type."),
     // Topology, once for each kind that VTK knows; only lines and polygons are used.
     row("/VTKHDF/Vertices/NumberOfConnectivityIds", "1", "population", PerPopulation(|_| 0), "Unused."),
     row("/VTKHDF/Vertices/NumberOfCells", "1", "population", Link("/VTKHDF/Vertices/NumberOfConnectivityIds"), "Unused."),

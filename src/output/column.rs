@@ -76,7 +76,9 @@ impl Plan<'_> {
         };
         builder.lcpl().create_intermediate_group(true);
         builder = builder.obj_track_times(false);
-        if piece.iter().all(|n| *n > 0) {
+        // What neither grows nor is packed needs no pieces, which take 2 kB to be found.
+        let in_pieces = rows.is_none() || packing == Packing::Packed;
+        if in_pieces && piece.iter().all(|n| *n > 0) {
             builder = builder.chunk(piece);
         }
         if packing == Packing::Packed {

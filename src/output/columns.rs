@@ -1,6 +1,7 @@
 //! All datasets that grow with the run, made and filled as the catalogue says.
 
 use std::borrow::Cow;
+use std::path::{Path, PathBuf};
 
 use hdf5::File;
 
@@ -8,7 +9,7 @@ use super::catalogue::{CATALOGUE, CONTACT, Entry, FORCE, Filled, Instant, List, 
 use super::cell_column::{CellColumn, CellSource};
 use super::column::{Column, Number, Numbers, PackedColumn, Plan, SMALL_ROWS, push_frames};
 use super::container::set_number;
-use super::fields::FieldColumns;
+use super::fields::{FieldColumns, field_view_path};
 use super::pieces::{Pieces, has_frames};
 use super::population::{Population, Shared};
 use super::systems::{SystemScope, create_groups};
@@ -135,7 +136,11 @@ impl Columns {
                 self.counters.push((Counted::One(value), per_frame(file, &integer, &[], start)?));
             }
             Filled::Counters(value) => {
-                self.counters.push((Counted::Four(value), per_frame(file, &integer, &[4], start)?));
+                let column = match start {
+                    Start::New(_) => Column::create(file, &integer, &[4], SMALL_ROWS / 4)?,
+                    Start::Cut(ends) => Column::reopen(file, entry.path, Number::Integer, &[4], ends.frames)?,
+                };
+                self.counters.push((Counted::Four(value), column));
             }
             Filled::Population(value) => {
                 let column = match start {
@@ -214,6 +219,11 @@ impl Columns {
         FORCE.iter().try_for_each(|entry| self.add(file, entry, start))
     }
 
+    /// The small files that lead to the fields of a result.
+    pub fn views(&self, result: &Path) -> impl Iterator<Item = PathBuf> {
+        self.layout.fields.iter().map(|field| field_view_path(result, &field.name))
+    }
+
     /// Frames so far.
     pub fn frames(&self) -> usize {
         self.frames
@@ -228,7 +238,8 @@ impl Columns {
             if !self.are_made {
                 self.start(file, Start::New(&pieces))?;
             }
-            if self.frames == 0 && !self.forces && !frame.forces.is_empty() {
+            let no_atoms_yet = self.atom_vectors.iter().all(|(_, column)| column.rows() == 0);
+            if no_atoms_yet && !self.forces && !frame.forces.is_empty() {
                 let pieces = Pieces::found(file)?.unwrap_or(pieces);
                 self.add_forces(file, Start::New(&pieces))?;
             }

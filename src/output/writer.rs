@@ -42,6 +42,8 @@ pub struct ResultWriter {
     mark: FlushMark,
     last_flush: Clock,
     flush_interval: Duration,
+    /// Frames at the last flush.
+    flushed: usize,
     /// Set when the disk refused a write: the file is left as it was at the last flush.
     broken: bool,
 }
@@ -126,6 +128,7 @@ impl ResultWriter {
             mark,
             last_flush: Clock::now(),
             flush_interval: FLUSH_INTERVAL,
+            flushed: 0,
             broken: false,
         };
         writer.flush()?;
@@ -145,7 +148,8 @@ impl ResultWriter {
     /// Appends a frame. It is on disk after the next flush, which comes by itself once a second.
     ///
     /// # Errors
-    /// [`Error::Machine`] if the disk refuses; the file then keeps the frames of the last flush.
+    /// [`Error::Machine`] if the disk refuses; the file then keeps the frames of the last flush, and is removed if there are
+    /// none.
     ///
     /// # Panics
     /// If the sizes of the frame are not those of the layout and of its own cells.
@@ -167,6 +171,7 @@ impl ResultWriter {
         self.check_whole()?;
         let flushed = self.write_out();
         self.settle(flushed)?;
+        self.flushed = self.frames();
         self.last_flush = Clock::now();
         Ok(())
     }
@@ -286,6 +291,10 @@ impl ResultWriter {
         let Err(error) = outcome else { return Ok(()) };
         let error = failed(&self.path, "could not be written", &error);
         self.broken = true;
+        // A file without a frame is of no use, and would stand in the way of the next try.
+        if self.flushed == 0 {
+            self.columns.views(&self.path).chain([self.path.clone()]).for_each(|path| drop(std::fs::remove_file(path)));
+        }
         Err(error)
     }
 }

@@ -105,8 +105,11 @@ impl SimulationError {
         Some(match self {
             Self::Input(Error::Input(faults)) => return faults.iter().find_map(|fault| fault.help.clone()),
             Self::Input(Error::Numbers { help, .. } | Error::Machine { help, .. }) => help.clone(),
-            Self::Input(Error::Interrupted { .. }) | Self::Value { .. } | Self::Population(_) => return None,
+            Self::Input(Error::Interrupted { .. }) | Self::Value { .. } => return None,
             Self::Trouble(trouble) => trouble.help().to_owned(),
+            Self::Population(_) => {
+                "let cells come where and when there is space for them, and go while they are there".to_owned()
+            }
             Self::Cancelled { .. } => "go on with a new cancel token".to_owned(),
             Self::NoSuchCell { .. } => "ask `cells` which there are".to_owned(),
             Self::Unknown { known, .. } if known.is_empty() => "there is none at all".to_owned(),
@@ -140,7 +143,9 @@ impl From<SimulationError> for Error {
         let (message, help) = (error.to_string(), error.help());
         match error {
             SimulationError::Input(error) => error,
-            SimulationError::Trouble(_) => Self::Numbers { message, help: help.unwrap_or_default(), kept: None },
+            SimulationError::Trouble(_) | SimulationError::Population(_) => {
+                Self::Numbers { message, help: help.unwrap_or_default(), kept: None }
+            }
             _ => Self::input(help.into_iter().fold(Fault::new(message), Fault::help)),
         }
     }

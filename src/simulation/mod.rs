@@ -53,6 +53,7 @@ pub use fields::FieldView;
 pub use history::History;
 pub(crate) use history::passed;
 pub use id::CellId;
+pub use population::NewCell;
 pub(crate) use record::{Recorder, layout_of};
 pub use series::EndedRun;
 pub use snapshot::Snapshot;

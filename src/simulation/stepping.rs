@@ -136,7 +136,8 @@ impl Simulation {
         self.cancel = token;
     }
 
-    /// Makes one step, whose size the experiment's integrator chooses.
+    /// Makes one step, whose size the experiment's integrator chooses. Before it, cells come and go as the document has it for
+    /// this time.
     ///
     /// ```
     /// # use pseudopod::simulation::{Simulation, EXAMPLE};
@@ -150,8 +151,8 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// [`SimulationError::Trouble`] when the numbers fail, [`SimulationError::Population`] for cells that are to come now and
-    /// cannot, [`SimulationError::Cancelled`] once the token is cancelled; the state is then the one before the step.
+    /// [`SimulationError::Trouble`] when the numbers fail, [`SimulationError::Population`] when cells that are due cannot come,
+    /// [`SimulationError::Cancelled`] once the token is cancelled; the state is then the one before the step.
     pub fn step(&mut self) -> Result<StepReport, SimulationError> {
         let before = self.state.time;
         if self.cancel.is_cancelled() {
@@ -159,8 +160,7 @@ impl Simulation {
         }
         // After a failure nothing is known of a step.
         self.last_step = 0.0;
-        let made = self.within(|this| -> Result<_, SimulationError> {
-            // Cells come and go between steps, at times at which a step ends.
+        let made = self.within(|this| -> Result<StepReport, SimulationError> {
             apply_due_changes(&this.model, &mut this.state, &mut this.scratch)?;
             Ok(step(&this.model, &mut this.state, &mut this.scratch)?)
         })?;

@@ -49,6 +49,16 @@ fn set_changes_any_key_and_leaves_the_text() {
 }
 
 #[test]
+fn a_bare_zero_is_nothing_in_any_unit() {
+    let document = everything(&["picture.cut=0", "picture.time=0", "environment.gravity=[0, 0, 0.0]"]);
+    assert_eq!(document.experiment.picture.cut, Some(Length::ZERO));
+    assert_eq!(document.experiment.picture.time, When::At(Time::ZERO));
+    assert!(document.experiment.environment.gravity.is_some_and(|gravity| gravity.iter().all(|g| g.value() == 0.0)));
+    let sets = ["picture.cut=5".to_owned()];
+    assert!(Document::read(Path::new("tests/documents/everything.toml"), &sets).is_err(), "5 of what?");
+}
+
+#[test]
 fn a_key_is_placed_where_it_stands_and_a_default_at_the_table_around_it() {
     let document = everything(&["cells.ball.mesh.level=3"]);
     let marked = |path: &str| {

@@ -1,6 +1,6 @@
 //! Cells come and go between steps: what stays goes on as if nothing else had been there, and nothing is known of what is gone.
 
-use crate::everything::{Steps, after, everything};
+use crate::everything::{after, everything};
 use pseudopod::Vec3;
 use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
@@ -48,7 +48,7 @@ fn run(model: &Model, state: &mut State, ws: &mut Workspace, steps: usize) {
 
 /// The scene that has everything, begun, with fixed steps.
 fn begun() -> (Model, State, Workspace) {
-    let (model, start) = everything(Steps::Fixed, "0.3 s");
+    let (model, start) = everything(Some("0.05 s"), "0.3 s");
     let (state, ws) = after(&model, start, 0);
     (model, state, ws)
 }
@@ -182,7 +182,7 @@ fn contacts_of_the_cells_that_stay_go_on() {
 fn course(threads: usize, between: impl Fn(&mut State, &mut Workspace) + Sync) -> Vec<u8> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
-        let (model, start) = everything(Steps::Adaptive, "0.3 s");
+        let (model, start) = everything(None, "0.3 s");
         let (mut state, mut ws) = after(&model, start, 0);
         for round in 0..24u32 {
             between(&mut state, &mut ws);
@@ -205,7 +205,7 @@ fn a_course_with_cells_that_come_and_go_is_the_same_for_any_threads_scratch_and_
     let plain = course(1, |_, _| ());
     assert!(plain == course(2, |_, _| ()), "threads");
     assert!(plain == course(1, |state, _| *state = postcard::from_bytes(&bytes(state)).unwrap()), "checkpoints");
-    let (model, _) = everything(Steps::Adaptive, "0.3 s");
+    let (model, _) = everything(None, "0.3 s");
     assert!(plain == course(1, |_, ws| *ws = Workspace::new(&model)), "no scratch");
     assert!(plain == course(1, |_, ws| ws.poison(&model)), "scratch of what is not a number");
 }
@@ -273,7 +273,7 @@ fn changes_of_the_model_are_made_at_their_times_and_draw_by_ids() {
         let mut model = model.clone();
         (model.seed, model.contact) = (seed, None);
         model.changes = vec![PopulationChange { time: 0.0, kind: 0, change: Change::Remove(Removal::Number(2)) }];
-        let mut state = everything(Steps::Fixed, "0.3 s").1;
+        let mut state = everything(Some("0.05 s"), "0.3 s").1;
         let more: Vec<NewCell> = (4..cells).map(|n| at(&model, 0, [60.0 * n as f64, 0.0, 5.02])).collect();
         let mut ws = Workspace::new(&model);
         add_cells(&model, &mut state, &mut ws, 0, &more).unwrap();

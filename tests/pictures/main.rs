@@ -4,3 +4,4 @@ mod cells;
 mod example;
 mod fields;
 mod plots;
+mod populations;

@@ -59,7 +59,9 @@ fn a_run_that_grows_or_shrinks_beyond_the_pieces_of_its_first_frame_is_read_as_i
         let mut writer = write(&path, 0, 0);
         frames[..4].iter().for_each(|frame| writer.append(frame).unwrap());
         drop(writer);
-        assert_holds(&ResultFile::open(&path).unwrap(), &frames[..4]);
+        let result = ResultFile::open(&path).unwrap();
+        assert_holds(&result, &frames[..4]);
+        drop(result);
         // Goes on after the third frame.
         let mut writer = ResultWriter::reopen(&path, &header(), &layout(), 20).unwrap();
         assert_eq!(writer.frames(), 3, "{name}");

@@ -77,28 +77,16 @@ document = "pin.eml"
 document = "whole.eml"
 "#;
 
-/// How the scene is stepped.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Steps {
-    /// As long as the error allows.
-    Adaptive,
-    /// Of one size.
-    Fixed,
-}
-
-/// Model and start; walks last this long at a mean ("0.3 s").
-pub fn everything(steps: Steps, persistence: &str) -> (Model, State) {
+/// Model and start, with steps of one size ("0.05 s") or as long as the error allows; walks last this long at a mean ("0.3 s").
+pub fn everything(step: Option<&str>, persistence: &str) -> (Model, State) {
     let folder = tempfile::tempdir().unwrap();
     // Where the atom of the ball begins.
     let pin = PIN.replace("BEGIN", &format!("{}", 9.0 + icosphere(4.0, 1).positions[4].y));
     for (name, eml) in [("field", FIELD), ("own", OWN), ("pin", &pin), ("whole", WHOLE)] {
         std::fs::write(folder.path().join(format!("{name}.eml")), eml).unwrap();
     }
-    let integrator = match steps {
-        Steps::Adaptive => "max_step = \"0.1 s\"",
-        Steps::Fixed => "step = \"0.05 s\"",
-    };
-    let text = TEXT.replace("INTEGRATOR", integrator).replace("PERSISTENCE", persistence);
+    let integrator = step.map_or("max_step = \"0.1 s\"".to_owned(), |step| format!("step = \"{step}\""));
+    let text = TEXT.replace("INTEGRATOR", &integrator).replace("PERSISTENCE", persistence);
     let document = Document::parse("test.toml", &text, folder.path(), &[]).unwrap_or_else(|error| panic!("{error}"));
     let Compiled { model, state, .. } = compile(&document).unwrap_or_else(|error| panic!("{error}"));
     (model, state)

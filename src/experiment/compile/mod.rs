@@ -9,6 +9,7 @@ mod notices;
 mod numbers;
 mod overlap;
 mod place;
+mod population;
 mod room;
 mod select;
 mod start;
@@ -103,7 +104,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         if faults.len() > before {
             continue;
         }
-        kinds.push(kind.for_cells(cell.count()));
+        kinds.push(kind.for_cells(cell.most()));
         counts.push(cell.count());
     }
     // Atoms that do not exist have been told; links look at kinds and must see them all.
@@ -129,7 +130,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),
-        changes: Vec::new(),
+        changes: population::changes(experiment, &kinds),
         integrator,
         contact: contact.map(|contact| contact.suited_to(integrator.size)),
         kinds,

@@ -26,10 +26,43 @@ impl Check<'_> {
         }
     }
 
-    pub(super) fn places(&mut self, path: &str, cell: &CellType) {
-        let number = cell.count();
+    pub(super) fn placements(&mut self, path: &str, cell: &CellType) {
         let placement = format!("{path}.placement");
-        match &cell.placement {
+        if cell.count() > 0 || cell.added.is_empty() {
+            self.placement(&placement, cell.count(), cell.placement.as_ref());
+        }
+        for (index, added) in cell.added.iter().enumerate() {
+            let path = format!("{path}.added[{index}]");
+            self.within_run(&path, added.time.value());
+            self.placement(&format!("{path}.placement"), added.count(), Some(&added.placement));
+        }
+        for (index, removed) in cell.removed.iter().enumerate() {
+            let path = format!("{path}.removed[{index}]");
+            self.within_run(&path, removed.time.value());
+            if removed.share.is_some() && removed.number.is_some() {
+                let message = format!("`{path}` has both `share` and `number`");
+                self.fault(&format!("{path}.number"), "only one of them may be given", message, "remove one of them");
+            }
+        }
+        if cell.number == Some(0) && cell.added.is_empty() {
+            let (number, message) = (format!("{path}.number"), format!("`{path}` has no cells"));
+            let help = "give a number above 0, or cells that come later: added = [{ time = \"10 s\", … }]";
+            self.fault(&number, "none, and none comes", message, help);
+        }
+    }
+
+    /// What happens to the cells must happen before the run ends.
+    fn within_run(&mut self, path: &str, time: f64) {
+        let until = self.document.experiment.run.until;
+        if time > until.value() {
+            let (time, message) =
+                (format!("{path}.time"), format!("`{path}.time` is behind the end of the run, {until}"));
+            self.fault(&time, "never comes", message, "let it be earlier, or the run longer");
+        }
+    }
+
+    fn placement(&mut self, placement: &str, number: usize, given: Option<&Placement>) {
+        match given {
             Some(Placement::At { at }) if at.len() != number || at.is_empty() => {
                 let places = if at.len() == 1 { "1 place".to_owned() } else { format!("{} places", at.len()) };
                 let message = format!("`{placement}.at` has {places} for {number} cells");
