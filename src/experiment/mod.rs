@@ -42,6 +42,7 @@ mod mechanics;
 mod membrane;
 mod motility;
 mod pictures;
+mod placement;
 mod population;
 mod scene;
 mod schema;
@@ -51,7 +52,7 @@ mod tree;
 mod values;
 mod volume;
 
-pub use cells::{CellType, Mesh, Orientation, Placement};
+pub use cells::{CellType, Mesh, Orientation};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{Compiled, Prepared, PushedApart, Schedule, compile, notices, prepare, settle_start};
 pub use contact::{Between, Contact, ContactModel, Zones};
@@ -67,6 +68,7 @@ pub use mechanics::{Barrier, Form, Mechanics, Reaction, ShapeMemory, ShapeStreng
 pub use membrane::{BendingRest, Law, Membrane};
 pub use motility::{Attraction, Brownian, Motility, Space};
 pub use pictures::{FieldLine, Picture, Plot, PlotKind, PlotTable, View};
+pub use placement::Placement;
 pub use population::{Added, Removed};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
 pub use schema::schema;

@@ -1,6 +1,6 @@
 //! Cells that come and go during a run.
 
-use super::cells::{CellType, Placement};
+use super::placement::Placement;
 use crate::units::Time;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -42,11 +42,4 @@ pub struct Removed {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 4_294_967_295_u32))]
     pub number: Option<u32>,
-}
-
-impl CellType {
-    /// The most cells that there can be at a time: those of the start and all that come.
-    pub fn most(&self) -> usize {
-        self.count() + self.added.iter().map(Added::count).sum::<usize>()
-    }
 }

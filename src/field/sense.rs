@@ -3,8 +3,8 @@
 use pulp::{Simd, WithSimd};
 
 use super::axis::{Axis, SIDE};
+use super::sensed::Sensed;
 use super::stencil::{dot, sense_plainly, spline};
-use super::touch::Sensed;
 use super::turn::Turner;
 use crate::Vec3;
 

@@ -4,7 +4,8 @@ use std::marker::PhantomData;
 
 use pulp::Simd;
 
-use super::sweep::WIDTH;
+/// Lines that are solved side by side.
+pub const WIDTH: usize = 16;
 
 /// The values of all species, shared among threads that write to parts of it that do not overlap.
 pub struct Shared<'a> {

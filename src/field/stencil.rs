@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::grid::Wall;
-use super::touch::Sensed;
+use super::sensed::Sensed;
 use crate::Vec3;
 
 /// The boxes along one axis that a sensed value depends on: Σ weights·u + constant, and the same for the slope.

@@ -5,10 +5,8 @@
 use pulp::Simd;
 
 use super::factors::{Line, Ring};
+pub use super::shared::WIDTH;
 use super::shared::{Columns, Next};
-
-/// Lines that are solved side by side.
-pub const WIDTH: usize = 16;
 
 /// Numbers from one section of scratch, each `[box][line]`, to the next, for lines of `n` boxes. Eleven rows more than a
 /// multiple of 4096 bytes: where sections are a multiple or nearly one apart, the processor takes what it loads from one

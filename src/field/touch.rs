@@ -5,19 +5,11 @@ use pulp::Arch;
 use super::axis::Axis;
 use super::release::ReleaseAll;
 use super::sense::SenseAll;
+use super::sensed::Sensed;
 use super::state::Fields;
 use super::turn::Turner;
 use crate::Vec3;
 use crate::equations::Range;
-
-/// What is sensed at a position.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Sensed {
-    /// Value there.
-    pub value: f64,
-    /// Gradient there, per µm.
-    pub gradient: Vec3,
-}
 
 impl Fields {
     /// Releases an amount of a species at a position, into the boxes around it, eq. (field.8). A position beyond a

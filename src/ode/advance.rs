@@ -5,9 +5,9 @@ use std::sync::PoisonError;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::block::{self, CellTrouble};
+use super::block;
 use super::buffers::PopulationScratch;
-use super::cells::{Cells, Kept, kept_numbers};
+use super::cells::{CellTrouble, Cells, Kept, kept_numbers};
 use super::narrow::Narrow;
 use super::population::{LANES, Population};
 use super::scratch::Scratch;

@@ -3,25 +3,12 @@
 use pulp::Simd;
 
 use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
-use super::cells::{Cells, Seats};
+use super::cells::{CellTrouble, Cells, Seats};
 use super::control::{self, Controller, NEAR, Tolerances};
 use super::mask::{self, Mask, both, choose, pick, when};
 use super::scratch::Scratch;
 use super::{Method, Reason, Work, fixed};
 use crate::equations::program::{Lanes, Program};
-
-/// The first cell of a task that failed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CellTrouble {
-    /// The cell, counted from the task's first.
-    pub cell: usize,
-    /// Time of its last good state.
-    pub time: f64,
-    /// The variable that is worst.
-    pub variable: Option<usize>,
-    /// What is wrong.
-    pub reason: Reason,
-}
 
 /// Advances all cells of a task; the constants stand in `scratch.file`. A cell that fails keeps its last good state and
 /// does not hinder its neighbours.

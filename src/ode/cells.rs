@@ -1,8 +1,22 @@
 //! The cells of one task, and which of them stand in the lanes at present.
 
+use super::Reason;
 use super::mask::{Mask, YES, when};
 use super::scratch::Scratch;
 use crate::equations::program::Lanes;
+
+/// The first cell of a task that failed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellTrouble {
+    /// The cell, counted from the task's first.
+    pub cell: usize,
+    /// Time of its last good state.
+    pub time: f64,
+    /// The variable that is worst.
+    pub variable: Option<usize>,
+    /// What is wrong.
+    pub reason: Reason,
+}
 
 /// Cells that one task advances: whole blocks, `[block][number][lane]`.
 pub struct Cells<'a, const L: usize> {

@@ -1,7 +1,6 @@
 //! The cells of one task through one window by equal inner steps.
 
-use super::block::CellTrouble;
-use super::cells::Cells;
+use super::cells::{CellTrouble, Cells};
 use super::mask::{Mask, choose, when};
 use super::scratch::Scratch;
 use super::{Reason, Work, explicit};

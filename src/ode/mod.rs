@@ -20,6 +20,7 @@ mod multistep;
 mod narrow;
 mod population;
 mod rosenbrock;
+mod scheme;
 pub(crate) mod scratch;
 mod solve;
 mod stepper;
@@ -31,7 +32,8 @@ pub use control::Tolerances;
 pub use eventful::Eventful;
 pub use events::{EventMemory, EventPlan, assigned_parameters};
 pub use population::{BlockView, LANES, Population};
-pub use solve::{Scheme, Solution, SolveOptions, solve, solve_each};
+pub use scheme::Scheme;
+pub use solve::{Solution, SolveOptions, solve, solve_each};
 
 use serde::{Deserialize, Serialize};
 

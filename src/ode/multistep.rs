@@ -6,7 +6,7 @@ use diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason, Vector,
 };
 
-use super::solve::Scheme;
+use super::scheme::Scheme;
 use super::{OdeTrouble, Reason, Tolerances, Work};
 use crate::equations::program::{Lanes, Program, run};
 

@@ -2,8 +2,8 @@
 
 use pulp::Scalar;
 
-use super::block::{self, CellTrouble};
-use super::cells::{Cells, Kept, kept_numbers};
+use super::block;
+use super::cells::{CellTrouble, Cells, Kept, kept_numbers};
 use super::scratch::Scratch;
 use super::{Method, Tolerances, Work};
 use crate::equations::program::{Lanes, Program};

@@ -3,7 +3,7 @@
 use super::chart::{Axis, Chart, Heat, Range, Series};
 use super::colour::ColourMap;
 use super::field_view::species_label;
-use super::from_file::frame_at;
+use super::instant::frame_at;
 use crate::error::{Result, short};
 use crate::experiment::{Axis as Name, FieldLine, OneOrMany, When};
 use crate::output::{Along, FieldLayout, ResultFile};

@@ -6,11 +6,12 @@ use super::arrows::LoadArrows;
 use super::colour::Colour;
 use super::field_view::FieldView;
 use super::from_result::{Framing, Look, Snapshot, Values, picture_of};
+use super::instant::frame_at;
 use super::quantities::AtomQuantity;
 use super::render::Sheet;
 use super::{Image, plots};
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Document, Picture, When};
+use crate::experiment::{Document, Picture};
 use crate::output::{Cell, ResultFile};
 
 /// What one frame gives to a picture.
@@ -87,20 +88,6 @@ pub fn check_colour(result: &ResultFile, name: &str) -> Result<()> {
 /// [`Error::Input`] that lists what there is.
 pub fn check_field(result: &ResultFile, picture: &Picture) -> Result<()> {
     FieldView::of(result, picture).map(drop)
-}
-
-/// The frame that an instant means.
-pub(super) fn frame_at(result: &ResultFile, when: When) -> Result<usize> {
-    let last = result.frames().saturating_sub(1);
-    Ok(match when {
-        When::First => 0,
-        When::Last => last,
-        When::At(time) => {
-            let away = |t: &f64| (t - time.value()).abs();
-            let times = result.times()?;
-            (0..times.len()).min_by(|&a, &b| away(&times[a]).total_cmp(&away(&times[b]))).unwrap_or(last)
-        }
-    })
 }
 
 impl<'a> Stage<'a> {

@@ -12,6 +12,7 @@ pub mod field_view;
 pub mod from_file;
 pub mod from_result;
 pub mod image;
+mod instant;
 pub mod movie;
 pub mod plots;
 pub mod quantities;

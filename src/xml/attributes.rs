@@ -1,6 +1,7 @@
 //! The attributes of a tag.
 
-use super::characters::{is_blank, value};
+use super::blank::is_blank;
+use super::characters::value;
 use super::malformed::*;
 use super::names::{Namespace, Namespaces, parts};
 use super::trouble::{Trouble, What};

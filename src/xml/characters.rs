@@ -1,5 +1,6 @@
 //! Characters: which XML has, and which ones texts and values stand for.
 
+use super::blank::is_blank;
 use super::malformed::{unescaped, unknown_reference};
 use super::trouble::Trouble;
 use std::borrow::Cow;
@@ -15,11 +16,6 @@ pub(super) fn foreign(text: &str) -> Option<(usize, char)> {
 
 fn is_xml(c: char) -> bool {
     !matches!(c, '\0'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}')
-}
-
-/// A blank of XML.
-pub(super) fn is_blank(c: char) -> bool {
-    matches!(c, ' ' | '\t' | '\n' | '\r')
 }
 
 /// The character that `&name;` stands for.

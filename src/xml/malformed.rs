@@ -1,6 +1,6 @@
 //! What makes a text no well-formed XML: what was found, what was expected, what to do.
 
-use super::characters::is_blank;
+use super::blank::is_blank;
 use super::trouble::{Trouble, What, line_and_column, shown};
 use quick_xml::events::attributes::AttrError;
 use std::ops::Range;

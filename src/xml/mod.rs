@@ -10,6 +10,7 @@
 //! what goes beyond [`Limits`]. Nothing takes more than linear time.
 
 mod attributes;
+mod blank;
 mod characters;
 mod document;
 mod malformed;

@@ -2,7 +2,8 @@
 
 use super::Limits;
 use super::attributes::{Attribute, TagReader};
-use super::characters::{foreign, is_blank, referred, with_plain_lines, word_length};
+use super::blank::is_blank;
+use super::characters::{foreign, referred, with_plain_lines, word_length};
 use super::malformed::*;
 use super::names::{Namespace, Namespaces, is_name, parts};
 use super::trouble::{Trouble, What};
