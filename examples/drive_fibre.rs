@@ -21,6 +21,7 @@ const INTERVAL: f64 = 0.1;
 /// Activation for each um that the cell is too wide, and for each um s.
 const GAINS: [f64; 2] = [0.3, 0.3];
 
+/// What `cargo run --example drive_fibre` does.
 pub fn main() -> Result<(), SimulationError> {
     let mut simulation = Simulation::from_text("belt.toml", EXPERIMENT)?;
     let cell = simulation.cells().next().expect("one cell");

@@ -15,6 +15,7 @@ mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" }
 loads = [{ name = "pull", cap = { direction = [1, 0, 0], number = 7 }, direction = [1, 0, 0], force = "20 pN" }]
 "#;
 
+/// What `cargo run --example positions` does.
 pub fn main() -> Result<(), SimulationError> {
     let mut simulation = Simulation::from_text("pulled.toml", EXPERIMENT)?;
 

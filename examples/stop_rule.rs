@@ -25,6 +25,7 @@ mechanics = { drag = "20 pN s/um", mass = "10 pN s^2/um", shape_memory = { shape
 /// Speed below which the cell counts as at rest, um/s.
 const AT_REST: f64 = 1e-4;
 
+/// What `cargo run --example stop_rule` does.
 pub fn main() -> Result<(), SimulationError> {
     let mut simulation = Simulation::from_text("settling.toml", EXPERIMENT)?;
     // Keep what will be looked at afterwards: the height, every two seconds.

@@ -29,6 +29,7 @@ fn stretched(modulus: f64) -> Result<(f64, f64), SimulationError> {
     Ok((now.series("size_x")?[0], now.series("energy")?[0]))
 }
 
+/// What `cargo run --example sweep` does.
 pub fn main() -> Result<(), SimulationError> {
     let moduli = [5.0, 10.0, 20.0, 40.0, 80.0];
     // Simulations know nothing of each other, so that they may run side by side; the numbers do not depend on it.

@@ -4,8 +4,9 @@
 #[path = "support/everything.rs"]
 mod everything;
 
-use everything::{Steps, after, everything};
+use everything::{after, everything};
 use pseudopod::Vec3;
+use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::geometry::{Topology, icosphere};
 use pseudopod::mechanics::Force;
@@ -77,7 +78,8 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
         }
         Acting::Motility => {
             // Runs so long that none ends: each that does is kept for the result, which is no scratch.
-            kind.brownian = Some(BrownianMotility { speed: 0.1, persistence: 1e9, space: Space::Plane });
+            let walk = BrownianMotility { speed: 0.1, persistence: 1e9, space: Space::Plane };
+            kind.behaviours = vec![Behaviour::Brownian(walk)];
         }
     }
     let integrator = Integrator { method, size: StepSize::Fixed(0.01) };
@@ -121,7 +123,7 @@ fn allocations_of_everything() -> usize {
         .exit_handler(|_| WORKS.set(false))
         .build()
         .unwrap();
-    let (model, start) = everything(Steps::Fixed, "1000 h");
+    let (model, start) = everything(Some("0.05 s"), "1000 h");
     pool.install(|| {
         // Until the cells lie where they stay, and lists of contacts are as long as they become.
         let (mut state, mut ws) = after(&model, start, 100);

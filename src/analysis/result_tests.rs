@@ -44,12 +44,12 @@ fn recorded(path: &Path) -> ResultFile {
     };
     let header = Header::now("pull.toml", "Two cells pulled", EXPERIMENT, &[], 0);
     let mut writer = ResultWriter::create(path, &header, &layout, Overwrite::Refuse).unwrap();
-    for step in 0..4 {
+    for step in 0..4_u32 {
         let time = f64::from(step);
         let record = |length: f64| CellRecord { size: [length, 1.0, 1.0], ..CellRecord::default() };
         let frame = Frame {
             time,
-            step: step as u64,
+            step: u64::from(step),
             positions: vec![[0.0; 3]; 2],
             cells: vec![cell(0), cell(1)],
             records: vec![record(4.0 + time), record(6.0 + time / 2.0)],

@@ -94,6 +94,11 @@ pub fn settable() -> Vec<String> {
     own.map(String::from).into_iter().chain(forces).chain(last).collect()
 }
 
+/// The word of a handle of forces, by its number.
+pub fn word_of(handle: usize) -> &'static str {
+    CONTROLLED[handle].word
+}
+
 /// The meaning of the words behind `cell.`, if they can be read from the cell alone.
 pub fn reading(path: &[Step]) -> Option<Reading> {
     Some(match words(path)[..] {

@@ -6,17 +6,21 @@
 //! is the integral of the walk, so that positions do not depend on the step.
 //! Source: Promayon 2008 §5.4.1; Fürth 1920.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Vec3;
 use crate::random::{Purpose, Stream};
 
-/// Where directions may point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Where the directions of motility lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
 pub enum Space {
-    /// In the xy plane.
+    /// In the plane x, y.
+    #[default]
     Plane,
-    /// In all directions.
+    /// Anywhere on the sphere.
     Volume,
 }
 

@@ -1,20 +1,22 @@
 //! Types of cells: how many, of which shape, where, and how they move about.
 
-use super::loads::{Fibre, Fixed, Link, Load};
+use super::loads::Applied;
 use super::mechanics::Mechanics;
+use super::motility::Motility;
+use super::population::{Added, Removed};
 use super::values::{Colour, LengthUnit};
-use crate::units::{Angle, Length, LineStiffness, Speed, Time};
+use crate::units::{Angle, Length};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// A type of cells that share shape and mechanics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[schemars(extend("unevaluatedProperties" = false))]
 pub struct CellType {
-    /// How many cells; without it as many as the placement says, or one.
+    /// How many cells at the start; without it as many as the placement says, or one. None where all are added later.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 4_294_967_295_u32))]
+    #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub number: Option<u32>,
     /// The colour in pictures, "#c0392b"; chosen when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -27,20 +29,17 @@ pub struct CellType {
     /// Where the cells start; at the origin if there is one, else on a square grid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub placement: Option<Placement>,
+    /// Cells that come during the run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub added: Vec<Added>,
+    /// Cells that go during the run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub removed: Vec<Removed>,
     /// What the cells are made of.
     pub mechanics: Mechanics,
-    /// Atoms that are held where they start, along some axes.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub fixed: Vec<Fixed>,
-    /// Forces applied to some atoms.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub loads: Vec<Load>,
-    /// Internal springs between atoms of the same cell.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub links: Vec<Link>,
-    /// Contractile fibres between atoms of the same cell.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub fibres: Vec<Fibre>,
+    /// What is done to some of its atoms.
+    #[serde(flatten)]
+    pub applied: Applied,
     /// How the cells move by themselves.
     #[serde(default)]
     pub motility: Motility,
@@ -58,24 +57,19 @@ impl CellType {
             mesh,
             orientation: None,
             placement: None,
+            added: Vec::new(),
+            removed: Vec::new(),
             mechanics,
-            fixed: Vec::new(),
-            loads: Vec::new(),
-            links: Vec::new(),
-            fibres: Vec::new(),
+            applied: Applied::default(),
             motility: Motility::default(),
             chemistry: Vec::new(),
         }
     }
 
-    /// How many cells there are: `number` if given, else one for each place of the placement, else one.
+    /// How many cells there are at the start: `number` if given, else one for each position of the placement, else one.
     pub fn count(&self) -> usize {
-        let places = match &self.placement {
-            Some(Placement::At { at }) => at.len(),
-            Some(Placement::Grid { grid, .. }) => grid.iter().map(|n| *n as usize).fold(1, usize::saturating_mul),
-            Some(Placement::Random { .. }) | None => 1,
-        };
-        self.number.map_or(places, |number| number as usize)
+        let positions = self.placement.as_ref().map_or(1, Placement::positions);
+        self.number.map_or(positions, |number| number as usize)
     }
 }
 
@@ -192,52 +186,13 @@ pub enum Placement {
     },
 }
 
-/// How cells move by themselves; nothing of it is on unless it is given.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Motility {
-    /// Straight runs of random direction and exponential duration.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub brownian: Option<Brownian>,
-    /// A pull of every atom towards one point.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub attraction: Option<Attraction>,
-}
-
-/// Brownian persistence: the cell keeps its direction for a random time, then takes another.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Brownian {
-    /// Speed during a run.
-    #[schemars(extend("x-minimum" = 0))]
-    pub speed: Speed,
-    /// Mean duration of a run.
-    #[schemars(extend("x-exclusive-minimum" = 0))]
-    pub persistence: Time,
-    /// Whether directions lie in the plane of the substrate or anywhere in space.
-    #[serde(default)]
-    pub space: Space,
-}
-
-/// Where the directions of motility lie.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(inline)]
-pub enum Space {
-    /// In the plane x, y.
-    #[default]
-    Plane,
-    /// Anywhere on the sphere.
-    Volume,
-}
-
-/// A pull of every atom towards a point, the stand-in for a diffusing attractant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Attraction {
-    /// The point.
-    pub to: [Length; 3],
-    /// Force on an atom over its distance from the point.
-    #[schemars(extend("x-minimum" = 0))]
-    pub stiffness: LineStiffness,
+impl Placement {
+    /// How many cells it has positions for; one where they are drawn.
+    pub fn positions(&self) -> usize {
+        match self {
+            Self::At { at } => at.len(),
+            Self::Grid { grid, .. } => grid.iter().map(|n| *n as usize).fold(1, usize::saturating_mul),
+            Self::Random { .. } => 1,
+        }
+    }
 }

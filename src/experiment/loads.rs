@@ -1,43 +1,32 @@
-//! What is done to some atoms of a cell: holding, pulling, linking.
+//! What is done to some atoms of a cell: holding, pulling, linking. What documents say of it, and what it means.
 
+use super::compile::{Builder, course, unit};
+use super::selection::{Linked, Selection};
+use super::semantics::Check;
 use super::values::{Axis, Course};
-use crate::units::{Angle, Force, Length, LineStiffness};
+use crate::geometry;
+use crate::mechanics::fibres::Fibres;
+use crate::mechanics::springs::{Spring, Springs};
+use crate::mechanics::{self, load};
+use crate::units::{Force, Length, LineStiffness};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Some atoms of a cell: give one of the three.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Selection {
-    /// Atoms by number, from 0.
-    Atoms(#[schemars(length(min = 1))] Vec<u32>),
-    /// The atoms furthest along a direction.
-    Cap(Cap),
-    /// Every atom (`all = true`).
-    All(#[schemars(extend("const" = true))] bool),
-}
-
-/// The atoms of a cell at rest that lie furthest along a direction from its centre.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(extend("unevaluatedProperties" = false))]
-pub struct Cap {
-    /// The direction; its length does not matter.
-    pub direction: [f64; 3],
-    /// How many atoms.
-    #[serde(flatten)]
-    pub extent: CapExtent,
-}
-
-/// How large a cap is: give one of the three.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CapExtent {
-    /// So many atoms.
-    Number(#[schemars(range(min = 1, max = 4_294_967_295_u32))] u32),
-    /// This fraction of the atoms, at least one.
-    Fraction(#[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0))] f64),
-    /// The atoms seen from the centre within this angle of the direction.
-    Angle(#[schemars(extend("x-exclusive-minimum" = 0, "x-maximum" = std::f64::consts::PI))] Angle),
+/// What is done to some atoms of every cell of a type.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct Applied {
+    /// Atoms that are held where they start, along some axes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fixed: Vec<Fixed>,
+    /// Forces applied to some atoms.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<Load>,
+    /// Internal springs between atoms of the same cell.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub links: Vec<Link>,
+    /// Contractile fibres between atoms of the same cell.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fibres: Vec<Fibre>,
 }
 
 /// Atoms that are held where they start.
@@ -159,23 +148,106 @@ impl Link {
     }
 }
 
-/// Which atoms are linked: give one of the two.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Linked {
-    /// Pairs of atoms by number, from 0.
-    Pairs(#[schemars(length(min = 1))] Vec<[u32; 2]>),
-    /// Pairs found by symmetry.
-    Pattern(LinkPattern),
+impl Applied {
+    /// Adds the springs of all links; they are elastic.
+    pub(super) fn add_links(&self, to: &mut Builder) {
+        for (i, link) in self.links.iter().enumerate() {
+            let pairs = to.pairs(&format!("links[{i}]"), &link.linked);
+            let spring = |&[one, other]: &[u32; 2]| {
+                let [from, end] = [one, other].map(|atom| to.plain().positions[atom as usize]);
+                let rest_length = match link.rest() {
+                    Rest::Length(length) => length.value(),
+                    Rest::Ratio(ratio) => ratio * (from - end).norm(),
+                };
+                Spring { from: one, to: other, rest_length, stiffness: link.stiffness.value() }
+            };
+            let springs = pairs.iter().map(spring).collect();
+            to.drawn.extend(pairs);
+            to.forces.push(mechanics::Force::Springs(Springs::between(springs)));
+        }
+    }
+
+    /// Adds what does work on cells.
+    pub(super) fn add_driven(&self, to: &mut Builder) {
+        let areas = geometry::atom_areas(to.rest());
+        for (i, load) in self.loads.iter().enumerate() {
+            let direction = unit(load.direction);
+            let (atoms, heights) = to.atoms_and_heights(&format!("loads[{i}]"), &load.selection, direction);
+            let weight = |atom: u32| match load.spread {
+                Spread::Equal => 1.0,
+                Spread::Area => areas[atom as usize],
+                Spread::Tapered => areas[atom as usize] * heights[atom as usize],
+            };
+            let total: f64 = atoms.iter().map(|&atom| weight(atom)).sum();
+            let shares = atoms.into_iter().map(|atom| (atom, weight(atom) / total)).collect();
+            let load = load::Load::new(&load.name, shares, direction, course(load.force.points()));
+            to.forces.push(mechanics::Force::Load(load));
+        }
+        for (i, fibre) in self.fibres.iter().enumerate() {
+            let pairs = to.pairs(&format!("fibres[{i}]"), &fibre.linked);
+            to.drawn.extend(&pairs);
+            let activation = course(fibre.activation.points());
+            let fibres = Fibres::new(&fibre.name, pairs, fibre.stiffness.value(), activation);
+            to.forces.push(mechanics::Force::Fibres(fibres));
+        }
+    }
 }
 
-/// Pairs of atoms found by symmetry, in the mesh at rest before it is turned.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(inline)]
-pub enum LinkPattern {
-    /// Every atom to its mirror image through the z axis, at the same height.
-    Horizontal,
-    /// Every atom to the one opposite through the centre.
-    Diagonal,
+impl Check<'_> {
+    /// What must hold within what is done to the atoms of a type of cells.
+    pub(super) fn applied(&mut self, path: &str, applied: &Applied) {
+        self.links(path, applied);
+        self.fibres(path, applied);
+        self.loads(path, applied);
+    }
+
+    fn loads(&mut self, path: &str, applied: &Applied) {
+        for (index, fixed) in applied.fixed.iter().enumerate() {
+            self.selection(&format!("{path}.fixed[{index}]"), &fixed.selection);
+        }
+        for (index, load) in applied.loads.iter().enumerate() {
+            let path = format!("{path}.loads[{index}]");
+            self.selection(&path, &load.selection);
+            self.direction(&format!("{path}.direction"), load.direction);
+            self.course(&format!("{path}.force"), &load.force.points());
+            if let Some(other) = applied.loads[..index].iter().position(|other| other.name == load.name) {
+                let message = format!("`{path}.name` is the name of load {other} too");
+                self.fault(&format!("{path}.name"), "taken", message, "names of loads differ within a type of cells");
+            }
+        }
+    }
+
+    fn fibres(&mut self, path: &str, applied: &Applied) {
+        for (index, fibre) in applied.fibres.iter().enumerate() {
+            let path = format!("{path}.fibres[{index}]");
+            self.pairs(&path, &fibre.linked);
+            let points = fibre.activation.points();
+            self.course(&format!("{path}.activation"), &points);
+            if let Some((time, value)) = points.iter().find(|(_, value)| !(0.0..=1.0).contains(value)) {
+                let message = format!("`{path}.activation` is {value} at {time} s");
+                let help = "an activation is a number from 0 (relaxed) to 1 (all that the stiffness gives)";
+                self.fault(&format!("{path}.activation"), "not from 0 to 1", message, help);
+            }
+            if let Some(other) = applied.fibres[..index].iter().position(|other| other.name == fibre.name) {
+                let message = format!("`{path}.name` is the name of fibres {other} too");
+                self.fault(&format!("{path}.name"), "taken", message, "names of fibres differ within a type of cells");
+            }
+        }
+    }
+
+    fn links(&mut self, path: &str, applied: &Applied) {
+        for (index, link) in applied.links.iter().enumerate() {
+            let path = format!("{path}.links[{index}]");
+            self.pairs(&path, &link.linked);
+            if link.rest_length.is_some() && link.rest_ratio.is_some() {
+                let message = format!("`{path}` has both `rest_length` and `rest_ratio`");
+                self.fault(
+                    &format!("{path}.rest_ratio"),
+                    "only one of them may be given",
+                    message,
+                    "remove one of them",
+                );
+            }
+        }
+    }
 }

@@ -1,8 +1,15 @@
-//! What cells are made of: drag, mass, elasticity, the rule for their volume.
+//! What cells are made of: drag, mass, elasticity, the rule for their volume. What documents say of it, and the forces that it means.
 
-use super::loads::Selection;
-use super::values::Course;
-use crate::units::{Angle, Drag, Energy, LineStiffness, Mass, Stress, Volume};
+use super::compile::Builder;
+use super::membrane::Membrane;
+use super::selection::Selection;
+use super::volume::VolumeControl;
+use crate::geometry;
+use crate::mechanics::angles::Angles;
+use crate::mechanics::barrier::BarrierRules;
+use crate::mechanics::shape_modulus::stiffness_of_modulus;
+use crate::mechanics::{Force, barrier, shape_memory, springs, sum};
+use crate::units::{Angle, Drag, LineStiffness, Mass};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -93,75 +100,6 @@ pub enum Form {
     Angles,
 }
 
-/// An elastic membrane at the surface, at rest in the shape of the mesh.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Membrane {
-    /// The law of its energy.
-    pub law: Law,
-    /// Shear modulus µ at small strain.
-    #[schemars(extend("x-minimum" = 0))]
-    pub shear: LineStiffness,
-    /// Modulus K of local area at small strain.
-    #[schemars(extend("x-minimum" = 0))]
-    pub area: LineStiffness,
-    /// Strain hardening of the neo-Hookean law: cubic term over shear modulus.
-    #[serde(default)]
-    #[schemars(range(min = 0.0))]
-    pub hardening: f64,
-    /// Modulus of the total area, within which lipids flow.
-    #[serde(default)]
-    #[schemars(extend("x-minimum" = 0))]
-    pub total_area: LineStiffness,
-    /// Bending rigidity κ.
-    #[serde(default)]
-    #[schemars(extend("x-minimum" = 0))]
-    pub bending: Energy,
-    /// The shape without bending energy.
-    #[serde(default)]
-    pub bending_rest: BendingRest,
-    /// Surface tension.
-    #[serde(default)]
-    pub tension: LineStiffness,
-    /// Stiffness with which an atom is drawn along the surface to each neighbour, so that a surface without shear keeps its
-    /// mesh in order; its shape is left alone. For closed meshes.
-    #[serde(default)]
-    #[schemars(extend("x-minimum" = 0))]
-    pub ordering: LineStiffness,
-}
-
-impl Membrane {
-    /// A membrane of this law with shear and area moduli, without bending, tension and hardening.
-    pub fn new(law: Law, shear: LineStiffness, area: LineStiffness) -> Self {
-        let (none, bending_rest) = (LineStiffness::ZERO, BendingRest::Shape);
-        let (hardening, bending) = (0.0, Energy::ZERO);
-        Self { law, shear, area, hardening, total_area: none, bending, bending_rest, tension: none, ordering: none }
-    }
-}
-
-/// The law of a membrane's energy; both have the same response at small strain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(inline)]
-pub enum Law {
-    /// Skalak (1973): hardens with the area.
-    Skalak,
-    /// Neo-Hookean, as rubber.
-    NeoHookean,
-}
-
-/// The shape without bending energy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(inline)]
-pub enum BendingRest {
-    /// The mesh at rest.
-    #[default]
-    Shape,
-    /// A plane.
-    Flat,
-}
-
 /// A spring on every edge of the mesh, at rest in the shape of the mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -195,34 +133,85 @@ impl Default for Barrier {
     }
 }
 
-/// What happens to the enclosed volume.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct VolumeControl {
-    /// The rule; exact for closed surfaces and free for open ones when absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rule: Option<VolumeRule>,
-    /// Bulk modulus of the compressible rule.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("x-exclusive-minimum" = 0))]
-    pub modulus: Option<Stress>,
-    /// The volume to keep, or its course in time; the volume at rest when absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub target: Option<Course<Volume>>,
-    /// The same as a multiple of the volume at rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ratio: Option<Course<f64>>,
+impl Mechanics {
+    /// Adds the forces that answer to the shape of a cell, but for the barrier.
+    pub(super) fn add_elastic(&self, to: &mut Builder) {
+        if let Some(memory) = &self.shape_memory {
+            memory.add(to);
+        }
+        if let Some(membrane) = &self.membrane {
+            membrane.add(to);
+        }
+        if let Some(springs) = &self.springs {
+            springs.add(to);
+        }
+    }
 }
 
-/// A rule for the enclosed volume.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(inline)]
-pub enum VolumeRule {
-    /// The volume is the target at the end of every step, to round-off.
-    Exact,
-    /// A pressure proportional to the relative change of volume.
-    Compressible,
-    /// Nothing keeps the volume.
-    Free,
+impl ShapeMemory {
+    fn add(&self, to: &mut Builder) {
+        let rest = to.rest();
+        let mut rings: Vec<Vec<u32>> = to.topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
+        let stiffness = match self.strength {
+            ShapeStrength::Stiffness(stiffness) => Some(stiffness.value()),
+            ShapeStrength::ShapeModulus(modulus) => stiffness_of_modulus(rest, &rings, modulus.value()),
+        };
+        let Some(stiffness) = stiffness else {
+            let found = "a flat mesh has no shape modulus: its shape memory does not resist stretching";
+            let help = "give shape_memory = { stiffness = \"…\" }, or use membrane or springs";
+            return to.fault("mechanics.shape_memory", "on a flat mesh", found, help);
+        };
+        if let Some(only) = &self.only {
+            let chosen = to.atoms("mechanics.shape_memory.only", only);
+            // An atom without neighbours remembers nothing.
+            (0..rings.len()).filter(|atom| !chosen.contains(&(*atom as u32))).for_each(|atom| rings[atom].clear());
+        }
+        if self.form == Form::Angles {
+            return to.forces.push(Force::Angles(Angles::new(&rest.positions, &rings, stiffness)));
+        }
+        let reaction = match self.reaction {
+            Reaction::Exact => shape_memory::Reaction::Exact,
+            Reaction::Spread => shape_memory::Reaction::Spread,
+        };
+        let triplets = shape_memory::ShapeMemory::new(&rest.positions, &rings, stiffness, reaction);
+        if triplets.triplet_count() == 0 {
+            let found = "no atom remembers anything: triplets take three neighbours that are not in line";
+            let help = "use form = \"angles\", which takes two neighbours, or other atoms";
+            to.fault("mechanics.shape_memory", "acts on no atom of this mesh", found, help);
+        }
+        to.forces.push(Force::ShapeMemory(triplets));
+    }
+}
+
+impl Springs {
+    fn add(&self, to: &mut Builder) {
+        let springs = springs::Springs::on_edges(&to.rest().positions, &to.topology.edges, self.stiffness.value());
+        to.forces.push(Force::Springs(springs));
+    }
+}
+
+/// The energy scale of the barrier where the document names none: this part of the elastic energy that moves an atom
+/// by an edge, so that the barrier is as stiff as the cell that it guards.
+const BARRIER_SHARE: f64 = 0.1;
+
+impl Barrier {
+    /// Adds the barrier for the elastic forces that are there.
+    pub(super) fn add(&self, to: &mut Builder) {
+        let rest = to.rest();
+        let edge = geometry::mean_edge_length(rest);
+        let stiffness = match self.stiffness {
+            Some(stiffness) => stiffness.value(),
+            None => {
+                let matrix = sum::stiffness(&to.forces, true, &rest.positions, &rest.positions);
+                BARRIER_SHARE * (0..rest.positions.len()).map(|i| matrix.diagonal(i)).fold(0.0, f64::max)
+            }
+        };
+        if !self.active || stiffness == 0.0 {
+            return;
+        }
+        let (energy, fold_angle) = (stiffness * edge * edge, self.angle.value());
+        let rules = BarrierRules { energy, area_share: self.area, fold_angle };
+        let barrier = barrier::Barrier::new(&rest.positions, &rest.facets, &to.topology.flaps, rules);
+        to.forces.push(Force::Barrier(barrier));
+    }
 }

@@ -14,7 +14,7 @@
 //!     ..Mechanics::default()
 //! };
 //! let mut cell = CellType::new(Mesh::Icosphere { radius: Length::new(5.0), level: 2 }, mechanics);
-//! cell.loads.push(Load {
+//! cell.applied.loads.push(Load {
 //!     name: "pull".into(),
 //!     selection: Selection::Cap(Cap { direction: [1.0, 0.0, 0.0], extent: CapExtent::Number(5) }),
 //!     direction: [1.0, 0.0, 0.0],
@@ -39,33 +39,40 @@ mod document;
 mod loads;
 mod measures;
 mod mechanics;
+mod membrane;
+mod motility;
 mod pictures;
+mod population;
 mod scene;
 mod schema;
+mod selection;
 mod semantics;
 mod tree;
 mod values;
+mod volume;
 
-pub use cells::{Attraction, Brownian, CellType, Mesh, Motility, Orientation, Placement, Space};
+pub use cells::{CellType, Mesh, Orientation, Placement};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{Compiled, Prepared, PushedApart, Schedule, compile, notices, prepare, settle_start};
 pub use contact::{Between, Contact, ContactModel, Zones};
 pub use document::Document;
 #[cfg(feature = "cli")]
 pub(crate) use document::near_file;
-pub use loads::{Cap, CapExtent, Fibre, Fixed, Link, LinkPattern, Linked, Load, Rest, Selection, Spread};
+pub use loads::{Applied, Fibre, Fixed, Link, Load, Rest, Spread};
 pub use measures::{
     ChemotacticIndex, Comparison, FieldValue, Fit, GapStatistic, Gaps, Measure, MeasureKind, Over, OverBoxes, Period,
     Reduction, Segregation, SegregationStatistic, SphereFit, Statistic, WaveSpeed, WaveStatistic, Wavelength,
 };
-pub use mechanics::{
-    Barrier, BendingRest, Form, Law, Mechanics, Membrane, Reaction, ShapeMemory, ShapeStrength, Springs, VolumeControl,
-    VolumeRule,
-};
+pub use mechanics::{Barrier, Form, Mechanics, Reaction, ShapeMemory, ShapeStrength, Springs};
+pub use membrane::{BendingRest, Law, Membrane};
+pub use motility::{Attraction, Brownian, Motility, Space};
 pub use pictures::{FieldLine, Picture, Plot, PlotKind, PlotTable, View};
+pub use population::{Added, Removed};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
 pub use schema::schema;
+pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};
+pub use volume::{VolumeControl, VolumeRule};
 
 use crate::units::Time;
 use indexmap::IndexMap;

@@ -13,7 +13,7 @@ mod contact;
 mod measures;
 mod scene;
 
-struct Check<'a> {
+pub(super) struct Check<'a> {
     document: &'a Document,
     faults: Vec<Fault>,
 }
@@ -27,12 +27,10 @@ pub(super) fn check(document: &Document) -> Vec<Fault> {
     for (name, cell) in &document.experiment.cells {
         let path = format!("cells.{name}");
         check.drag_and_mass(&path, cell);
-        check.places(&path, cell);
+        check.placements(&path, cell);
         check.volume(&path, cell);
-        check.links(&path, cell);
-        check.fibres(&path, cell);
         check.remembering_atoms(&path, cell);
-        check.loads(&path, cell);
+        check.applied(&path, &cell.applied);
         if let Some(turn) = &cell.orientation {
             check.direction(&format!("{path}.orientation.axis"), turn.axis);
         }
@@ -46,7 +44,7 @@ pub(super) fn check(document: &Document) -> Vec<Fault> {
 
 impl Check<'_> {
     /// A fault at the value of a key.
-    fn fault(&mut self, path: &str, label: &str, message: String, help: impl Into<String>) {
+    pub(super) fn fault(&mut self, path: &str, label: &str, message: String, help: impl Into<String>) {
         let mut fault = Fault::new(message).help(help);
         fault.place = self.document.place(path, label);
         self.faults.push(fault);
@@ -102,7 +100,8 @@ impl Check<'_> {
     fn series(&mut self, path: &str, text: &str) {
         let (pairs, of_cells) = (self.series_of_pairs(), cell_series().collect::<Vec<String>>());
         let cells = self.document.experiment.cells.values();
-        let loads: Vec<String> = cells.flat_map(|cell| &cell.loads).map(|load| format!("load.{}", load.name)).collect();
+        let loads: Vec<String> =
+            cells.flat_map(|cell| &cell.applied.loads).map(|load| format!("load.{}", load.name)).collect();
         let model = self.document.experiment.contact.as_ref().map(|contact| contact.model);
         let contacts = model.is_some();
         let of_model = model.into_iter().flat_map(|model| contact_quantities(model.recorded()));
@@ -206,7 +205,7 @@ impl Check<'_> {
     }
 
     /// A direction must not be zero.
-    fn direction(&mut self, path: &str, direction: [f64; 3]) {
+    pub(super) fn direction(&mut self, path: &str, direction: [f64; 3]) {
         if direction.iter().all(|component| *component == 0.0) {
             let message = format!("`{path}` has no length and so no direction");
             self.fault(path, "is zero", message, "give at least one component, such as [1, 0, 0]");

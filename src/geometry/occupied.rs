@@ -97,3 +97,33 @@ impl<T> Near<T> {
         near.chain(&self.everywhere).map(|number| &self.all[*number as usize])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Purpose;
+
+    #[test]
+    fn all_that_is_nearer_than_the_width_is_found_in_the_grid() {
+        let mut stream = Stream::new(1, Purpose::Placement, 0, 0);
+        let corner = Vec3::repeat(20.0);
+        let (mut points, mut boxes) = (Near::new(3.0), Near::new(3.0));
+        for number in 0..400 {
+            let low = point_in_box(&mut stream, -corner, corner);
+            // Boxes from a speck to one that is wider than the whole scene.
+            let high = low + Vec3::new(1.0, 0.3, 0.1) * 0.2 * f64::from(number);
+            points.add(low, low, low);
+            boxes.add([low, high], low, high);
+        }
+        boxes.add([-1e9 * corner, 1e9 * corner], -1e9 * corner, 1e9 * corner);
+        for _ in 0..50 {
+            let here = point_in_box(&mut stream, -corner, corner);
+            let is_near = |point: &&Vec3| (here - **point).norm() < 3.0;
+            let count = points.all.iter().filter(is_near).count();
+            assert_eq!(points.around(here).filter(is_near).count(), count, "a point is in one cube");
+            let is_near = |[low, high]: &&[Vec3; 2]| (here - here.sup(low).inf(high)).norm() < 3.0;
+            let found: Vec<_> = boxes.around(here).filter(is_near).collect();
+            assert!(boxes.all.iter().filter(is_near).all(|one| found.contains(&one)));
+        }
+    }
+}

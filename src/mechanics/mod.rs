@@ -68,24 +68,6 @@ pub enum Force {
 pub const CONTROLLED: [Handle; 2] = [load::HANDLE, fibres::HANDLE];
 
 impl Force {
-    /// What it is.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::ShapeMemory(_) => "shape memory",
-            Self::Angles(_) => "shape memory, angles",
-            Self::Membrane(_) => "membrane",
-            Self::Tension(_) => "tension",
-            Self::Ordering(_) => "ordering",
-            Self::Bending(_) => "bending",
-            Self::Springs(_) => "springs",
-            Self::Barrier(_) => "barrier",
-            Self::Load(_) => "load",
-            Self::Fibres(_) => "fibres",
-            Self::Gravity(_) => "gravity",
-            Self::Attraction(_) => "attraction",
-        }
-    }
-
     /// Whether it answers to the shape of the cell alone and at all times: its energy is the cell's elastic energy, and chemistry may
     /// scale it as a whole. All others do work on the cell.
     pub fn is_elastic(&self) -> bool {

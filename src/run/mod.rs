@@ -157,7 +157,7 @@ fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Rep
         let (began, first, until) = (Instant::now(), simulation.steps(), simulation.end());
         let mut recording = Recording::new(simulation, writer, schedule, result, report);
         if let Err(trouble) = simulation.begin() {
-            return Err(recording.keep_last(&trouble, simulation));
+            return Err(recording.keep_last(trouble, simulation));
         }
         if start == Start::Fresh {
             recording.record_start(simulation)?;
@@ -168,8 +168,10 @@ fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Rep
         match ended {
             Ok(ControlFlow::Continue(())) => recording.save(simulation)?,
             Ok(ControlFlow::Break(Stop::Machine(error))) => return Err(error),
-            Ok(ControlFlow::Break(Stop::Passed(trouble))) => return Err(recording.keep_good(&trouble, simulation)),
-            Err(SimulationError::Trouble(trouble)) => return Err(recording.keep_last(&trouble, simulation)),
+            Ok(ControlFlow::Break(Stop::Passed(trouble))) => return Err(recording.keep_good(trouble, simulation)),
+            Err(trouble @ (SimulationError::Trouble(_) | SimulationError::Population(_))) => {
+                return Err(recording.keep_last(trouble, simulation));
+            }
             Err(SimulationError::Cancelled { time }) => {
                 recording.save(simulation)?;
                 return Err(Error::Interrupted { time, result: result.to_path_buf() });

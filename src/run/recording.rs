@@ -9,7 +9,7 @@ use crate::experiment::Schedule;
 use crate::output::ResultWriter;
 use crate::sim::contact::{check_passed, help_at};
 use crate::sim::{State, StepReport, Trouble};
-use crate::simulation::{Recorder, Simulation, passed};
+use crate::simulation::{Recorder, Simulation, SimulationError, passed};
 
 /// Looks on while a simulation goes.
 pub struct Recording<'a> {
@@ -101,24 +101,27 @@ impl<'a> Recording<'a> {
     }
 
     /// Keeps the last good state, as a frame and to resume from: it is what the user wants to look at.
-    pub fn keep_last(&mut self, trouble: &Trouble, simulation: &mut Simulation) -> Error {
+    pub fn keep_last(&mut self, trouble: impl Into<SimulationError>, simulation: &mut Simulation) -> Error {
         let unseen = simulation.steps() > self.recorded;
         let frame = if unseen { self.writer.append(&simulation.record(&mut self.recorder)) } else { Ok(()) };
         let kept = frame.and_then(|()| self.save(simulation));
-        self.failed(trouble, simulation, kept)
+        self.failed(&trouble.into(), simulation, kept)
     }
 
     /// Keeps the state in which cells were last outside each other, to resume from.
-    pub fn keep_good(&mut self, trouble: &Trouble, simulation: &Simulation) -> Error {
+    pub fn keep_good(&mut self, trouble: impl Into<SimulationError>, simulation: &Simulation) -> Error {
         let good = self.good.as_ref().unwrap_or(simulation.state());
         let kept = self.writer.save_checkpoint(good.step, good.time, &simulation.checkpoint_of(good));
-        self.failed(trouble, simulation, kept)
+        self.failed(&trouble.into(), simulation, kept)
     }
 
-    fn failed(&self, trouble: &Trouble, simulation: &Simulation, kept: Result<()>) -> Error {
+    fn failed(&self, trouble: &SimulationError, simulation: &Simulation, kept: Result<()>) -> Error {
         let kept = kept.is_ok().then(|| self.result.to_path_buf());
-        let help = help_at(trouble, simulation.model(), simulation.state());
-        Error::Numbers { message: trouble.to_string(), help: help.to_owned(), kept }
+        let help = match trouble {
+            SimulationError::Trouble(trouble) => help_at(trouble, simulation.model(), simulation.state()).to_owned(),
+            other => other.help().unwrap_or_default(),
+        };
+        Error::Numbers { message: trouble.to_string(), help, kept }
     }
 
     fn remember_good(&mut self, simulation: &Simulation) {

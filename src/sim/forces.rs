@@ -120,7 +120,7 @@ fn context<'a>(kind: &Kind, controls: &'a Controls, cells: Range<usize>, time: f
 }
 
 fn add_drive(kind: &Kind, drive: &[[f64; 3]], f: &mut [f64]) {
-    if kind.brownian.is_none() && !kind.biased {
+    if kind.behaviours.is_empty() {
         return;
     }
     for (lane, velocity) in drive.iter().enumerate() {

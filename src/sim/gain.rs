@@ -48,8 +48,9 @@ fn is_left_alone(model: &Model) -> bool {
     };
     let is_alone = |kind: &Kind| {
         let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
-        let moves = kind.brownian.is_some() || kind.biased;
-        steady && !moves && kind.forces.iter().all(|force| force.is_elastic() && force.is_conservative())
+        steady
+            && kind.behaviours.is_empty()
+            && kind.forces.iter().all(|force| force.is_elastic() && force.is_conservative())
     };
     matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)
         && model.contact.as_ref().is_some_and(sticks_only)

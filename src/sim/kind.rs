@@ -1,10 +1,11 @@
 //! The cells that share a mesh and a material.
 
 use crate::Vec3;
-use crate::cell::motility::BrownianMotility;
+use crate::cell::Behaviour;
 use crate::geometry::{self, Surface, Topology};
 use crate::mechanics::Force;
 use crate::mechanics::course::Course;
+use crate::mechanics::fibres::Fibres;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::load::Load;
@@ -42,10 +43,8 @@ pub struct Kind {
     pub volume: VolumeRule,
     /// Pairs of atoms whose links and fibres are drawn.
     pub drawn_links: Vec<[u32; 2]>,
-    /// Brownian persistence.
-    pub brownian: Option<BrownianMotility>,
-    /// Whether chemistry adds a velocity to the walk.
-    pub biased: bool,
+    /// What its cells do by themselves.
+    pub behaviours: Vec<Behaviour>,
     /// Lanes of a block: [`LANES`], or 1 for a few cells.
     pub lanes: usize,
     /// Mean edge length at rest, µm.
@@ -95,8 +94,7 @@ impl Kind {
             held: Vec::new(),
             volume: if closed { VolumeRule::Exact(Course::constant(1.0)) } else { VolumeRule::Free },
             drawn_links: Vec::new(),
-            brownian: None,
-            biased: false,
+            behaviours: Vec::new(),
             lanes: 1,
             edge: geometry::mean_edge_length(&rest),
             rest,
@@ -177,10 +175,34 @@ impl Kind {
         largest
     }
 
+    /// Whether its cells do something of which the speed may be set.
+    pub fn has_speed(&self) -> bool {
+        self.behaviours.iter().any(|behaviour| behaviour.speed().is_some())
+    }
+
+    /// Whether a velocity may be set of its cells.
+    pub fn is_biased(&self) -> bool {
+        self.behaviours.contains(&Behaviour::Bias)
+    }
+
+    /// Lets a velocity be set of its cells, or no more.
+    pub fn set_biased(&mut self, biased: bool) {
+        self.behaviours.retain(|behaviour| *behaviour != Behaviour::Bias);
+        self.behaviours.extend(biased.then_some(Behaviour::Bias));
+    }
+
     /// Its loads.
     pub fn loads(&self) -> impl Iterator<Item = &Load> {
         self.forces.iter().filter_map(|force| match force {
             Force::Load(load) => Some(load),
+            _ => None,
+        })
+    }
+
+    /// Its fibres.
+    pub fn fibres(&self) -> impl Iterator<Item = &Fibres> {
+        self.forces.iter().filter_map(|force| match force {
+            Force::Fibres(fibres) => Some(fibres),
             _ => None,
         })
     }

@@ -6,22 +6,13 @@ use super::kind::Kind;
 use super::model::{Change, Model, Removal};
 use super::population_trouble::PopulationTrouble;
 use super::seeding::seed;
-use super::state::State;
+use super::state::{NewCell, State};
 use super::workspace::Workspace;
 use crate::Vec3;
 use crate::random::{Purpose, Stream};
 
-/// A cell that comes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NewCell {
-    /// Positions of its atoms, µm.
-    pub positions: Vec<Vec3>,
-    /// Id of the cell that it was born from; none of one that is placed.
-    pub parent: Option<u64>,
-}
-
 /// Adds cells to a kind, behind those that it has; returns their ids. What is not known of them is as at the start of a run: rest
-/// volumes, walks, systems; what links set of them changes nothing until the links have been carried.
+/// volumes, behaviours, systems; what links set of them changes nothing until the links have been carried.
 ///
 /// # Errors
 /// Cells that cannot be added, or that overlap others in a model with contacts; the state is as it was.
@@ -38,17 +29,10 @@ pub fn add_cells(
     let bodies: Vec<Option<u32>> = bodies.map(|cell| Some(cell as u32)).collect();
     let ids: Vec<u64> = (0..cells.len() as u64).map(|count| state.next_id + count).collect();
     let mut counts = state.counts();
-    let walks = model.kinds.iter().zip(&counts).take(kind + 1).filter(|(kind, _)| kind.brownian.is_some());
-    let mut walk = walks.map(|(_, count)| count).sum();
     for (cell, &id) in cells.iter().zip(&ids) {
-        let of = &model.kinds[kind];
-        next.kinds[kind].push(of, id, cell.parent, &cell.positions, model.integrator.method.is_inertial());
+        next.kinds[kind].push(model, &model.kinds[kind], id, cell);
         next.chemistry.insert_cell(&model.chemistry, &counts, kind, counts[kind]);
         counts[kind] += 1;
-        if let Some(motility) = &of.brownian {
-            next.walks.insert(walk, motility.start(model.seed, id));
-            walk += 1;
-        }
     }
     next.next_id += cells.len() as u64;
     settle(model, state, &mut next, &bodies);
@@ -80,9 +64,6 @@ pub fn remove_cells(
         (!goes).then(|| left - 1)
     });
     let bodies: Vec<Option<u32>> = bodies.collect();
-    let walkers = model.kinds.iter().zip(&goes).filter(|(kind, _)| kind.brownian.is_some());
-    let mut goes_of_walkers = walkers.flat_map(|(_, goes)| goes);
-    next.walks.retain(|_| goes_of_walkers.next() == Some(&false));
     for ((kind, now), goes) in model.kinds.iter().zip(&mut next.kinds).zip(&goes) {
         if goes.contains(&true) {
             now.retain(kind, |cell| !goes[cell]);

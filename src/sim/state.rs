@@ -9,7 +9,7 @@ use super::contact::ContactState;
 use super::kind::Kind;
 use super::model::Model;
 use crate::Vec3;
-use crate::cell::motility::Walk;
+use crate::cell::{Behaviour, BehaviourState};
 
 /// Everything that changes and is needed to go on.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -26,14 +26,21 @@ pub struct State {
     pub next_step: f64,
     /// One entry a kind.
     pub kinds: Vec<KindState>,
-    /// One walk for every cell of a kind with Brownian motility, in the order of cells.
-    pub walks: Vec<Walk>,
     /// Motility runs that ended and are not recorded yet: (id of the cell, end s, duration s).
     pub ended_runs: Vec<(u64, f64, f64)>,
     /// Systems and fields; empty in a model without chemistry.
     pub chemistry: ChemistryState,
     /// What contacts carry; empty in a model without contacts.
     pub contact: ContactState,
+}
+
+/// A cell that comes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewCell {
+    /// Positions of its atoms, µm.
+    pub positions: Vec<Vec3>,
+    /// Id of the cell that it was born from; none of one that is placed.
+    pub parent: Option<u64>,
 }
 
 /// The cells of a kind, in blocks of lanes.
@@ -58,6 +65,13 @@ pub struct KindState {
     pub stiffness_shape: Vec<f64>,
     /// Mean velocity of the atoms of every cell over the last step, µm/s; zero before the first.
     pub mean_velocities: Vec<[f64; 3]>,
+    /// What every cell remembers of each behaviour of the kind: `[behaviour][cell]`.
+    pub behaviours: Vec<Vec<BehaviourState>>,
+}
+
+/// What cells with these ids remember of a behaviour where it begins.
+pub fn start_of(ids: &[u64], behaviour: Behaviour, seed: u64) -> Vec<BehaviourState> {
+    ids.iter().map(|id| behaviour.start(seed, *id)).collect()
 }
 
 /// Index of a number in a block array.
@@ -72,8 +86,9 @@ pub fn vector(kind: &Kind, values: &[f64], cell: usize, atom: usize) -> Vec3 {
 }
 
 impl KindState {
-    /// Places cells at rest, `positions[cell]` those of a cell's atoms, µm; ids count from 0.
-    pub fn new(kind: &Kind, positions: &[Vec<Vec3>], inertial: Inertia) -> Self {
+    /// Places cells at rest, `positions[cell]` those of a cell's atoms, µm; their ids count from `first`. Behaviours begin as the seed
+    /// says.
+    pub fn new(kind: &Kind, positions: &[Vec<Vec3>], first: u64, inertial: Inertia, seed: u64) -> Self {
         let cells = positions.len();
         let mut blocks = vec![0.0; cells.div_ceil(kind.lanes) * kind.block_len()];
         for slot in 0..cells.next_multiple_of(kind.lanes) {
@@ -83,12 +98,12 @@ impl KindState {
                 }
             }
         }
+        let ids: Vec<u64> = (first..first + cells as u64).collect();
         let velocities = match inertial {
             Inertia::Inertial => vec![0.0; blocks.len()],
             Inertia::OverDamped => Vec::new(),
         };
         Self {
-            ids: (0..cells as u64).collect(),
             parents: vec![None; cells],
             first_cell: 0,
             first_atom: 0,
@@ -97,6 +112,8 @@ impl KindState {
             rest_volumes: vec![kind.rest_volume(); cells.next_multiple_of(kind.lanes)],
             stiffness_shape: Vec::new(),
             mean_velocities: vec![[0.0; 3]; cells],
+            behaviours: kind.behaviours.iter().map(|behaviour| start_of(&ids, *behaviour, seed)).collect(),
+            ids,
         }
     }
 
@@ -146,13 +163,19 @@ impl KindState {
             array.fill(f64::NAN);
         }
         self.mean_velocities.fill([f64::NAN; 3]);
+        self.behaviours.iter_mut().for_each(Vec::clear);
     }
 
     /// Adds a cell at rest behind the others; whoever adds it counts the cells of all kinds anew.
-    pub(super) fn push(&mut self, kind: &Kind, id: u64, parent: Option<u64>, positions: &[Vec3], inertial: bool) {
-        let cell = self.cells();
+    pub(super) fn push(&mut self, model: &Model, kind: &Kind, id: u64, new: &NewCell) {
+        let (cell, positions) = (self.cells(), &new.positions);
+        let inertial = model.integrator.method.is_inertial();
         self.ids.push(id);
-        self.parents.push(parent);
+        self.parents.push(new.parent);
+        // There are lists of a kind without cells, too.
+        for (states, behaviour) in self.behaviours.iter_mut().zip(&kind.behaviours) {
+            states.push(behaviour.start(model.seed, id));
+        }
         self.mean_velocities.push([0.0; 3]);
         self.stiffness_shape.clear();
         let blocks = self.blocks(kind);
@@ -195,6 +218,9 @@ impl KindState {
         self.stiffness_shape.clear();
         self.ids = kept.iter().map(|cell| self.ids[*cell]).collect();
         self.parents = kept.iter().map(|cell| self.parents[*cell]).collect();
+        for states in &mut self.behaviours {
+            *states = kept.iter().map(|cell| states[*cell]).collect();
+        }
         self.mean_velocities = kept.iter().map(|cell| self.mean_velocities[*cell]).collect();
     }
 
@@ -234,16 +260,12 @@ impl State {
     /// [`ChemistryState::new`] for a model that has some. Ids count through all cells in their order.
     pub fn new(model: &Model, places: &[Vec<Vec<Vec3>>]) -> Self {
         let inertia = if model.integrator.method.is_inertial() { Inertia::Inertial } else { Inertia::OverDamped };
-        let kinds = model.kinds.iter().zip(places).map(|(kind, cells)| KindState::new(kind, cells, inertia)).collect();
-        let mut state = Self { kinds, ..Self::default() };
-        state.number_cells(model);
-        state.next_id = state.cells() as u64;
-        for (kind, now) in model.kinds.iter().zip(&mut state.kinds) {
-            now.ids = now.numbers().map(|cell| cell as u64).collect();
-            if let Some(motility) = &kind.brownian {
-                state.walks.extend(now.ids.iter().map(|id| motility.start(model.seed, *id)));
-            }
+        let mut state = Self::default();
+        for (kind, cells) in model.kinds.iter().zip(places) {
+            state.kinds.push(KindState::new(kind, cells, state.next_id, inertia, model.seed));
+            state.next_id += cells.len() as u64;
         }
+        state.number_cells(model);
         state.chemistry = ChemistryState::new(model, &state.counts(), &[]);
         state
     }
@@ -300,7 +322,6 @@ impl State {
         (self.time, self.step, self.next_step) = (f64::NAN, u64::MAX, f64::NAN);
         (self.next_id, self.changes) = (u64::MAX, usize::MAX);
         self.kinds.iter_mut().for_each(KindState::poison);
-        self.walks.clear();
         self.ended_runs.clear();
         self.chemistry.poison();
         self.contact = ContactState::default();

@@ -14,7 +14,7 @@ use super::finite::check_finite;
 use super::gain::{energy_before, has_gained};
 use super::inertial::correct_velocities;
 use super::model::Model;
-use super::motility::advance_motility;
+use super::motility::advance_behaviours;
 use super::motion::move_freely;
 use super::plan::{Estimate, Flaw, Plan, StepReport};
 use super::refresh::fit_stiffness;
@@ -88,7 +88,7 @@ fn prepare(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> R
 fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Workspace) -> Result<Estimate, Trouble> {
     let (dt, end) = (plan.dt, from.time + plan.dt);
     carry_forces(model, from, ws);
-    advance_motility(model, dt, from, to, ws);
+    advance_behaviours(model, dt, from, to, ws);
     let error = move_freely(model, dt, from, to, ws);
     check_finite(model, end, to)?;
     hold_contacts(model, dt, plan.sweep_rules(), from, to, ws)?;

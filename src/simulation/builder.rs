@@ -84,7 +84,7 @@ impl Simulation {
     ///     ..Mechanics::default()
     /// };
     /// let mut cell = CellType::new(Mesh::Icosphere { radius: Length::new(5.0), level: 1 }, mechanics);
-    /// cell.loads.push(Load {
+    /// cell.applied.loads.push(Load {
     ///     name: "pull".into(),
     ///     selection: Selection::Cap(Cap { direction: [1.0, 0.0, 0.0], extent: CapExtent::Number(3) }),
     ///     direction: [1.0, 0.0, 0.0],

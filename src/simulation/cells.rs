@@ -3,7 +3,6 @@
 use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
-use crate::mechanics::Force;
 use crate::sim::state::index;
 use crate::sim::{Kind, KindState};
 
@@ -52,10 +51,7 @@ impl<'a> TypeView<'a> {
 
     /// Names of its fibres.
     pub fn fibres(&self) -> impl Iterator<Item = &'a str> + use<'a> {
-        self.kind.forces.iter().filter_map(|force| match force {
-            Force::Fibres(fibres) => Some(fibres.name.as_str()),
-            _ => None,
-        })
+        self.kind.fibres().map(|fibres| fibres.name.as_str())
     }
 
     /// Its cells, in order.

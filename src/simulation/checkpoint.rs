@@ -8,7 +8,7 @@ use super::error::{CheckpointFault, SimulationError};
 use super::fingerprint::fingerprint;
 use super::fits::check_fits;
 use super::stepping::Simulation;
-use crate::sim::{Model, State, Workspace};
+use crate::sim::{Kind, Model, State, Workspace};
 
 /// First bytes of a checkpoint.
 const MAGIC: &[u8; 8] = b"PSEUDSIM";
@@ -26,12 +26,12 @@ struct Changes {
 
 impl Changes {
     fn of(model: &Model) -> Self {
-        let biased = model.kinds.iter().map(|kind| kind.biased).collect();
+        let biased = model.kinds.iter().map(Kind::is_biased).collect();
         Self { biased, secreted: model.chemistry.secreted.clone() }
     }
 
     fn apply(self, model: &mut Model) {
-        model.kinds.iter_mut().zip(self.biased).for_each(|(kind, biased)| kind.biased = biased);
+        model.kinds.iter_mut().zip(self.biased).for_each(|(kind, biased)| kind.set_biased(biased));
         model.chemistry.secreted = self.secreted;
     }
 }
@@ -84,8 +84,12 @@ impl Simulation {
         if changes.biased.len() != self.model.kinds.len() || !changes.secreted.iter().all(is_known) {
             return Err(CheckpointFault::Foreign.into());
         }
-        check_fits(&self.model, &state).map_err(|_| CheckpointFault::Foreign)?;
+        let before = Changes::of(&self.model);
         changes.apply(&mut self.model);
+        if check_fits(&self.model, &state).is_err() {
+            before.apply(&mut self.model);
+            return Err(CheckpointFault::Foreign.into());
+        }
         self.state = state;
         self.scratch = Workspace::new(&self.model);
         self.last_step = 0.0;

@@ -3,12 +3,13 @@
 use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
-use crate::cell::ends::{Setting, settable, setting};
+use crate::cell::Behaviour;
+use crate::cell::ends::{Setting, settable, setting, word_of};
 use crate::equations::eml::{Step, read_end};
 use crate::equations::tree::System;
 use crate::geometry;
-use crate::mechanics::CONTROLLED;
 use crate::sim::chemistry::{Control, Target, Whose, missed, set_control};
+use crate::sim::state::start_of;
 use crate::sim::{Kind, VolumeRule};
 
 impl Simulation {
@@ -50,7 +51,11 @@ impl Simulation {
         let (number, cells) = (self.position_of(cell)?, self.state.cells());
         self.state.chemistry.controls.admit(control, cells);
         match control {
-            Control::Bias(_) => self.model.kinds[kind].biased = true,
+            Control::Bias(_) if !self.model.kinds[kind].is_biased() => {
+                self.model.kinds[kind].set_biased(true);
+                let start = start_of(&self.state.kinds[kind].ids, Behaviour::Bias, self.model.seed);
+                self.state.kinds[kind].behaviours.push(start);
+            }
             Control::Secretion(channel) if channel == self.model.chemistry.secreted.len() => {
                 self.model.chemistry.secreted.extend(self.species(what));
             }
@@ -76,7 +81,7 @@ impl Simulation {
         };
         let unknown = |what, name: &str, known| Err(SimulationError::Unknown { what, name: name.to_owned(), known });
         match setting {
-            Setting::MotilitySpeed if kind.brownian.is_none() => {
+            Setting::MotilitySpeed if !kind.has_speed() => {
                 lacks("has no Brownian motility", "give it one, or set motility.bias.x")
             }
             Setting::Adhesion if self.model.contact.is_none() => {
@@ -97,7 +102,7 @@ impl Simulation {
             Setting::RestVolumeRatio => Ok(Control::RestVolumeRatio),
             Setting::Force(handle, name) => match kind.controlled(handle).position(|known| known == name) {
                 Some(number) => Ok(Control::Force(handle, number)),
-                None => unknown(CONTROLLED[handle].word, &name, kind.controlled(handle).map(str::to_owned).collect()),
+                None => unknown(word_of(handle), &name, kind.controlled(handle).map(str::to_owned).collect()),
             },
             Setting::Secretion(name) => match self.species(what) {
                 Some(channel) => {

@@ -3,7 +3,7 @@
 use super::id::CellId;
 use crate::error::words::{all_of, meant};
 use crate::error::{Error, Fault};
-use crate::sim::Trouble;
+use crate::sim::{PopulationTrouble, Trouble};
 
 /// Why a simulation could not be made, or could not do what was asked.
 #[derive(Debug, thiserror::Error)]
@@ -68,6 +68,9 @@ pub enum SimulationError {
     /// A model and a state that do not belong together.
     #[error("the state is not one of this model: {0}")]
     Mismatch(String),
+    /// Cells that cannot come or go.
+    #[error(transparent)]
+    Population(#[from] PopulationTrouble),
     /// Bytes that cannot be restored.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointFault),
@@ -104,6 +107,9 @@ impl SimulationError {
             Self::Input(Error::Numbers { help, .. } | Error::Machine { help, .. }) => help.clone(),
             Self::Input(Error::Interrupted { .. }) | Self::Value { .. } => return None,
             Self::Trouble(trouble) => trouble.help().to_owned(),
+            Self::Population(_) => {
+                "let cells come where and when there is space for them, and go while they are there".to_owned()
+            }
             Self::Cancelled { .. } => "go on with a new cancel token".to_owned(),
             Self::NoSuchCell { .. } => "ask `cells` which there are".to_owned(),
             Self::Unknown { known, .. } if known.is_empty() => "there is none at all".to_owned(),
@@ -137,7 +143,9 @@ impl From<SimulationError> for Error {
         let (message, help) = (error.to_string(), error.help());
         match error {
             SimulationError::Input(error) => error,
-            SimulationError::Trouble(_) => Self::Numbers { message, help: help.unwrap_or_default(), kept: None },
+            SimulationError::Trouble(_) | SimulationError::Population(_) => {
+                Self::Numbers { message, help: help.unwrap_or_default(), kept: None }
+            }
             _ => Self::input(help.into_iter().fold(Fault::new(message), Fault::help)),
         }
     }

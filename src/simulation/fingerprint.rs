@@ -2,6 +2,7 @@
 
 use std::fmt::{Debug, Write};
 
+use crate::cell::Behaviour;
 use crate::sim::contact::ContactModel;
 use crate::sim::{Chemistry, Kind, Model};
 
@@ -49,7 +50,8 @@ fn add_kind(hash: &mut Fnv, kind: &Kind) {
     hash.value(&(&kind.name, kind.lanes, &kind.rest.positions, &kind.rest.facets));
     hash.value(&kind.forces);
     hash.value(&(kind.drag, kind.mass, &kind.held, &kind.volume));
-    hash.value(&kind.brownian);
+    // A velocity may be set while a simulation runs.
+    kind.behaviours.iter().filter(|one| **one != Behaviour::Bias).for_each(|behaviour| hash.value(behaviour));
 }
 
 fn add_contact(hash: &mut Fnv, contact: &ContactModel) {

@@ -1,6 +1,7 @@
 //! Whether a state is one of a model: as many numbers of everything as the model asks for.
 
 use super::error::SimulationError;
+use crate::cell::{Behaviour, BehaviourState};
 use crate::sim::chemistry::{ChemistryState, FieldState};
 use crate::sim::controls::Controls;
 use crate::sim::{Model, State};
@@ -32,11 +33,12 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
         if !fits {
             return mismatch(format!("the cells of type `{}` are others, or of another number", kind.name));
         }
-    }
-    let walkers = model.kinds.iter().zip(&state.kinds).filter(|(kind, _)| kind.brownian.is_some());
-    let walks: usize = walkers.map(|(_, now)| now.cells()).sum();
-    if state.walks.len() != walks {
-        return mismatch(format!("{} cells of it walk, not {walks}", state.walks.len()));
+        let own = |(behaviour, states): (&Behaviour, &Vec<BehaviourState>)| {
+            states.len() == count && states.iter().all(|state| behaviour.owns(state))
+        };
+        if now.behaviours.len() != kind.behaviours.len() || !kind.behaviours.iter().zip(&now.behaviours).all(own) {
+            return mismatch(format!("the cells of type `{}` do something else by themselves", kind.name));
+        }
     }
     let fields = model.chemistry.fields.iter().map(|field| FieldState {
         values: vec![0.0; field.system.species().len() * field.system.grid().len()],

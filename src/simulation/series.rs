@@ -83,7 +83,7 @@ impl Simulation {
             return Err(unknown(&layout, name));
         }
         let (names, values) = (names.iter().map(|name| (*name).to_owned()).collect(), vec![Vec::new(); names.len()]);
-        self.history = History { names, every, times: Vec::new(), values };
+        self.history = History { names, every, values, ..History::default() };
         self.keep_now();
         Ok(())
     }
@@ -97,7 +97,7 @@ impl Simulation {
     /// they are taken.
     pub fn take_ended_runs(&mut self) -> Vec<EndedRun> {
         let runs = std::mem::take(&mut self.state.ended_runs);
-        let run = |(cell, time, duration)| EndedRun { cell: CellId::new(u64::from(cell)), time, duration };
+        let run = |(cell, time, duration)| EndedRun { cell: CellId::new(cell), time, duration };
         runs.into_iter().map(run).collect()
     }
 
@@ -111,8 +111,9 @@ impl Simulation {
 
     /// Drops what was kept of times after this one, s.
     pub(super) fn forget_after(&mut self, time: f64) {
-        let History { times, values, .. } = &mut self.history;
+        let History { times, cells, values, .. } = &mut self.history;
         times.truncate(times.partition_point(|kept| *kept <= time));
+        cells.truncate(times.len());
         values.iter_mut().for_each(|values| values.truncate(times.len()));
     }
 
@@ -121,8 +122,10 @@ impl Simulation {
             return;
         }
         let (layout, frame) = (outline_of(&self.model), self.frame());
-        let History { names, times, values, .. } = &mut self.history;
+        let now: Vec<CellId> = self.cells().collect();
+        let History { names, times, cells, values, .. } = &mut self.history;
         times.push(frame.time);
+        cells.push(cells.last().filter(|known| known[..] == now[..]).cloned().unwrap_or_else(|| now.into()));
         for (name, values) in names.iter().zip(values) {
             values.push(frame.series(&layout, name).unwrap_or_default());
         }

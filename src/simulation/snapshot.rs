@@ -1,6 +1,7 @@
 //! What is measured of a simulation at one instant.
 
 use super::error::SimulationError;
+use super::id::CellId;
 use crate::output::{Frame, Layout};
 
 /// All that is measured at one instant, apart from the simulation: it can be kept, or sent to another thread.
@@ -19,6 +20,11 @@ impl Snapshot {
     /// Steps made.
     pub fn steps(&self) -> u64 {
         self.frame.step
+    }
+
+    /// The cells that there were, in the order of positions and series.
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = CellId> + '_ {
+        self.frame.cells.iter().map(|cell| CellId::new(cell.id))
     }
 
     /// Positions of all atoms, µm, in the order of [`Simulation::positions_into`](super::Simulation::positions_into).

@@ -10,7 +10,7 @@ use super::history::History;
 use super::record::Recorder;
 use crate::output::Frame;
 use crate::sim::contact::check_passed;
-use crate::sim::{Model, State, StepReport, Trouble, Workspace, begin_chemistry, step};
+use crate::sim::{Model, State, StepReport, Trouble, Workspace, apply_due_changes, begin_chemistry, step};
 
 /// A simulation in memory.
 ///
@@ -136,7 +136,8 @@ impl Simulation {
         self.cancel = token;
     }
 
-    /// Makes one step, whose size the experiment's integrator chooses.
+    /// Makes one step, whose size the experiment's integrator chooses. Before it, cells come and go as the document has it for
+    /// this time.
     ///
     /// ```
     /// # use pseudopod::simulation::{Simulation, EXAMPLE};
@@ -150,8 +151,8 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// [`SimulationError::Trouble`] when the numbers fail, [`SimulationError::Cancelled`] once the token is cancelled; the
-    /// state is then the one before the step.
+    /// [`SimulationError::Trouble`] when the numbers fail, [`SimulationError::Population`] when cells that are due cannot come,
+    /// [`SimulationError::Cancelled`] once the token is cancelled; the state is then the one before the step.
     pub fn step(&mut self) -> Result<StepReport, SimulationError> {
         let before = self.state.time;
         if self.cancel.is_cancelled() {
@@ -159,7 +160,10 @@ impl Simulation {
         }
         // After a failure nothing is known of a step.
         self.last_step = 0.0;
-        let made = self.within(|this| step(&this.model, &mut this.state, &mut this.scratch))?;
+        let made = self.within(|this| -> Result<StepReport, SimulationError> {
+            apply_due_changes(&this.model, &mut this.state, &mut this.scratch)?;
+            Ok(step(&this.model, &mut this.state, &mut this.scratch)?)
+        })?;
         self.last_step = made.dt;
         self.keep_if_due(before);
         Ok(made)

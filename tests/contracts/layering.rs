@@ -26,7 +26,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ("analysis", &["output", "experiment", "cell", "contact", "geometry"]),
     ("picture", &["xml", "output", "experiment", "analysis", "cell", "geometry", "run"]),
     // The door for programs: it records frames, and writes none.
-    ("simulation", &["experiment", "sim", "output", "cell", "equations", "contact", "geometry"]),
+    ("simulation", &["experiment", "sim", "output", "cell", "mechanics", "equations", "contact", "geometry"]),
     ("run", &["simulation", "experiment", "sim", "output", "analysis"]),
     (
         "cli",

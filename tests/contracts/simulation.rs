@@ -6,7 +6,7 @@ use pseudopod::experiment::Document;
 use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, RunOptions, run};
 use pseudopod::sim::State;
-use pseudopod::simulation::{Builder, CellId, CheckpointFault, EXAMPLE, SeriesScope};
+use pseudopod::simulation::{Builder, CellId, CheckpointFault, EXAMPLE, NewCell, PopulationTrouble, SeriesScope};
 use pseudopod::{CancelToken, Simulation, SimulationError};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -95,6 +95,10 @@ fn assert_same(one: &State, other: &State) {
 #[test]
 fn a_restored_simulation_goes_on_to_the_same_bits_with_everything_in_the_scene() {
     let mut whole = driven(2);
+    whole.run_until(2.0).unwrap();
+    let cells: Vec<CellId> = whole.cells().collect();
+    whole.add_cells("walker", &[NewCell::at([0.0, -30.0, 0.0]).born_from(cells[0])]).unwrap();
+    whole.remove_cells(&cells[3..4]).unwrap();
     whole.run_until(4.0).unwrap();
     let saved = whole.checkpoint();
     whole.run_until(8.0).unwrap();
@@ -371,6 +375,48 @@ fn what_cannot_be_set_is_named_and_changes_nothing() {
     }
     let error = simulation.set(squeezed, "fibre[bell]", 1.0).unwrap_err();
     assert_eq!(error.help().unwrap(), "did you mean `belt`? there is `belt`");
+}
+
+#[test]
+fn cells_come_and_go_and_keep_their_ids() {
+    let mut simulation = example();
+    simulation.keep(&["volume"], 1.0).unwrap();
+    simulation.run_until(1.5).unwrap();
+    let first = simulation.types().next().unwrap();
+    let shape: Vec<[f64; 3]> = first.rest_positions().map(|[x, y, z]| [x, 1.1 * y + 30.0, z]).collect();
+    let before: Vec<CellId> = simulation.cells().collect();
+    let new = [NewCell::at([0.0, -20.0, 0.0]), NewCell::with_positions(shape).born_from(before[0])];
+    let added = simulation.add_cells("pulled", &new).unwrap();
+    assert_eq!(added, [2, 3].map(CellId::new));
+    // Cells stand type after type; who was there keeps its id, and what is set of it.
+    let order = |simulation: &Simulation| simulation.cells().map(CellId::number).collect::<Vec<_>>();
+    assert_eq!((order(&simulation), simulation.position_of(before[1]).unwrap()), (vec![0, 2, 3, 1], 3));
+    let positions = simulation.snapshot();
+    assert_eq!(positions.cells().collect::<Vec<_>>(), simulation.cells().collect::<Vec<_>>());
+    let centre =
+        |simulation: &Simulation, cell| simulation.series("position_y").unwrap()[simulation.position_of(cell).unwrap()];
+    assert!((centre(&simulation, added[0]) + 20.0).abs() < 1e-9 && (centre(&simulation, added[1]) - 30.0).abs() < 1e-9);
+    simulation.set(added[0], "motility.bias.y", 1.0).unwrap();
+    simulation.remove_cells(&before[..1]).unwrap();
+    assert_eq!(order(&simulation), [2, 3, 1]);
+    simulation.run_until(2.5).unwrap();
+    assert!((centre(&simulation, added[0]) + 19.0).abs() < 1e-6, "{}", centre(&simulation, added[0]));
+    assert_eq!(simulation.add_cells("squeezed", &new[..1]).unwrap(), [CellId::new(4)], "ids are never used again");
+    let history = simulation.history();
+    let kept: Vec<usize> = history.values("volume").unwrap().iter().map(Vec::len).collect();
+    assert_eq!((kept, history.cells(1).len(), history.cells(2).len()), (vec![2, 2, 3], 2, 3));
+    // What is refused changes nothing.
+    let now = simulation.state().clone();
+    let gone = simulation.remove_cells(&[added[0], before[0]]).unwrap_err();
+    assert!(matches!(gone, SimulationError::NoSuchCell { cell } if cell == before[0]), "{gone}");
+    let kind = simulation.add_cells("pulld", &[]).unwrap_err();
+    assert_eq!(kind.help().unwrap(), "did you mean `pulled`? there is `pulled` and `squeezed`");
+    let atoms = simulation.add_cells("pulled", &[NewCell::with_positions(vec![[0.0; 3]; 7])]).unwrap_err();
+    assert!(matches!(atoms, SimulationError::Population(PopulationTrouble::Atoms { found: 7, expected: 42, .. })));
+    let mut touching = everything(1);
+    let overlap = touching.add_cells("walker", &[NewCell::at([1.0, 0.0, 0.0])]).unwrap_err();
+    assert!(matches!(overlap, SimulationError::Population(PopulationTrouble::Overlap { .. })), "{overlap}");
+    assert_same(simulation.state(), &now);
 }
 
 #[test]

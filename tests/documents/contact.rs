@@ -8,7 +8,6 @@ use pseudopod::recorded::{CONTACTS, Touch};
 use pseudopod::run::{Quiet, RunOptions, run};
 use pseudopod::sim::contact::Strength;
 use pseudopod::sim::{Workspace, begin_chemistry, step};
-use pseudopod::simulation::CancelToken;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -409,12 +408,7 @@ fn links_read_the_share_in_contact_that_is_recorded_and_planes_have_a_share_of_t
     let document = Document::parse_beside("row.toml", &text, Path::new("."), &[], beside).expect("a good document");
     let folder = tempfile::tempdir().expect("a folder");
     let result = folder.path().join("row.vtkhdf");
-    let options = RunOptions {
-        result: result.clone(),
-        overwrite: Overwrite::Refuse,
-        threads: Some(1),
-        cancel: CancelToken::default(),
-    };
+    let options = RunOptions { threads: Some(1), ..RunOptions::new(&result) };
     run(&document, &options, &mut Quiet).expect("a run");
     let file = ResultFile::open(&result).expect("a result");
     let series = |name: &str| file.cell_series(name).expect("a series");
@@ -444,12 +438,7 @@ fn explicit_steps_that_nobody_names_are_as_short_as_contacts_need() {
         let sets = [format!("run.integrator.method={method}")];
         let document = Document::parse("drawn.toml", DRAWN, Path::new("."), &sets).expect("a good document");
         let result = folder.path().join(format!("{method}.vtkhdf"));
-        let options = RunOptions {
-            result: result.clone(),
-            overwrite: Overwrite::Refuse,
-            threads: Some(1),
-            cancel: CancelToken::default(),
-        };
+        let options = RunOptions { threads: Some(1), ..RunOptions::new(&result) };
         let outcome = run(&document, &options, &mut Quiet).expect("a run that comes to its end");
         let file = ResultFile::open(&result).expect("a result");
         let at = file.cell_series("position_x").expect("a series").row(file.frames() - 1).to_vec();

@@ -2,4 +2,5 @@
 
 mod contact;
 mod meaning;
+mod population;
 mod start;

@@ -20,10 +20,10 @@ fn a_document_is_understood_in_base_units() {
     let red = &experiment.cells["red"];
     assert_eq!(red.mesh, Mesh::RedCell { diameter: Length::new(7.82), level: 3 });
     assert_eq!(red.mechanics.membrane.as_ref().map(|membrane| membrane.shear), Some(LineStiffness::new(5.3)));
-    assert_eq!(red.fixed[0].selection, Selection::Atoms(vec![0, 1]));
+    assert_eq!(red.applied.fixed[0].selection, Selection::Atoms(vec![0, 1]));
     let points = [(0.0, 0.0), (1.0, 16.0)].map(|(time, force)| (Time::new(time), Force::new(force)));
-    assert_eq!(red.loads[0].force, Course::Points(points.to_vec()));
-    assert_eq!(red.loads[1].force.points(), [(0.0, 10.0)]);
+    assert_eq!(red.applied.loads[0].force, Course::Points(points.to_vec()));
+    assert_eq!(red.applied.loads[1].force.points(), [(0.0, 10.0)]);
     assert_eq!(experiment.cells["ball"].count(), 100, "the number follows from the grid");
     assert_eq!(experiment.picture.time, When::At(Time::new(12.0)));
     assert_eq!(experiment.environment.gravity.map(|gravity| gravity[2].value()), Some(-9.81e6));
@@ -43,9 +43,19 @@ fn set_changes_any_key_and_leaves_the_text() {
     let document = everything(&["run.until=40 s", "seed=9", "cells.red.loads[1].force=[[\"0 s\", \"2 pN\"]]"]);
     assert_eq!(document.experiment.run.until, Time::new(40.0));
     assert_eq!(document.experiment.seed, 9);
-    assert_eq!(document.experiment.cells["red"].loads[1].force.points(), [(0.0, 2.0)]);
+    assert_eq!(document.experiment.cells["red"].applied.loads[1].force.points(), [(0.0, 2.0)]);
     assert!(document.source.text.contains("until = \"26 s\""));
     assert_eq!(document.sets.len(), 3);
+}
+
+#[test]
+fn a_bare_zero_is_nothing_in_any_unit() {
+    let document = everything(&["picture.cut=0", "picture.time=0", "environment.gravity=[0, 0, 0.0]"]);
+    assert_eq!(document.experiment.picture.cut, Some(Length::ZERO));
+    assert_eq!(document.experiment.picture.time, When::At(Time::ZERO));
+    assert!(document.experiment.environment.gravity.is_some_and(|gravity| gravity.iter().all(|g| g.value() == 0.0)));
+    let sets = ["picture.cut=5".to_owned()];
+    assert!(Document::read(Path::new("tests/documents/everything.toml"), &sets).is_err(), "5 of what?");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Cells come and go between steps: what stays goes on as if nothing else had been there, and nothing is known of what is gone.
 
-use crate::everything::{Steps, after, everything};
+use crate::everything::{after, everything};
 use pseudopod::Vec3;
+use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::geometry::{self, Surface, Topology, icosphere};
 use pseudopod::mechanics::Force;
@@ -47,7 +48,7 @@ fn run(model: &Model, state: &mut State, ws: &mut Workspace, steps: usize) {
 
 /// The scene that has everything, begun, with fixed steps.
 fn begun() -> (Model, State, Workspace) {
-    let (model, start) = everything(Steps::Fixed, "0.3 s");
+    let (model, start) = everything(Some("0.05 s"), "0.3 s");
     let (state, ws) = after(&model, start, 0);
     (model, state, ws)
 }
@@ -72,7 +73,7 @@ fn ids_are_given_once_and_kinds_may_have_no_cells() {
     run(&model, &mut state, &mut ws, 3);
     remove_cells(&model, &mut state, &mut ws, &[0, 2, 4, 6, 7]).unwrap();
     assert_eq!((state.cells(), state.next_id), (0, 8));
-    assert!(state.walks.is_empty() && state.contact == Default::default());
+    assert!(state.kinds[0].behaviours.iter().all(Vec::is_empty) && state.contact == Default::default());
     run(&model, &mut state, &mut ws, 3);
     add_cells(&model, &mut state, &mut ws, 0, &[at(&model, 0, [0.0, 0.0, 5.02])]).unwrap();
     run(&model, &mut state, &mut ws, 3);
@@ -131,7 +132,7 @@ fn a_cell_that_came_and_went_leaves_the_others_as_if_it_had_never_been() {
     for id in 0..4 {
         assert_eq!(cell(&model, &plain, id), cell(&model, &other, id), "cell {id}");
     }
-    assert_eq!(plain.walks, other.walks, "walks are drawn by ids");
+    assert_eq!(plain.kinds[0].behaviours, other.kinds[0].behaviours, "walks are drawn by ids");
     assert!(other.ended_runs.iter().any(|run| ids.contains(&run.0)), "and those of cells that are gone are told");
 }
 
@@ -181,7 +182,7 @@ fn contacts_of_the_cells_that_stay_go_on() {
 fn course(threads: usize, between: impl Fn(&mut State, &mut Workspace) + Sync) -> Vec<u8> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
-        let (model, start) = everything(Steps::Adaptive, "0.3 s");
+        let (model, start) = everything(None, "0.3 s");
         let (mut state, mut ws) = after(&model, start, 0);
         for round in 0..24u32 {
             between(&mut state, &mut ws);
@@ -204,7 +205,7 @@ fn a_course_with_cells_that_come_and_go_is_the_same_for_any_threads_scratch_and_
     let plain = course(1, |_, _| ());
     assert!(plain == course(2, |_, _| ()), "threads");
     assert!(plain == course(1, |state, _| *state = postcard::from_bytes(&bytes(state)).unwrap()), "checkpoints");
-    let (model, _) = everything(Steps::Adaptive, "0.3 s");
+    let (model, _) = everything(None, "0.3 s");
     assert!(plain == course(1, |_, ws| *ws = Workspace::new(&model)), "no scratch");
     assert!(plain == course(1, |_, ws| ws.poison(&model)), "scratch of what is not a number");
 }
@@ -218,7 +219,8 @@ fn lanes_are_filled_and_emptied_in_any_order() {
         let mut kind = Kind::new("cell", surface.clone(), vec![Force::ShapeMemory(memory.clone())]).for_cells(cells);
         assert_eq!(kind.lanes, lanes);
         kind.bound_stiffness();
-        kind.brownian = Some(BrownianMotility { speed: 0.5, persistence: 2.0, space: Space::Volume });
+        let walk = BrownianMotility { speed: 0.5, persistence: 2.0, space: Space::Volume };
+        kind.behaviours = vec![Behaviour::Brownian(walk)];
         let integrator = Integrator { method: Method::Implicit { order: Order::Second }, size: STEP };
         let model = Model::of(vec![kind], integrator, 1e9);
         let places = |count: usize| -> Vec<Vec<Vec3>> {
@@ -271,7 +273,7 @@ fn changes_of_the_model_are_made_at_their_times_and_draw_by_ids() {
         let mut model = model.clone();
         (model.seed, model.contact) = (seed, None);
         model.changes = vec![PopulationChange { time: 0.0, kind: 0, change: Change::Remove(Removal::Number(2)) }];
-        let mut state = everything(Steps::Fixed, "0.3 s").1;
+        let mut state = everything(Some("0.05 s"), "0.3 s").1;
         let more: Vec<NewCell> = (4..cells).map(|n| at(&model, 0, [60.0 * n as f64, 0.0, 5.02])).collect();
         let mut ws = Workspace::new(&model);
         add_cells(&model, &mut state, &mut ws, 0, &more).unwrap();

@@ -3,6 +3,7 @@
 
 use nalgebra::Rotation3;
 use pseudopod::Vec3;
+use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::contact::Reach;
 use pseudopod::geometry::{self, Surface, Topology};
@@ -401,8 +402,8 @@ impl Scene {
         }
         let pull = Force::Attraction(Attraction { to: Vec3::zeros(), stiffness: of.pull });
         kind.forces.extend((of.pull > 0.0).then_some(pull));
-        kind.brownian =
-            (of.speed > 0.0).then_some(BrownianMotility { speed: of.speed, persistence: 10.0, space: Space::Volume });
+        let walk = BrownianMotility { speed: of.speed, persistence: 10.0, space: Space::Volume };
+        kind.behaviours.extend((of.speed > 0.0).then_some(Behaviour::Brownian(walk)));
         kind.largest_stiffness = kind.measure_largest_stiffness();
         kind.bound_stiffness();
         kind

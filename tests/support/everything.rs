@@ -2,6 +2,7 @@
 //! and climb, systems with events, links both ways, an atom that is put somewhere.
 
 use pseudopod::experiment::{Compiled, Document, compile};
+use pseudopod::geometry::icosphere;
 use pseudopod::sim::{Model, State, Workspace, begin_chemistry, step};
 
 /// The field.
@@ -26,8 +27,8 @@ const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/
 
 /// What the ball has: it moves one of its atoms.
 const PIN: &str = r#"<eml name="pin" level="cell"><variable id="t" initial="0" rate="1"/><input id="seen" default="0"/>
-    <define id="wanted">seen + 0.0002*cos(t)</define>
-    <link from="cell.atom[4].y" to="system.seen"/><link from="system.wanted" to="cell.atom[4].y"/></eml>"#;
+    <define id="wanted">BEGIN - 0.02*t</define>
+    <link from="cell.position.x" to="system.seen"/><link from="system.wanted" to="cell.atom[4].y"/></eml>"#;
 
 /// What the scene has.
 const WHOLE: &str = r#"<eml name="whole"><input id="mean" default="0"/><variable id="sum" initial="0" rate="mean"/>
@@ -76,26 +77,16 @@ document = "pin.eml"
 document = "whole.eml"
 "#;
 
-/// How the scene is stepped.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Steps {
-    /// As long as the error allows.
-    Adaptive,
-    /// Of one size.
-    Fixed,
-}
-
-/// Model and start; walks last this long at a mean ("0.3 s").
-pub fn everything(steps: Steps, persistence: &str) -> (Model, State) {
+/// Model and start, with steps of one size ("0.05 s") or as long as the error allows; walks last this long at a mean ("0.3 s").
+pub fn everything(step: Option<&str>, persistence: &str) -> (Model, State) {
     let folder = tempfile::tempdir().unwrap();
-    for (name, eml) in [("field", FIELD), ("own", OWN), ("pin", PIN), ("whole", WHOLE)] {
+    // Where the atom of the ball begins.
+    let pin = PIN.replace("BEGIN", &format!("{}", 9.0 + icosphere(4.0, 1).positions[4].y));
+    for (name, eml) in [("field", FIELD), ("own", OWN), ("pin", &pin), ("whole", WHOLE)] {
         std::fs::write(folder.path().join(format!("{name}.eml")), eml).unwrap();
     }
-    let integrator = match steps {
-        Steps::Adaptive => "max_step = \"0.1 s\"",
-        Steps::Fixed => "step = \"0.05 s\"",
-    };
-    let text = TEXT.replace("INTEGRATOR", integrator).replace("PERSISTENCE", persistence);
+    let integrator = step.map_or("max_step = \"0.1 s\"".to_owned(), |step| format!("step = \"{step}\""));
+    let text = TEXT.replace("INTEGRATOR", &integrator).replace("PERSISTENCE", persistence);
     let document = Document::parse("test.toml", &text, folder.path(), &[]).unwrap_or_else(|error| panic!("{error}"));
     let Compiled { model, state, .. } = compile(&document).unwrap_or_else(|error| panic!("{error}"));
     (model, state)

@@ -1,19 +1,12 @@
 //! Builds the surface of a type of cells.
 
 use super::super::{CellType, Document, Mesh, VolumeRule};
-use super::unit;
+use super::builder::Built;
+use super::numbers::unit;
 use crate::Vec3;
 use crate::error::{Error, Fault};
 use crate::geometry::{self, Surface, SurfaceRules};
 use nalgebra::{Unit, UnitQuaternion};
-
-/// A surface as its mesh is made, and turned as the document says.
-pub struct Built {
-    /// Before it is turned: symmetric about the z axis where the shape is.
-    pub plain: Surface,
-    /// Turned.
-    pub turned: Surface,
-}
 
 /// The surface of a type, or nothing and a fault.
 pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Vec<Fault>) -> Option<Built> {

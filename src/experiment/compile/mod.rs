@@ -1,23 +1,27 @@
 //! From what the user wrote to what it means: a [`Model`] in µm, s and pN, and the [`State`] it starts from.
 
+mod builder;
 mod chemistry;
 mod contact;
 mod forces;
 mod mesh;
 mod notices;
+mod numbers;
 mod overlap;
 mod place;
+mod population;
 mod room;
 mod select;
 mod start;
 mod steps;
 
+pub(super) use builder::Builder;
 pub use notices::notices;
+pub(super) use numbers::{course, unit};
 pub use start::{PushedApart, settle_start};
 
-use super::{CellType, Document, Experiment, Space, VolumeRule as Rule};
+use super::{CellType, Document, Experiment, VolumeRule as Rule};
 use crate::Vec3;
-use crate::cell::motility::{BrownianMotility, Space as WalkSpace};
 use crate::error::{Error, Fault, Result};
 use crate::field::Fields;
 use crate::geometry::{self, Surface};
@@ -25,6 +29,8 @@ use crate::mechanics::course::Course;
 use crate::sim::chemistry::ChemistryState;
 use crate::sim::kind::kinks;
 use crate::sim::{Kind, Model, Plane, State, VolumeRule};
+use builder::Built;
+use numbers::vector;
 
 /// When the run records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,7 +104,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         if faults.len() > before {
             continue;
         }
-        kinds.push(kind.for_cells(cell.count()));
+        kinds.push(kind.for_cells(cell.most()));
         counts.push(cell.count());
     }
     // Atoms that do not exist have been told; links look at kinds and must see them all.
@@ -124,7 +130,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),
-        changes: Vec::new(),
+        changes: population::changes(experiment, &kinds),
         integrator,
         contact: contact.map(|contact| contact.suited_to(integrator.size)),
         kinds,
@@ -136,62 +142,35 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     Ok(Prepared { model, schedule, centres, fields })
 }
 
-/// Three numbers as a vector.
-fn vector(components: [f64; 3]) -> Vec3 {
-    Vec3::from(components)
-}
-
-/// The unit vector along a direction; the document's checks have refused the null vector.
-fn unit(direction: [f64; 3]) -> Vec3 {
-    vector(direction).normalize()
-}
-
-fn compile_kind(
-    document: &Document,
-    name: &str,
-    cell: &CellType,
-    surface: mesh::Built,
-    faults: &mut Vec<Fault>,
-) -> Kind {
+fn compile_kind(document: &Document, name: &str, cell: &CellType, surface: Built, faults: &mut Vec<Fault>) -> Kind {
     let key = format!("cells.{name}");
-    let mut drawn_links = Vec::new();
-    let forces = forces::forces(document, &key, cell, &surface, &mut drawn_links, faults);
+    let mut builder = Builder::new(document, &key, &surface, faults);
+    forces::add_forces(cell, &document.experiment.environment, &mut builder);
+    let Builder { forces, drawn, .. } = builder;
     let atoms = surface.turned.positions.len() as f64;
     let mut kind = Kind::new(name, surface.turned, forces);
-    kind.drawn_links = drawn_links;
+    kind.drawn_links = drawn;
     kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
     kind.held = held(document, &key, cell, &kind.rest, faults);
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
-    kind.brownian = cell.motility.brownian.as_ref().map(|brownian| BrownianMotility {
-        speed: brownian.speed.value(),
-        persistence: brownian.persistence.value(),
-        space: match brownian.space {
-            Space::Plane => WalkSpace::Plane,
-            Space::Volume => WalkSpace::Volume,
-        },
-    });
+    kind.behaviours = cell.motility.behaviours();
     kind
 }
 
 /// Factors of the atoms that are held: 0 held, 1 free; empty when none is.
 fn held(document: &Document, key: &str, cell: &CellType, rest: &Surface, faults: &mut Vec<Fault>) -> Vec<f64> {
-    if cell.fixed.is_empty() {
+    if cell.applied.fixed.is_empty() {
         return Vec::new();
     }
     let mut factors = vec![1.0; 3 * rest.positions.len()];
-    for (i, fixed) in cell.fixed.iter().enumerate() {
+    for (i, fixed) in cell.applied.fixed.iter().enumerate() {
         let atoms = select::atoms(document, &format!("{key}.fixed[{i}]"), &fixed.selection, rest, faults);
         for atom in atoms {
             fixed.axes.iter().for_each(|axis| factors[3 * atom as usize + *axis as usize] = 0.0);
         }
     }
     factors
-}
-
-/// The document's checks have made sure that times rise.
-fn course(points: Vec<(f64, f64)>) -> Course {
-    Course::through(points).unwrap_or_else(|| Course::constant(0.0))
 }
 
 fn volume_rule(document: &Document, key: &str, cell: &CellType, kind: &Kind, faults: &mut Vec<Fault>) -> VolumeRule {

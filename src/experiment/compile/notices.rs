@@ -3,6 +3,7 @@
 use super::super::{Document, Mesh};
 use super::Prepared;
 use crate::Vec3;
+use crate::cell::Behaviour;
 use crate::geometry::bounding_box;
 use crate::mechanics::Force;
 use crate::sim::{Kind, Model};
@@ -77,10 +78,10 @@ fn may_meet(model: &Model, centres: &[Vec<Vec3>]) -> bool {
 /// How far cells of a kind may come in the run, µm; none where forces move them or change their size.
 fn reach(model: &Model, kind: &Kind) -> Option<f64> {
     let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
-    let driven = kind.biased || !kind.forces.iter().all(Force::is_elastic);
+    let driven = kind.is_biased() || !kind.forces.iter().all(Force::is_elastic);
     let still = steady && !driven && model.chemistry.is_empty();
-    let walks = kind.brownian.map_or(0.0, |brownian| brownian.speed * model.until);
-    still.then_some(walks)
+    let speed: f64 = kind.behaviours.iter().filter_map(Behaviour::speed).sum();
+    still.then_some(speed * model.until)
 }
 
 /// Whether two boxes share a point: those whose ranges along x meet are compared.

@@ -1,8 +1,9 @@
 //! Puts cells where they start.
 
 use super::super::{CellType, Experiment, Placement};
-use super::vector;
+use super::numbers::vector;
 use crate::Vec3;
+use crate::geometry::point_in_box;
 use crate::random::{Purpose, Stream};
 use crate::sim::Kind;
 
@@ -23,47 +24,47 @@ pub fn first_cells(experiment: &Experiment) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The centres of all cells of a kind, of which the first has this number among all cells.
+/// The centres of all cells of a kind at the start, of which the first has this number among all cells.
 pub fn centres(experiment: &Experiment, cell: &CellType, kind: &Kind, first_cell: usize) -> Vec<Vec3> {
     let number = cell.count();
-    let mut centres: Vec<Vec3> = match &cell.placement {
+    let Some(Placement::Random { random_from, random_to }) = &cell.placement else {
+        return positions_of(cell.placement.as_ref(), number, kind);
+    };
+    let (low, high) = (vector(random_from.map(|x| x.value())), vector(random_to.map(|x| x.value())));
+    (0..number).map(|i| random_position(experiment.seed, (first_cell + i) as u32, low, high)).collect()
+}
+
+/// The first positions that a document gives cells of a kind, or a grid that it need not give; none where they are drawn.
+pub fn positions_of(placement: Option<&Placement>, number: usize, kind: &Kind) -> Vec<Vec3> {
+    let mut positions: Vec<Vec3> = match placement {
         Some(Placement::At { at }) => at.iter().map(|x| vector(x.map(|x| x.value()))).collect(),
         Some(Placement::Grid { grid, spacing, origin }) => {
-            grid_places(*grid, spacing.value(), vector(origin.map(|x| x.value())))
+            grid_positions(*grid, spacing.value(), vector(origin.map(|x| x.value())))
         }
-        Some(Placement::Random { random_from, random_to }) => {
-            let (low, high) = (vector(random_from.map(|x| x.value())), vector(random_to.map(|x| x.value())));
-            (0..number).map(|i| random_place(experiment.seed, (first_cell + i) as u32, low, high)).collect()
-        }
+        Some(Placement::Random { .. }) => Vec::new(),
         None => {
             let side = (number as f64).sqrt().ceil() as u32;
             let extent = crate::geometry::bounding_box(&kind.rest.positions).map_or(1.0, |(a, b)| (b - a).max());
-            grid_places([side, side, 1], GRID_SPACING * extent, Vec3::zeros())
+            grid_positions([side, side, 1], GRID_SPACING * extent, Vec3::zeros())
         }
     };
-    centres.truncate(number);
-    centres
+    positions.truncate(number);
+    positions
 }
 
-fn grid_places(grid: [u32; 3], spacing: f64, origin: Vec3) -> Vec<Vec3> {
+fn grid_positions(grid: [u32; 3], spacing: f64, origin: Vec3) -> Vec<Vec3> {
     let middle = Vec3::from(grid.map(|n| 0.5 * f64::from(n - 1)));
-    let mut places = Vec::new();
+    let mut positions = Vec::new();
     for z in 0..grid[2] {
         for y in 0..grid[1] {
             for x in 0..grid[0] {
-                places.push(origin + spacing * (Vec3::new(f64::from(x), f64::from(y), f64::from(z)) - middle));
+                positions.push(origin + spacing * (Vec3::new(f64::from(x), f64::from(y), f64::from(z)) - middle));
             }
         }
     }
-    places
+    positions
 }
 
-fn random_place(seed: u64, cell: u32, low: Vec3, high: Vec3) -> Vec3 {
-    draw(&mut Stream::new(seed, Purpose::Placement, cell, 0), low, high)
-}
-
-/// A place in a box.
-pub fn draw(stream: &mut Stream, low: Vec3, high: Vec3) -> Vec3 {
-    let ([x, y], [z, _]) = (stream.uniform_pair(), stream.uniform_pair());
-    low + (high - low).component_mul(&Vec3::new(x, y, z))
+fn random_position(seed: u64, cell: u32, low: Vec3, high: Vec3) -> Vec3 {
+    point_in_box(&mut Stream::new(seed, Purpose::Placement, cell, 0), low, high)
 }

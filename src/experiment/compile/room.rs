@@ -1,8 +1,8 @@
 //! Finds room for cells that are placed at random and must not overlap.
 
 use super::super::{CellType, Document, Placement};
+use super::numbers::vector;
 use super::place::{centres, first_cells};
-use super::vector;
 use crate::Vec3;
 use crate::error::{Error, Fault, Result};
 use crate::geometry::{Occupied, bounding_box};

@@ -1,7 +1,7 @@
 //! Finds the atoms that a selection means.
 
 use super::super::{Cap, CapExtent, Document, Selection};
-use super::unit;
+use super::numbers::unit;
 use crate::Vec3;
 use crate::error::Fault;
 use crate::geometry::{self, Surface};

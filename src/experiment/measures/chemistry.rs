@@ -1,7 +1,7 @@
 //! Measures of fields and of chemistry: values, cells that follow an attractant, rhythms, waves and patterns.
 
 use super::Reduction;
-use crate::experiment::cells::Space;
+use crate::cell::motility::Space;
 use crate::experiment::values::When;
 use crate::units::{Length, Time};
 use schemars::JsonSchema;

@@ -26,10 +26,43 @@ impl Check<'_> {
         }
     }
 
-    pub(super) fn places(&mut self, path: &str, cell: &CellType) {
-        let number = cell.count();
+    pub(super) fn placements(&mut self, path: &str, cell: &CellType) {
         let placement = format!("{path}.placement");
-        match &cell.placement {
+        if cell.count() > 0 || cell.added.is_empty() {
+            self.placement(&placement, cell.count(), cell.placement.as_ref());
+        }
+        for (index, added) in cell.added.iter().enumerate() {
+            let path = format!("{path}.added[{index}]");
+            self.within_run(&path, added.time.value());
+            self.placement(&format!("{path}.placement"), added.count(), Some(&added.placement));
+        }
+        for (index, removed) in cell.removed.iter().enumerate() {
+            let path = format!("{path}.removed[{index}]");
+            self.within_run(&path, removed.time.value());
+            if removed.share.is_some() && removed.number.is_some() {
+                let message = format!("`{path}` has both `share` and `number`");
+                self.fault(&format!("{path}.number"), "only one of them may be given", message, "remove one of them");
+            }
+        }
+        if cell.number == Some(0) && cell.added.is_empty() {
+            let (number, message) = (format!("{path}.number"), format!("`{path}` has no cells"));
+            let help = "give a number above 0, or cells that come later: added = [{ time = \"10 s\", … }]";
+            self.fault(&number, "none, and none comes", message, help);
+        }
+    }
+
+    /// What happens to the cells must happen before the run ends.
+    fn within_run(&mut self, path: &str, time: f64) {
+        let until = self.document.experiment.run.until;
+        if time > until.value() {
+            let (time, message) =
+                (format!("{path}.time"), format!("`{path}.time` is behind the end of the run, {until}"));
+            self.fault(&time, "never comes", message, "let it be earlier, or the run longer");
+        }
+    }
+
+    fn placement(&mut self, placement: &str, number: usize, given: Option<&Placement>) {
+        match given {
             Some(Placement::At { at }) if at.len() != number || at.is_empty() => {
                 let places = if at.len() == 1 { "1 place".to_owned() } else { format!("{} places", at.len()) };
                 let message = format!("`{placement}.at` has {places} for {number} cells");
@@ -109,7 +142,7 @@ impl Check<'_> {
     }
 
     /// Times of a course must increase.
-    fn course(&mut self, path: &str, points: &[(f64, f64)]) {
+    pub(in crate::experiment) fn course(&mut self, path: &str, points: &[(f64, f64)]) {
         if points.is_empty() {
             self.fault(path, "no points", format!("`{path}` has no points"), "give points [time, value], or one value");
         }
@@ -126,23 +159,7 @@ impl Check<'_> {
         }
     }
 
-    pub(super) fn loads(&mut self, path: &str, cell: &CellType) {
-        for (index, fixed) in cell.fixed.iter().enumerate() {
-            self.selection(&format!("{path}.fixed[{index}]"), &fixed.selection);
-        }
-        for (index, load) in cell.loads.iter().enumerate() {
-            let path = format!("{path}.loads[{index}]");
-            self.selection(&path, &load.selection);
-            self.direction(&format!("{path}.direction"), load.direction);
-            self.course(&format!("{path}.force"), &load.force.points());
-            if let Some(other) = cell.loads[..index].iter().position(|other| other.name == load.name) {
-                let message = format!("`{path}.name` is the name of load {other} too");
-                self.fault(&format!("{path}.name"), "taken", message, "names of loads differ within a type of cells");
-            }
-        }
-    }
-
-    fn selection(&mut self, path: &str, selection: &Selection) {
+    pub(in crate::experiment) fn selection(&mut self, path: &str, selection: &Selection) {
         match selection {
             Selection::Cap(cap) => self.direction(&format!("{path}.cap.direction"), cap.direction),
             Selection::Atoms(atoms) => {
@@ -156,47 +173,13 @@ impl Check<'_> {
         }
     }
 
-    pub(super) fn fibres(&mut self, path: &str, cell: &CellType) {
-        for (index, fibre) in cell.fibres.iter().enumerate() {
-            let path = format!("{path}.fibres[{index}]");
-            self.pairs(&path, &fibre.linked);
-            let points = fibre.activation.points();
-            self.course(&format!("{path}.activation"), &points);
-            if let Some((time, value)) = points.iter().find(|(_, value)| !(0.0..=1.0).contains(value)) {
-                let message = format!("`{path}.activation` is {value} at {time} s");
-                let help = "an activation is a number from 0 (relaxed) to 1 (all that the stiffness gives)";
-                self.fault(&format!("{path}.activation"), "not from 0 to 1", message, help);
-            }
-            if let Some(other) = cell.fibres[..index].iter().position(|other| other.name == fibre.name) {
-                let message = format!("`{path}.name` is the name of fibres {other} too");
-                self.fault(&format!("{path}.name"), "taken", message, "names of fibres differ within a type of cells");
-            }
-        }
-    }
-
-    fn pairs(&mut self, path: &str, linked: &Linked) {
+    pub(in crate::experiment) fn pairs(&mut self, path: &str, linked: &Linked) {
         if let Linked::Pairs(pairs) = linked
             && let Some(pair) = pairs.iter().position(|[a, b]| a == b)
         {
             let at = format!("{path}.pairs[{pair}]");
             let message = format!("`{at}` links atom {} with itself", pairs[pair][0]);
             self.fault(&at, "the same atom", message, "name two different atoms");
-        }
-    }
-
-    pub(super) fn links(&mut self, path: &str, cell: &CellType) {
-        for (index, link) in cell.links.iter().enumerate() {
-            let path = format!("{path}.links[{index}]");
-            self.pairs(&path, &link.linked);
-            if link.rest_length.is_some() && link.rest_ratio.is_some() {
-                let message = format!("`{path}` has both `rest_length` and `rest_ratio`");
-                self.fault(
-                    &format!("{path}.rest_ratio"),
-                    "only one of them may be given",
-                    message,
-                    "remove one of them",
-                );
-            }
         }
     }
 }

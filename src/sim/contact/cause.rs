@@ -50,7 +50,9 @@ const FOLDED: f64 = -0.34;
 
 /// The cause for two cells (type and number), or twice the same, in this state.
 fn cause_of(model: &Model, state: &State, cells: &[(String, usize); 2]) -> Cause {
-    let Some(contact) = &model.contact else { return Cause::Open };
+    let Some(contact) = &model.contact.as_ref().map(|contact| contact.scene_of(&state.kinds)) else {
+        return Cause::Open;
+    };
     let bodies = cells.each_ref().map(|(name, cell)| {
         let kind = model.kinds.iter().position(|kind| kind.name == *name);
         (kind.map_or(0, |kind| state.kinds[kind].first_cell) + cell) as u32

@@ -161,7 +161,7 @@ impl Ends<'_, '_> {
             let kind = &self.kinds[number];
             let free = kind.volume == crate::sim::VolumeRule::Free;
             let (lacking, help) = match setting {
-                Setting::MotilitySpeed if kind.brownian.is_none() => {
+                Setting::MotilitySpeed if !kind.has_speed() => {
                     ("has no Brownian motility", "add `motility = { brownian = … }`, or set motility.bias")
                 }
                 Setting::Adhesion if !self.touching => {
