@@ -221,7 +221,7 @@ impl Columns {
 
     /// The small files that lead to the fields of a result.
     pub fn views(&self, result: &Path) -> impl Iterator<Item = PathBuf> {
-        self.layout.fields.iter().map(|field| field_view_path(result, &field.name))
+        self.layout.fields.iter().map(move |field| field_view_path(result, &field.name))
     }
 
     /// Frames so far.
