@@ -126,7 +126,7 @@ fn allocations_of_everything() -> usize {
     let (model, start) = everything(Some("0.05 s"), "1000 h");
     pool.install(|| {
         // Until the cells lie where they stay, and lists of contacts are as long as they become.
-        let (mut state, mut ws) = after(&model, start, 100);
+        let (mut state, mut ws) = after(&model, start, 400);
         let before = CALLS.load(Ordering::Relaxed);
         for _ in 0..20 {
             step(&model, &mut state, &mut ws).unwrap();

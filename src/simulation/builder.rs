@@ -95,7 +95,7 @@ impl Simulation {
     /// experiment.cells.insert("white".into(), cell);
     /// let mut simulation = Simulation::from_experiment(experiment)?;
     /// simulation.run_until(1.0)?;
-    /// assert!(simulation.series("size_x")?[0] > 10.0);
+    /// assert!(simulation.series("position_x")?[0] > 0.0, "the cell follows the pull");
     /// # Ok::<(), pseudopod::simulation::SimulationError>(())
     /// ```
     ///

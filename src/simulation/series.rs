@@ -63,7 +63,8 @@ impl Simulation {
     /// simulation.run_until(2.0)?;
     /// let history = simulation.history();
     /// assert_eq!(history.times().len(), 5);
-    /// assert!(history.values("size_x").unwrap()[4][0] > 10.0, "the pulled cell has become longer");
+    /// let lengths = history.values("size_x").unwrap();
+    /// assert!(lengths[4][0] > lengths[0][0], "the pulled cell has become longer");
     /// # Ok::<(), pseudopod::simulation::SimulationError>(())
     /// ```
     ///

@@ -186,10 +186,10 @@ impl Simulation {
     ///
     /// let mut simulation = Simulation::from_text("example", EXAMPLE)?;
     /// let stopped = simulation.run_with(10.0, |simulation, _| match simulation.series("size_x") {
-    ///     Ok(lengths) if lengths[0] > 10.2 => ControlFlow::Break(simulation.time()),
+    ///     Ok(lengths) if lengths[0] > 9.55 => ControlFlow::Break(simulation.time()),
     ///     _ => ControlFlow::Continue(()),
     /// })?;
-    /// assert!(stopped.is_break(), "the pulled cell becomes longer than 10.2 um");
+    /// assert!(stopped.is_break(), "the pulled cell becomes longer than 9.55 um");
     /// # Ok::<(), pseudopod::simulation::SimulationError>(())
     /// ```
     ///

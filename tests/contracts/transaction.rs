@@ -21,7 +21,12 @@ fn fails(what: &str, model: &Model, state: &State, ws: &mut Workspace, is: impl 
     assert!(is(&trouble), "{what}: {trouble:?}");
     assert!(bytes(&tried) == before, "{what}: the state is the one before the step, byte by byte");
     let again = step(model, &mut tried, ws).expect_err(what);
-    assert_eq!(again, trouble, "{what}: nothing that is left of a failed step changes the next");
+    // By their words: a number that is none is not equal to itself.
+    assert_eq!(
+        format!("{again:?}"),
+        format!("{trouble:?}"),
+        "{what}: nothing that is left of a failed step changes the next"
+    );
     assert!(bytes(&tried) == before, "{what}: the second time");
 }
 
@@ -109,7 +114,9 @@ fn a_stage_of_mechanics_that_fails_leaves_every_byte() {
         };
         model.planes = vec![plane(3.0, 1.0), plane(3.001, -1.0)];
     });
-    fails("volumes", &pressed, &state, &mut ws, |trouble| matches!(trouble, Trouble::Volume { .. }));
+    // Adaptive steps are made shorter until they are given up, for the volume or for the error that comes with it.
+    let is_given_up = |trouble: &Trouble| matches!(trouble, Trouble::Volume { .. } | Trouble::StepTooSmall { .. });
+    fails("volumes", &pressed, &state, &mut ws, is_given_up);
     // An error that no step makes small enough.
     let strict = broken(&|model| model.integrator.size = StepSize::Adaptive { tolerance: 0.0, largest: 0.1 });
     fails("error", &strict, &state, &mut ws, |trouble| matches!(trouble, Trouble::StepTooSmall { .. }));

@@ -427,7 +427,7 @@ mesh = { shape = "icosphere", radius = "5 um", level = 1 }
 placement = { grid = [2, 1, 1], spacing = "11 um" }
 number = 2
 mechanics = { drag = "20 pN s/um", shape_memory = { stiffness = "1 pN/um" } }
-motility = { attraction = { to = [0, 0, 0], stiffness = "0.5 pN/um" } }
+motility = { attraction = { to = [0, 0, 0], stiffness = "0.2 pN/um" } }
 [contact]
 "#;
 
@@ -441,13 +441,17 @@ fn explicit_steps_that_nobody_names_are_as_short_as_contacts_need() {
         let options = RunOptions { threads: Some(1), ..RunOptions::new(&result) };
         let outcome = run(&document, &options, &mut Quiet).expect("a run that comes to its end");
         let file = ResultFile::open(&result).expect("a result");
-        let at = file.cell_series("position_x").expect("a series").row(file.frames() - 1).to_vec();
-        (outcome, at)
+        let last = |axis: &str| {
+            let series = file.cell_series(&format!("position_{axis}")).expect("a series");
+            series[[file.frames() - 1, 1]] - series[[file.frames() - 1, 0]]
+        };
+        let [x, y, z] = ["x", "y", "z"].map(last);
+        (outcome, x.hypot(y).hypot(z))
     };
     let ((explicit, one), (_, other)) = (end("explicit"), end("implicit"));
     assert!(explicit.limited > 0, "the stable step is too long for contacts: {explicit:?}");
-    let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
-    assert!(apart < 0.1, "the same place by both methods, to 1 % of a diameter: {one:?} {other:?}");
+    // Nothing keeps the pair from turning; how near the cells come is the same by both methods, to 1 % of a diameter.
+    assert!((one - other).abs() < 0.1, "{one} {other}");
 }
 
 /// Two cells that loads press together; closed surfaces have no elastic force as a whole.

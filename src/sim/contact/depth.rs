@@ -6,7 +6,7 @@ use super::law::Law;
 use super::remember::find_at;
 use super::scene::ContactScene;
 use crate::Vec3;
-use crate::contact::{Contacts, Sides, find_deeper, winding_number};
+use crate::contact::{Contacts, Sides, centre_is_inside, find_deeper, winding_number};
 use crate::sim::model::Model;
 use crate::sim::population_trouble::PopulationTrouble;
 use crate::sim::state::State;
@@ -180,6 +180,18 @@ pub fn check_added(model: &Model, state: &State, kind: usize, added: usize) -> R
     };
     if let Some((one, other, depth)) = find_deeper(&contact.scene, &positions, most) {
         return Err(PopulationTrouble::Overlap { cells: [name(one), name(other)], depth });
+    }
+    // One exactly in the place of another, or in its middle, has no atom near its surface.
+    let bodies = 0..contact.scene.bodies.len() as u32;
+    let pairs = bodies.clone().filter(|body| is_new(*body)).flat_map(|new| bodies.clone().map(move |other| [new, other]));
+    let is_within = |[one, other]: [u32; 2]| one != other && centre_is_inside(&contact.scene, &positions, one, other);
+    let within = pairs.flat_map(|[new, other]| [[new, other], [other, new]]).find(|pair| is_within(*pair));
+    if let Some([inner, outer]) = within {
+        let atoms = contact.scene.of_body(inner, &positions);
+        let centre = atoms.iter().sum::<Vec3>() / atoms.len() as f64;
+        let reach = contact.scene.of_body(outer, &positions).iter().map(|x| (x - centre).norm());
+        let depth = reach.fold(f64::INFINITY, f64::min);
+        return Err(PopulationTrouble::Overlap { cells: [name(inner), name(outer)], depth });
     }
     for body in (end - added..end).map(|body| body as u32) {
         let first = contact.scene.bodies[body as usize].first_atom as usize;
