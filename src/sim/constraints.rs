@@ -37,7 +37,7 @@ pub fn make_exact(model: &Model, time: f64, from: &State, to: &mut State, ws: &m
 /// # Errors
 /// As [`make_exact`].
 pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
-    let Workspace { kinds, rooms, .. } = ws;
+    let Workspace { kinds, buffers, .. } = ws;
     for ((kind, now), w) in model.kinds.iter().zip(&mut to.kinds).zip(kinds) {
         let exact = matches!(kind.volume, VolumeRule::Exact(_));
         if !exact && model.planes.is_empty() {
@@ -51,7 +51,7 @@ pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Wo
                 if !model.planes.is_empty() {
                     project_block(model, kind, exact, x, target, left, scratch);
                 } else {
-                    rooms.enter(length, |[spare, spare2, ..]| {
+                    buffers.enter(length, |[spare, spare2, ..]| {
                         volume::enforce_block(&kind.rest.facets, x, &kind.held, target, spare, spare2, left);
                     });
                     left.iter_mut().zip(target).for_each(|(left, target)| *left /= target);

@@ -8,8 +8,8 @@ use super::contact::{ContactForces, add_contact_forces, pull_contacts};
 use super::controls::Controls;
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
-use super::rooms::{Rooms, each_or_none};
 use super::state::{KindState, State};
+use super::thread_buffers::{ThreadBuffers, each_or_none};
 use super::workspace::{KindScratch, Workspace};
 use crate::mechanics::control::Context;
 use crate::mechanics::lanes::LANES;
@@ -66,16 +66,16 @@ pub fn sum_forces(model: &Model, time: f64, controls: &Controls, cells: &[KindSt
     for (w, now) in ws.kinds.iter_mut().zip(cells) {
         w.force.resize(now.positions.len(), 0.0);
     }
-    let Workspace { kinds, rooms, drive, contact, .. } = ws;
+    let Workspace { kinds, buffers, drive, contact, .. } = ws;
     let contact = &contact.forces;
-    for_each_kind(model, time, (controls, drive, contact), cells, kinds, rooms, |w| (&mut w.force, &mut w.energy));
+    for_each_kind(model, time, (controls, drive, contact), cells, kinds, buffers, |w| (&mut w.force, &mut w.energy));
 }
 
 /// Sets `energy` of every kind to the energy of every cell, pN·µm; contacts have none.
 pub fn measure_energy(model: &Model, time: f64, controls: &Controls, cells: &[KindState], ws: &mut Workspace) {
-    let Workspace { kinds, rooms, drive, .. } = ws;
+    let Workspace { kinds, buffers, drive, .. } = ws;
     let none = ContactForces::default();
-    for_each_kind(model, time, (controls, drive, &none), cells, kinds, rooms, |w| (&mut [], &mut w.energy));
+    for_each_kind(model, time, (controls, drive, &none), cells, kinds, buffers, |w| (&mut [], &mut w.energy));
 }
 
 /// Forces and energies of all kinds, written to what is lent of their scratch; forces that are not held are those of a block.
@@ -85,7 +85,7 @@ fn for_each_kind(
     (controls, drive, contact): (&Controls, &[[f64; 3]], &ContactForces),
     cells: &[KindState],
     kinds: &mut [KindScratch],
-    rooms: &Rooms,
+    buffers: &ThreadBuffers,
     lent: impl Fn(&mut KindScratch) -> (&mut [f64], &mut [f64]),
 ) {
     for ((kind, now), w) in model.kinds.iter().zip(cells).zip(kinds) {
@@ -96,7 +96,7 @@ fn for_each_kind(
             .zip(energy.par_chunks_exact_mut(lanes).zip(each_or_none(force, length, now.blocks(kind))))
             .enumerate()
             .for_each(|(block, (cells, (energy, held)))| {
-                rooms.enter(length, |[f, spare, ..]| {
+                buffers.enter(length, |[f, spare, ..]| {
                     forces.on_block(block, time, cells, (held.unwrap_or(f), energy), spare);
                 });
             });

@@ -14,10 +14,10 @@ use super::kind::Kind;
 use super::model::Model;
 use super::planes::{self, TouchScratch};
 use super::pressure::{carry_pressure, constrain};
-use super::rooms::each_or_none;
 use super::solver::{Solver, Stage, solve_block};
 use super::state::State;
 use super::targets::Targets;
+use super::thread_buffers::each_or_none;
 use super::workspace::{KindScratch, Workspace};
 use crate::mechanics::integrator::Order;
 use crate::mechanics::lanes::LANES;
@@ -36,7 +36,7 @@ pub fn gamma(order: Order) -> f64 {
 
 /// Moves all atoms freely by one step: forces, the increments that they cause, and where these take the atoms; constraints hold to
 /// first order. Returns the largest error estimate over the mean edge of its kind, 0 at first order. A block goes through all
-/// stages at once, in the room of its thread, so that what they need is near and is not held for all cells. Forces that change
+/// stages at once, with the buffers of its thread, so that what they need is near and is not held for all cells. Forces that change
 /// with where other cells are, as those of links do, are known for a second stage only after the first of all blocks.
 pub fn advance_implicitly(
     model: &Model,
@@ -69,7 +69,7 @@ fn advance_stages(
     to: &mut State,
     ws: &mut Workspace,
 ) -> f64 {
-    let Workspace { kinds, rooms, drive, contact, .. } = ws;
+    let Workspace { kinds, buffers, drive, contact, .. } = ws;
     let mut worst = 0.0;
     let cells = from.kinds.iter().zip(&mut to.kinds);
     for ((kind, (now, next)), w) in model.kinds.iter().zip(cells).zip(kinds) {
@@ -91,7 +91,7 @@ fn advance_stages(
             .enumerate()
             .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), (kept, touch)))| {
                 let mut block = Block { number, x, rest, start, volume, target, energy, pressure, touch };
-                rooms.enter(length, |room| step.advance(&mut block, stages, kept, room))
+                buffers.enter(length, |room| step.advance(&mut block, stages, kept, room))
             })
             .reduce(|| 0.0, larger);
         worst = larger(worst, error / kind.edge);

@@ -130,7 +130,7 @@ impl Kind {
     pub fn stiffness_at(&self, x: &[Vec3]) -> StiffnessMatrix {
         let mut matrix = stiffness(&self.forces, true, &self.rest.positions, x);
         let free = vec![false; self.atoms()];
-        // A whiff of the identity makes K invertible; J does not resist what K does not resist.
+        // A little of the identity makes K invertible; J does not resist what K does not resist.
         let inverse = Factor::new(&matrix, 1e-5 * matrix.largest().max(f64::MIN_POSITIVE), 1.0, &free);
         let mut scratch = vec![0.0; 3 * self.atoms()];
         let ratio = self.power_iteration(x, |v| inverse.solve(3, v, &mut scratch));

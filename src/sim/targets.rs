@@ -10,14 +10,14 @@ use crate::mechanics::volume;
 
 /// Measures the volumes at the start of the step and sets the targets for its end.
 pub fn measure_volumes(model: &Model, end: f64, state: &State, ws: &mut Workspace) {
-    let Workspace { kinds, rooms, .. } = ws;
+    let Workspace { kinds, buffers, .. } = ws;
     for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(kinds) {
         let Some(targets) = Targets::of(model, kind, [state.time, end]) else { continue };
         let (length, lanes) = (kind.block_len(), kind.lanes);
         (now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
             .zip(w.volume.par_chunks_exact_mut(lanes).zip(w.target.par_chunks_exact_mut(lanes)))
             .for_each(|((x, rest), (volume, target))| {
-                rooms.enter(length, |[gradient, ..]| targets.on_block(x, rest, gradient, volume, target));
+                buffers.enter(length, |[gradient, ..]| targets.on_block(x, rest, gradient, volume, target));
             });
     }
 }

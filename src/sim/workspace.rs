@@ -8,9 +8,9 @@ use super::kind::Kind;
 use super::model::Model;
 use super::planes::TouchScratch;
 use super::projection::ProjectScratch;
-use super::rooms::Rooms;
 use super::solver::Solver;
 use super::state::State;
+use super::thread_buffers::ThreadBuffers;
 use crate::mechanics::stiffness::StiffnessMatrix;
 
 /// Scratch for all kinds.
@@ -27,7 +27,7 @@ pub struct Workspace {
     /// Scratch of contacts.
     pub contact: ContactScratch,
     /// Scratch of blocks.
-    pub rooms: Rooms,
+    pub buffers: ThreadBuffers,
 }
 
 /// Scratch of a kind; arrays have the shape of the positions unless said otherwise.
@@ -161,13 +161,13 @@ impl Workspace {
             drive: Vec::new(),
             chemistry: ChemistryScratch::new(model),
             contact: ContactScratch::default(),
-            rooms: Rooms::default(),
+            buffers: ThreadBuffers::default(),
         }
     }
 
     /// Makes scratch as large as the cells of a state need. Nothing is allocated where it is.
     pub fn suit(&mut self, model: &Model, state: &State) {
-        self.rooms.suit(model);
+        self.buffers.suit(model);
         self.drive.resize(state.cells(), [0.0; 3]);
         self.chemistry.suit(model, state);
         for ((kind, now), w) in model.kinds.iter().zip(&state.kinds).zip(&mut self.kinds) {
@@ -179,7 +179,7 @@ impl Workspace {
     pub fn poison(&mut self, model: &Model) {
         self.chemistry.poison(model);
         self.contact.poison();
-        self.rooms.poison();
+        self.buffers.poison();
         self.kinds.iter_mut().for_each(KindScratch::poison);
         self.drive.fill([f64::NAN; 3]);
         self.next.poison();

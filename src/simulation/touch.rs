@@ -94,7 +94,7 @@ impl Touch {
         let count = match series {
             ContactSeries::Sweeps => return sweeps,
             ContactSeries::Deepest => return (-self.found.smallest_gap()).max(0.0) / edge,
-            ContactSeries::Energy => return state.contact.given(),
+            ContactSeries::Energy => return state.contact.stored(),
             ContactSeries::Count => self.found.atoms.len() + self.found.edges.len() + self.found.planes.len(),
             ContactSeries::Aggregates => aggregates.number,
             ContactSeries::LargestAggregate => aggregates.largest,

@@ -236,7 +236,7 @@ fn a_pair_left_alone_gains_neither_energy_nor_momentum() {
             let cells = measure_cells(&model, state);
             let all = || cells.iter().flat_map(|cell| &cell.positions);
             let centre: Vec3 = all().sum::<Vec3>() / 84.0;
-            (cells.iter().map(|cell| cell.energy).sum::<f64>() + state.contact.given(), centre)
+            (cells.iter().map(|cell| cell.energy).sum::<f64>() + state.contact.stored(), centre)
         });
         let start = rows[0].1;
         let mut worst: f64 = 0.0;
@@ -272,7 +272,7 @@ fn a_fixed_step_in_which_a_pair_would_gain_energy_is_made_in_shorter_ones_that_e
     let (mut shortened, mut before) = (0, f64::INFINITY);
     while state.time < 30.0 {
         let report = step(&model, &mut state, &mut ws).unwrap();
-        let energy = measure_cells(&model, &state).iter().map(|cell| cell.energy).sum::<f64>() + state.contact.given();
+        let energy = measure_cells(&model, &state).iter().map(|cell| cell.energy).sum::<f64>() + state.contact.stored();
         // A step may gain 1e-9 of the energy by round-off, and what its sweeps leave.
         assert!(energy <= before * (1.0 + 1e-8), "{before} to {energy} at {} s", state.time);
         before = energy;

@@ -130,7 +130,7 @@ fn play_steps(scene: &Scene, model: &Model, start: &State) -> Result<(State, See
         if scene.purpose == Purposed::Alone {
             let energy = cells.iter().map(|cell| cell.energy).sum::<f64>()
                 + pressed_energy(model, &state, &cells)
-                + state.contact.given();
+                + state.contact.stored();
             // The first step restores what facets make of the volumes.
             match before {
                 None => energy_at_start = energy,

@@ -10,8 +10,8 @@ mod numbers;
 mod overlap;
 mod place;
 mod population;
-mod room;
 mod select;
+mod spacing;
 mod start;
 mod steps;
 
@@ -119,7 +119,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     }
     let (reach, planes) = (contact::reach(document, &kinds)?, planes(experiment));
     let centres = match reach {
-        Some(reach) => room::centres_apart(document, &kinds, &planes, reach.proximity)?,
+        Some(reach) => spacing::centres_apart(document, &kinds, &planes, reach.proximity)?,
         None => {
             let cells = experiment.cells.values().zip(&kinds).zip(place::first_cells(experiment));
             cells.map(|((cell, kind), first)| place::centres(experiment, cell, kind, first)).collect()

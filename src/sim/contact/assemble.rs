@@ -34,10 +34,10 @@ pub fn write_rows(
                    Normal([x, y, z]),
                    gap: f64,
                    [least, shear]: [f64; 2],
-                   (force, given): ([f32; 3], f32)| {
+                   (force, stored): ([f32; 3], f32)| {
         let normal_and_gap = [x, y, z, gap as f32];
         let (least, shear) = (least as f32, shear as f32);
-        let row = Row { atoms, places, normal_and_gap, least, shear, give: 0.0, kept: 1.0, given, pairing };
+        let row = Row { atoms, places, normal_and_gap, least, shear, compliance: 0.0, kept: 1.0, stored, pairing };
         let force = row.bound(Vec3::from(force.map(f64::from)));
         let force = [force.x as f32, force.y as f32, force.z as f32];
         rows.push(row);
@@ -62,7 +62,7 @@ pub fn write_rows(
         };
         let on = contact.body(scene);
         let slid = || of_atom().find(|bond| bond.body(scene) == on && is_free(bond.facet));
-        let carried = same.or_else(slid).map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.given));
+        let carried = same.or_else(slid).map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.stored));
         let [i, j, k] = scene.facet_atoms(on, contact.facet);
         let other = on as usize;
         let own = other == body;
@@ -122,7 +122,7 @@ pub fn write_rows(
             scene.planes[contact.plane as usize].normal.into(),
             contact.gap,
             [-strength.tensile * area, strength.shear * area],
-            same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.given)),
+            same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.stored)),
         );
     }
 }

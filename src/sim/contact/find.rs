@@ -1,8 +1,8 @@
 //! What touches where a step begins, and what it carried in the step before.
 
 use super::assemble::write_rows;
+use super::compliance::stored_after;
 use super::gather::gather_positions;
-use super::give::given_after;
 use super::law::Law;
 use super::links::{links_at, pull_links};
 use super::penalty::press;
@@ -134,7 +134,7 @@ fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds: &mut Conta
     empty_for(atoms, found.atoms.len());
     for ((pull, row), contact) in of_atoms.iter().zip(rows).zip(&found.atoms) {
         let &AtomContact { atom, facet, facing, .. } = contact;
-        atoms.push(AtomBond { atom, facet, facing, force: pull.force, given: given_after(row, pull) });
+        atoms.push(AtomBond { atom, facet, facing, force: pull.force, stored: stored_after(row, pull) });
     }
     // Edges are remembered for their force alone.
     let loaded = || of_edges.iter().zip(&found.edges).filter(|(pull, _)| pull.force != [0.0; 3]);
@@ -146,6 +146,6 @@ fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds: &mut Conta
     let rows = &rows[rows.len() - of_planes.len()..];
     for ((pull, row), contact) in of_planes.iter().zip(rows).zip(&found.planes) {
         let &PlaneContact { atom, plane, .. } = contact;
-        planes.push(PlaneBond { atom, plane, force: pull.force, given: given_after(row, pull) });
+        planes.push(PlaneBond { atom, plane, force: pull.force, stored: stored_after(row, pull) });
     }
 }

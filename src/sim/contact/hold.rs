@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use super::compliance::set_compliance;
 use super::gather::{gather, scatter};
-use super::give::set_give;
 use super::law::Law;
 use super::momentum::go_on;
 use super::rows::{Pull, Row};
@@ -15,8 +15,8 @@ use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
 use crate::sim::kind::{Kind, VolumeRule};
 use crate::sim::model::Model;
-use crate::sim::rooms::Rooms;
 use crate::sim::state::{State, vector};
+use crate::sim::thread_buffers::ThreadBuffers;
 use crate::sim::trouble::Trouble;
 use crate::sim::workspace::{KindScratch, Workspace};
 
@@ -39,13 +39,13 @@ pub fn hold_contacts(
     to: &mut State,
     ws: &mut Workspace,
 ) -> Result<(), Trouble> {
-    let Workspace { contact: s, kinds, rooms, .. } = ws;
+    let Workspace { contact: s, kinds, buffers, .. } = ws;
     let Some(contact) = &s.scene(model, &from.kinds) else { return Ok(()) };
     s.sweeps = 0;
     if s.rows.is_empty() || matches!(contact.law, Law::Penalty(_)) {
         return Ok(());
     }
-    prepare(model, contact, dt, from, to, s, kinds, rooms);
+    prepare(model, contact, dt, from, to, s, kinds, buffers);
     load_rows(rules, s);
     let left = sweep(model, contact, rules, s);
     if rules.mends && s.rows.iter().any(|row| row.gap() < 0.0) {
@@ -82,7 +82,7 @@ fn prepare(
     to: &State,
     s: &mut ContactScratch,
     kinds: &mut [KindScratch],
-    rooms: &Rooms,
+    buffers: &ThreadBuffers,
 ) {
     s.moved.resize(contact.scene.atoms, [0.0; 4]);
     s.gradient.resize(contact.scene.atoms, [0.0; 3]);
@@ -103,7 +103,7 @@ fn prepare(
         }
         hold_atoms(kind, now.cells(), range.start, s);
         if matches!(kind.volume, VolumeRule::Exact(_)) {
-            add_volumes(kind, &next.positions, range, mobility, s, w, rooms);
+            add_volumes(kind, &next.positions, range, mobility, s, w, buffers);
         }
     }
     s.adhesives.begin();
@@ -113,10 +113,10 @@ fn prepare(
 fn load_rows(rules: SweepRules, s: &mut ContactScratch) {
     for (row, pull) in s.rows.iter_mut().zip(&mut s.pulls) {
         *pull = Pull { force: pull.carried, carried: pull.carried, ..Pull::default() };
-        let gives =
+        let compliances =
             row.atoms.iter().zip(row.weights()).map(|(atom, weight)| weight * weight * s.moved[*atom as usize][3]);
-        row.give = gives.sum::<f64>() as f32;
-        set_give(row, pull, rules.in_account);
+        row.compliance = compliances.sum::<f64>() as f32;
+        set_compliance(row, pull, rules.in_account);
     }
 }
 
@@ -143,7 +143,7 @@ fn add_volumes(
     mobility: f64,
     s: &mut ContactScratch,
     w: &mut KindScratch,
-    rooms: &Rooms,
+    buffers: &ThreadBuffers,
 ) {
     let KindScratch { free_volume, target, .. } = w;
     let (first, own) = (atoms.start, &mut s.gradient[atoms]);
@@ -151,7 +151,7 @@ fn add_volumes(
     for ((x, volumes), own) in
         (x.chunks_exact(length)).zip(free_volume.chunks_exact_mut(kind.lanes)).zip(own.chunks_mut(per_block))
     {
-        rooms.enter(length, |[gradient, ..]| {
+        buffers.enter(length, |[gradient, ..]| {
             volume::measure_block(&kind.rest.facets, x, &kind.held, gradient, volumes);
             gather(kind, gradient, own, <[f64; 3]>::from);
         });
@@ -230,7 +230,7 @@ fn sweep(model: &Model, contact: &ContactScene, rules: SweepRules, s: &mut Conta
 
 /// Pushes out what is inside.
 fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
-    let is_deep = |(_, row): &(u32, &Row)| row.give > 0.0 && row.gap() < 0.0;
+    let is_deep = |(_, row): &(u32, &Row)| row.compliance > 0.0 && row.gap() < 0.0;
     s.deep.clear();
     s.deep.extend((0..).zip(&s.rows).filter(is_deep).map(|(number, _)| (number, 0.0)));
     for _ in 0..MENDING {

@@ -8,7 +8,7 @@ use crate::Vec3;
 use crate::contact::{AtomContact, Contacts, EdgeContact, Scene};
 use crate::sim::controls::Controls;
 
-/// Ways to give each corner of a facet one of another.
+/// Choices of partners that give each corner of a facet one of another.
 const WAYS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
 impl Link {

@@ -10,10 +10,10 @@
 mod adhesives;
 mod assemble;
 mod cause;
+mod compliance;
 mod depth;
 mod find;
 mod gather;
-mod give;
 mod hold;
 mod law;
 mod links;
@@ -37,11 +37,11 @@ mod zones;
 
 pub use adhesives::AdhesiveScratch;
 pub use cause::help_at;
+pub use compliance::energy_of_compliance;
 pub use depth::{Deepened, check_added, check_depth, check_passed, look_for_depth};
 pub use find::{
     add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, locate_contacts, pull_contacts,
 };
-pub use give::energy_of_give;
 pub use hold::{hold_contacts, travel};
 pub use law::{AdhesiveTable, Law, LinkTable, Penalty, Strength, Zones};
 pub use links::{links_at, pull_links};

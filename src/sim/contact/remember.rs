@@ -96,7 +96,7 @@ mod tests {
             facet: near.facet,
             facing: near.facing,
             force: [0.0; 3],
-            given: 0.0,
+            stored: 0.0,
         });
         ContactState { atoms: atoms.collect(), ..ContactState::default() }
     }

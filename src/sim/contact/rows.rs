@@ -18,11 +18,11 @@ pub struct Row {
     /// Largest tangential force, pN.
     pub shear: f32,
     /// Displacement over force, µm/pN; 0 where nothing can move.
-    pub give: f32,
+    pub compliance: f32,
     /// What it holds of a change of its force; the rest gives way.
     pub kept: f32,
-    /// What went into its give and has not come back where the step began, pN·µm.
-    pub given: f32,
+    /// What went into its compliance and has not come back where the step began, pN·µm.
+    pub stored: f32,
     /// What touches.
     pub pairing: Pairing,
 }
@@ -69,7 +69,7 @@ impl Row {
     /// Force over displacement, pN/µm.
     #[inline(always)]
     pub fn stiffness(&self) -> f64 {
-        f64::from(1.0 / self.give)
+        f64::from(1.0 / self.compliance)
     }
 
     /// Unit vector from the other side to the first.

@@ -14,8 +14,8 @@ pub struct AtomBond {
     pub facing: Facing,
     /// Force on the atom, pN; the facet's atoms feel the opposite.
     pub force: [f32; 3],
-    /// What went into its give and has not come back, pN·µm, eq. (adhesion.5).
-    pub given: f32,
+    /// What went into its compliance and has not come back, pN·µm, eq. (adhesion.5).
+    pub stored: f32,
 }
 
 impl AtomBond {
@@ -45,8 +45,8 @@ pub struct PlaneBond {
     pub plane: u32,
     /// Force on the atom, pN.
     pub force: [f32; 3],
-    /// What went into its give and has not come back, pN·µm, eq. (adhesion.5).
-    pub given: f32,
+    /// What went into its compliance and has not come back, pN·µm, eq. (adhesion.5).
+    pub stored: f32,
 }
 
 /// Two facets of two cells, each atom of the one joined to an atom of the other, eq. (adhesion.11).
@@ -91,10 +91,10 @@ pub struct ContactState {
 }
 
 impl ContactState {
-    /// What went into the give of contacts and has not come back, pN·µm, eq. (adhesion.5): a part of the energy of cells that
+    /// What went into the compliance of contacts and has not come back, pN·µm, eq. (adhesion.5): a part of the energy of cells that
     /// stick.
-    pub fn given(&self) -> f64 {
-        let of_atoms = self.atoms.iter().map(|bond| f64::from(bond.given));
-        of_atoms.chain(self.planes.iter().map(|bond| f64::from(bond.given))).sum()
+    pub fn stored(&self) -> f64 {
+        let of_atoms = self.atoms.iter().map(|bond| f64::from(bond.stored));
+        of_atoms.chain(self.planes.iter().map(|bond| f64::from(bond.stored))).sum()
     }
 }

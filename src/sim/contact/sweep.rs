@@ -98,7 +98,7 @@ fn normal_force(row: &Row, free: f64, carried: f64) -> f64 {
 fn turn(row: &Row, weights: [f64; 4], force: &V4, carried: &V4, moved: &[V4]) -> V4 {
     let (apart, normal) = (apart(row, weights, moved), normal(row));
     let (opened, along, carried_along) = (dot(&apart, &normal), dot(force, &normal), dot(carried, &normal));
-    let free = (row.gap() + opened) - along * f64::from(row.give);
+    let free = (row.gap() + opened) - along * f64::from(row.compliance);
     let wanted = normal_force(row, free, carried_along);
     if row.shear == 0.0 {
         return map(|i| wanted * normal[i]);
@@ -135,7 +135,7 @@ impl NullaryFnOnce for Sweep<'_> {
         let Self { rows, pulls, moved, share, change } = self;
         let mut largest = 0.0;
         for (number, (row, pull)) in rows.iter().zip(pulls).enumerate() {
-            if row.give == 0.0 {
+            if row.compliance == 0.0 {
                 continue;
             }
             let (weights, way, last) = (row.weights(), wide(pull.way), wide(pull.change));
@@ -149,11 +149,11 @@ impl NullaryFnOnce for Sweep<'_> {
             pull.way = narrow(&map(|i| share * way[i] + last[i]));
             pull.change = narrow(&step);
             pull.force = new;
-            let give = f64::from(row.give);
-            let size = dot(&step, &step) * give;
+            let compliance = f64::from(row.compliance);
+            let size = dot(&step, &step) * compliance;
             change.work += size;
-            if size * give > largest {
-                (largest, change.worst) = (size * give, number);
+            if size * compliance > largest {
+                (largest, change.worst) = (size * compliance, number);
             }
         }
         change.largest = change.largest.max(largest.sqrt());

@@ -29,7 +29,7 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
         let atoms = [0, 5, 11, 22].map(|step| (first + step * (1 + count % 3)) % ATOMS);
         let [u, v] = [0.3 * number(&mut dice).abs(), 0.3 * number(&mut dice).abs()];
         let normal = vector(&mut dice).normalize();
-        let give: f64 = atoms
+        let compliance: f64 = atoms
             .iter()
             .zip([1.0, u + v - 1.0, -u, -v])
             .map(|(atom, weight): (&u32, f64)| weight * weight * moved[*atom as usize][3])
@@ -41,9 +41,9 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
             normal_and_gap: [normal.x as f32, normal.y as f32, normal.z as f32, (0.05 * number(&mut dice)) as f32],
             least: if sticks { -0.3 } else { 0.0 },
             shear: if count % 4 > 1 { 0.2 } else { 0.0 },
-            give: give as f32,
+            compliance: compliance as f32,
             kept: 1.0 / (1.0 + 0.05 * (count % 5) as f32),
-            given: 0.0,
+            stored: 0.0,
             pairing: Pairing::AtomOnFacet,
         });
         let along = if sticks { number(&mut dice).max(-0.3) } else { number(&mut dice).abs() };
@@ -56,17 +56,18 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
 
 /// Eqs. (adhesion.3) to (adhesion.5) for one contact: what it should carry.
 fn plain_turn(row: &Row, force: Vec3, carried: Vec3, moved: &[Vec3]) -> Vec3 {
-    let (n, gap, give, softness) = (row.normal(), row.gap(), f64::from(row.give), 1.0 / f64::from(row.kept) - 1.0);
+    let (n, gap, compliance, softness) =
+        (row.normal(), row.gap(), f64::from(row.compliance), 1.0 / f64::from(row.kept) - 1.0);
     let apart: Vec3 = row.atoms.iter().zip(row.weights()).map(|(atom, weight)| weight * moved[*atom as usize]).sum();
-    let free = gap + n.dot(&apart) - n.dot(&force) * give;
+    let free = gap + n.dot(&apart) - n.dot(&force) * compliance;
     let along = if free < gap.min(0.0) {
-        (gap.min(0.0) - free) / give
+        (gap.min(0.0) - free) / compliance
     } else {
-        let pull = ((gap.max(0.0) - free) / give + softness * n.dot(&carried).min(0.0)) / (1.0 + softness);
+        let pull = ((gap.max(0.0) - free) / compliance + softness * n.dot(&carried).min(0.0)) / (1.0 + softness);
         pull.min(0.0).max(f64::from(row.least))
     };
     let across = |v: Vec3| v - n.dot(&v) * n;
-    let stuck = (across(force) - across(apart) / give + softness * across(carried)) / (1.0 + softness);
+    let stuck = (across(force) - across(apart) / compliance + softness * across(carried)) / (1.0 + softness);
     along * n + stuck.cap_magnitude(f64::from(row.shear))
 }
 
@@ -77,14 +78,16 @@ fn a_sweep_in_wide_registers_is_that_of_the_book() {
         let mut plain: Vec<Vec3> = moved.iter().map(|d| Vec3::new(d[0], d[1], d[2])).collect();
         let (mut work, mut largest) = (0.0, 0.0_f64);
         let mut forces: Vec<Vec3> = pulls.iter().map(Pull::force).collect();
-        for ((row, pull), force) in rows.iter().zip(&pulls).zip(&mut forces).filter(|((row, _), _)| row.give > 0.0) {
+        for ((row, pull), force) in
+            rows.iter().zip(&pulls).zip(&mut forces).filter(|((row, _), _)| row.compliance > 0.0)
+        {
             let change = plain_turn(row, *force, pull.force(), &plain) - *force;
             *force += change;
             for (atom, weight) in row.atoms.iter().zip(row.weights()) {
                 plain[*atom as usize] += moved[*atom as usize][3] * weight * change;
             }
-            work += change.norm_squared() * f64::from(row.give);
-            largest = largest.max(change.norm() * f64::from(row.give));
+            work += change.norm_squared() * f64::from(row.compliance);
+            largest = largest.max(change.norm() * f64::from(row.compliance));
         }
         let mut change = Change::default();
         sweep_contacts(&rows, &mut pulls, &mut moved, 0.0, &mut change);

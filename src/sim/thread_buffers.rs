@@ -1,4 +1,4 @@
-//! Room to work on the cells of one block, one for each thread: what a block needs only for a while is not held for all of them.
+//! Buffers for the work on one block of cells, a set for each thread: what a block needs only for a while is not held for all of them.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -6,31 +6,31 @@ use rayon::prelude::*;
 
 use super::model::Model;
 
-/// Arrays in a room.
+/// Buffers of a thread.
 const ARRAYS: usize = 6;
 
 /// Arrays of the shape of a block's positions.
-type Room = [Vec<f64>; ARRAYS];
+type Buffers = [Vec<f64>; ARRAYS];
 
-/// A room for each thread.
+/// A set of buffers for each thread.
 #[derive(Debug, Default)]
-pub struct Rooms(Vec<Mutex<Room>>);
+pub struct ThreadBuffers(Vec<Mutex<Buffers>>);
 
-/// Nothing in a room outlasts the work on a block.
-impl Clone for Rooms {
+/// Nothing in them outlasts the work on a block.
+impl Clone for ThreadBuffers {
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-impl Rooms {
-    /// Makes rooms for all threads, large enough for every block of a model. Nothing is allocated where they are there.
+impl ThreadBuffers {
+    /// Makes buffers for all threads, large enough for every block of a model. Nothing is allocated where they are there.
     pub fn suit(&mut self, model: &Model) {
         let longest = model.kinds.iter().map(|kind| kind.block_len()).max().unwrap_or(0);
         self.0.resize_with(rayon::current_num_threads().max(self.0.len()), Mutex::default);
-        for room in &mut self.0 {
-            let room = room.get_mut().unwrap_or_else(PoisonError::into_inner);
-            for array in room {
+        for own in &mut self.0 {
+            let own = own.get_mut().unwrap_or_else(PoisonError::into_inner);
+            for array in own {
                 if array.len() < longest {
                     array.reserve_exact(longest - array.len());
                     array.resize(longest, 0.0);
@@ -39,21 +39,21 @@ impl Rooms {
         }
     }
 
-    /// Works in the room of this thread, with arrays of this length. Other rooms must not be entered meanwhile.
+    /// Works with the buffers of this thread, cut to this length. They must not be asked for again meanwhile.
     ///
     /// # Panics
-    /// When there are no rooms as long as this.
+    /// When there are none as long as this.
     pub fn enter<T>(&self, length: usize, work: impl FnOnce([&mut [f64]; ARRAYS]) -> T) -> T {
-        let room = &self.0[rayon::current_thread_index().unwrap_or(0) % self.0.len()];
-        let mut room = room.lock().unwrap_or_else(PoisonError::into_inner);
-        work(room.each_mut().map(|array| &mut array[..length]))
+        let own = &self.0[rayon::current_thread_index().unwrap_or(0) % self.0.len()];
+        let mut own = own.lock().unwrap_or_else(PoisonError::into_inner);
+        work(own.each_mut().map(|array| &mut array[..length]))
     }
 
     /// Writes NaN over all numbers.
     pub fn poison(&mut self) {
-        for room in &mut self.0 {
-            let room = room.get_mut().unwrap_or_else(PoisonError::into_inner);
-            room.iter_mut().for_each(|array| array.fill(f64::NAN));
+        for own in &mut self.0 {
+            let own = own.get_mut().unwrap_or_else(PoisonError::into_inner);
+            own.iter_mut().for_each(|array| array.fill(f64::NAN));
         }
     }
 }
