@@ -421,13 +421,13 @@ fn links_read_the_share_in_contact_that_is_recorded_and_planes_have_a_share_of_t
 const DRAWN: &str = r#"
 title = "Drawn together"
 [run]
-until = "20 s"
+until = "60 s"
 [cells.red]
 mesh = { shape = "icosphere", radius = "5 um", level = 1 }
-placement = { grid = [2, 1, 1], spacing = "11 um" }
+placement = { grid = [2, 1, 1], spacing = "20 um" }
 number = 2
 mechanics = { drag = "20 pN s/um", shape_memory = { stiffness = "1 pN/um" } }
-motility = { attraction = { to = [0, 0, 0], stiffness = "0.5 pN/um" } }
+motility = { attraction = { to = [0, 0, 0], stiffness = "0.05 pN/um" } }
 [contact]
 "#;
 
