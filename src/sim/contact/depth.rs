@@ -183,14 +183,17 @@ pub fn check_added(model: &Model, state: &State, kind: usize, added: usize) -> R
     }
     // One exactly in the place of another, or in its middle, has no atom near its surface.
     let bodies = 0..contact.scene.bodies.len() as u32;
-    let pairs = bodies.clone().filter(|body| is_new(*body)).flat_map(|new| bodies.clone().map(move |other| [new, other]));
+    let pairs =
+        bodies.clone().filter(|body| is_new(*body)).flat_map(|new| bodies.clone().map(move |other| [new, other]));
     let is_within = |[one, other]: [u32; 2]| one != other && centre_is_inside(&contact.scene, &positions, one, other);
     let within = pairs.flat_map(|[new, other]| [[new, other], [other, new]]).find(|pair| is_within(*pair));
     if let Some([inner, outer]) = within {
-        let atoms = contact.scene.of_body(inner, &positions);
-        let centre = atoms.iter().sum::<Vec3>() / atoms.len() as f64;
-        let reach = contact.scene.of_body(outer, &positions).iter().map(|x| (x - centre).norm());
-        let depth = reach.fold(f64::INFINITY, f64::min);
+        let atoms = |body: u32| {
+            let first = contact.scene.bodies[body as usize].first_atom as usize;
+            &positions[first..first + contact.scene.shape(body).atoms]
+        };
+        let centre = atoms(inner).iter().sum::<Vec3>() / atoms(inner).len() as f64;
+        let depth = atoms(outer).iter().map(|x| (x - centre).norm()).fold(f64::INFINITY, f64::min);
         return Err(PopulationTrouble::Overlap { cells: [name(inner), name(outer)], depth });
     }
     for body in (end - added..end).map(|body| body as u32) {
