@@ -81,7 +81,7 @@ pub(super) fn chemotactic_index(wanted: &ChemotacticIndex, recording: &Recording
         // Of cells that come later or leave earlier the part of the path that they make.
         let mut there = (first..end).filter(|frame| recording.is_there(*frame, cells[cell]));
         let first = there.next()?;
-        let end = there.last()? + 1;
+        let end = there.next_back()? + 1;
         let step = |frame: usize| distance(frame, cell, &|axis| positions[[frame - 1, cell, axis]]);
         let nearer = distance(first, cell, &|axis| towards[axis]) - distance(end - 1, cell, &|axis| towards[axis]);
         let path: f64 = (first + 1..end).map(step).sum();

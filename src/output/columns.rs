@@ -39,6 +39,9 @@ enum RowSource {
 /// Rows of each list so far.
 pub(super) type Rows = [usize; List::ALL.len()];
 
+/// A number of a population that a column holds.
+type PopulationNumber = fn(&Population) -> i64;
+
 /// The datasets by what fills them. Until the first frame has come there are none but those of fields and the scene.
 #[derive(Default)]
 pub(super) struct Columns {
@@ -53,7 +56,7 @@ pub(super) struct Columns {
     blocks: Vec<(Shared, PackedColumn)>,
     /// Where the blocks of the last population begin.
     blocks_at: [usize; Shared::ALL.len()],
-    population_numbers: Vec<(fn(&Population) -> i64, Column)>,
+    population_numbers: Vec<(PopulationNumber, Column)>,
     counters: Vec<(Counted, Column)>,
     frame_numbers: Vec<(FrameNumber, Column)>,
     row_numbers: Vec<(List, RowSource, Column)>,

@@ -88,7 +88,7 @@ fn go_on(path: &Path, kept: usize) -> Result<()> {
     assert_eq!(writer.frames(), kept);
     (kept..kept + 3).for_each(|number| writer.append(&frame(number)).unwrap());
     writer.finish(1.0).unwrap();
-    let expected: Vec<Frame> = (0..kept + 3).map(|number| frame(number)).collect();
+    let expected: Vec<Frame> = (0..kept + 3).map(frame).collect();
     let result = ResultFile::open(path).unwrap();
     assert_frames(&result, &expected);
     assert_eq!(result.ending().resumed, 1);
@@ -138,7 +138,7 @@ fn a_torn_file_tells_of_no_frame_that_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let flush = Flush::of(folder.path(), 121, 10);
     let path = folder.path().join("torn.h5");
-    let frames: Vec<Frame> = (0..131).map(|number| frame(number)).collect();
+    let frames: Vec<Frame> = (0..131).map(frame).collect();
     for at in flush.changes().into_iter().step_by(10) {
         flush.torn(at, &path);
         let result = ResultFile::open(&path).unwrap();

@@ -101,7 +101,7 @@ fn what_cannot_come_or_go_is_refused_and_leaves_every_byte() {
     assert!(matches!(twice, PopulationTrouble::Overlap { .. }), "two that come at the same place: {twice}");
     let below = refused(1, &[at(&model, 1, [60.0, 0.0, 0.0])]);
     assert!(matches!(&below, PopulationTrouble::BehindPlane { cell: (_, 4), .. }), "{below}");
-    assert_eq!(refused(7, &[good.clone()]), PopulationTrouble::NoSuchKind { kind: 7, kinds: 2 });
+    assert_eq!(refused(7, std::slice::from_ref(&good)), PopulationTrouble::NoSuchKind { kind: 7, kinds: 2 });
     let orphan = NewCell { parent: Some(4), ..good.clone() };
     assert_eq!(refused(0, &[orphan]), PopulationTrouble::NoSuchCell { id: 4 });
     let short = NewCell { positions: vec![Vec3::zeros()], parent: None };

@@ -115,8 +115,8 @@ fn copy_each<T: Clone>(to: &mut Vec<T>, from: &[T], copy: impl Fn(&mut T, &T)) {
 
 /// The lists that the links of a model write, at numbers that change nothing.
 fn controls_of(model: &Model, cells: usize) -> Controls {
-    let mut controls = Controls::default();
-    controls.secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
+    let secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
+    let mut controls = Controls { secretion, ..Controls::default() };
     let set = model.chemistry.links.iter().filter_map(|link| link.to.control());
     set.for_each(|control| controls.admit(control, cells));
     controls
