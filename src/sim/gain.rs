@@ -3,7 +3,7 @@
 //! In a step that is long beside the relaxation of a cell contacts push what the elastic forces answer only in the next one.
 //! Where that would leave more energy than there was, the step is made again, shorter.
 
-use super::contact::{Law, energy_of_compliance};
+use super::contact::energy_of_compliance;
 use super::forces::measure_energy;
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
@@ -44,7 +44,7 @@ pub fn has_gained(model: &Model, dt: f64, before: Option<f64>, from: &State, to:
 fn is_left_alone(model: &Model) -> bool {
     let sticks_only = |contact: &super::contact::ContactModel| {
         let strengths = contact.between.iter().chain(&contact.on_planes);
-        contact.law == Law::default() && strengths.into_iter().all(|strength| strength.energy == 0.0)
+        contact.law.is_passive() && strengths.into_iter().all(|strength| strength.energy == 0.0)
     };
     let is_alone = |kind: &Kind| {
         let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());

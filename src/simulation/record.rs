@@ -1,6 +1,6 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
-use super::touch::{Touch, recorded_by};
+use super::touch::Touch;
 use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
 use crate::recorded::contact_quantities;
 use crate::sim::chemistry::{Members, member_cells};
@@ -25,7 +25,7 @@ pub fn outline_of(model: &Model) -> Layout {
     let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     layout.contacts = model.contact.is_some();
-    let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(recorded_by(&contact.law)));
+    let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(contact.law.series()));
     layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
     layout.planes = model.planes.iter().map(plane).collect();

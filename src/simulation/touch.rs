@@ -4,18 +4,9 @@
 use crate::Vec3;
 use crate::contact::{Contacts, Detector, Scene};
 use crate::output::{Frame, Touching, clusters};
-use crate::recorded::{ContactSeries, Recorded, contact_quantities};
-use crate::sim::contact::{ContactScene, Law, Link, links_at};
+use crate::recorded::{ContactSeries, contact_quantities};
+use crate::sim::contact::{ContactScene, LinkScratch, Touching as Instant};
 use crate::sim::{Model, State, Workspace};
-
-/// Which series a law of contact records besides those of all contacts.
-pub fn recorded_by(law: &Law) -> Recorded {
-    match law {
-        Law::Links(_) => Recorded::WithLinks,
-        Law::VirtualAdhesives(_) => Recorded::WithAdhesives,
-        Law::Adhesives | Law::Penalty(_) => Recorded::Always,
-    }
-}
 
 /// How many aggregates there are, and cells of the largest.
 struct Aggregates {
@@ -31,8 +22,7 @@ pub struct Touch {
     positions: Vec<Vec3>,
     /// What each atom touches: the atom, then another body, or the number of bodies and that of a plane.
     partners: Vec<(u32, u32)>,
-    links: Vec<Link>,
-    linked: Vec<bool>,
+    links: LinkScratch,
     /// A cell, what it touches in the same way, and an area.
     areas: Vec<(u32, u32, f64)>,
 }
@@ -60,12 +50,14 @@ impl Touch {
             touching[contact.scene.body_of_atom(of_atom[0].0) as usize] += u32::from((of_atom[0].1 as usize) < bodies);
         }
         self.measure_areas(contact, frame);
-        let Self { found, positions, links, linked, .. } = self;
-        links_at(contact, &state.chemistry.controls, &state.contact.links, found, positions, linked, links);
+        let Self { found, positions, links, .. } = self;
+        let now = Instant { scene: &contact.scene, controls: &state.chemistry.controls, found, positions };
         // Where links bind, cells that merely touch do not belong together.
-        let first = match contact.law {
-            Law::Links(_) => clusters(bodies, self.links.iter().map(|link| link.bodies)),
-            _ => clusters(bodies, self.areas.iter().filter(|area| area.1 < bodies as u32).map(|area| [area.0, area.1])),
+        let first = match contact.law.links_at(now, &state.contact, links) {
+            Some(at) => clusters(bodies, at.links.iter().map(|link| link.bodies)),
+            None => {
+                clusters(bodies, self.areas.iter().filter(|area| area.1 < bodies as u32).map(|area| [area.0, area.1]))
+            }
         };
         let mut smallest: Vec<u64> = frame.cells.iter().map(|cell| cell.id).collect();
         for (cell, first) in frame.cells.iter().zip(&first) {
@@ -85,7 +77,7 @@ impl Touch {
         let sweeps = if dt > 0.0 { ws.contact.sweeps } else { 0 };
         let edge = model.kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
         let value = |series| self.value(series, state, &aggregates, f64::from(sweeps), edge);
-        frame.scene.extend(contact_quantities(recorded_by(&contact.law)).map(|row| value(row.series)));
+        frame.scene.extend(contact_quantities(contact.law.series()).map(|row| value(row.series)));
     }
 
     /// The value of a series of contacts; `edge` is the smallest mean edge of all types, µm.
@@ -98,7 +90,7 @@ impl Touch {
             ContactSeries::Count => self.found.atoms.len() + self.found.edges.len() + self.found.planes.len(),
             ContactSeries::Aggregates => aggregates.number,
             ContactSeries::LargestAggregate => aggregates.largest,
-            ContactSeries::Links => self.links.len(),
+            ContactSeries::Links => self.links.links.len(),
             ContactSeries::Adhesives => adhesives().count(),
             ContactSeries::LargestAdhesive => adhesives().map(<[_]>::len).max().unwrap_or(0),
         };

@@ -12,7 +12,7 @@ use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::contact::{
-    ContactModel, ContactScene, Law, Link, LinkTable, Penalty, Row, Strength, links_at, press, pull_links,
+    ContactModel, ContactScene, Law, Link, LinkScratch, LinkTable, Penalty, Row, Strength, Touching,
 };
 use pseudopod::sim::controls::Controls;
 use pseudopod::sim::observe::measure_cells;
@@ -101,17 +101,25 @@ fn positions(model: &Model, state: &State) -> Vec<Vec3> {
 /// The links at a state, with those before.
 fn links(model: &Model, state: &State) -> Vec<Link> {
     let (contact, x) = (&scene(model, state), positions(model, state));
-    let mut links = Vec::new();
-    let found = detect(contact, &x);
-    links_at(contact, &Controls::default(), &state.contact.links, &found, &x, &mut Vec::new(), &mut links);
-    links
+    let now =
+        Touching { scene: &contact.scene, controls: &Controls::default(), found: &detect(contact, &x), positions: &x };
+    let mut scratch = LinkScratch::default();
+    contact.law.links_at(now, &state.contact, &mut scratch).map_or(Vec::new(), |now| now.links.clone())
+}
+
+/// The table of links of a model of links.
+fn table(model: &Model) -> &LinkTable {
+    match &model.contact.as_ref().expect("contacts").law {
+        Law::Links(table) => table,
+        other => panic!("links, not {other:?}"),
+    }
 }
 
 /// Elastic energy of all cells and that of the links of a state, pN·µm.
 fn energy(model: &Model, state: &State) -> f64 {
     let (contact, x) = (&scene(model, state), positions(model, state));
     let mut force = vec![Vec3::zeros(); x.len()];
-    let of_links = pull_links(contact, &Controls::default(), &links(model, state), &x, &mut force);
+    let of_links = table(model).add_forces(&contact.scene, &Controls::default(), &links(model, state), &x, &mut force);
     of_links + measure_cells(model, state).iter().map(|cell| cell.energy).sum::<f64>()
 }
 
@@ -124,7 +132,7 @@ fn forces_of_links_are_the_gradient_of_their_energy_without_net_force_or_torque(
     assert!(!links.is_empty(), "they touch, so they are linked");
     let pull = |x: &[Vec3]| {
         let mut force = vec![Vec3::zeros(); x.len()];
-        let energy = pull_links(contact, &Controls::default(), &links, x, &mut force);
+        let energy = table(&model).add_forces(&contact.scene, &Controls::default(), &links, x, &mut force);
         (energy, force)
     };
     let (energy, force) = pull(&x);
@@ -231,7 +239,8 @@ fn links_bear_exactly_the_load_and_break_above_what_their_range_allows() {
     }
     let x = positions(&model, &state);
     let mut force = vec![Vec3::zeros(); 24];
-    pull_links(&scene(&model, &state), &Controls::default(), &state.contact.links, &x, &mut force);
+    let scene = scene(&model, &state).scene;
+    table(&model).add_forces(&scene, &Controls::default(), &state.contact.links, &x, &mut force);
     let rows = ws.contact.rows.iter().zip(&ws.contact.pulls);
     for (row, pull) in rows {
         for (atom, weight) in row.atoms.iter().zip(row.weights()) {
@@ -316,7 +325,7 @@ fn forces_of_penalties_are_the_gradient_of_their_energy_without_net_force_or_tor
     let mut x = start.clone();
     let pressed = |x: &[Vec3]| {
         let mut force = vec![Vec3::zeros(); x.len()];
-        (press(&law, &rows, &start, x, &mut force), force)
+        (law.add_forces(&rows, &start, x, &mut force), force)
     };
     let force = pressed(&x).1;
     let size: f64 = force.iter().map(Vec3::norm).sum();
@@ -357,7 +366,7 @@ fn impulse_left(tolerance: f64) -> f64 {
     let borne = |ws: &Workspace, state: &State| -> Vec3 {
         let at = |x: &[Vec3]| {
             let mut force = vec![Vec3::zeros(); x.len()];
-            press(&law, &ws.contact.rows, &ws.contact.start, x, &mut force);
+            law.add_forces(&ws.contact.rows, &ws.contact.start, x, &mut force);
             force[12..].iter().sum::<Vec3>()
         };
         0.5 * (at(&ws.contact.start) + at(&positions(&model, state)))

@@ -210,7 +210,7 @@ fn pressed_cells_recruit_atoms_keep_their_volumes_and_do_not_drift() {
         worst = measure_cells(&model, state).iter().map(|cell| cell.volume_error.abs()).fold(worst, f64::max);
         let now = positions(&model, state);
         // Of those of the step, before any is released.
-        for of_one in ws.contact.adhesives.atoms.chunk_by(|one, other| one.adhesive == other.adhesive) {
+        for of_one in ws.contact.law.adhesives.atoms.chunk_by(|one, other| one.adhesive == other.adhesive) {
             for one in of_one {
                 let (i, j) = (one.atom as usize, of_one[0].atom as usize);
                 shape = shape.max(((now[i] - now[j]).norm() - (before[i] - before[j]).norm()).abs());

@@ -1,6 +1,6 @@
 //! Writes the rows of the system that the sweeps solve.
 
-use super::law::Strength;
+use super::laws::Strength;
 use super::rows::{Pairing, Pull, Row};
 use super::scene::ContactScene;
 use super::scratch::empty_for;

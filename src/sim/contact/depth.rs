@@ -2,7 +2,7 @@
 
 use super::find::write_contacts;
 use super::gather::gather_positions;
-use super::law::Law;
+use super::laws::PROMISED;
 use super::remember::find_at;
 use super::scene::ContactScene;
 use crate::Vec3;
@@ -49,9 +49,6 @@ fn pressed(model: &Model, state: &State, bodies: [u32; 2], depth: f64) -> Troubl
 /// promised.
 const DEEP: f64 = 0.01;
 
-/// The depth that is promised, over the same edge.
-const PROMISED: f64 = 0.02;
-
 /// What a depth may grow by in such a step, over what it was: a tenth, so that steps are not halved for what the next one mends.
 const GROWS: f64 = 1.1;
 
@@ -78,7 +75,7 @@ impl Deepened {
 /// found, and with what contacts carry now, which is written before.
 pub fn look_for_depth(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> Option<Deepened> {
     let s = &mut ws.contact;
-    let contact = &s.scene(model, &from.kinds).filter(|contact| contact.law == Law::Adhesives)?;
+    let contact = &s.scene(model, &from.kinds).filter(|contact| contact.law.promises_depth())?;
     let before = Deepest::of(model, contact, &s.found);
     write_contacts(contact, &from.chemistry.controls, &mut to.contact, s);
     gather_positions(model, contact, &to.kinds, &mut s.start);
@@ -139,8 +136,8 @@ fn lost_inside(contact: &ContactScene, state: &State, ws: &Workspace) -> Option<
 }
 
 /// Refuses a state in which cells are deeper in each other than is promised. Contacts look at what is near; where cells are crushed
-/// beyond what they can resolve, as in a box that is too small, surfaces may slip through each other by ways that no
-/// contact sees. This looks at all atoms and edges, slowly: for the instants that are recorded. Where depths are not promised, as
+/// beyond what they can resolve, as in a box that is too small, surfaces may slip through each other where no
+/// contact sees it. This looks at all atoms and edges, slowly: for the instants that are recorded. Where depths are not promised, as
 /// under penalties, they may be as deep as contacts are found.
 ///
 /// # Errors
@@ -148,14 +145,11 @@ fn lost_inside(contact: &ContactScene, state: &State, ws: &Workspace) -> Option<
 pub fn check_passed(model: &Model, state: &State) -> Result<(), Trouble> {
     let Some(contact) = &model.contact.as_ref().map(|contact| contact.scene_of(&state.kinds)) else { return Ok(()) };
     let scene = &contact.scene;
-    let mut places = Vec::new();
-    gather_positions(model, contact, &state.kinds, &mut places);
+    let mut positions = Vec::new();
+    gather_positions(model, contact, &state.kinds, &mut positions);
     let edge = |body: u32| model.kinds[contact.kind_of(body)].edge;
-    let most = |one: u32, other: u32| match contact.law {
-        Law::Adhesives => PROMISED * edge(one).min(edge(other)),
-        _ => scene.reach.depth,
-    };
-    let passed = find_deeper(scene, &places, most);
+    let most = |one: u32, other: u32| contact.law.most_depth(edge(one).min(edge(other)), scene.reach.depth);
+    let passed = find_deeper(scene, &positions, most);
     passed.map_or(Ok(()), |(body, other, depth)| Err(pressed(model, state, [body, other], depth)))
 }
 

@@ -3,9 +3,7 @@
 use super::assemble::write_rows;
 use super::compliance::stored_after;
 use super::gather::gather_positions;
-use super::law::Law;
-use super::links::{links_at, pull_links};
-use super::penalty::press;
+use super::laws::Touching;
 use super::remember::find_at;
 use super::rows::{Pull, Row};
 use super::scene::ContactScene;
@@ -34,14 +32,14 @@ pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     if !(std::mem::take(&mut s.has_looked) && is_where_it_ended) {
         find_at(contact, &state.contact, &s.start, &mut s.detector, &mut s.found);
     }
-    let ContactScratch { found, start, linked, links, adhesives, .. } = s;
-    links_at(contact, &state.chemistry.controls, &state.contact.links, found, start, linked, links);
-    adhesives.find(contact, &model.kinds, &state.chemistry.controls, &state.contact, found, start, state.time);
+    let now =
+        Touching { scene: &contact.scene, controls: &state.chemistry.controls, found: &s.found, positions: &s.start };
+    contact.law.find(&model.kinds, now, &state.contact, state.time, &mut s.law);
     write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, &mut s.rows, &mut s.pulls);
-    if model.integrator.method.is_inertial() || matches!(contact.law, Law::Penalty(_)) {
+    if model.integrator.method.is_inertial() || !contact.law.projects() {
         s.pulls.fill(Pull::default());
     }
-    s.adhesives.take_over(&mut s.rows, &mut s.pulls, &s.start);
+    s.law.adhesives.take_over(&mut s.rows, &mut s.pulls, &s.start);
 }
 
 /// Sets the forces that contacts carry where the step begins. The state must be that of which they were found.
@@ -65,17 +63,17 @@ pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
             carried[*atom as usize] += weight * pull.carried();
         }
     }
-    for one in &s.adhesives.atoms {
+    for one in &s.law.adhesives.atoms {
         carried[one.atom as usize] += Vec3::from(one.force);
     }
 }
 
 /// Whether contacts act with forces that change while a step is made.
 pub fn has_live_forces(model: &Model) -> bool {
-    model.contact.as_ref().is_some_and(|contact| matches!(contact.law, Law::Links(_) | Law::Penalty(_)))
+    model.contact.as_ref().is_some_and(|contact| contact.law.has_forces())
 }
 
-/// Sets the forces of links and penalties where the atoms are now: they change while a step is made, and its error estimate
+/// Sets the forces that the law of contact adds where the atoms are now: they change while a step is made, and its error estimate
 /// must see that.
 pub fn pull_contacts(model: &Model, controls: &Controls, cells: &[KindState], s: &mut ContactScratch) {
     let Some(contact) = &s.scene(model, cells).filter(|_| has_live_forces(model)) else { return };
@@ -83,13 +81,10 @@ pub fn pull_contacts(model: &Model, controls: &Controls, cells: &[KindState], s:
     let live = &mut s.forces.live;
     live.clear();
     live.resize(contact.scene.atoms, Vec3::zeros());
-    match &contact.law {
-        Law::Penalty(penalty) => press(penalty, &s.rows, &s.start, &s.positions, live),
-        _ => pull_links(contact, controls, &s.links, &s.positions, live),
-    };
+    contact.law.add_forces(&contact.scene, controls, (&s.rows, &s.law.links), (&s.start, &s.positions), live);
 }
 
-/// Adds the force that contacts carried, and what links and penalties do, to the forces of a block of a kind.
+/// Adds the force that contacts carried, and that of the law, to the forces of a block of a kind.
 pub fn add_contact_forces(kind: &Kind, cells: &KindState, block: usize, forces: &ContactForces, f: &mut [f64]) {
     let atoms = cells.atoms(kind);
     let Some(carried) = forces.carried.get(atoms.clone()) else { return };
@@ -122,8 +117,7 @@ pub(super) fn write_contacts(
     s: &mut ContactScratch,
 ) {
     write_bonds(&s.found, &s.rows, &s.pulls, to);
-    to.links.clone_from(&s.links);
-    s.adhesives.keep(contact, controls, &s.found, &s.moved, to);
+    contact.law.keep(&contact.scene, controls, &s.found, &s.moved, &mut s.law, to);
 }
 
 /// Writes what contacts carry. The contacts must be those of the rows.

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::compliance::set_compliance;
 use super::gather::{gather, scatter};
-use super::law::Law;
 use super::momentum::go_on;
 use super::rows::{Pull, Row};
 use super::scene::ContactScene;
@@ -42,7 +41,7 @@ pub fn hold_contacts(
     let Workspace { contact: s, kinds, buffers, .. } = ws;
     let Some(contact) = &s.scene(model, &from.kinds) else { return Ok(()) };
     s.sweeps = 0;
-    if s.rows.is_empty() || matches!(contact.law, Law::Penalty(_)) {
+    if s.rows.is_empty() || !contact.law.projects() {
         return Ok(());
     }
     prepare(model, contact, dt, from, to, s, kinds, buffers);
@@ -51,7 +50,7 @@ pub fn hold_contacts(
     if rules.mends && s.rows.iter().any(|row| row.gap() < 0.0) {
         mend(model, contact, s);
     }
-    s.adhesives.place_all(&s.start, &mut s.moved);
+    s.law.adhesives.align(&s.start, &mut s.moved);
     put_back(model, contact, s, from, to);
     if left.largest <= contact.tolerance {
         return Ok(());
@@ -106,7 +105,7 @@ fn prepare(
             add_volumes(kind, &next.positions, range, mobility, s, w, buffers);
         }
     }
-    s.adhesives.begin();
+    s.law.adhesives.begin();
 }
 
 /// Rows carry what they carried where the step begins; how they give way depends on the mobilities.
@@ -195,8 +194,7 @@ fn for_each_part(
 
 /// Sweeps until nothing moves any more; returns what the last sweep changed.
 fn sweep(model: &Model, contact: &ContactScene, rules: SweepRules, s: &mut ContactScratch) -> Change {
-    // Adhesives that are bodies move from where the step began.
-    let keeps_start = contact.law != Law::Adhesives;
+    let keeps_start = contact.law.needs_start();
     let mut before = std::mem::take(if keeps_start { &mut s.before } else { &mut s.start });
     let mut direction = std::mem::take(&mut s.forces.carried);
     before.clear();
@@ -208,7 +206,7 @@ fn sweep(model: &Model, contact: &ContactScene, rules: SweepRules, s: &mut Conta
     for number in 1..=contact.most_sweeps {
         change = Change::default();
         sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, share, &mut change);
-        s.adhesives.sweep(&s.start, &mut s.moved, share, &mut change);
+        s.law.adhesives.sweep(&s.start, &mut s.moved, share, &mut change);
         for &(atom, axis) in &s.held {
             s.moved[atom as usize][axis as usize] = before[atom as usize][axis as usize];
         }
@@ -235,7 +233,7 @@ fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
     s.deep.extend((0..).zip(&s.rows).filter(is_deep).map(|(number, _)| (number, 0.0)));
     for _ in 0..MENDING {
         sweep_depths(&s.rows, &mut s.deep, &mut s.moved, MENDED * contact.reach.safe_travel());
-        s.adhesives.place_all(&s.start, &mut s.moved);
+        s.law.adhesives.align(&s.start, &mut s.moved);
         for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |part| {
             sweep_volumes(part.volumes, part.gradient, part.moved, &mut Change::default());
         });
@@ -250,8 +248,9 @@ pub fn travel(model: &Model, from: &State, to: &State) -> f64 {
         // Lanes beyond the last cell may go elsewhere.
         for cell in 0..now.cells() {
             let position = |x: &[f64], atom: usize| vector(kind, x, cell, atom);
-            let ways = (0..kind.atoms()).map(|atom| position(&next.positions, atom) - position(&now.positions, atom));
-            farthest = ways.map(|way| way.norm_squared()).fold(farthest, f64::max);
+            let travels =
+                (0..kind.atoms()).map(|atom| position(&next.positions, atom) - position(&now.positions, atom));
+            farthest = travels.map(|travel| travel.norm_squared()).fold(farthest, f64::max);
         }
     }
     farthest.sqrt() / contact.reach.safe_travel()

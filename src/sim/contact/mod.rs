@@ -7,7 +7,6 @@
 //! Three other models are there to compare with: springs that link facets in place of strengths, penalties in place of the
 //! projection, whose forces are those of where the atoms are in each stage of a step, and zones of contact that are rigid.
 
-mod adhesives;
 mod assemble;
 mod cause;
 mod compliance;
@@ -15,15 +14,11 @@ mod depth;
 mod find;
 mod gather;
 mod hold;
-mod law;
-mod links;
+mod laws;
 mod model;
 mod momentum;
-mod penalty;
-mod recruit;
 mod remember;
 mod renumber;
-mod rigid;
 mod rows;
 mod scene;
 mod scratch;
@@ -33,9 +28,7 @@ mod state;
 mod sweep;
 #[cfg(test)]
 mod sweep_tests;
-mod zones;
 
-pub use adhesives::AdhesiveScratch;
 pub use cause::help_at;
 pub use compliance::energy_of_compliance;
 pub use depth::{Deepened, check_added, check_depth, check_passed, look_for_depth};
@@ -43,10 +36,8 @@ pub use find::{
     add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, locate_contacts, pull_contacts,
 };
 pub use hold::{hold_contacts, travel};
-pub use law::{AdhesiveTable, Law, LinkTable, Penalty, Strength, Zones};
-pub use links::{links_at, pull_links};
+pub use laws::{AdhesiveScratch, AdhesiveTable, Law, LinkScratch, LinkTable, Penalty, Strength, Touching, Zones};
 pub use model::ContactModel;
-pub use penalty::press;
 pub use rows::{Pairing, Pull, Row};
 pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};

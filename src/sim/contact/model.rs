@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{Law, Strength};
+use super::laws::{Law, Strength};
 use crate::contact::{self, Reach, Shape, Sides};
 use crate::geometry;
 use crate::mechanics::integrator::StepSize;

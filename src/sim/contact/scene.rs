@@ -3,10 +3,9 @@
 use std::ops::{Deref, Range};
 use std::sync::Arc;
 
-use super::law::{LinkTable, Strength};
+use super::laws::Strength;
 use super::model::ContactModel;
 use crate::contact::{Scene, Sides};
-use crate::sim::controls::Controls;
 use crate::sim::state::KindState;
 
 /// The surfaces of the cells that there are: body `i` is cell `i`, shape `i` is kind `i`.
@@ -70,13 +69,6 @@ impl ContactModel {
 }
 
 impl ContactScene<'_> {
-    /// The stiffness of the springs between two bodies, pN/µm.
-    pub(super) fn link_stiffness(&self, table: &LinkTable, bodies: [u32; 2], controls: &Controls) -> f64 {
-        let [kind, other] = bodies.map(|body| self.kind_of(body));
-        let factors = bodies.map(|body| controls.adhesion_of(body as usize));
-        table.stiffness[kind * self.areas.len() + other] * factors[0] * factors[1]
-    }
-
     /// How strongly two bodies stick.
     pub(super) fn strength_between(&self, body: usize, other: usize) -> Strength {
         let [kind, other] = [body, other].map(|body| self.kind_of(body as u32));
@@ -103,11 +95,6 @@ impl ContactScene<'_> {
     pub(super) fn owner(&self, atom: u32) -> (usize, usize) {
         let kind = self.first_atom.partition_point(|first| *first <= atom as usize) - 1;
         (kind, (atom as usize - self.first_atom[kind]) / self.areas[kind].len())
-    }
-
-    /// The number of an atom within its cell.
-    pub(super) fn within(&self, kind: usize, atom: u32) -> usize {
-        (atom as usize - self.first_atom[kind]) % self.areas[kind].len()
     }
 
     /// The body of an atom.

@@ -1,10 +1,9 @@
 //! Scratch of the contacts.
 
-use super::adhesives::AdhesiveScratch;
+use super::laws::LawScratch;
 use super::momentum::Momentum;
 use super::rows::{Pull, Row};
 use super::scene::{ContactScene, Surfaces};
-use super::state::Link;
 use super::sweep::{V4, VolumeRow};
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
@@ -16,7 +15,7 @@ use crate::sim::state::KindState;
 pub struct ContactForces {
     /// What contacts carry where the step begins.
     pub carried: Vec<Vec3>,
-    /// What links or penalties do in the stage that is being made.
+    /// What the law of contact does in the stage that is being made.
     pub live: Vec<Vec3>,
 }
 
@@ -42,7 +41,7 @@ pub struct ContactScratch {
     pub found: Contacts,
     /// Whether this was found where the step ended.
     pub(super) has_looked: bool,
-    /// Positions where that is, µm. Under adhesives the projection, which does not need them, takes their memory for `before`.
+    /// Positions where that is, µm. Under laws that do not need them the projection takes their memory for `before`.
     pub start: Vec<Vec3>,
     /// Forces on all atoms. The projection takes the memory of those carried for its direction.
     pub forces: ContactForces,
@@ -50,13 +49,9 @@ pub struct ContactScratch {
     pub(super) before: Vec<Vec3>,
     /// Gradients of the volumes that are kept, µm².
     pub(super) gradient: Vec<[f64; 3]>,
-    /// Links of the step.
-    pub links: Vec<Link>,
-    /// Virtual adhesives of the step.
-    pub adhesives: AdhesiveScratch,
-    /// Facets that have a link.
-    pub(super) linked: Vec<bool>,
-    /// Positions in the stage that is being made, µm; under links and penalties only.
+    /// What the law of contact found besides.
+    pub law: LawScratch,
+    /// Positions in the stage that is being made, µm; under laws with forces only.
     pub(super) positions: Vec<Vec3>,
     /// What the surface at each atom releases an area of contact, pN/µm.
     pub(super) relief: Vec<f64>,
@@ -103,9 +98,7 @@ impl ContactScratch {
         self.pulls.clear();
         self.volumes.clear();
         self.held.clear();
-        self.links.clear();
-        self.linked.clear();
-        self.adhesives.poison();
+        self.law.poison();
         let forces = [&mut self.forces.carried, &mut self.forces.live];
         let vectors = [&mut self.start, &mut self.before, &mut self.positions].into_iter().chain(forces);
         vectors.for_each(|all| all.fill(Vec3::repeat(f64::NAN)));

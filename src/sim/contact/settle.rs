@@ -15,11 +15,11 @@ const SETTLED: f64 = 1e-3;
 pub fn settle_adhesives(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> bool {
     let s = &mut ws.contact;
     let Some(contact) = &s.scene(model, &from.kinds) else { return false };
-    if s.adhesives.atoms.is_empty() {
+    if s.law.adhesives.atoms.is_empty() {
         return false;
     }
     take_displacements(model, contact, to, s);
-    let moved = s.adhesives.place_all(&s.start, &mut s.moved) > SETTLED * contact.tolerance;
+    let moved = s.law.adhesives.align(&s.start, &mut s.moved) > SETTLED * contact.tolerance;
     if moved {
         put_back(model, contact, s, from, to);
     }
@@ -32,8 +32,9 @@ fn take_displacements(model: &Model, contact: &ContactScene, to: &State, s: &mut
         let range = contact.atoms_of(number);
         let (first, moved) = (range.start, &mut s.moved[range]);
         for (atom, moved) in moved.iter_mut().enumerate() {
-            let way = vector(kind, &now.positions, atom / kind.atoms(), atom % kind.atoms()) - s.start[first + atom];
-            (moved[0], moved[1], moved[2]) = (way.x, way.y, way.z);
+            let displacement =
+                vector(kind, &now.positions, atom / kind.atoms(), atom % kind.atoms()) - s.start[first + atom];
+            (moved[0], moved[1], moved[2]) = (displacement.x, displacement.y, displacement.z);
         }
     }
 }

@@ -2,7 +2,7 @@
 //! tension meet at the angle of eq. (adhesion.10).
 
 use super::assemble::SHARE;
-use super::law::Strength;
+use super::laws::Strength;
 use super::scene::ContactScene;
 use crate::Vec3;
 use crate::contact::Contacts;

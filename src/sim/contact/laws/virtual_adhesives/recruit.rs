@@ -1,54 +1,51 @@
 //! Recruits atoms to virtual adhesives: who touches what sticks is cloned, and joins what it touches and its neighbours.
 
-use super::adhesives::{AdhesiveScratch, NONE, Role};
-use super::law::{AdhesiveTable, Law, Zones};
-use super::scene::ContactScene;
-use super::state::ContactState;
-use crate::contact::{AtomContact, Contacts};
+use super::scratch::{AdhesiveScratch, NONE, Role};
+use super::table::{AdhesiveTable, Zones};
+use crate::contact::{AtomContact, Contacts, Scene};
+use crate::sim::contact::state::ContactState;
 use crate::sim::controls::Controls;
 
 /// How well surfaces are glued, with the factors that chemistry sets.
 pub(super) struct Glue<'a> {
-    model: &'a ContactScene<'a>,
-    table: &'a AdhesiveTable,
-    controls: &'a Controls,
+    pub(super) scene: &'a Scene,
+    pub(super) table: &'a AdhesiveTable,
+    pub(super) controls: &'a Controls,
 }
 
-impl<'a> Glue<'a> {
-    /// That of a model; none under other laws.
-    pub(super) fn of(model: &'a ContactScene<'a>, controls: &'a Controls) -> Option<Self> {
-        let Law::VirtualAdhesives(table) = &model.law else { return None };
-        Some(Self { model, table, controls })
-    }
-
+impl Glue<'_> {
     /// The atom and the corners of the facet that it touches.
     pub(super) fn corners(&self, near: &AtomContact) -> [u32; 4] {
-        let [i, j, k] = self.model.scene.facet_atoms(near.body(&self.model.scene), near.facet);
+        let [i, j, k] = self.scene.facet_atoms(near.body(self.scene), near.facet);
         [near.atom, i, j, k]
     }
 
     /// The bodies of an atom and of the facet that it touches, and how well the two are glued; a body not to itself.
     pub(super) fn kappa_of(&self, near: &AtomContact) -> ([u32; 2], f64) {
-        let body = self.model.body_of(near.atom);
-        let other = near.body(&self.model.scene);
-        let [kind, kind_of_other] = [body, other].map(|body| self.model.kind_of(body));
+        let body = self.scene.body_of_atom(near.atom);
+        let other = near.body(self.scene);
+        let [kind, kind_of_other] = [body, other].map(|body| self.kind_of(body));
         let factors = self.controls.adhesion_of(body as usize) * self.controls.adhesion_of(other as usize);
-        let kappa = self.table.between[kind * self.model.areas.len() + kind_of_other] * factors;
+        let kappa = self.table.between[kind * self.scene.shapes.len() + kind_of_other] * factors;
         ([body, other], if body == other { 0.0 } else { kappa })
     }
 
     /// How well an atom is glued to a plane.
     pub(super) fn kappa_on(&self, atom: u32, plane: u32) -> f64 {
-        let body = self.model.body_of(atom);
-        let kappa = self.table.on_planes[self.model.kind_of(body) * self.model.scene.planes.len() + plane as usize];
+        let body = self.scene.body_of_atom(atom);
+        let kappa = self.table.on_planes[self.kind_of(body) * self.scene.planes.len() + plane as usize];
         kappa * self.controls.adhesion_of(body as usize)
+    }
+
+    fn kind_of(&self, body: u32) -> usize {
+        self.scene.bodies[body as usize].shape as usize
     }
 }
 
 impl AdhesiveScratch {
     /// Who touches what sticks, how well, and in which pair.
     pub(super) fn clone_atoms(&mut self, glue: &Glue, before: &ContactState, found: &Contacts) {
-        let (model, count) = (glue.model, glue.model.scene.atoms);
+        let (scene, count) = (glue.scene, glue.scene.atoms);
         reset(&mut self.roles, count, Role::Far);
         reset(&mut self.kappa, count, 0.0);
         reset(&mut self.pair, count, ([NONE; 2], f64::INFINITY));
@@ -71,7 +68,7 @@ impl AdhesiveScratch {
             if kappa > 0.0 {
                 let at = before.atoms.partition_point(|bond| bond.atom < near.atom);
                 let mut bonds = before.atoms[at..].iter().take_while(|bond| bond.atom == near.atom);
-                let pressed = bonds.any(|bond| bond.body(&model.scene) == other && bond.force != [0.0; 3]);
+                let pressed = bonds.any(|bond| bond.body(scene) == other && bond.force != [0.0; 3]);
                 let pair = [body.min(other), body.max(other)];
                 glue.corners(near).into_iter().for_each(|atom| add(atom, kappa, pair, near.gap, pressed));
             }
@@ -82,7 +79,7 @@ impl AdhesiveScratch {
                 let at = before.planes.partition_point(|bond| (bond.atom, bond.plane) < (near.atom, near.plane));
                 let same = before.planes.get(at).filter(|bond| (bond.atom, bond.plane) == (near.atom, near.plane));
                 let pressed = same.is_some_and(|bond| bond.force != [0.0; 3]);
-                let pair = [model.body_of(near.atom), model.scene.bodies.len() as u32 + near.plane];
+                let pair = [scene.body_of_atom(near.atom), scene.bodies.len() as u32 + near.plane];
                 add(near.atom, kappa, pair, near.gap, pressed);
                 self.grounded[near.atom as usize] = true;
             }
@@ -91,9 +88,9 @@ impl AdhesiveScratch {
 
     /// Joins atoms that touch each other, that were in one adhesive, and that are neighbours on a mesh.
     pub(super) fn join(&mut self, glue: &Glue, before: &ContactState, found: &Contacts) {
-        let (model, zones) = (glue.model, glue.table.zones);
+        let (scene, zones) = (glue.scene, glue.table.zones);
         self.parent.clear();
-        self.parent.extend(0..model.scene.atoms as u32);
+        self.parent.extend(0..scene.atoms as u32);
         let (roles, pair, parent) = (&self.roles, &self.pair, &mut self.parent);
         let cloned = |atom: u32| roles[atom as usize] == Role::Cloned;
         let mut unite = |one: u32, other: u32| {
@@ -117,8 +114,8 @@ impl AdhesiveScratch {
                 }
             }
         }
-        for body in &model.scene.bodies {
-            let shape = &model.scene.shapes[body.shape as usize];
+        for body in &scene.bodies {
+            let shape = &scene.shapes[body.shape as usize];
             for [one, other] in &shape.edges {
                 unite(body.first_atom + one, body.first_atom + other);
             }
@@ -126,7 +123,7 @@ impl AdhesiveScratch {
     }
 }
 
-/// The least atom joined with one; shortens the way there.
+/// The least atom joined with one; shortens the path to it.
 pub(super) fn root(parent: &mut [u32], mut atom: u32) -> u32 {
     while parent[atom as usize] != atom {
         parent[atom as usize] = parent[parent[atom as usize] as usize];

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
 
-use super::state::AdhesiveAtom;
-use super::sweep::V4;
 use crate::Vec3;
+use crate::sim::contact::state::AdhesiveAtom;
+use crate::sim::contact::sweep::V4;
 
 /// Drag of an atom that is held over the largest of the others: it stays where it is.
 const HELD: f64 = 1e9;
@@ -43,19 +43,19 @@ impl Rigid {
     pub(super) fn of(
         range: Range<usize>,
         drags: &mut [f64],
-        places: impl Iterator<Item = Vec3> + Clone,
+        positions: impl Iterator<Item = Vec3> + Clone,
         grounded: bool,
     ) -> Self {
         let finite = drags.iter().copied().filter(|drag| drag.is_finite()).fold(0.0, f64::max);
         let held = if finite > 0.0 { HELD * finite } else { 1.0 };
         drags.iter_mut().filter(|drag| drag.is_infinite()).for_each(|drag| *drag = held);
         let drag: f64 = drags.iter().sum();
-        let centre = places.clone().zip(&*drags).map(|(x, drag)| x * *drag).sum::<Vec3>() / drag;
+        let centre = positions.clone().zip(&*drags).map(|(x, drag)| x * *drag).sum::<Vec3>() / drag;
         let of_atom = |(x, drag): (Vec3, &f64)| {
             let r = x - centre;
             *drag * (Matrix3::identity() * r.norm_squared() - r * r.transpose())
         };
-        let resistance: Matrix3<f64> = places.zip(&*drags).map(of_atom).sum();
+        let resistance: Matrix3<f64> = positions.zip(&*drags).map(of_atom).sum();
         let axes = SymmetricEigen::new(resistance);
         let largest = axes.eigenvalues.max();
         let over = axes.eigenvalues.map(|one| if one > LINE * largest { 1.0 / one } else { 0.0 });
@@ -68,7 +68,7 @@ impl Rigid {
         self.first..self.end
     }
 
-    /// The mean displacement and the small rotation nearest to displacements of its atoms, each given with its place from the centre, in the
+    /// The mean displacement and the small rotation nearest to displacements of its atoms, each given with its arm from the centre, in the
     /// norm of the drag, eq. (adhesion.14); `turned` is how the body stands now.
     pub(super) fn fit(
         &self,
@@ -80,9 +80,9 @@ impl Rigid {
             return (Vec3::zeros(), Vec3::zeros());
         }
         let (mut sum, mut torque) = (Vec3::zeros(), Vec3::zeros());
-        for ((arm, way), drag) in moved.zip(drags) {
-            sum += *drag * way;
-            torque += *drag * arm.cross(&way);
+        for ((arm, moved), drag) in moved.zip(drags) {
+            sum += *drag * moved;
+            torque += *drag * arm.cross(&moved);
         }
         // Arms add up to nothing, so that the mean turns nothing.
         (sum / self.drag, turned * (self.inverse * (turned.inverse() * torque)))
@@ -114,15 +114,15 @@ impl Rigid {
     }
 
     /// Moves its atoms as one, with a rotation of any size; returns the farthest that this took one, µm.
-    pub(super) fn place(&self, atoms: &[AdhesiveAtom], drags: &[f64], positions: &[Vec3], moved: &mut [V4]) -> f64 {
+    pub(super) fn align(&self, atoms: &[AdhesiveAtom], drags: &[f64], positions: &[Vec3], moved: &mut [V4]) -> f64 {
         let motion = self.motion(atoms, drags, positions, moved);
         let mut farthest: f64 = 0.0;
         for one in atoms {
-            let slot = &mut moved[one.atom as usize];
-            if slot[3] > 0.0 {
+            let moved = &mut moved[one.atom as usize];
+            if moved[3] > 0.0 {
                 let to = motion.of(&(positions[one.atom as usize] - self.centre));
-                farthest = farthest.max((to - vector(slot)).norm());
-                (slot[0], slot[1], slot[2]) = (to.x, to.y, to.z);
+                farthest = farthest.max((to - vector(moved)).norm());
+                (moved[0], moved[1], moved[2]) = (to.x, to.y, to.z);
             }
         }
         farthest
@@ -130,7 +130,7 @@ impl Rigid {
 }
 
 impl Motion {
-    /// The displacement of what has this place from the centre.
+    /// The displacement of what has this arm from the centre.
     fn of(&self, arm: &Vec3) -> Vec3 {
         self.shift + (self.turn * arm - arm)
     }

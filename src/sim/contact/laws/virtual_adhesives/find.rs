@@ -1,22 +1,28 @@
-//! Virtual adhesives (Carra, Martiel and Promayon 2007): atoms of cells that touch are cloned into rigid bodies, which recruit,
-//! merge, lose atoms and die.
+//! The adhesives of a step, from those before and what touches; and which of their atoms they keep.
 
-use super::adhesives::{AdhesiveScratch, NONE, Role};
 use super::recruit::{Glue, reset, root};
 use super::rigid::Rigid;
-use super::rows::{Pairing, Pull, Row};
-use super::scene::ContactScene;
-use super::state::{AdhesiveAtom, ContactState};
+use super::scratch::{AdhesiveScratch, NONE, Role};
+use super::table::AdhesiveTable;
 use crate::Vec3;
-use crate::contact::Contacts;
+use crate::contact::{Contacts, Scene};
+use crate::sim::contact::rows::{Pairing, Pull, Row};
+use crate::sim::contact::state::{AdhesiveAtom, ContactState};
 use crate::sim::controls::Controls;
 use crate::sim::kind::Kind;
 
 impl AdhesiveScratch {
+    /// No adhesives.
+    pub(in crate::sim::contact) fn clear(&mut self) {
+        self.atoms.clear();
+        self.bodies.clear();
+    }
+
     /// Finds the adhesives of a step: those before, with what touches now.
-    pub(super) fn find(
+    pub(in crate::sim::contact) fn find(
         &mut self,
-        model: &ContactScene,
+        table: &AdhesiveTable,
+        scene: &Scene,
         kinds: &[Kind],
         controls: &Controls,
         before: &ContactState,
@@ -24,75 +30,74 @@ impl AdhesiveScratch {
         positions: &[Vec3],
         time: f64,
     ) {
-        self.atoms.clear();
-        self.bodies.clear();
-        let Some(glue) = Glue::of(model, controls) else { return };
+        self.clear();
+        let glue = Glue { scene, table, controls };
         self.clone_atoms(&glue, before, found);
         self.join(&glue, before, found);
         self.list(before, time);
-        self.make_bodies(model, kinds, positions);
+        self.make_bodies(scene, kinds, positions);
     }
 
     /// Lists adhesives of two atoms and more; one on a plane may have a single one.
     fn list(&mut self, before: &ContactState, time: f64) {
-        reset(&mut self.place, self.roles.len(), NONE);
+        reset(&mut self.number, self.roles.len(), NONE);
         for (number, old) in (0..).zip(&before.adhesives) {
-            self.place[old.atom as usize] = number;
+            self.number[old.atom as usize] = number;
         }
         for atom in 0..self.roles.len() as u32 {
             if self.roles[atom as usize] == Role::Cloned {
                 let adhesive = root(&mut self.parent, atom);
-                let old = before.adhesives.get(self.place[atom as usize] as usize);
+                let old = before.adhesives.get(self.number[atom as usize] as usize);
                 let (since, force) = old.map_or((time, [0.0; 3]), |old| (old.since, old.force));
                 self.atoms.push(AdhesiveAtom { adhesive, atom, since, force });
             }
         }
         self.atoms.sort_unstable_by_key(|one| (one.adhesive, one.atom));
         keep_living(&mut self.atoms, |atom| self.grounded[atom as usize]);
-        self.place.fill(NONE);
+        self.number.fill(NONE);
         for (number, one) in (0..).zip(&self.atoms) {
-            self.place[one.atom as usize] = number;
+            self.number[one.atom as usize] = number;
         }
     }
 
     /// The adhesives as rigid bodies that resist as the drag of their atoms does, and carried forces without sum and torque.
-    fn make_bodies(&mut self, model: &ContactScene, kinds: &[Kind], positions: &[Vec3]) {
+    fn make_bodies(&mut self, scene: &Scene, kinds: &[Kind], positions: &[Vec3]) {
         self.drags.clear();
         for one in &self.atoms {
-            let kind = model.owner(one.atom).0;
-            let atom = model.within(kind, one.atom);
-            let held = kinds[kind].held.get(3 * atom..3 * atom + 3).is_some_and(|axes| axes == [0.0; 3]);
-            self.drags.push(if held { f64::INFINITY } else { kinds[kind].drag });
+            let body = scene.bodies[scene.body_of_atom(one.atom) as usize];
+            let (kind, atom) = (&kinds[body.shape as usize], (one.atom - body.first_atom) as usize);
+            let held = kind.held.get(3 * atom..3 * atom + 3).is_some_and(|axes| axes == [0.0; 3]);
+            self.drags.push(if held { f64::INFINITY } else { kind.drag });
         }
         let mut first = 0;
         for adhesive in self.atoms.chunk_by(|one, other| one.adhesive == other.adhesive) {
             let range = first..first + adhesive.len();
             let grounded = adhesive.iter().any(|one| self.grounded[one.atom as usize]);
-            let places = adhesive.iter().map(|one| positions[one.atom as usize]);
-            self.bodies.push(Rigid::of(range.clone(), &mut self.drags[range.clone()], places, grounded));
+            let own = adhesive.iter().map(|one| positions[one.atom as usize]);
+            self.bodies.push(Rigid::of(range.clone(), &mut self.drags[range.clone()], own, grounded));
             first = range.end;
         }
     }
 
     /// Hands what contacts between atoms of one adhesive carried over to it, and takes these contacts out of the sweeps: where
     /// nothing moves against each other there is nothing to keep apart.
-    pub(super) fn take_over(&mut self, rows: &mut [Row], pulls: &mut [Pull], positions: &[Vec3]) {
+    pub(in crate::sim::contact) fn take_over(&mut self, rows: &mut [Row], pulls: &mut [Pull], positions: &[Vec3]) {
         if self.atoms.is_empty() {
             return;
         }
         for (row, pull) in rows.iter_mut().zip(pulls) {
-            let places = row.atoms.map(|atom| self.place[atom as usize]);
-            let adhesive = |place: u32| self.atoms.get(place as usize).map(|one| one.adhesive);
-            let first = adhesive(places[0]);
+            let numbers = row.atoms.map(|atom| self.number[atom as usize]);
+            let adhesive = |number: u32| self.atoms.get(number as usize).map(|one| one.adhesive);
+            let first = adhesive(numbers[0]);
             let weights = row.weights();
             let real = |i: usize| weights[i] != 0.0;
             let on_plane = row.pairing == Pairing::AtomOnPlane;
             let grounded = !on_plane || self.grounded[row.atoms[0] as usize];
-            if first.is_none() || !grounded || (0..4).any(|i| real(i) && adhesive(places[i]) != first) {
+            if first.is_none() || !grounded || (0..4).any(|i| real(i) && adhesive(numbers[i]) != first) {
                 continue;
             }
             for i in (0..4).filter(|i| real(*i)) {
-                let force = &mut self.atoms[places[i] as usize].force;
+                let force = &mut self.atoms[numbers[i] as usize].force;
                 let carried = weights[i] * pull.carried();
                 (0..3).for_each(|axis| force[axis] += carried[axis]);
             }
@@ -106,22 +111,21 @@ impl AdhesiveScratch {
 
     /// Keeps the adhesives for the next step without the atoms that they lose, eq. (adhesion.15); `moved` has displacement over
     /// force of all atoms as its fourth number.
-    pub(super) fn keep(
+    pub(in crate::sim::contact) fn keep(
         &mut self,
-        model: &ContactScene,
+        table: &AdhesiveTable,
+        scene: &Scene,
         controls: &Controls,
         found: &Contacts,
         moved: &[[f64; 4]],
         kept: &mut ContactState,
     ) {
-        kept.released.clear();
-        kept.adhesives.clear();
-        let Some(glue) = Glue::of(model, controls) else { return };
+        let glue = Glue { scene, table, controls };
         for (one, force) in self.atoms.iter_mut().zip(&self.forces) {
             one.force = (*force).into();
         }
         let mut part = |atom: u32, out: Vec3| {
-            let Some(one) = self.atoms.get(self.place[atom as usize] as usize) else { return };
+            let Some(one) = self.atoms.get(self.number[atom as usize] as usize) else { return };
             // What it would have moved alone, less what it moved.
             let free = -moved[atom as usize][3] * Vec3::from(one.force);
             if free.dot(&out) > 0.0 && free.norm() > self.kappa[atom as usize] {
@@ -135,7 +139,7 @@ impl AdhesiveScratch {
         }
         for near in &found.planes {
             if glue.kappa_on(near.atom, near.plane) > 0.0 {
-                part(near.atom, model.scene.planes[near.plane as usize].normal);
+                part(near.atom, scene.planes[near.plane as usize].normal);
             }
         }
         let roles = &self.roles;

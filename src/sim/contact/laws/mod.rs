@@ -1,0 +1,204 @@
+//! The one list of laws of contact: what surfaces do that touch. A law is a file that says what it finds where a step begins, what
+//! force it adds while atoms move freely, how it takes part in the projection, what it keeps for the next step, and which series it
+//! records; the step and the records ask the list.
+
+mod adhesives;
+mod links;
+mod penalty;
+mod virtual_adhesives;
+
+pub(super) use adhesives::PROMISED;
+pub use adhesives::Strength;
+pub use links::{LinkScratch, LinkTable};
+pub use penalty::Penalty;
+pub use virtual_adhesives::{AdhesiveScratch, AdhesiveTable, Zones};
+
+use super::rows::Row;
+use super::state::ContactState;
+use super::sweep::V4;
+use crate::Vec3;
+use crate::contact::{Contacts, Scene};
+use crate::recorded::Recorded;
+use crate::sim::controls::Controls;
+use crate::sim::kind::Kind;
+
+/// What surfaces do that touch.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Law {
+    /// Contacts bear any push, and a pull and a shear, [`Strength`].
+    #[default]
+    Adhesives,
+    /// Contacts bear any push; springs hold the atoms of facets that collided.
+    Links(LinkTable),
+    /// Contacts push by their depth, and pull within the proximity.
+    Penalty(Penalty),
+    /// Contacts bear any push; atoms that touch move in rigid zones.
+    VirtualAdhesives(AdhesiveTable),
+}
+
+/// What laws find of a step besides its contacts; empty under laws that find nothing.
+#[derive(Debug, Clone, Default)]
+pub struct LawScratch {
+    /// Links.
+    pub links: LinkScratch,
+    /// Virtual adhesives.
+    pub adhesives: AdhesiveScratch,
+}
+
+/// Who touches whom at an instant, and where all atoms are.
+#[derive(Debug, Clone, Copy)]
+pub struct Touching<'a> {
+    /// The surfaces of the cells that there are.
+    pub scene: &'a Scene,
+    /// Factors of the strengths of cells.
+    pub controls: &'a Controls,
+    /// What touches.
+    pub found: &'a Contacts,
+    /// Positions of all atoms, µm.
+    pub positions: &'a [Vec3],
+}
+
+impl Law {
+    /// Finds what the law needs besides contacts where a step begins at `time` (s): what there was `before`, and what comes of what
+    /// touches now.
+    pub(super) fn find(
+        &self,
+        kinds: &[Kind],
+        now: Touching,
+        before: &ContactState,
+        time: f64,
+        scratch: &mut LawScratch,
+    ) {
+        let Touching { scene, controls, found, positions } = now;
+        match self {
+            Self::Adhesives | Self::Penalty(_) => scratch.clear(),
+            Self::Links(table) => table.find(scene, controls, &before.links, found, positions, &mut scratch.links),
+            Self::VirtualAdhesives(table) => {
+                scratch.adhesives.find(table, scene, kinds, controls, before, found, positions, time);
+            }
+        }
+    }
+
+    /// Whether the law adds forces that change while a step is made, [`Law::add_forces`].
+    pub fn has_forces(&self) -> bool {
+        match self {
+            Self::Adhesives | Self::VirtualAdhesives(_) => false,
+            Self::Links(_) | Self::Penalty(_) => true,
+        }
+    }
+
+    /// Adds the forces of the law where the atoms are now, of contacts and links found where they were at `start`.
+    pub(super) fn add_forces(
+        &self,
+        scene: &Scene,
+        controls: &Controls,
+        (rows, links): (&[Row], &LinkScratch),
+        (start, now): (&[Vec3], &[Vec3]),
+        force: &mut [Vec3],
+    ) {
+        match self {
+            Self::Adhesives | Self::VirtualAdhesives(_) => 0.0,
+            Self::Links(table) => table.add_forces(scene, controls, &links.links, now, force),
+            Self::Penalty(penalty) => penalty.add_forces(rows, start, now, force),
+        };
+    }
+
+    /// Whether contacts keep surfaces apart by the projection.
+    pub fn projects(&self) -> bool {
+        match self {
+            Self::Adhesives | Self::Links(_) | Self::VirtualAdhesives(_) => true,
+            Self::Penalty(_) => false,
+        }
+    }
+
+    /// Whether the law needs the positions where the step began after the sweeps; otherwise these may take their memory.
+    pub(super) fn needs_start(&self) -> bool {
+        match self {
+            Self::Adhesives => false,
+            Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => true,
+        }
+    }
+
+    /// The depth to which surfaces may be inside each other at recorded instants, µm: what is promised for cells of this mean edge
+    /// (µm), or, where nothing is promised, how deep contacts are found.
+    pub(super) fn most_depth(&self, edge: f64, found_to: f64) -> f64 {
+        match self {
+            Self::Adhesives => PROMISED * edge,
+            Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => found_to,
+        }
+    }
+
+    /// Whether the law promises a depth, so that a step is looked at where it ends.
+    pub(super) fn promises_depth(&self) -> bool {
+        match self {
+            Self::Adhesives => true,
+            Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => false,
+        }
+    }
+
+    /// Whether contacts never return more energy than they took, so that cells on which nothing else acts must not gain any.
+    pub fn is_passive(&self) -> bool {
+        match self {
+            Self::Adhesives => true,
+            Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => false,
+        }
+    }
+
+    /// Keeps what the law found for the next step; `moved` has displacement over force of all atoms as its fourth number.
+    pub(super) fn keep(
+        &self,
+        scene: &Scene,
+        controls: &Controls,
+        found: &Contacts,
+        moved: &[V4],
+        scratch: &mut LawScratch,
+        kept: &mut ContactState,
+    ) {
+        kept.links.clear();
+        kept.released.clear();
+        kept.adhesives.clear();
+        match self {
+            Self::Adhesives | Self::Penalty(_) => {}
+            Self::Links(_) => kept.links.clone_from(&scratch.links.links),
+            Self::VirtualAdhesives(table) => scratch.adhesives.keep(table, scene, controls, found, moved, kept),
+        }
+    }
+
+    /// Which series a run records besides those of all contacts.
+    pub fn series(&self) -> Recorded {
+        match self {
+            Self::Adhesives | Self::Penalty(_) => Recorded::Always,
+            Self::Links(_) => Recorded::WithLinks,
+            Self::VirtualAdhesives(_) => Recorded::WithAdhesives,
+        }
+    }
+
+    /// Finds the links at an instant, from those before; none under other laws.
+    pub fn links_at<'a>(
+        &self,
+        now: Touching,
+        before: &ContactState,
+        scratch: &'a mut LinkScratch,
+    ) -> Option<&'a LinkScratch> {
+        match self {
+            Self::Adhesives | Self::Penalty(_) | Self::VirtualAdhesives(_) => None,
+            Self::Links(table) => {
+                table.find(now.scene, now.controls, &before.links, now.found, now.positions, scratch);
+                Some(scratch)
+            }
+        }
+    }
+}
+
+impl LawScratch {
+    fn clear(&mut self) {
+        self.links.clear();
+        self.adhesives.clear();
+    }
+
+    /// Forgets everything.
+    pub(super) fn poison(&mut self) {
+        self.links.clear();
+        self.adhesives.poison();
+    }
+}
