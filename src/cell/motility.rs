@@ -83,17 +83,17 @@ impl BrownianMotility {
             walk.left -= dt.max(0.0);
             return self.speed * Vec3::from(walk.direction);
         }
-        let (mut way, mut passed) = (Vec3::zeros(), 0.0);
+        let (mut travelled, mut passed) = (Vec3::zeros(), 0.0);
         while passed + walk.left <= dt {
-            way += walk.left * Vec3::from(walk.direction);
+            travelled += walk.left * Vec3::from(walk.direction);
             passed += walk.left;
             ended(walk.duration, passed);
             self.turn(seed, cell, walk);
         }
         let rest = dt - passed;
-        way += rest * Vec3::from(walk.direction);
+        travelled += rest * Vec3::from(walk.direction);
         walk.left -= rest;
-        way * (self.speed / dt)
+        travelled * (self.speed / dt)
     }
 }
 

@@ -11,13 +11,13 @@ fn amoeba(space: Space) -> BrownianMotility {
 }
 
 /// Places of a walker at the end of each of `steps` steps.
-fn places(motility: &BrownianMotility, cell: u64, dt: f64, steps: usize) -> Vec<Vec3> {
+fn positions(motility: &BrownianMotility, cell: u64, dt: f64, steps: usize) -> Vec<Vec3> {
     let mut walk = motility.start(SEED, cell);
-    let mut place = Vec3::zeros();
+    let mut position = Vec3::zeros();
     (0..steps)
         .map(|_| {
-            place += dt * motility.advance(SEED, cell, &mut walk, dt, |_, _| ());
-            place
+            position += dt * motility.advance(SEED, cell, &mut walk, dt, |_, _| ());
+            position
         })
         .collect()
 }
@@ -28,7 +28,7 @@ fn walkers_spread_as_fuerth_says() {
         let motility = amoeba(space);
         let (speed, p) = (motility.speed, motility.persistence);
         let steps = [1, 2, 3, 4, 6, 8, 12, 16, 20, 26, 32, 40];
-        let tracks: Vec<Vec<Vec3>> = (0..WALKERS).map(|cell| places(&motility, cell, p / 4.0, 40)).collect();
+        let tracks: Vec<Vec<Vec3>> = (0..WALKERS).map(|cell| positions(&motility, cell, p / 4.0, 40)).collect();
         for lag in steps {
             let squares: Vec<f64> = tracks.iter().map(|track| track[lag - 1].norm_squared()).collect();
             let number = squares.len() as f64;
@@ -49,10 +49,10 @@ fn the_step_does_not_change_the_walk() {
         let motility = amoeba(space);
         let p = motility.persistence;
         for cell in 0..50 {
-            let fine = places(&motility, cell, p / 100.0, 3_000);
-            let coarse = places(&motility, cell, 3.0 * p, 10);
-            for (index, place) in coarse.iter().enumerate() {
-                let distance = (place - fine[300 * index + 299]).norm();
+            let fine = positions(&motility, cell, p / 100.0, 3_000);
+            let coarse = positions(&motility, cell, 3.0 * p, 10);
+            for (index, position) in coarse.iter().enumerate() {
+                let distance = (position - fine[300 * index + 299]).norm();
                 // Sums of 3 000 terms of about 0.1 µm, rounded each by 1e-17 and at worst all one way.
                 assert!(distance < 1e-10, "cell {cell}: {distance} µm apart after {} p", 3 * (index + 1));
             }

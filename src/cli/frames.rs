@@ -40,8 +40,8 @@ impl FrameArgs {
             When::At(time) => time.value(),
         };
         // Half a frame of room: a time near the end means the last frame.
-        let room = 0.5 * (times[last] - times[0]) / last.max(1) as f64;
-        if self.time.is_some() && (time < times[0] - room || time > times[last] + room) {
+        let slack = 0.5 * (times[last] - times[0]) / last.max(1) as f64;
+        if self.time.is_some() && (time < times[0] - slack || time > times[last] + slack) {
             return Err(missing(result, &times, &format!("frame at t = {} s", short(time))));
         }
         let away = |frame: &usize| (times[*frame] - time).abs();

@@ -43,7 +43,7 @@ pub struct PlotArgs {
     #[arg(long, value_name = "AXIS", value_parser = axis)]
     pub along: Option<Axis>,
     /// A place that a profile or kymograph goes through, in um, as in 10,20,0; the mean over the other axes when absent.
-    #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub through: Option<[Length; 3]>,
     /// The instants of a profile, by commas: first, last, or times such as "12 s"; five of the run when absent.
     #[arg(long, value_delimiter = ',', value_name = "TIME", requires = "profile", value_parser = instant)]
@@ -145,7 +145,7 @@ fn axis(text: &str) -> std::result::Result<Axis, String> {
 }
 
 /// Three numbers, µm.
-fn place(text: &str) -> std::result::Result<[Length; 3], String> {
+fn point(text: &str) -> std::result::Result<[Length; 3], String> {
     let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     match numbers[..] {
         [x, y, z] if numbers.iter().all(|number| number.is_finite()) => Ok([x, y, z].map(Length::new)),

@@ -11,7 +11,7 @@ use super::shape::Sides;
 use crate::Vec3;
 
 /// Places at which each part of an edge between two crossings is looked at.
-const PLACES: usize = 5;
+const SAMPLES: usize = 5;
 
 /// The first body, with another, that is deeper inside that than `most` of the two (µm), and the depth. The same whatever the threads.
 ///
@@ -77,7 +77,7 @@ fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bou
         for part in crossings.windows(2) {
             let at = |share: f64| from.lerp(&to, part[0] + share * (part[1] - part[0]));
             if is_inside(at(0.5)) {
-                let points = (1..=PLACES).map(|position| at(position as f64 / (PLACES + 1) as f64));
+                let points = (1..=SAMPLES).map(|position| at(position as f64 / (SAMPLES + 1) as f64));
                 deepest = points.fold(deepest, deeper);
             }
         }
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_in_a_ball_is_as_deep_as_its_farthest_place() {
+    fn a_ball_in_a_ball_is_as_deep_as_its_farthest_point() {
         let ball = icosphere(1.0, 3);
         let at = |x: f64| ball.positions.iter().map(|position| position + Vec3::new(x, 0.0, 0.0)).collect::<Vec<_>>();
         for shift in [1.2, 1.7, 1.95] {

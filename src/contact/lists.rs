@@ -106,8 +106,8 @@ impl Lists {
             first_atom += shape.atoms as u32;
             first_edge += shape.edges.len() as u32;
         }
-        self.facets.give_back();
-        self.edges.give_back();
+        self.facets.release_spare();
+        self.edges.release_spare();
     }
 
     /// Writes the facets of one other body (or its own) that an atom may touch over `pairs`.

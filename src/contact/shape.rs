@@ -137,7 +137,7 @@ impl Shape {
             near_edges,
             near_facets_first,
             near_facets,
-            order: order_by_place(rest),
+            order: order_by_position(rest),
         }
     }
 
@@ -227,7 +227,7 @@ fn near_at_rest(rest: &Surface, around: &[Vec<u32>], atom: usize, clearance: f64
 
 /// The facets in an order in which each 8, 64, 512 … in a row are neighbours: halved along the longest extent of their
 /// centres until eight are left.
-fn order_by_place(rest: &Surface) -> Vec<u32> {
+fn order_by_position(rest: &Surface) -> Vec<u32> {
     let centres: Vec<Vec3> = rest.facets.iter().map(|&facet| rest.corners(facet).iter().sum::<Vec3>() / 3.0).collect();
     let mut order: Vec<u32> = (0..centres.len() as u32).collect();
     let mut parts = vec![(0, order.len())];

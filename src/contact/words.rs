@@ -84,7 +84,7 @@ impl Words {
     }
 
     /// Gives memory back that only a wider margin needed.
-    pub fn give_back(&mut self) {
+    pub fn release_spare(&mut self) {
         if self.words.capacity() > self.words.len() + self.words.len() / 2 + 64 {
             self.words.shrink_to(self.words.len() + self.words.len() / 8);
         }
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn owners_and_bodies_without_pairs_take_no_room() {
+    fn owners_and_bodies_without_pairs_take_no_memory() {
         assert_eq!(written(&[(4, 2, vec![]), (9, 0, vec![])]).len(), 0);
         assert_eq!(written(&[(4, 2, vec![]), (9, 0, vec![(1, 0)]), (9, 1, vec![])]).len(), 3);
     }

@@ -37,12 +37,12 @@ impl Axis {
 
     /// Distance from the low wall in boxes. Beyond a wall counts as at the wall; a ring is gone round.
     #[inline(always)]
-    pub fn place(&self, position: f64) -> f64 {
-        let (place, n) = ((position - self.origin) * self.inverse, self.n as f64);
-        if place >= 0.0 && place <= n {
-            return place;
+    pub fn coordinate(&self, position: f64) -> f64 {
+        let (coordinate, n) = ((position - self.origin) * self.inverse, self.n as f64);
+        if coordinate >= 0.0 && coordinate <= n {
+            return coordinate;
         }
-        if self.periodic() { place.rem_euclid(n).min(n) } else { place.clamp(0.0, n) }
+        if self.periodic() { coordinate.rem_euclid(n).min(n) } else { coordinate.clamp(0.0, n) }
     }
 
     /// The boxes that hold positions and the parts of them below the positions. Notes in `inside` which positions have
@@ -53,15 +53,15 @@ impl Axis {
         let limit = (self.size - above).min(f64::from(i32::MAX));
         let (mut boxes, mut parts) = ([0; SIDE], [0.0; SIDE]);
         for l in 0..SIDE {
-            let place = (positions[l] - self.origin) * self.inverse;
+            let coordinate = (positions[l] - self.origin) * self.inverse;
             // Not written as its contrary, so that a position that is not a number is not inside.
-            let fine = (place >= 1.0) & (place < limit);
+            let fine = (coordinate >= 1.0) & (coordinate < limit);
             inside[l] &= fine;
-            let place = if place >= 1.0 { place } else { 1.0 };
-            let place = if place < limit { place } else { 1.0 };
+            let coordinate = if coordinate >= 1.0 { coordinate } else { 1.0 };
+            let coordinate = if coordinate < limit { coordinate } else { 1.0 };
             // SAFETY: at least 1, even if it was not a number, and at most the largest number of 32 bits.
-            boxes[l] = unsafe { place.to_int_unchecked() };
-            parts[l] = place - f64::from(boxes[l]);
+            boxes[l] = unsafe { coordinate.to_int_unchecked() };
+            parts[l] = coordinate - f64::from(boxes[l]);
         }
         (boxes, parts)
     }

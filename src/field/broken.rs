@@ -24,10 +24,10 @@ pub struct Broken {
 impl Broken {
     /// What the user is told.
     pub fn error(&self, document: &str, species: &[Species], grid: &Grid) -> Error {
-        let (name, time, place) = (&species[self.species].name, short(self.time), grid.told(self.at));
+        let (name, time, point) = (&species[self.species].name, short(self.time), grid.told(self.at));
         Error::Numbers {
             message: format!(
-                "document '{document}': its reactions make field '{name}' {} at {place} µm, after t = {time} s",
+                "document '{document}': its reactions make field '{name}' {} at {point} µm, after t = {time} s",
                 self.value
             ),
             help: "look for growth without bound, a division by zero or a root of a negative number; take smaller steps, or \

@@ -39,7 +39,8 @@ pub fn solve_lines(
     for (s, species) in fields.species().iter().enumerate() {
         let number = system.find(&species.name).expect("a field is a quantity of its document");
         let floor = if species.range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };
-        let values: Vec<f64> = (0..count).map(|at| last[place(system, grid, at, number) as usize].max(floor)).collect();
+        let values: Vec<f64> =
+            (0..count).map(|at| last[number_in(system, grid, at, number) as usize].max(floor)).collect();
         after.set_values(s, &values)?;
     }
     after.set_time(fields.time() + window);
@@ -47,7 +48,7 @@ pub fn solve_lines(
 }
 
 /// Where a quantity of a box stands in the large system: the quantities of the first box, of the second, …
-fn place(system: &System, _grid: &Grid, at: usize, number: QuantityId) -> QuantityId {
+fn number_in(system: &System, _grid: &Grid, at: usize, number: QuantityId) -> QuantityId {
     (at * system.quantities.len()) as QuantityId + number
 }
 
@@ -74,8 +75,8 @@ fn whole(system: &System, scales: Scales, fields: &Fields, inputs: &[(&str, f64)
                 }
                 Role::Defined { rule } => role = Role::Defined { rule: here(rule) },
                 Role::Input => {
-                    let given = inputs.iter().find(|(id, _)| *id == quantity.id).map(|(_, value)| *value);
-                    let value = axis.map(|axis| position[axis]).or(given);
+                    let held = inputs.iter().find(|(id, _)| *id == quantity.id).map(|(_, value)| *value);
+                    let value = axis.map(|axis| position[axis]).or(held);
                     (role, initial) = (Role::Parameter, value.map_or(initial, Expr::Number));
                 }
                 Role::Parameter => {}
@@ -115,7 +116,7 @@ fn moved(expr: &Expr, by: QuantityId) -> Expr {
 fn spread(system: &System, grid: &Grid, species: &Species, at: usize, number: QuantityId, seconds: f64) -> Expr {
     let [nx, ny, _] = grid.cells;
     let (index, strides) = ([at % nx, at / nx % ny, at / (nx * ny)], [1, nx, nx * ny]);
-    let value = |at: usize| Expr::Quantity(place(system, grid, at, number));
+    let value = |at: usize| Expr::Quantity(number_in(system, grid, at, number));
     let (mut inflow, mut own, mut fixed) = (Expr::Number(0.0), -species.decay * seconds, 0.0);
     for axis in 0..3 {
         let rate = species.diffusion * seconds / (grid.spacing[axis] * grid.spacing[axis]);

@@ -20,8 +20,8 @@ pub fn positions(program: &Program, code: &Code) -> Positions {
 }
 
 /// Sets the position of boxes that follow each other in memory, in the document's unit.
-pub fn set_positions(grid: &Grid, scales: Scales, place: &Positions, first: usize, file: &mut [Lanes<WIDTH>]) {
-    if place.iter().all(Option::is_none) {
+pub fn set_positions(grid: &Grid, scales: Scales, registers: &Positions, first: usize, file: &mut [Lanes<WIDTH>]) {
+    if registers.iter().all(Option::is_none) {
         return;
     }
     let [nx, ny, _] = grid.cells;
@@ -29,7 +29,7 @@ pub fn set_positions(grid: &Grid, scales: Scales, place: &Positions, first: usiz
     // On the substrate z is its height.
     let centre = if grid.is_flat() { [0.5, 0.5, 0.0] } else { [0.5; 3] };
     for lane in 0..WIDTH {
-        for (axis, register) in place.iter().enumerate() {
+        for (axis, register) in registers.iter().enumerate() {
             if let Some(register) = register {
                 let position = grid.origin[axis] + (index[axis] as f64 + centre[axis]) * grid.spacing[axis];
                 file[*register][lane] = position / scales.micrometres;

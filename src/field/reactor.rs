@@ -34,7 +34,7 @@ pub struct Reactor {
     tolerances: Tolerances,
     scales: Scales,
     /// Where the position and the inputs stand among the registers.
-    place: Positions,
+    position_registers: Positions,
     inputs: Vec<usize>,
 }
 
@@ -57,10 +57,10 @@ impl Reactor {
             absolute: document.solver.atol.unwrap_or(usual.absolute),
             ..usual
         };
-        let (place, rows) = (positions(&program, &program.rates), Rows::new(&program));
+        let (position_registers, rows) = (positions(&program, &program.rates), Rows::new(&program));
         let ours = |number: &usize| !POSITION.contains(&program.names[program.open[*number] as usize].as_str());
         let inputs = (0..program.open.len()).filter(ours).map(|number| program.first_open() + number).collect();
-        Ok(Some(Self { program, rows, method, tolerances, scales, place, inputs }))
+        Ok(Some(Self { program, rows, method, tolerances, scales, position_registers, inputs }))
     }
 
     /// Lets the boxes of a chunk react; of those whose values are finite before and
@@ -93,7 +93,7 @@ impl Reactor {
             for (s, state) in scratch.state.iter_mut().enumerate() {
                 state.copy_from_slice(&chunk.values[s * POINTS + first..][..WIDTH]);
             }
-            set_positions(grid, self.scales, &self.place, chunk.first + first, &mut scratch.file);
+            set_positions(grid, self.scales, &self.position_registers, chunk.first + first, &mut scratch.file);
             match self.method {
                 None => midpoint(&self.rows, scratch, from, dt),
                 Some(method) => self.with_method(simd, method, own, (from, from + dt)),
@@ -118,14 +118,14 @@ impl Reactor {
     /// A step of reactions by one of the engine's methods; a box in trouble gets values that are no numbers.
     #[inline(always)]
     fn with_method<S: pulp::Simd>(&self, simd: S, method: Method, own: &mut ReactorScratch, window: (f64, f64)) {
-        let ReactorScratch { scratch, states, before, given, .. } = own;
+        let ReactorScratch { scratch, states, before, open_values, .. } = own;
         states.copy_from_slice(&scratch.state);
         let open = self.program.first_open();
-        let many = given.len();
-        given.copy_from_slice(&scratch.file[open..open + many]);
+        let many = open_values.len();
+        open_values.copy_from_slice(&scratch.file[open..open + many]);
         // The splitting has chosen its step for these reactions: it is tried in one piece.
         let (mut steps, mut errors) = ([[window.1 - window.0; WIDTH]], [[1.0; WIDTH]]);
-        let mut cells = Cells { count: WIDTH, states, given, steps: &mut steps, errors: &mut errors, kept: None };
+        let mut cells = Cells { count: WIDTH, states, open_values, steps: &mut steps, errors: &mut errors, kept: None };
         before.copy_from_slice(&scratch.state);
         let result = block::advance(simd, &self.program, method, scratch, &mut cells, window, &self.tolerances);
         scratch.proposal.copy_from_slice(states);

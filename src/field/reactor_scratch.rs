@@ -15,14 +15,14 @@ pub struct ReactorScratch {
     /// States now and before, and open quantities, of a row of boxes, for the engine's methods.
     pub states: Vec<Lanes<WIDTH>>,
     pub before: Vec<Lanes<WIDTH>>,
-    pub given: Vec<Lanes<WIDTH>>,
+    pub open_values: Vec<Lanes<WIDTH>>,
 }
 
 impl ReactorScratch {
     /// Scratch for a program and method.
     pub fn new(key: (u64, Option<Method>), program: &Program) -> Self {
-        let (states, given) = (vec![[0.0; WIDTH]; program.size()], vec![[0.0; WIDTH]; program.open.len()]);
+        let (states, open_values) = (vec![[0.0; WIDTH]; program.size()], vec![[0.0; WIDTH]; program.open.len()]);
         let scratch = Scratch::new(program, key.1.is_some_and(Method::is_implicit));
-        Self { key, scratch, before: states.clone(), states, given }
+        Self { key, scratch, before: states.clone(), states, open_values }
     }
 }

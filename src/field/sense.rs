@@ -170,7 +170,7 @@ mod tests {
     use crate::field::{Fields, Grid, Species};
 
     #[test]
-    fn positions_side_by_side_agree_with_the_plain_way_and_do_not_see_each_other() {
+    fn positions_side_by_side_agree_with_the_reference_and_do_not_see_each_other() {
         for cells in [[9, 7, 1], [9, 7, 5], [4, 4, 4], [300, 1, 1], [5, 1, 6]] {
             let grid = Grid::new(cells, [0.5; 3], Vec3::new(1.0, -2.0, 0.5)).expect("a grid");
             let species = vec![Species::new("s", 1.0, 0.0)];
@@ -179,19 +179,19 @@ mod tests {
             let axes = Axis::all(&grid, &species[0]);
             let size = Vec3::from_fn(|axis, _| 0.5 * cells[axis] as f64 + 1.0);
             let part = |i: usize| Vec3::new(0.819_172_5, 0.671_043_6, 0.549_700_4).map(|by| (by * i as f64).fract());
-            let mut places: Vec<Vec3> =
+            let mut points: Vec<Vec3> =
                 (0..999).map(|i| grid.origin - Vec3::repeat(0.5) + part(i).component_mul(&size)).collect();
-            places[77] = Vec3::new(f64::NAN, 0.0, f64::INFINITY);
-            let mut found = vec![Sensed::default(); places.len()];
-            fields.sense_all(0, &places, &mut found);
-            for (at, (place, found)) in places.iter().zip(&found).enumerate() {
+            points[77] = Vec3::new(f64::NAN, 0.0, f64::INFINITY);
+            let mut found = vec![Sensed::default(); points.len()];
+            fields.sense_all(0, &points, &mut found);
+            for (at, (point, found)) in points.iter().zip(&found).enumerate() {
                 if at == 77 {
                     continue;
                 }
-                let plain = sense_plainly(&axes, fields.values(0), *place, 0.0);
+                let plain = sense_plainly(&axes, fields.values(0), *point, 0.0);
                 // Other sums of numbers as large as 5, the gradient's over half a µm.
                 assert!((found.value - plain.value).abs() < 1e-14 && (found.gradient - plain.gradient).norm() < 1e-13);
-                assert_eq!(*found, fields.sense(0, *place), "{cells:?} {at}");
+                assert_eq!(*found, fields.sense(0, *point), "{cells:?} {at}");
             }
         }
     }

@@ -22,9 +22,9 @@ impl Stencil {
         if n == 1 {
             return Self { at: [0; 3], weights: [1.0, 0.0, 0.0], slopes: [0.0; 3], constant: [0.0; 2] };
         }
-        let place = axis.place(position);
-        let i = (place as usize).min(n - 1);
-        let (mut weights, mut slopes) = spline(place - i as f64, axis.inverse);
+        let coordinate = axis.coordinate(position);
+        let i = (coordinate as usize).min(n - 1);
+        let (mut weights, mut slopes) = spline(coordinate - i as f64, axis.inverse);
         let (mut at, mut constant) = ([i.wrapping_sub(1), i, i + 1], [0.0; 2]);
         if i > 0 && i + 1 < n {
             return Self { at, weights, slopes, constant };

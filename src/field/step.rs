@@ -183,10 +183,10 @@ impl Fields {
         let apart = |at: &usize| if apart(at).is_nan() { f64::INFINITY } else { apart(at) };
         // Of equals the first.
         let worst = (0..self.values.len()).rev().max_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap_or(0);
-        let (name, place) = self.told(worst);
+        let (name, point) = self.told(worst);
         Error::Numbers {
             message: format!(
-                "no step meets the tolerance of field '{name}' at t = {} s, down to {} s; it is worst at {place} µm",
+                "no step meets the tolerance of field '{name}' at t = {} s, down to {} s; it is worst at {point} µm",
                 short(self.time),
                 short(dt)
             ),
@@ -209,9 +209,9 @@ impl Fields {
     fn check_finite(&self) -> Result<()> {
         let bad = if self.is_finite() { None } else { self.values.iter().position(|value| !value.is_finite()) };
         let Some(at) = bad else { return Ok(()) };
-        let (name, place) = self.told(at);
+        let (name, point) = self.told(at);
         Err(Error::Numbers {
-            message: format!("field '{name}' is {} at {place} µm and t = {} s", self.values[at], short(self.time)),
+            message: format!("field '{name}' is {} at {point} µm and t = {} s", self.values[at], short(self.time)),
             help: "its reactions grow without bound; check their signs and rates, or take smaller steps".into(),
             kept: None,
         })

@@ -30,7 +30,7 @@ impl Occupied {
     }
 
     /// Whether a sphere keeps the gap from all that is taken.
-    pub fn leaves_room(&self, centre: Vec3, radius: f64) -> bool {
+    pub fn is_clear(&self, centre: Vec3, radius: f64) -> bool {
         let of_box = |[low, high]: &[Vec3; 2]| (centre - centre.sup(low).inf(high)).norm();
         self.spheres.around(centre).all(|(other, its)| (centre - other).norm() >= radius + its + self.gap)
             && self.boxes.around(centre).all(|one| of_box(one) >= radius + self.gap)

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 /// For every point, the number of the first point within `tolerance` (µm) of it: its own number if it is the first at
 /// its position. The points must be finite; a tolerance of 0 finds points that are exactly equal.
-pub(super) fn first_at_same_place(points: &[Vec3], tolerance: f64) -> Vec<u32> {
+pub(super) fn first_at_same_position(points: &[Vec3], tolerance: f64) -> Vec<u32> {
     // Points are sorted into cubes of twice the tolerance, so a partner stands in the same cube or in the next one
     // along each axis.
     let side = if tolerance > 0.0 { 2.0 * tolerance } else { 1.0 };
@@ -49,8 +49,8 @@ mod tests {
     #[test]
     fn points_within_the_tolerance_share_the_first_number() {
         let points = [0.0, 1.0, 1.0 + 1e-9, -1e-9, 1.0 - 1e-9, 2.0].map(|x| Vec3::new(x, -x, 3.0));
-        assert_eq!(first_at_same_place(&points, 1e-8), [0, 1, 1, 0, 1, 5]);
-        assert_eq!(first_at_same_place(&points, 0.0), [0, 1, 2, 3, 4, 5]);
-        assert_eq!(first_at_same_place(&[Vec3::zeros(), -Vec3::zeros()], 0.0), [0, 0]);
+        assert_eq!(first_at_same_position(&points, 1e-8), [0, 1, 1, 0, 1, 5]);
+        assert_eq!(first_at_same_position(&points, 0.0), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(first_at_same_position(&[Vec3::zeros(), -Vec3::zeros()], 0.0), [0, 0]);
     }
 }

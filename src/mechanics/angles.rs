@@ -28,7 +28,7 @@ pub struct Angles {
     rings: Vec<Vec<u32>>,
     stances: Vec<Stance>,
     /// The stances as components along normal, tangent and binormal, µm.
-    places: Vec<[f64; 3]>,
+    coordinates: Vec<[f64; 3]>,
 }
 
 /// The middle of an atom's neighbours and the frame they span.
@@ -60,12 +60,12 @@ impl Angles {
             Stance { alpha: across.atan2(along), beta: along.hypot(across).atan2(up), gamma: away.squared().sqrt() }
         };
         let stances: Vec<Stance> = rings.iter().enumerate().map(stance).collect();
-        let place = |s: &Stance| {
+        let coordinates_of = |s: &Stance| {
             let flat = s.gamma * s.beta.sin();
             [s.gamma * s.beta.cos(), flat * s.alpha.cos(), flat * s.alpha.sin()]
         };
-        let places = stances.iter().map(place).collect();
-        Self { stiffness, rings: rings.to_vec(), stances, places }
+        let coordinates = stances.iter().map(coordinates_of).collect();
+        Self { stiffness, rings: rings.to_vec(), stances, coordinates }
     }
 
     /// What every atom remembers.
@@ -77,14 +77,14 @@ impl Angles {
     #[inline(always)]
     pub fn add_forces<T: Real>(&self, x: &Vectors<T>, f: &mut VectorsMut<T>) -> T {
         let mut energy = T::constant(x.token, 0.0);
-        for (atom, (ring, &[up, along, across])) in self.rings.iter().zip(&self.places).enumerate() {
+        for (atom, (ring, &[up, along, across])) in self.rings.iter().zip(&self.coordinates).enumerate() {
             if ring.len() < 2 {
                 continue;
             }
             let frame = frame(x, ring);
             let binormal = frame.normal.cross(frame.tangent);
-            let place = frame.normal.scaled(up) + frame.tangent.scaled(along) + binormal.scaled(across);
-            let offset = frame.middle + place - x.get(atom);
+            let coordinates_of = frame.normal.scaled(up) + frame.tangent.scaled(along) + binormal.scaled(across);
+            let offset = frame.middle + coordinates_of - x.get(atom);
             let pull = offset.scaled(self.stiffness);
             energy += offset.dot(pull) * 0.5;
             f.add(atom, pull);

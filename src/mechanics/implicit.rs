@@ -163,16 +163,16 @@ impl BlockWork for WideEnvelope<'_> {
 impl Envelope {
     fn new(stiffness: &StiffnessMatrix, diagonal: f64, scale: f64, held: &[bool]) -> Self {
         let order = reverse_cuthill_mckee(stiffness, held);
-        let mut place = vec![u32::MAX; stiffness.atoms()];
+        let mut row_of = vec![u32::MAX; stiffness.atoms()];
         for (row, &atom) in order.iter().enumerate() {
-            place[atom as usize] = row as u32;
+            row_of[atom as usize] = row as u32;
         }
         let (mut first, mut start, mut values) = (Vec::new(), vec![0u32], Vec::new());
         for (i, &atom) in order.iter().enumerate() {
             let entries: Vec<(usize, f64)> = stiffness
                 .row(atom as usize)
-                .filter(|&(j, _)| place[j] != u32::MAX && place[j] as usize <= i)
-                .map(|(j, value)| (place[j] as usize, scale * value))
+                .filter(|&(j, _)| row_of[j] != u32::MAX && row_of[j] as usize <= i)
+                .map(|(j, value)| (row_of[j] as usize, scale * value))
                 .collect();
             let low = entries.iter().map(|&(j, _)| j).min().unwrap_or(i).min(i);
             let at = values.len();

@@ -51,8 +51,8 @@ impl Ordering {
         for (atom, ring) in self.rings.iter().enumerate() {
             ring.iter().for_each(|&[next, _]| squares += (x.get(next as usize) - x.get(atom)).squared());
         }
-        let ways = self.rings.iter().map(Vec::len).sum::<usize>();
-        let per_square = T::constant(token, ways as f64) / squares.max(T::constant(token, NOTHING));
+        let neighbours = self.rings.iter().map(Vec::len).sum::<usize>();
+        let per_square = T::constant(token, neighbours as f64) / squares.max(T::constant(token, NOTHING));
         // Σ BᵀQB of the rigid motions B = (I, −[r]×), and Σ BᵀQL beside it.
         let mut system = [[zero; 7]; 6];
         for (atom, ring) in self.rings.iter().enumerate() {
@@ -63,9 +63,11 @@ impl Ordering {
             let turned =
                 [V3 { x: zero, y: -r.z, z: r.y }, V3 { x: r.z, y: zero, z: -r.x }, V3 { x: -r.y, y: r.x, z: zero }];
             let moved = [q[0], q[1], q[2], times(&q, turned[0]), times(&q, turned[1]), times(&q, turned[2])];
-            for (column, way) in moved.iter().chain([&pulled]).enumerate() {
-                let torque = r.cross(*way);
-                for (row, value) in [way.x, way.y, way.z, torque.x, torque.y, torque.z].into_iter().enumerate() {
+            for (column, direction) in moved.iter().chain([&pulled]).enumerate() {
+                let torque = r.cross(*direction);
+                for (row, value) in
+                    [direction.x, direction.y, direction.z, torque.x, torque.y, torque.z].into_iter().enumerate()
+                {
                     system[row][column] += value;
                 }
             }
@@ -84,9 +86,15 @@ impl Ordering {
     /// three times the slope of its chord), and no softer than between neighbours at the mean distance.
     pub fn add_stiffness(&self, x: &[Vec3], matrix: &mut StiffnessMatrix) {
         let square = |atom: usize, next: u32| (x[next as usize] - x[atom]).norm_squared();
-        let ways = || self.rings.iter().enumerate().flat_map(|(atom, ring)| ring.iter().map(move |way| (atom, way[0])));
-        let mean = ways().map(|(atom, next)| square(atom, next)).sum::<f64>() / ways().count().max(1) as f64;
-        for (atom, next) in ways() {
+        let neighbours = || {
+            self.rings
+                .iter()
+                .enumerate()
+                .flat_map(|(atom, ring)| ring.iter().map(move |direction| (atom, direction[0])))
+        };
+        let mean =
+            neighbours().map(|(atom, next)| square(atom, next)).sum::<f64>() / neighbours().count().max(1) as f64;
+        for (atom, next) in neighbours() {
             let stiffer = 3.0 * (square(atom, next) / mean).max(1.0);
             // Each edge is met from both of its ends.
             matrix.add_spring(atom, next as usize, 0.5 * stiffer * self.stiffness);

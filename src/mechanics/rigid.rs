@@ -70,8 +70,8 @@ impl<T: Real> RigidFrame<T> {
 
     /// The rigid field at a place.
     #[inline(always)]
-    pub fn at(&self, place: V3<T>, mean: V3<T>, spin: V3<T>) -> V3<T> {
-        mean + spin.cross(place - self.centre)
+    pub fn at(&self, position: V3<T>, mean: V3<T>, spin: V3<T>) -> V3<T> {
+        mean + spin.cross(position - self.centre)
     }
 }
 

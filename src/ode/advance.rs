@@ -56,10 +56,10 @@ impl Population {
         scratch: &mut PopulationScratch,
     ) -> TaskResult {
         let method = self.method();
-        let Self { states, steps, errors, given, .. } = self;
+        let Self { states, steps, errors, open_values, .. } = self;
         let PopulationScratch { kept, narrow, .. } = scratch;
         let kept = (!kept.is_empty()).then_some(Kept { numbers: kept });
-        let mut cells = Cells { count: self.cells, states, given, steps, errors, kept };
+        let mut cells = Cells { count: self.cells, states, open_values, steps, errors, kept };
         let narrow = narrow.get_or_insert_with(|| Box::new(Narrow::new(program, method.is_implicit())));
         narrow.advance(program, method, &mut cells, window, tolerances)
     }
@@ -73,7 +73,7 @@ impl Population {
     ) -> TaskResult {
         let (method, cells, n, open) = (self.method(), self.cells, self.variables, self.open);
         scratch.suit_threads();
-        let Self { states, steps, errors, given, .. } = self;
+        let Self { states, steps, errors, open_values, .. } = self;
         let PopulationScratch { kept, threads, .. } = scratch;
         let blocks = blocks_a_task(steps.len(), rayon::current_num_threads());
         let one = |(task, (((states, steps), errors), kept)): (usize, Part)| {
@@ -82,9 +82,9 @@ impl Population {
             let scratch = own.block.get_or_insert_with(|| Box::new(Scratch::new(program, method.is_implicit())));
             program.set_constants(&mut scratch.file);
             let first = task * blocks;
-            let given = &given[first * open..(first + steps.len()) * open];
+            let open_values = &open_values[first * open..(first + steps.len()) * open];
             let count = (cells - first * LANES).min(steps.len() * LANES);
-            let cells = Cells { count, states, given, steps, errors, kept };
+            let cells = Cells { count, states, open_values, steps, errors, kept };
             let result = Arch::new().dispatch(Task { program, method, scratch, cells, window, tolerances });
             result.map_err(|trouble| CellTrouble { cell: first * LANES + trouble.cell, ..trouble })
         };

@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
-use super::cells::{CellTrouble, Cells, Seats};
+use super::cells::{CellTrouble, Cells, LaneCells};
 use super::control::{self, Controller, NEAR, Tolerances};
 use super::mask::{self, Mask, both, choose, pick, when};
 use super::scratch::Scratch;
@@ -64,43 +64,43 @@ fn adaptive<S: Simd, const L: usize, M: Adaptive>(
     tolerances: &Tolerances,
 ) -> Result<Work, CellTrouble> {
     let (mut work, mut trouble) = (Work::default(), None);
-    let mut seats = Seats::<L>::new();
+    let mut lanes = LaneCells::<L>::new();
     let mut progress = Progress { time: [from; L], rounds: [0.0; L], refused: [0; L] };
     let shortest = control::shortest(from, until);
     let open = program.first_open();
     loop {
-        sit(&mut seats, &mut progress, cells, open, s, from);
-        let left = mask::count(&seats.active);
+        sit(&mut lanes, &mut progress, cells, open, s, from);
+        let left = mask::count(&lanes.active);
         if left == 0 {
             break;
         }
-        begin::<L, M>(program, s, &mut seats, &progress.time, until - from, tolerances, &mut work);
-        let round = plan(&seats, &progress, (from, until));
+        begin::<L, M>(program, s, &mut lanes, &progress.time, until - from, tolerances, &mut work);
+        let round = plan(&lanes, &progress, (from, until));
         M::step(simd, program, s, &progress.time, &round.step);
         work.jacobians += M::JACOBIANS * left as u64;
         work.rates += M::RATES * left as u64;
         let error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
-        let accepted = judge(&mut seats, &mut progress, &round, &error, &M::CONTROLLER, until);
+        let accepted = judge(&mut lanes, &mut progress, &round, &error, &M::CONTROLLER, until);
         let steps = mask::count(&accepted);
         work.steps += steps as u64;
         work.rejected += (left - steps) as u64;
         advance_state::<L, M>(s, &accepted, steps);
-        let (arrived, leaving) = leaving(&seats, &progress, until, shortest, f64::from(tolerances.max_steps));
+        let (arrived, leaving) = leaving(&lanes, &progress, until, shortest, f64::from(tolerances.max_steps));
         let leave = mask::count(&leaving);
         if leave == 0 {
             continue;
         }
-        if mask::count(&arrived) == L && seats.leave_block(cells, s) {
+        if mask::count(&arrived) == L && lanes.leave_block(cells, s) {
             continue;
         }
         for l in (0..L).filter(|&l| leaving[l] != 0) {
             if arrived[l] == 0 {
-                let known = explain(program, s, (progress.time, seats.step), l, (seats.cell[l], error[l], shortest));
+                let known = explain(program, s, (progress.time, lanes.step), l, (lanes.cell[l], error[l], shortest));
                 if trouble.is_none_or(|first: CellTrouble| known.cell < first.cell) {
                     trouble = Some(known);
                 }
             }
-            seats.leave(l, cells, s, arrived[l] != 0);
+            lanes.leave(l, cells, s, arrived[l] != 0);
         }
     }
     trouble.map_or(Ok(work), Err)
@@ -108,13 +108,13 @@ fn adaptive<S: Simd, const L: usize, M: Adaptive>(
 
 /// The steps that lanes take next: as wanted, or into what is left of the window.
 #[inline(always)]
-fn plan<const L: usize>(seats: &Seats<L>, progress: &Progress<L>, (from, until): (f64, f64)) -> Round<L> {
+fn plan<const L: usize>(lanes: &LaneCells<L>, progress: &Progress<L>, (from, until): (f64, f64)) -> Round<L> {
     let mut round = Round { step: [0.0; L], last: [0; L], cut: [0; L] };
     for l in 0..L {
-        let (rest, wanted) = (until - progress.time[l], seats.step[l]);
+        let (rest, wanted) = (until - progress.time[l], lanes.step[l]);
         let (last, cut) = (when(wanted >= rest * NEAR), when(wanted > 0.5 * rest));
         let within = pick(last, rest, pick(cut, 0.5 * rest, wanted));
-        round.step[l] = pick(seats.active[l], within, until - from);
+        round.step[l] = pick(lanes.active[l], within, until - from);
         (round.last[l], round.cut[l]) = (last, cut);
     }
     round
@@ -124,7 +124,7 @@ fn plan<const L: usize>(seats: &Seats<L>, progress: &Progress<L>, (from, until):
 /// lanes that have moved on.
 #[inline(always)]
 fn judge<const L: usize>(
-    seats: &mut Seats<L>,
+    lanes: &mut LaneCells<L>,
     progress: &mut Progress<L>,
     round: &Round<L>,
     error: &Lanes<L>,
@@ -133,24 +133,24 @@ fn judge<const L: usize>(
 ) -> Mask<L> {
     let (mut factor, mut accepted) = ([1.0; L], [0; L]);
     for l in 0..L {
-        factor[l] = controller.factor(error[l], seats.error[l]);
+        factor[l] = controller.factor(error[l], lanes.error[l]);
     }
     for l in 0..L {
         // A norm that is not a number compares false and is refused.
-        accepted[l] = seats.active[l] & when(error[l] <= 1.0);
+        accepted[l] = lanes.active[l] & when(error[l] <= 1.0);
     }
     for l in 0..L {
-        let (step, wanted) = (round.step[l], seats.step[l]);
+        let (step, wanted) = (round.step[l], lanes.step[l]);
         let most = pick(progress.refused[l], 1.0, controller.most);
         let next = control::after_good(step, (wanted, round.cut[l] != 0), factor[l], most);
-        seats.step[l] = pick(accepted[l], next, control::after_refused(step, error[l], factor[l]));
+        lanes.step[l] = pick(accepted[l], next, control::after_refused(step, error[l], factor[l]));
     }
     for l in 0..L {
         let end = pick(round.last[l], until, progress.time[l] + round.step[l]);
         progress.time[l] = pick(accepted[l], end, progress.time[l]);
-        seats.error[l] = pick(accepted[l], error[l], seats.error[l]);
+        lanes.error[l] = pick(accepted[l], error[l], lanes.error[l]);
         progress.refused[l] = !accepted[l];
-        progress.rounds[l] += pick(seats.active[l], 1.0, 0.0);
+        progress.rounds[l] += pick(lanes.active[l], 1.0, 0.0);
     }
     accepted
 }
@@ -158,7 +158,7 @@ fn judge<const L: usize>(
 /// The lanes that have arrived, and all whose cell leaves: these, and those in trouble.
 #[inline(always)]
 fn leaving<const L: usize>(
-    seats: &Seats<L>,
+    lanes: &LaneCells<L>,
     progress: &Progress<L>,
     until: f64,
     shortest: f64,
@@ -166,10 +166,10 @@ fn leaving<const L: usize>(
 ) -> (Mask<L>, Mask<L>) {
     let (mut arrived, mut leaving) = ([0; L], [0; L]);
     for l in 0..L {
-        let short = progress.refused[l] & when(seats.step[l] <= shortest);
+        let short = progress.refused[l] & when(lanes.step[l] <= shortest);
         let endless = when(progress.rounds[l] >= max_rounds);
-        arrived[l] = seats.active[l] & when(progress.time[l] >= until);
-        leaving[l] = arrived[l] | (seats.active[l] & (short | endless));
+        arrived[l] = lanes.active[l] & when(progress.time[l] >= until);
+        leaving[l] = arrived[l] | (lanes.active[l] & (short | endless));
     }
     (arrived, leaving)
 }
@@ -199,23 +199,23 @@ fn advance_state<const L: usize, M: Adaptive>(s: &mut Scratch<L>, accepted: &Mas
 /// Fills free lanes with cells that wait.
 #[inline(always)]
 fn sit<const L: usize>(
-    seats: &mut Seats<L>,
+    lanes: &mut LaneCells<L>,
     progress: &mut Progress<L>,
     cells: &Cells<L>,
     open: usize,
     s: &mut Scratch<L>,
     from: f64,
 ) {
-    let free = L - mask::count(&seats.active);
-    if free * FREE_SHARE < L || !seats.waiting(cells) {
+    let free = L - mask::count(&lanes.active);
+    if free * FREE_SHARE < L || !lanes.waiting(cells) {
         return;
     }
-    if free == L && seats.take_block(cells, open, s) {
+    if free == L && lanes.take_block(cells, open, s) {
         (progress.time, progress.rounds, progress.refused) = ([from; L], [0.0; L], [0; L]);
         return;
     }
     for l in 0..L {
-        if seats.active[l] == 0 && seats.take(l, cells, open, s) {
+        if lanes.active[l] == 0 && lanes.take(l, cells, open, s) {
             (progress.time[l], progress.rounds[l], progress.refused[l]) = (from, 0.0, 0);
         }
     }
@@ -226,7 +226,7 @@ fn sit<const L: usize>(
 fn begin<const L: usize, M: Adaptive>(
     program: &Program,
     s: &mut Scratch<L>,
-    seats: &mut Seats<L>,
+    lanes: &mut LaneCells<L>,
     time: &Lanes<L>,
     window: f64,
     tolerances: &Tolerances,
@@ -234,11 +234,11 @@ fn begin<const L: usize, M: Adaptive>(
 ) {
     let mut unknown = [0; L];
     for l in 0..L {
-        unknown[l] = seats.active[l] & when(seats.step[l] <= 0.0);
+        unknown[l] = lanes.active[l] & when(lanes.step[l] <= 0.0);
     }
-    let fresh = mask::count(&both(&seats.fresh, &seats.active));
+    let fresh = mask::count(&both(&lanes.fresh, &lanes.active));
     let unknown = mask::count(&unknown) > 0;
-    seats.fresh = [0; L];
+    lanes.fresh = [0; L];
     if !unknown && (fresh == 0 || M::LAST.is_none()) {
         return;
     }
@@ -250,7 +250,7 @@ fn begin<const L: usize, M: Adaptive>(
     if unknown {
         let guess = control::first_step(&s.state, &s.stages[..s.state.len()], &program.sizes, window, tolerances);
         for l in 0..L {
-            seats.step[l] = if seats.step[l] > 0.0 { seats.step[l] } else { guess[l] };
+            lanes.step[l] = if lanes.step[l] > 0.0 { lanes.step[l] } else { guess[l] };
         }
     }
 }

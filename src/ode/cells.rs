@@ -25,7 +25,7 @@ pub struct Cells<'a, const L: usize> {
     /// States.
     pub states: &'a mut [Lanes<L>],
     /// Open quantities.
-    pub given: &'a [Lanes<L>],
+    pub open_values: &'a [Lanes<L>],
     /// The step that each cell tries next; 0 where none is known.
     pub steps: &'a mut [Lanes<L>],
     /// Error of each cell's last step.
@@ -65,13 +65,13 @@ impl<const L: usize> Kept<'_, L> {
     fn block_mut(&mut self, block: usize, n: usize, open: usize) -> [&mut [Lanes<L>]; 3] {
         let all = &mut self.numbers[block * kept_numbers(n, open)..][..kept_numbers(n, open)];
         let (rates, from) = all.split_at_mut(n);
-        let (states, given) = from.split_at_mut(n);
-        [rates, states, given]
+        let (states, open_values) = from.split_at_mut(n);
+        [rates, states, open_values]
     }
 }
 
 /// The lanes: each holds a cell until its window is done and then takes the next one that waits.
-pub struct Seats<const L: usize> {
+pub struct LaneCells<const L: usize> {
     /// The cell in each lane.
     pub cell: [usize; L],
     /// Whether the lane has a cell that is not done.
@@ -88,7 +88,7 @@ pub struct Seats<const L: usize> {
     next: usize,
 }
 
-impl<const L: usize> Seats<L> {
+impl<const L: usize> LaneCells<L> {
     /// All lanes empty.
     pub fn new() -> Self {
         Self { cell: [0; L], active: [0; L], step: [0.0; L], error: [1.0; L], fresh: [YES; L], block: None, next: 0 }
@@ -110,13 +110,13 @@ impl<const L: usize> Seats<L> {
         for (state, from) in s.state.iter_mut().zip(&cells.states[block * n..]) {
             state[l] = from[lane];
         }
-        let numbers = cells.given.len() / cells.steps.len();
-        for (register, from) in s.file[open..open + numbers].iter_mut().zip(&cells.given[block * numbers..]) {
+        let numbers = cells.open_values.len() / cells.steps.len();
+        for (register, from) in s.file[open..open + numbers].iter_mut().zip(&cells.open_values[block * numbers..]) {
             register[l] = from[lane];
         }
         self.fresh[l] = YES;
         if let Some(kept) = &cells.kept {
-            let (rates, states, given) = kept.block(block, n, numbers);
+            let (rates, states, open_values) = kept.block(block, n, numbers);
             for (rate, from) in s.stages[..n].iter_mut().zip(rates) {
                 rate[l] = from[lane];
             }
@@ -124,7 +124,7 @@ impl<const L: usize> Seats<L> {
             for (before, now) in states.iter().zip(&s.state) {
                 known &= is_same(before[lane], now[l]);
             }
-            for (before, now) in given.iter().zip(&s.file[open..]) {
+            for (before, now) in open_values.iter().zip(&s.file[open..]) {
                 known &= is_same(before[lane], now[l]);
             }
             self.fresh[l] = when(!known);
@@ -143,14 +143,14 @@ impl<const L: usize> Seats<L> {
         }
         let (block, n) = (self.next / L, s.state.len());
         s.state.copy_from_slice(&cells.states[block * n..(block + 1) * n]);
-        let numbers = cells.given.len() / cells.steps.len();
-        s.file[open..open + numbers].copy_from_slice(&cells.given[block * numbers..(block + 1) * numbers]);
+        let numbers = cells.open_values.len() / cells.steps.len();
+        s.file[open..open + numbers].copy_from_slice(&cells.open_values[block * numbers..(block + 1) * numbers]);
         self.fresh = [YES; L];
         if let Some(kept) = &cells.kept {
-            let (rates, states, given) = kept.block(block, n, numbers);
+            let (rates, states, open_values) = kept.block(block, n, numbers);
             s.stages[..n].copy_from_slice(rates);
             let mut known = [YES; L];
-            for (before, now) in states.iter().zip(&s.state).chain(given.iter().zip(&s.file[open..])) {
+            for (before, now) in states.iter().zip(&s.state).chain(open_values.iter().zip(&s.file[open..])) {
                 for l in 0..L {
                     known[l] &= when(is_same(before[l], now[l]));
                 }
@@ -172,15 +172,15 @@ impl<const L: usize> Seats<L> {
             to[lane] = state[l];
         }
         if let Some(kept) = &mut cells.kept {
-            let numbers = cells.given.len() / cells.steps.len();
-            let [rates, states, given] = kept.block_mut(block, n, numbers);
+            let numbers = cells.open_values.len() / cells.steps.len();
+            let [rates, states, open_values] = kept.block_mut(block, n, numbers);
             for (to, rate) in rates.iter_mut().zip(&s.stages) {
                 to[lane] = rate[l];
             }
             for (to, state) in states.iter_mut().zip(&s.state) {
                 to[lane] = if arrived { state[l] } else { f64::NAN };
             }
-            for (to, from) in given.iter_mut().zip(&cells.given[block * numbers..]) {
+            for (to, from) in open_values.iter_mut().zip(&cells.open_values[block * numbers..]) {
                 to[lane] = from[lane];
             }
         }
@@ -196,11 +196,11 @@ impl<const L: usize> Seats<L> {
         };
         cells.states[block * n..(block + 1) * n].copy_from_slice(&s.state);
         if let Some(kept) = &mut cells.kept {
-            let numbers = cells.given.len() / cells.steps.len();
-            let [rates, states, given] = kept.block_mut(block, n, numbers);
+            let numbers = cells.open_values.len() / cells.steps.len();
+            let [rates, states, open_values] = kept.block_mut(block, n, numbers);
             rates.copy_from_slice(&s.stages[..n]);
             states.copy_from_slice(&s.state);
-            given.copy_from_slice(&cells.given[block * numbers..(block + 1) * numbers]);
+            open_values.copy_from_slice(&cells.open_values[block * numbers..(block + 1) * numbers]);
         }
         (cells.steps[block], cells.errors[block]) = (self.step, self.error);
         self.active = [0; L];

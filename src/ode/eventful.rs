@@ -65,7 +65,7 @@ impl Eventful<'_> {
                 continue;
             }
             arrived.state.iter().enumerate().for_each(|(position, &x)| population.set_state(cell, position, x));
-            arrived.open.iter().enumerate().for_each(|(position, &x)| population.set_given(cell, position, x));
+            arrived.open.iter().enumerate().for_each(|(position, &x)| population.set_open(cell, position, x));
             population.set_pace(cell, arrived.pace);
             std::mem::swap(memory, &mut arrived.memory);
             work.add(arrived.work);
@@ -87,7 +87,7 @@ impl Eventful<'_> {
         let known = stepper.take().unwrap_or_else(|| StepperBuffers::new(program, method.is_implicit()));
         let mut own = Stepper::within(known, program, method, self.tolerances);
         let state = (0..program.size()).map(|position| population.state(cell, position));
-        let open = (0..program.open.len()).map(|position| population.given(cell, position));
+        let open = (0..program.open.len()).map(|position| population.open_values(cell, position));
         own.resume(from, state, open, population.pace(cell));
         own.longest = LONGEST_SHARE * self.span;
         let mut events = Events::new(self.plan, &mut arrived.memory, events);

@@ -73,8 +73,8 @@ impl EventPlan {
     pub fn compile(system: &System, start: f64) -> Result<(Program, Self), Vec<String>> {
         let program = Program::with(system, start, &assigned_parameters(system), &groups(system))?;
         let slot = |quantity: QuantityId| {
-            let variable = program.variable_place(quantity);
-            variable.or_else(|| program.open_place(quantity).map(|place| program.size() + place)).unwrap_or(usize::MAX)
+            let variable = program.variable_index(quantity);
+            variable.or_else(|| program.open_index(quantity).map(|index| program.size() + index)).unwrap_or(usize::MAX)
         };
         let slots = |event: &Event| event.assignments.iter().map(|&(quantity, _)| slot(quantity)).collect();
         let plan = Self { events: system.events.clone(), slots: system.events.iter().map(slots).collect() };
@@ -250,8 +250,8 @@ impl<'a> Events<'a> {
             // The first of equals: the later one must be strictly larger.
             let first = due
                 .reduce(|best, other| if priorities[other.1.event] > priorities[best.1.event] { other } else { best });
-            let Some((place, _)) = first else { break };
-            let pending = self.memory.pending.remove(place);
+            let Some((index, _)) = first else { break };
+            let pending = self.memory.pending.remove(index);
             match pending.values {
                 Some(known) => values = known,
                 None => {
@@ -263,7 +263,7 @@ impl<'a> Events<'a> {
                 let n = program.size();
                 if slot < n {
                     stepper.set_state(slot, value);
-                } else if let Some(open) = slot.checked_sub(n).and_then(|place| stepper.open.get_mut(place)) {
+                } else if let Some(open) = slot.checked_sub(n).and_then(|index| stepper.open.get_mut(index)) {
                     *open = value;
                 }
             }

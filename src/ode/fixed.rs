@@ -22,11 +22,11 @@ pub fn advance<const L: usize, const CLASSICAL: bool>(
     // An inner step that goes into the window but for round-off does so exactly.
     let count = ((until - from) / longest - 1e-9).ceil().max(1.0);
     let step = (until - from) / count;
-    let numbers = cells.given.len() / cells.steps.len();
+    let numbers = cells.open_values.len() / cells.steps.len();
     let mut trouble: Option<CellTrouble> = None;
     for block in 0..cells.steps.len() {
         s.state.copy_from_slice(&cells.states[block * n..(block + 1) * n]);
-        s.file[open..open + numbers].copy_from_slice(&cells.given[block * numbers..(block + 1) * numbers]);
+        s.file[open..open + numbers].copy_from_slice(&cells.open_values[block * numbers..(block + 1) * numbers]);
         // Lanes without a cell stay as they are.
         let mut going: Mask<L> = std::array::from_fn(|l| when(block * L + l < cells.count));
         for number in 0..count as u64 {

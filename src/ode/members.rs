@@ -44,7 +44,7 @@ impl Population {
         );
         self.insert_default(program, at);
         variables.iter().enumerate().for_each(|(variable, &value)| self.set_state(at, variable, value));
-        open.iter().enumerate().for_each(|(open, &value)| self.set_given(at, open, value));
+        open.iter().enumerate().for_each(|(open, &value)| self.set_open(at, open, value));
     }
 
     /// As [`Self::push_default`], before the cell with this number; that and all later ones move up by one.
@@ -67,7 +67,7 @@ impl Population {
     fn set_initial(&mut self, program: &Program, cell: usize) {
         let initial = |quantity: &QuantityId| program.initial[*quantity as usize];
         program.variables.iter().enumerate().for_each(|(variable, q)| self.set_state(cell, variable, initial(q)));
-        program.open.iter().enumerate().for_each(|(open, q)| self.set_given(cell, open, initial(q)));
+        program.open.iter().enumerate().for_each(|(open, q)| self.set_open(cell, open, initial(q)));
     }
 
     /// Takes a cell out; later ones move down by one.
@@ -93,7 +93,7 @@ impl Population {
         // Lanes without a cell hold what they would in a population that never had more.
         for lane in kept..LANES * self.blocks() {
             (0..self.variables).for_each(|variable| self.set_state(lane, variable, 0.0));
-            (0..self.open).for_each(|open| self.set_given(lane, open, 0.0));
+            (0..self.open).for_each(|open| self.set_open(lane, open, 0.0));
             self.forget_step(lane);
         }
     }
@@ -102,7 +102,7 @@ impl Population {
     fn resize_blocks(&mut self) {
         let blocks = self.cells.div_ceil(LANES);
         self.states.resize(blocks * self.variables, [0.0; LANES]);
-        self.given.resize(blocks * self.open, [0.0; LANES]);
+        self.open_values.resize(blocks * self.open, [0.0; LANES]);
         self.steps.resize(blocks, [0.0; LANES]);
         self.errors.resize(blocks, [1.0; LANES]);
     }
@@ -119,7 +119,7 @@ impl Population {
             }
         };
         copy(&mut self.states, self.variables);
-        copy(&mut self.given, self.open);
+        copy(&mut self.open_values, self.open);
         copy(&mut self.steps, 1);
         copy(&mut self.errors, 1);
     }

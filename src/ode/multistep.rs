@@ -41,16 +41,16 @@ impl<'a> Machine<'a> {
     /// The Jacobian at a state and time, times a vector.
     pub fn jacobian_times(&self, state: &[f64], time: f64, vector: &[f64], product: &mut [f64]) {
         let mut known = self.known.borrow_mut();
-        let (place, entries) = &mut *known;
-        let same = place.split_last().is_some_and(|(last, rest)| *last == time && rest == state);
+        let (state_and_time, entries) = &mut *known;
+        let same = state_and_time.split_last().is_some_and(|(last, rest)| *last == time && rest == state);
         if !same {
             let mut file = self.file.borrow_mut();
             set(&mut file, state, time);
             run(&self.program.linear, &mut file);
             entries.clear();
             entries.extend(self.program.linear.outputs[2 * state.len()..].iter().map(|&at| file[at as usize][0]));
-            place.clear();
-            place.extend(state.iter().copied().chain([time]));
+            state_and_time.clear();
+            state_and_time.extend(state.iter().copied().chain([time]));
         }
         product.fill(0.0);
         for (&(row, column), &entry) in self.program.pattern.iter().zip(entries.iter()) {
@@ -62,10 +62,11 @@ impl<'a> Machine<'a> {
     fn fastest(&self, state: &[f64], time: f64) -> Option<String> {
         let mut rates = vec![0.0; state.len()];
         self.rates(state, time, &mut rates);
-        let pace = |place: usize| match rates[place].abs() / (state[place].abs() + self.program.sizes[place]) {
-            pace if pace.is_nan() => f64::INFINITY,
-            pace => pace,
-        };
+        let pace =
+            |variable: usize| match rates[variable].abs() / (state[variable].abs() + self.program.sizes[variable]) {
+                pace if pace.is_nan() => f64::INFINITY,
+                pace => pace,
+            };
         let worst = (0..state.len()).max_by(|&a, &b| pace(a).total_cmp(&pace(b)))?;
         Some(self.program.names[self.program.variables[worst] as usize].clone())
     }

@@ -13,7 +13,7 @@ use crate::equations::program::{Lanes, Program};
 pub struct Narrow {
     scratch: Scratch<1>,
     state: Vec<Lanes<1>>,
-    given: Vec<Lanes<1>>,
+    open_values: Vec<Lanes<1>>,
     /// See [`Kept`].
     kept: Vec<Lanes<1>>,
 }
@@ -24,7 +24,7 @@ impl Narrow {
         let empty = |count| vec![[0.0]; count];
         let (n, open) = (program.size(), program.open.len());
         let scratch = Scratch::new(program, stiff);
-        Self { scratch, state: empty(n), given: empty(open), kept: empty(kept_numbers(n, open)) }
+        Self { scratch, state: empty(n), open_values: empty(open), kept: empty(kept_numbers(n, open)) }
     }
 
     /// Advances the cells of one block, each by itself: the same bits as side by side.
@@ -60,14 +60,14 @@ impl Narrow {
         tolerances: &Tolerances,
     ) -> Result<Work, CellTrouble> {
         copy(&mut self.state, 0, cells.states, l);
-        copy(&mut self.given, 0, cells.given, l);
+        copy(&mut self.open_values, 0, cells.open_values, l);
         let (mut step, mut error) = ([[cells.steps[0][l]]], [[cells.errors[0][l]]]);
         let kept = cells.kept.as_ref().map(|kept| {
             copy(&mut self.kept, 0, kept.numbers, l);
             Kept { numbers: &mut self.kept }
         });
         let (steps, errors) = (&mut step[..], &mut error[..]);
-        let mut one = Cells { count: 1, states: &mut self.state, given: &self.given, steps, errors, kept };
+        let mut one = Cells { count: 1, states: &mut self.state, open_values: &self.open_values, steps, errors, kept };
         let result = block::advance(Scalar, program, method, &mut self.scratch, &mut one, window, tolerances);
         copy(cells.states, l, &self.state, 0);
         if let Some(kept) = &mut cells.kept {

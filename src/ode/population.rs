@@ -20,7 +20,7 @@ pub struct Population {
     pub(super) variables: usize,
     pub(super) open: usize,
     pub(super) states: Vec<Lanes<LANES>>,
-    pub(super) given: Vec<Lanes<LANES>>,
+    pub(super) open_values: Vec<Lanes<LANES>>,
     /// The step that each cell tries next; 0 where none is known.
     pub(super) steps: Vec<Lanes<LANES>>,
     /// Error of each cell's last step.
@@ -30,8 +30,8 @@ pub struct Population {
 impl Population {
     /// No cells, of a system with so many variables and open quantities.
     pub(super) fn empty(variables: usize, open: usize, method: Method) -> Self {
-        let (states, given, steps, errors) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Self { method, cells: 0, variables, open, states, given, steps, errors }
+        let (states, open_values, steps, errors) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { method, cells: 0, variables, open, states, open_values, steps, errors }
     }
 
     /// Whether another population has as many cells, variables and open quantities.
@@ -43,7 +43,7 @@ impl Population {
     pub fn copy_from(&mut self, other: &Self) {
         (self.method, self.cells, self.variables, self.open) = (other.method, other.cells, other.variables, other.open);
         self.states.clone_from(&other.states);
-        self.given.clone_from(&other.given);
+        self.open_values.clone_from(&other.open_values);
         self.steps.clone_from(&other.steps);
         self.errors.clone_from(&other.errors);
     }
@@ -75,18 +75,18 @@ impl Population {
     ///
     /// # Panics
     /// When there is no such cell or open quantity.
-    pub fn given(&self, cell: usize, open: usize) -> f64 {
+    pub fn open_values(&self, cell: usize, open: usize) -> f64 {
         assert!(open < self.open, "open quantity {open} of {}", self.open);
-        self.given[cell / LANES * self.open + open][cell % LANES]
+        self.open_values[cell / LANES * self.open + open][cell % LANES]
     }
 
     /// Sets a cell's value of an open quantity: it stands until it is set again.
     ///
     /// # Panics
     /// When there is no such cell or open quantity.
-    pub fn set_given(&mut self, cell: usize, open: usize, value: f64) {
+    pub fn set_open(&mut self, cell: usize, open: usize, value: f64) {
         assert!(open < self.open, "open quantity {open} of {}", self.open);
-        self.given[cell / LANES * self.open + open][cell % LANES] = value;
+        self.open_values[cell / LANES * self.open + open][cell % LANES] = value;
     }
 
     /// The step that a cell will try next; 0 before its first window and for methods with fixed steps.
@@ -148,7 +148,7 @@ impl Population {
         for block in 0..self.blocks() {
             file[0] = [time; LANES];
             file[1..=n].copy_from_slice(&self.states[block * n..(block + 1) * n]);
-            file[1 + n..1 + n + m].copy_from_slice(&self.given[block * m..(block + 1) * m]);
+            file[1 + n..1 + n + m].copy_from_slice(&self.open_values[block * m..(block + 1) * m]);
             run(&program.observe, file);
             each(BlockView { program, file, cells: block * LANES..self.cells.min((block + 1) * LANES) });
         }

@@ -12,12 +12,12 @@ fn sum<S: Simd, const L: usize>(
     weights: &[f64],
     stages: &[Lanes<L>],
     (n, variable): (usize, usize),
-    place: usize,
+    slot: usize,
 ) -> S::f64s {
     let mut sum = None;
     for (stage, &weight) in weights.iter().enumerate() {
         if weight != 0.0 {
-            let part = simd.mul_f64s(simd.splat_f64s(weight), S::as_simd_f64s(&stages[stage * n + variable]).0[place]);
+            let part = simd.mul_f64s(simd.splat_f64s(weight), S::as_simd_f64s(&stages[stage * n + variable]).0[slot]);
             sum = Some(sum.map_or(part, |sum| simd.add_f64s(sum, part)));
         }
     }
@@ -36,9 +36,9 @@ pub fn combine<S: Simd, const W: usize, const L: usize>(
     to: &mut Lanes<L>,
 ) {
     let (begin, factor, to) = (S::as_simd_f64s(&begin).0, S::as_simd_f64s(factor).0, S::as_mut_simd_f64s(to).0);
-    for place in 0..to.len() {
-        let change = simd.mul_f64s(factor[place], sum(simd, weights, stages, which, place));
-        to[place] = simd.add_f64s(begin[place], change);
+    for slot in 0..to.len() {
+        let change = simd.mul_f64s(factor[slot], sum(simd, weights, stages, which, slot));
+        to[slot] = simd.add_f64s(begin[slot], change);
     }
 }
 
@@ -56,14 +56,14 @@ pub fn combine_from<S: Simd, const W: usize, const L: usize>(
     let (last, earlier) = (weights[W - 1], &weights[..W - 1]);
     let latest = S::as_simd_f64s(&stages[(W - 1) * n + variable]).0;
     let (begin, factor, to) = (S::as_simd_f64s(begin).0, S::as_simd_f64s(factor).0, S::as_mut_simd_f64s(to).0);
-    for place in 0..to.len() {
-        let mut value = begin[place];
+    for slot in 0..to.len() {
+        let mut value = begin[slot];
         if W > 1 {
-            let change = simd.mul_f64s(factor[place], sum(simd, earlier, stages, (n, variable), place));
+            let change = simd.mul_f64s(factor[slot], sum(simd, earlier, stages, (n, variable), slot));
             value = simd.add_f64s(value, change);
         }
-        let weight = simd.mul_f64s(factor[place], simd.splat_f64s(last));
-        to[place] = simd.add_f64s(value, simd.mul_f64s(weight, latest[place]));
+        let weight = simd.mul_f64s(factor[slot], simd.splat_f64s(last));
+        to[slot] = simd.add_f64s(value, simd.mul_f64s(weight, latest[slot]));
     }
 }
 

@@ -163,12 +163,12 @@ mod tests {
         let (meta, payload) = example();
         let whole = encode(&meta, &payload);
         let path = Path::new("run.h5.checkpoint");
-        for place in (0..whole.len()).step_by(7) {
+        for at in (0..whole.len()).step_by(7) {
             let mut wrong = whole.clone();
-            wrong[place] ^= 0x10;
+            wrong[at] ^= 0x10;
             let error = decode(&wrong, path).unwrap_err().to_string();
-            assert!(error.contains("is damaged"), "byte {place}: {error}");
-            assert!(decode(&whole[..place], path).is_err(), "cut at {place}");
+            assert!(error.contains("is damaged"), "byte {at}: {error}");
+            assert!(decode(&whole[..at], path).is_err(), "cut at {at}");
         }
     }
 }

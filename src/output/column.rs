@@ -351,11 +351,11 @@ pub(super) fn write_integers(
     }
     let starts: Vec<usize> = (0..count).step_by(piece).collect();
     for together in starts.chunks(PACKED_TOGETHER) {
-        let number = |place: usize| if place < count { value(place) } else { NO_INTEGER };
+        let number = |row: usize| if row < count { value(row) } else { NO_INTEGER };
         let packed: Vec<Vec<u8>> = together
             .par_iter()
             .map_init(packer, |packer, start| {
-                pack(packer, (*start..start + piece).map(|place| number(place).cast_unsigned()))
+                pack(packer, (*start..start + piece).map(|row| number(row).cast_unsigned()))
             })
             .collect();
         for (start, bytes) in together.iter().zip(&packed) {
@@ -396,24 +396,24 @@ fn write_piece(
     bytes: *const std::ffi::c_void,
     length: usize,
 ) -> hdf5::Result<()> {
-    let mut place = vec![0_u64; 1 + more_dimensions];
-    place[0] = first_row as u64;
-    write_piece_at(dataset, &place, bytes, length)
+    let mut first = vec![0_u64; 1 + more_dimensions];
+    first[0] = first_row as u64;
+    write_piece_at(dataset, &first, bytes, length)
 }
 
-/// The same for a piece whose first number is anywhere; `place` has one number per dimension of the dataset.
+/// The same for a piece whose first number is anywhere; `first` has one number per dimension of the dataset.
 pub(super) fn write_piece_at(
     dataset: &Dataset,
-    place: &[u64],
+    first: &[u64],
     bytes: *const std::ffi::c_void,
     length: usize,
 ) -> hdf5::Result<()> {
-    assert_eq!(place.len(), dataset.ndim(), "dimensions of {}", dataset.name());
+    assert_eq!(first.len(), dataset.ndim(), "dimensions of {}", dataset.name());
     let default = hdf5_sys::h5p::H5P_DEFAULT;
-    // SAFETY: `place` has one number per dimension of the dataset, `bytes` is valid for `length` bytes, and the
+    // SAFETY: `first` has one number per dimension of the dataset, `bytes` is valid for `length` bytes, and the
     // call holds the lock of the library.
     hdf5::sync::sync(|| unsafe {
-        hdf5::h5check(H5Dwrite_chunk(dataset.id(), default, 0, place.as_ptr(), length, bytes))
+        hdf5::h5check(H5Dwrite_chunk(dataset.id(), default, 0, first.as_ptr(), length, bytes))
     })?;
     Ok(())
 }

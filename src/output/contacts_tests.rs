@@ -32,8 +32,8 @@ fn areas_pairs_and_clusters_are_counted_by_types() {
     let names = series_of_frame(&layout);
     assert_eq!(names.len(), found.len());
     let value = |wanted: &str| {
-        let place = names.iter().position(|(name, _)| name == wanted);
-        found[place.unwrap_or_else(|| panic!("{wanted} is not among {names:?}"))]
+        let at = names.iter().position(|(name, _)| name == wanted);
+        found[at.unwrap_or_else(|| panic!("{wanted} is not among {names:?}"))]
     };
     assert_eq!(value("contact.area.red.red"), 4.0);
     assert_eq!(value("contact.area.red.white"), 2.0);

@@ -187,20 +187,20 @@ pub(super) fn stored(text: &str) -> VarLenUnicode {
 }
 
 /// Sets an attribute that is a text.
-pub(super) fn set_text(place: &Location, name: &str, text: &str) -> hdf5::Result<()> {
-    place.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&stored(text))
+pub(super) fn set_text(on: &Location, name: &str, text: &str) -> hdf5::Result<()> {
+    on.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&stored(text))
 }
 
 /// Reads an attribute that is a text.
-pub(super) fn text(place: &Location, name: &str) -> hdf5::Result<String> {
-    Ok(place.attr(name)?.read_scalar::<VarLenUnicode>()?.as_str().to_string())
+pub(super) fn text(on: &Location, name: &str) -> hdf5::Result<String> {
+    Ok(on.attr(name)?.read_scalar::<VarLenUnicode>()?.as_str().to_string())
 }
 
 /// Sets an attribute that is a number, new or not.
-pub(super) fn set_number<T: H5Type>(place: &Location, name: &str, value: T) -> hdf5::Result<()> {
-    match place.attr(name) {
+pub(super) fn set_number<T: H5Type>(on: &Location, name: &str, value: T) -> hdf5::Result<()> {
+    match on.attr(name) {
         Ok(attribute) => attribute.write_scalar(&value),
-        Err(_) => place.new_attr::<T>().create(name)?.write_scalar(&value),
+        Err(_) => on.new_attr::<T>().create(name)?.write_scalar(&value),
     }
 }
 

@@ -99,8 +99,8 @@ impl FieldColumn {
                 })
                 .collect();
             for ([z, y], bytes) in together.iter().zip(&packed) {
-                let place = [self.frames, *z, *y, 0].map(|n| n as u64);
-                write_piece_at(&self.dataset, &place, bytes.as_ptr().cast(), bytes.len())?;
+                let first = [self.frames, *z, *y, 0].map(|n| n as u64);
+                write_piece_at(&self.dataset, &first, bytes.as_ptr().cast(), bytes.len())?;
             }
         }
         self.frames += 1;

@@ -67,28 +67,28 @@ fn save(path: &Path, text: &str) -> Result<()> {
 
 fn table(field: &FieldLayout, species: &[Values]) -> String {
     let axes = if field.is_flat() { &[Along::X, Along::Y][..] } else { &[Along::X, Along::Y, Along::Z] };
-    let places = axes.iter().map(|axis| format!("{} (um)", axis.letter()));
+    let coordinates = axes.iter().map(|axis| format!("{} (um)", axis.letter()));
     let values = species.iter().map(|((name, unit), _)| match unit.as_str() {
         "" | "1" => super::tables::field(name),
         unit => super::tables::field(&format!("{name} ({unit})")),
     });
-    let mut text = places.chain(values).collect::<Vec<_>>().join(",");
+    let mut text = coordinates.chain(values).collect::<Vec<_>>().join(",");
     text.push('\n');
     let [nx, ny, _] = field.cells;
     for at in 0..field.len() {
         let index = [at % nx, at / nx % ny, at / (nx * ny)];
-        let places = axes.iter().map(|axis| rounded(field.centre(*axis, index[axis.number()])).to_string());
+        let coordinates = axes.iter().map(|axis| rounded(field.centre(*axis, index[axis.number()])).to_string());
         // As many digits as were stored.
         let values = species.iter().map(|(_, values)| (values[at] as f32).to_string());
-        text.push_str(&places.chain(values).collect::<Vec<_>>().join(","));
+        text.push_str(&coordinates.chain(values).collect::<Vec<_>>().join(","));
         text.push('\n');
     }
     text
 }
 
 /// A place without the noise of its last digits.
-fn rounded(place: f64) -> f64 {
-    (place * 1e9).round() / 1e9
+fn rounded(coordinate: f64) -> f64 {
+    (coordinate * 1e9).round() / 1e9
 }
 
 fn image(field: &FieldLayout, species: &[Values], time: f64) -> String {

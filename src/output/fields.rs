@@ -74,9 +74,9 @@ impl FieldLayout {
     }
 
     /// The row of boxes along an axis that a place (µm) falls into; the first or last for places outside.
-    pub fn nearest(&self, along: Along, place: f64) -> usize {
+    pub fn nearest(&self, along: Along, position: f64) -> usize {
         let axis = along.number();
-        let box_of = ((place - self.origin[axis]) / self.spacing[axis]).floor();
+        let box_of = ((position - self.origin[axis]) / self.spacing[axis]).floor();
         // Saturates: places below the first box give 0.
         (box_of as usize).min(self.cells[axis].saturating_sub(1))
     }
@@ -94,14 +94,14 @@ impl FieldLayout {
         assert_eq!(values.len(), self.len(), "one value for each box of {}", self.name);
         let (axis, [nx, ny, _]) = (along.number(), self.cells);
         let index = |at: usize| [at % nx, at / nx % ny, at / (nx * ny)];
-        let fixed =
-            through.map(|place| [Along::X, Along::Y, Along::Z].map(|other| self.nearest(other, place[other.number()])));
+        let fixed = through
+            .map(|position| [Along::X, Along::Y, Along::Z].map(|other| self.nearest(other, position[other.number()])));
         let (mut sums, mut counts) = (vec![0.0; self.cells[axis]], vec![0_u32; self.cells[axis]]);
         for (at, value) in values.iter().enumerate() {
-            let place = index(at);
-            if fixed.is_none_or(|fixed| (0..3).all(|other| other == axis || place[other] == fixed[other])) {
-                sums[place[axis]] += value;
-                counts[place[axis]] += 1;
+            let position = index(at);
+            if fixed.is_none_or(|fixed| (0..3).all(|other| other == axis || position[other] == fixed[other])) {
+                sums[position[axis]] += value;
+                counts[position[axis]] += 1;
             }
         }
         sums.iter().zip(&counts).map(|(sum, count)| sum / f64::from(*count)).collect()

@@ -104,7 +104,7 @@ fn copy_pieces(old: &Dataset, bytes: &mut fs::File, new: &Dataset) -> hdf5::Resu
         return Err(format!("{} has pieces of another size", old.name()).as_str().into());
     }
     new.resize(shape.as_slice())?;
-    for first in places(&shape, &piece) {
+    for first in first_elements(&shape, &piece) {
         match read_piece(old, bytes, &first) {
             Some(piece) => write_piece_at(new, &first, piece.as_ptr().cast(), piece.len())?,
             None => return new.resize([&[first[0] as usize], &shape[1..]].concat()),
@@ -114,12 +114,12 @@ fn copy_pieces(old: &Dataset, bytes: &mut fs::File, new: &Dataset) -> hdf5::Resu
 }
 
 /// The first number of every piece of a dataset, the last dimension fastest.
-fn places(shape: &[usize], piece: &[usize]) -> impl Iterator<Item = Vec<u64>> {
+fn first_elements(shape: &[usize], piece: &[usize]) -> impl Iterator<Item = Vec<u64>> {
     let counts: Vec<usize> = shape.iter().zip(piece).map(|(rows, piece)| rows.div_ceil(*piece)).collect();
     let piece = piece.to_vec();
     (0..counts.iter().product()).map(move |number| {
         let mut rest: usize = number;
-        let mut place: Vec<u64> = (0..counts.len())
+        let mut first: Vec<u64> = (0..counts.len())
             .rev()
             .map(|axis| {
                 let along = rest % counts[axis];
@@ -127,18 +127,18 @@ fn places(shape: &[usize], piece: &[usize]) -> impl Iterator<Item = Vec<u64>> {
                 (along * piece[axis]) as u64
             })
             .collect();
-        place.reverse();
-        place
+        first.reverse();
+        first
     })
 }
 
 /// The bytes of a piece as they lie in the file, unless the way to them or they themselves are missing.
-fn read_piece(dataset: &Dataset, bytes: &mut fs::File, place: &[u64]) -> Option<Vec<u8>> {
+fn read_piece(dataset: &Dataset, bytes: &mut fs::File, first: &[u64]) -> Option<Vec<u8>> {
     let (mut filters, mut at, mut length) = (0, 0, 0);
-    // SAFETY: `place` has one number per dimension of the dataset, the others are places for one number each, and the
+    // SAFETY: `first` has one number per dimension of the dataset, the others are places for one number each, and the
     // call holds the lock of the library.
     let found = hdf5::sync::sync(|| unsafe {
-        hdf5::h5check(H5Dget_chunk_info_by_coord(dataset.id(), place.as_ptr(), &mut filters, &mut at, &mut length))
+        hdf5::h5check(H5Dget_chunk_info_by_coord(dataset.id(), first.as_ptr(), &mut filters, &mut at, &mut length))
     });
     // A piece that was never written lies at the last address there could be, and has no length in a torn tree.
     if found.is_err() || at == u64::MAX || length == 0 || filters != 0 {

@@ -29,9 +29,9 @@ pub(super) fn pack_bytes<const W: usize>(
 ) -> Vec<u8> {
     let count = words.len();
     let mut planes = vec![0_u8; W * count];
-    for (place, word) in words.enumerate() {
+    for (number, word) in words.enumerate() {
         for (plane, byte) in word.into_iter().enumerate() {
-            planes[plane * count + place] = byte;
+            planes[plane * count + number] = byte;
         }
     }
     let mut packed = Vec::with_capacity(planes.len() + planes.len() / 256 + 256);
@@ -119,8 +119,8 @@ mod tests {
         let mut planes = Vec::new();
         std::io::copy(&mut flate2::read::ZlibDecoder::new(packed), &mut planes).unwrap();
         assert_eq!(planes.len(), 8 * count);
-        let byte = |place: usize, plane: usize| planes[plane * count + place];
-        (0..count).map(|place| u64::from_ne_bytes(std::array::from_fn(|plane| byte(place, plane)))).collect()
+        let byte = |number: usize, plane: usize| planes[plane * count + number];
+        (0..count).map(|number| u64::from_ne_bytes(std::array::from_fn(|plane| byte(number, plane)))).collect()
     }
 
     /// Numbers without any rule, from a linear congruence.

@@ -9,13 +9,13 @@ use super::checkpoint::{CheckpointMeta, DATASET, checkpoint_path, save_checkpoin
 use super::columns::Columns;
 use super::container::{self, Access, failed, machine_error, set_number, set_text};
 use super::fields::{check_layout, field_view_path, write_views};
+use super::free_space;
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout, write_header, write_layout};
 use super::mark::FlushMark;
 use super::mend::mend;
 use super::pieces::has_frames;
 use super::reader::ResultFile;
-use super::room;
 use super::whole::whole_frames;
 use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
@@ -187,7 +187,7 @@ impl ResultWriter {
     fn hand_over(&mut self) -> hdf5::Result<()> {
         self.columns.write()?;
         self.step_count.write_scalar(&(self.columns.frames() as i64))?;
-        room::reserve(&self.path, self.file.size())?;
+        free_space::reserve(&self.path, self.file.size())?;
         self.mark.set(&self.path, true)
     }
 

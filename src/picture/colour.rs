@@ -82,10 +82,10 @@ impl ColourMap {
             return Self::Magma.at(1.0 - 0.8 * position.clamp(0.0, 1.0));
         }
         let stops = self.stops();
-        let place = position.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
-        let below = (place as usize).min(stops.len() - 2);
+        let stop = position.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+        let below = (stop as usize).min(stops.len() - 2);
         let rgb = |hex: u32| Colour([(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]);
-        rgb(stops[below]).mixed(rgb(stops[below + 1]), place - below as f64)
+        rgb(stops[below]).mixed(rgb(stops[below + 1]), stop - below as f64)
     }
 
     /// Eleven equally spaced samples of the map (viridis and magma as published with matplotlib, coolwarm after

@@ -29,7 +29,7 @@ impl<'a> Line<'a> {
             Name::Y => Along::Y,
             Name::Z => Along::Z,
         };
-        let through = line.through.map(|place| place.map(|length| length.value()));
+        let through = line.through.map(|index| index.map(|length| length.value()));
         Ok(Self { result, field, species, along, through })
     }
 
@@ -98,18 +98,18 @@ pub fn kymograph(result: &ResultFile, line: &FieldLine, range: Option<[f64; 2]>)
     for frame in 0..times.len() {
         rows.push(line.points(frame)?.into_iter().map(|point| point[1]).collect::<Vec<f64>>());
     }
-    let places = rows[0].len();
+    let boxes = rows[0].len();
     let (start, end) = (times[0], times[times.len() - 1]);
     let columns = if end > start { TIMES } else { 1 };
-    let mut values = vec![0.0; columns * places];
+    let mut values = vec![0.0; columns * boxes];
     for column in 0..columns {
         let time = start + (column as f64 + 0.5) / columns as f64 * (end - start);
         let after = times.partition_point(|known| *known <= time).clamp(1, times.len().max(2) - 1).min(times.len() - 1);
         let before = after.saturating_sub(1);
         let span = times[after] - times[before];
         let share = if span > 0.0 { (time - times[before]) / span } else { 0.0 };
-        for place in 0..places {
-            values[place * columns + column] = rows[before][place] + share * (rows[after][place] - rows[before][place]);
+        for index in 0..boxes {
+            values[index * columns + column] = rows[before][index] + share * (rows[after][index] - rows[before][index]);
         }
     }
     let finite = || rows.iter().flatten().copied().filter(|value| value.is_finite());
@@ -120,7 +120,7 @@ pub fn kymograph(result: &ResultFile, line: &FieldLine, range: Option<[f64; 2]>)
     let heat = Heat {
         x: time_ends,
         y: line.ends(),
-        size: [columns, places],
+        size: [columns, boxes],
         values,
         map: ColourMap::Viridis,
         range: range.unwrap_or(found),

@@ -47,12 +47,12 @@ impl FieldView {
         let (height, values) = if field.is_flat() {
             (field.origin[2], all)
         } else {
-            let mean = positions.iter().map(|place| place[2]).sum::<f64>() / positions.len().max(1) as f64;
+            let mean = positions.iter().map(|level| level[2]).sum::<f64>() / positions.len().max(1) as f64;
             let (low, high) = (field.origin[2], field.origin[2] + nz as f64 * field.spacing[2]);
             let height = self.height.unwrap_or(mean).clamp(low, high);
-            let place = ((height - field.centre(Along::Z, 0)) / field.spacing[2]).clamp(0.0, (nz - 1) as f64);
-            let below = (place as usize).min(nz - 2);
-            let share = place - below as f64;
+            let level = ((height - field.centre(Along::Z, 0)) / field.spacing[2]).clamp(0.0, (nz - 1) as f64);
+            let below = (level as usize).min(nz - 2);
+            let share = level - below as f64;
             let between = |(a, b): (&f64, &f64)| a + share * (b - a);
             (height, layer(below).iter().zip(layer(below + 1)).map(between).collect())
         };

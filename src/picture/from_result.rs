@@ -433,7 +433,7 @@ mod tests {
     }
 
     #[test]
-    fn the_camera_leaves_room_for_all_frames() {
+    fn the_camera_shows_all_frames() {
         let (layout, positions) = two_cells();
         let moved: Vec<[f64; 3]> = positions.iter().map(|p| [p[0] + 40.0, p[1], p[2]]).collect();
         let look = Look::default();

@@ -62,7 +62,7 @@ impl AtomQuantity {
                 Some(forces) => forces.into_iter().map(|force| Vec3::from(force).norm()).collect(),
                 None => vec![f64::NAN; positions.len()],
             },
-            Self::Height => positions.iter().map(|place| place[2]).collect(),
+            Self::Height => positions.iter().map(|position| position[2]).collect(),
             Self::Displacement => {
                 let start = first_positions(result, frame)?;
                 positions.iter().zip(start).map(|(now, then)| (Vec3::from(*now) - Vec3::from(then)).norm()).collect()

@@ -56,14 +56,14 @@ pub(crate) fn write_turned_text(svg: &mut String, x: f64, y: f64, angle: f64, st
         Weight::Strong => ("strong", INK, "600"),
     };
     let size = style.size;
-    let place = if angle == 0.0 {
+    let attributes = if angle == 0.0 {
         format!(r#"x="{x:.1}" y="{y:.1}""#)
     } else {
         format!(r#"transform="translate({x:.1} {y:.1}) rotate({angle})""#)
     };
     let _ = write!(
         svg,
-        r#"<text class="{class}" {place} font-size="{size}" text-anchor="{anchor}" fill="{colour}" font-weight="{weight}">"#
+        r#"<text class="{class}" {attributes} font-size="{size}" text-anchor="{anchor}" fill="{colour}" font-weight="{weight}">"#
     );
     let mut shift = 0.0;
     for (run, level) in runs(text) {

@@ -32,10 +32,10 @@ pub fn nice_below(value: f64) -> f64 {
     if (lead - 5.0).abs() < 0.1 { above * 0.4 } else { above * 0.5 }
 }
 
-/// Marks for values from `low` to `high` on a linear axis with room for about `room` labels.
-pub(crate) fn linear(low: f64, high: f64, room: usize, ends: Ends) -> Ticks {
+/// Marks for values from `low` to `high` on a linear axis with room for about `most` labels.
+pub(crate) fn linear(low: f64, high: f64, most: usize, ends: Ends) -> Ticks {
     let (low, high) = opened(low, high);
-    let step = nice_above((high - low) / room.max(1) as f64);
+    let step = nice_above((high - low) / most.max(1) as f64);
     // A thousandth of a step is invisible; without this slack an end like 0.30000000000000004 would add a whole step.
     let first = (low / step + 1e-3).floor();
     let last = (high / step - 1e-3).ceil();
@@ -66,12 +66,12 @@ pub(crate) enum Ends {
 }
 
 /// Marks for positive values from `low` to `high` on an axis that counts in powers of ten.
-pub(crate) fn logarithmic(low: f64, high: f64, room: usize, ends: Ends) -> Ticks {
+pub(crate) fn logarithmic(low: f64, high: f64, most: usize, ends: Ends) -> Ticks {
     let (low, high) = if high > low * (1.0 + 1e-9) { (low, high) } else { (low / 2.0, high * 2.0) };
     let (low, high) = if ends == Ends::Rounded { (nice_below(low), nice_above(high)) } else { (low, high) };
     let inside = |value: f64| value >= low * (1.0 - 1e-9) && value <= high * (1.0 + 1e-9);
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
-    let every = ((last - first) as usize).div_ceil(room.max(1)).max(1) as i32;
+    let every = ((last - first) as usize).div_ceil(most.max(1)).max(1) as i32;
     let decades = high.log10() - low.log10();
     let (mut major, mut minor) = (Vec::new(), Vec::new());
     for power in first..=last {

@@ -91,7 +91,7 @@ fn advance_stages(
             .enumerate()
             .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), (kept, touch)))| {
                 let mut block = Block { number, x, rest, start, volume, target, energy, pressure, touch };
-                buffers.enter(length, |room| step.advance(&mut block, stages, kept, room))
+                buffers.enter(length, |buffer| step.advance(&mut block, stages, kept, buffer))
             })
             .reduce(|| 0.0, larger);
         worst = larger(worst, error / kind.edge);

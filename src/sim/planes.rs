@@ -122,7 +122,7 @@ fn at(values: &[f64], lanes: usize, lane: usize, atom: usize) -> Vec3 {
 }
 
 /// Vector of an atom in one cell's array.
-fn place(values: &[f64], atom: usize) -> Vec3 {
+fn vector_of(values: &[f64], atom: usize) -> Vec3 {
     Vec3::from_column_slice(&values[3 * atom..3 * atom + 3])
 }
 
@@ -198,15 +198,15 @@ fn solve_reactions(scene: &Scene, s: &mut TouchScratch) -> bool {
         let plane = &scene.model.planes[p];
         for (j, pair) in s.active.iter().enumerate() {
             let answer = &s.columns[column_of(&s.known, pair) * size..];
-            s.system[i * width + j] = plane.normal.dot(&place(answer, atom));
+            s.system[i * width + j] = plane.normal.dot(&vector_of(answer, atom));
         }
-        let gap = (place(&s.cell.x, atom) - plane.point).dot(&plane.normal);
+        let gap = (vector_of(&s.cell.x, atom) - plane.point).dot(&plane.normal);
         let already = match scene.stage {
             Stage::First => -gap,
             // 3/2 Y₁ + 1/2 Y₂ closes the gap.
-            Stage::Second => -2.0 * gap - 3.0 * place(&s.cell.first, atom).dot(&plane.normal),
+            Stage::Second => -2.0 * gap - 3.0 * vector_of(&s.cell.first, atom).dot(&plane.normal),
         };
-        s.system[i * width + rows] = already - place(&s.cell.free, atom).dot(&plane.normal);
+        s.system[i * width + rows] = already - vector_of(&s.cell.free, atom).dot(&plane.normal);
     }
     eliminate(rows, &mut s.system)
 }
@@ -246,8 +246,8 @@ fn change_active(scene: &Scene, s: &mut TouchScratch) -> bool {
     let mut grown = false;
     for &pair in &s.found {
         let plane = &scene.model.planes[pair.1];
-        let end = end_of(scene.stage, place(&s.cell.first, pair.0), place(&s.cell.moved, pair.0));
-        let gap = (place(&s.cell.x, pair.0) + end - plane.point).dot(&plane.normal);
+        let end = end_of(scene.stage, vector_of(&s.cell.first, pair.0), vector_of(&s.cell.moved, pair.0));
+        let gap = (vector_of(&s.cell.x, pair.0) + end - plane.point).dot(&plane.normal);
         if gap < -TOUCH * scene.kind.edge && !s.active.contains(&pair) {
             s.active.push(pair);
             grown = true;

@@ -50,7 +50,7 @@ pub enum PopulationTrouble {
         depth: f64,
     },
     /// A box has no room for all cells that were to come at random points of it.
-    NoRoom {
+    NoSpace {
         /// Name of the kind.
         kind: String,
         /// How many found room.
@@ -80,7 +80,7 @@ impl std::fmt::Display for PopulationTrouble {
                 write!(f, "a cell to be added overlaps another: cell {id} of type `{kind}` and cell {its} of type ")?;
                 write!(f, "`{other}` would be {depth:.1e} um deep in each other; place it where nothing is")
             }
-            Self::NoRoom { kind, found, wanted } => {
+            Self::NoSpace { kind, found, wanted } => {
                 write!(
                     f,
                     "there is no room for all cells that come to type `{kind}`: {found} of {wanted} found a point "

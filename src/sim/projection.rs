@@ -47,10 +47,10 @@ pub fn project_cell(
         let mut moved: f64 = 0.0;
         for (p, plane) in model.planes.iter().enumerate() {
             for atom in 0..atoms {
-                let place = Vec3::from_column_slice(&x[3 * atom..3 * atom + 3]);
-                let gap = (place - plane.point).dot(&plane.normal);
+                let position = Vec3::from_column_slice(&x[3 * atom..3 * atom + 3]);
+                let gap = (position - plane.point).dot(&plane.normal);
                 if gap < 0.0 && !(0..3).any(|axis| kind.is_held() && kind.held[3 * atom + axis] == 0.0) {
-                    let back = place - gap * plane.normal;
+                    let back = position - gap * plane.normal;
                     x[3 * atom..3 * atom + 3].copy_from_slice(back.as_slice());
                     moved = moved.max(-gap);
                 }

@@ -22,7 +22,7 @@ pub fn radius_around(kind: &Kind) -> f64 {
 
 /// Takes room for a cell of a kind in a box: points are drawn until the sphere around the cell keeps the gap from all that is taken and no
 /// atom is behind a plane. Returns its centre, µm; none when the box is too full.
-pub fn take_room(
+pub fn take_point(
     kind: &Kind,
     planes: &[Plane],
     [low, high]: [Vec3; 2],
@@ -35,7 +35,7 @@ pub fn take_room(
         (centre - plane.point).dot(&plane.normal) + atoms.fold(f64::INFINITY, f64::min)
     };
     let is_free = |centre: &Vec3| {
-        taken.leaves_room(*centre, radius) && planes.iter().all(|plane| height(plane, centre) >= -ROUND_OFF * radius)
+        taken.is_clear(*centre, radius) && planes.iter().all(|plane| height(plane, centre) >= -ROUND_OFF * radius)
     };
     let centre = (0..TRIES).map(|_| point_in_box(stream, low, high)).find(is_free)?;
     taken.add_sphere(centre, radius);
@@ -46,7 +46,7 @@ pub fn take_room(
 /// nothing are drawn anywhere in it.
 ///
 /// # Errors
-/// [`PopulationTrouble::NoRoom`] when the box is too full.
+/// [`PopulationTrouble::NoSpace`] when the box is too full.
 pub(super) fn seed(
     model: &Model,
     state: &State,
@@ -70,8 +70,8 @@ pub(super) fn seed(
         }
     }
     let found: Option<Vec<Vec3>> =
-        streams.by_ref().map(|mut stream| take_room(kind, &model.planes, corners, &mut stream, &mut taken)).collect();
-    found.ok_or_else(|| PopulationTrouble::NoRoom {
+        streams.by_ref().map(|mut stream| take_point(kind, &model.planes, corners, &mut stream, &mut taken)).collect();
+    found.ok_or_else(|| PopulationTrouble::NoSpace {
         kind: kind.name.clone(),
         found: taken.spheres().len(),
         wanted: count,

@@ -225,12 +225,12 @@ impl KindState {
     }
 
     /// Moves a cell as a whole, µm.
-    pub fn shift(&mut self, kind: &Kind, cell: usize, way: &Vec3) {
+    pub fn shift(&mut self, kind: &Kind, cell: usize, by: &Vec3) {
         // Lanes beyond the last cell repeat it.
         let end = if cell + 1 == self.cells() { self.blocks(kind) * kind.lanes } else { cell + 1 };
         for slot in cell..end {
             for atom in 0..kind.atoms() {
-                (0..3).for_each(|axis| self.positions[index(kind, slot, atom, axis)] += way[axis]);
+                (0..3).for_each(|axis| self.positions[index(kind, slot, atom, axis)] += by[axis]);
             }
         }
     }
@@ -256,12 +256,12 @@ pub enum Inertia {
 }
 
 impl State {
-    /// The start of a run with every cell at rest, `places[kind][cell][atom]`, and no fields; see
+    /// The start of a run with every cell at rest, `positions[kind][cell][atom]`, and no fields; see
     /// [`ChemistryState::new`] for a model that has some. Ids count through all cells in their order.
-    pub fn new(model: &Model, places: &[Vec<Vec<Vec3>>]) -> Self {
+    pub fn new(model: &Model, positions: &[Vec<Vec<Vec3>>]) -> Self {
         let inertia = if model.integrator.method.is_inertial() { Inertia::Inertial } else { Inertia::OverDamped };
         let mut state = Self::default();
-        for (kind, cells) in model.kinds.iter().zip(places) {
+        for (kind, cells) in model.kinds.iter().zip(positions) {
             state.kinds.push(KindState::new(kind, cells, state.next_id, inertia, model.seed));
             state.next_id += cells.len() as u64;
         }

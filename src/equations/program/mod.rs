@@ -140,12 +140,12 @@ impl Program {
     }
 
     /// The index of an open quantity among the open ones.
-    pub fn open_place(&self, quantity: QuantityId) -> Option<usize> {
+    pub fn open_index(&self, quantity: QuantityId) -> Option<usize> {
         self.open.iter().position(|&open| open == quantity)
     }
 
     /// The index of a variable in the state.
-    pub fn variable_place(&self, quantity: QuantityId) -> Option<usize> {
+    pub fn variable_index(&self, quantity: QuantityId) -> Option<usize> {
         self.variables.iter().position(|&variable| variable == quantity)
     }
 

@@ -7,7 +7,7 @@ use crate::Vec3;
 use crate::error::{Error, Fault, Result};
 use crate::geometry::{Occupied, bounding_box};
 use crate::random::{Purpose, Stream};
-use crate::sim::seeding::{TRIES, radius_around, take_room};
+use crate::sim::seeding::{TRIES, radius_around, take_point};
 use crate::sim::{Kind, Plane};
 use std::ops::Range;
 
@@ -54,7 +54,7 @@ fn place_kind(
     let mut centres = Vec::new();
     for cell in cells.clone() {
         let mut stream = Stream::new(document.experiment.seed, Purpose::Placement, cell as u32, 0);
-        let Some(centre) = take_room(kind, planes, [low, high], &mut stream, taken) else {
+        let Some(centre) = take_point(kind, planes, [low, high], &mut stream, taken) else {
             return Err(too_full(document, kind, [cell - cells.start, cells.len()], taken, [low, high]));
         };
         centres.push(centre);

@@ -172,9 +172,9 @@ impl fmt::Display for MeshFault {
             }
             Self::Several { count, what, first } => {
                 let open = if matches!(first[..], [Self::BoundaryEdge { .. }, ..]) { "is open: it " } else { "" };
-                let places = first.iter().map(Self::place).collect::<Vec<_>>().join("; ");
+                let positions = first.iter().map(Self::position).collect::<Vec<_>>().join("; ");
                 let more = if *count > first.len() { "; …" } else { "" };
-                write!(out, "the mesh {open}has {count} {what}: {places}{more}")
+                write!(out, "the mesh {open}has {count} {what}: {positions}{more}")
             }
         }
     }
@@ -184,7 +184,7 @@ impl std::error::Error for MeshFault {}
 
 impl MeshFault {
     /// Where it is, in the fewest words.
-    fn place(&self) -> String {
+    fn position(&self) -> String {
         match self {
             Self::AtomOutOfRange { facet, atoms, .. } | Self::RepeatedAtom { facet, atoms } => {
                 format!("facet {facet} (atoms {})", list(atoms))

@@ -8,7 +8,7 @@ pub use fault::MeshFault;
 
 use super::measure::{area, facet_qualities, volume};
 use super::topology::{HalfEdge, half_edges};
-use super::weld::{diagonal, first_at_same_place};
+use super::weld::{diagonal, first_at_same_position};
 use super::{Surface, Topology};
 
 /// Whether a surface may have an edge.
@@ -38,7 +38,7 @@ pub const LEAST_FACET_QUALITY: f64 = 0.05;
 const LEAST_VOLUME_RATIO: f64 = 1e-6;
 
 /// Atoms closer than this times the diagonal of the mesh stand at the same point.
-const SAME_PLACE: f64 = 1e-9;
+const SAME_POSITION: f64 = 1e-9;
 
 /// So many faults of one kind are named in the one that stands for all of them.
 const NAMED: usize = 3;
@@ -154,7 +154,7 @@ fn positions_not_finite(surface: &Surface) -> Vec<MeshFault> {
 }
 
 fn duplicate_atoms(surface: &Surface) -> Vec<MeshFault> {
-    let firsts = first_at_same_place(&surface.positions, SAME_PLACE * diagonal(&surface.positions));
+    let firsts = first_at_same_position(&surface.positions, SAME_POSITION * diagonal(&surface.positions));
     numbered(&firsts)
         .filter(|(atom, first)| atom != *first)
         .map(|(atom, &first)| MeshFault::DuplicateAtoms {

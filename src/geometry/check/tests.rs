@@ -73,7 +73,7 @@ fn an_atom_without_facets_is_a_fault() {
 }
 
 #[test]
-fn two_atoms_at_one_place_are_a_fault() {
+fn two_atoms_at_one_position_are_a_fault() {
     let mut surface = tetrahedron();
     surface.positions.push(Vec3::y());
     surface.facets[3] = [1, 4, 3];
@@ -162,7 +162,7 @@ fn a_surface_folded_flat_encloses_no_volume() {
 }
 
 #[test]
-fn many_faults_of_a_kind_are_one_with_their_number_and_the_first_places() {
+fn many_faults_of_a_kind_are_one_with_their_number_and_the_first_positions() {
     let mut surface = icosphere(1.0, 1);
     surface.positions.extend((0..25).map(|k| Vec3::x() * (2.0 + f64::from(k))));
     let found = faults(&surface, &SurfaceRules::CELL);

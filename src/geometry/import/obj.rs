@@ -67,8 +67,8 @@ fn polygon<'a>(
         .map(|&word| {
             let number = word.text.split('/').next().unwrap_or("");
             let atom = match number.parse::<i64>() {
-                Ok(given) if given > 0 => given - 1,
-                Ok(given) if given < 0 => (so_far as i64).saturating_add(given),
+                Ok(number) if number > 0 => number - 1,
+                Ok(number) if number < 0 => (so_far as i64).saturating_add(number),
                 _ => -1,
             };
             if !(0..i64::from(u32::MAX)).contains(&atom) {

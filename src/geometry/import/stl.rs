@@ -1,14 +1,14 @@
 //! STL, ASCII or binary: facets with three corners each and no atoms, which are found by merging the corners.
 
 use super::super::Surface;
-use super::super::weld::{diagonal, first_at_same_place};
+use super::super::weld::{diagonal, first_at_same_position};
 use super::text::{Text, Word};
 use crate::Vec3;
 use crate::error::Fault;
 
 /// Corners closer than this times the diagonal of the mesh are one atom. STL stores single precision, whose last digit
 /// is 6e-8 of a coordinate.
-const SAME_PLACE: f64 = 1e-6;
+const SAME_POSITION: f64 = 1e-6;
 
 /// Header and facet count of a binary file, bytes.
 const HEADER: usize = 84;
@@ -116,7 +116,7 @@ fn wrong_corners(text: &Text, keyword: Word, count: usize) -> Fault {
 
 /// Makes atoms of the corners, three per facet, that stand at the same point; numbered in the order of the file.
 fn merge_corners(corners: &[Vec3]) -> Surface {
-    let firsts = first_at_same_place(corners, SAME_PLACE * diagonal(corners));
+    let firsts = first_at_same_position(corners, SAME_POSITION * diagonal(corners));
     let mut surface = Surface::default();
     let mut atoms = vec![0; corners.len()];
     for (corner, &first) in firsts.iter().enumerate() {

@@ -55,7 +55,7 @@ fn compose(chart: &Chart, width: f64, height: f64, page: Page) -> (String, Frame
     let (width, height) = (width.clamp(160.0, 20_000.0), height.clamp(120.0, 20_000.0));
     let colours = colours(chart);
     let key = if chart.legend == Legend::Hidden { None } else { Box::of(entries(chart, &colours)) };
-    let bar = chart.heat.as_ref().map_or(0.0, Heat::room);
+    let bar = chart.heat.as_ref().map_or(0.0, Heat::width);
     let mut frame = Frame::fit(chart, width, height, bar);
     let mut key_at = None;
     if let Some(key) = &key {
@@ -142,10 +142,10 @@ fn write_grid(svg: &mut String, frame: &Frame) {
     let lines = |out: &mut String, colour: &str, x: &mut dyn Iterator<Item = f64>, y: &mut dyn Iterator<Item = f64>| {
         let _ = write!(out, r#"<path stroke="{colour}" fill="none" d=""#);
         for at in x {
-            let _ = write!(out, "M{:.1} {:.1}V{:.1}", frame.x.place(at), frame.top, frame.bottom);
+            let _ = write!(out, "M{:.1} {:.1}V{:.1}", frame.x.pixel(at), frame.top, frame.bottom);
         }
         for at in y {
-            let _ = write!(out, "M{:.1} {:.1}H{:.1}", frame.left, frame.y.place(at), frame.right);
+            let _ = write!(out, "M{:.1} {:.1}H{:.1}", frame.left, frame.y.pixel(at), frame.right);
         }
         out.push_str("\"/>\n");
     };
@@ -161,18 +161,18 @@ fn write_axes(svg: &mut String, chart: &Chart, frame: &Frame) {
         frame.left, frame.top, frame.bottom, frame.right
     );
     for (at, _) in &frame.x.ticks.major {
-        let _ = write!(svg, "M{:.1} {:.1}v5", frame.x.place(*at), frame.bottom);
+        let _ = write!(svg, "M{:.1} {:.1}v5", frame.x.pixel(*at), frame.bottom);
     }
     for (at, _) in &frame.y.ticks.major {
-        let _ = write!(svg, "M{:.1} {:.1}h-5", frame.left, frame.y.place(*at));
+        let _ = write!(svg, "M{:.1} {:.1}h-5", frame.left, frame.y.pixel(*at));
     }
     svg.push_str("\"/>\n");
     let number = |anchor| Style { size: NUMBER, anchor, weight: Weight::Soft };
     for (at, label) in &frame.x.ticks.major {
-        write_text(svg, frame.x.place(*at), frame.bottom + 20.0, number(Anchor::Middle), label);
+        write_text(svg, frame.x.pixel(*at), frame.bottom + 20.0, number(Anchor::Middle), label);
     }
     for (at, label) in &frame.y.ticks.major {
-        write_text(svg, frame.left - 9.0, frame.y.place(*at) + 0.36 * NUMBER, number(Anchor::End), label);
+        write_text(svg, frame.left - 9.0, frame.y.pixel(*at) + 0.36 * NUMBER, number(Anchor::End), label);
     }
     let named = |label: &str, axis: &FittedAxis| match axis.ticks.exponent {
         0 => label.to_string(),

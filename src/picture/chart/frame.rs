@@ -22,7 +22,7 @@ pub(super) struct FittedAxis {
 
 impl FittedAxis {
     /// Where a value lies, px; not finite where the value is not finite or not positive on a logarithmic axis.
-    pub fn place(&self, value: f64) -> f64 {
+    pub fn pixel(&self, value: f64) -> f64 {
         let (low, high, value) = match self.scale {
             Scale::Linear => (self.ticks.low, self.ticks.high, value),
             Scale::Log if value > 0.0 => (self.ticks.low.ln(), self.ticks.high.ln(), value.ln()),
@@ -67,9 +67,9 @@ impl Frame {
                 };
                 let (rx, ry) = (raw(&chart.x.range, data_x), raw(&chart.y.range, data_y));
                 let unit = ((rx[1] - rx[0]) / plot_width).max((ry[1] - ry[0]) / plot_height).max(1e-12);
-                let around = |range: [f64; 2], length: f64, room: usize| {
+                let around = |range: [f64; 2], length: f64, most: usize| {
                     let (middle, half) = (0.5 * (range[0] + range[1]), 0.5 * unit * length);
-                    ticks::linear(middle - half, middle + half, room, Ends::Exact)
+                    ticks::linear(middle - half, middle + half, most, Ends::Exact)
                 };
                 x = around(rx, plot_width, rows);
                 y = around(ry, plot_height, rows);
@@ -87,8 +87,8 @@ impl Frame {
     }
 
     /// Where a point lies, px; `None` where it has no place.
-    pub fn place(&self, point: [f64; 2]) -> Option<[f64; 2]> {
-        let at = [self.x.place(point[0]), self.y.place(point[1])];
+    pub fn pixel(&self, point: [f64; 2]) -> Option<[f64; 2]> {
+        let at = [self.x.pixel(point[0]), self.y.pixel(point[1])];
         // Far outside, coordinates would lose their digits in the file; the drawing is clipped to the frame anyway.
         (at[0].is_finite() && at[1].is_finite()).then(|| at.map(|v| v.clamp(-2e4, 2e4)))
     }
@@ -96,19 +96,19 @@ impl Frame {
 
 /// Marks for the x axis with as many labels as fit beside each other.
 fn fitted_columns(axis: &Axis, data: [f64; 2], length: f64) -> Ticks {
-    let mut room = (length / 75.0).clamp(2.0, 10.0) as usize;
+    let mut most = (length / 75.0).clamp(2.0, 10.0) as usize;
     loop {
-        let ticks = marks(axis, data, room);
+        let ticks = marks(axis, data, most);
         let widest = ticks.major.iter().map(|mark| text_width(&mark.1, NUMBER)).fold(0.0, f64::max);
-        if room <= 2 || ticks.major.len() as f64 * (widest + 16.0) < length {
+        if most <= 2 || ticks.major.len() as f64 * (widest + 16.0) < length {
             return ticks;
         }
-        room -= 1;
+        most -= 1;
     }
 }
 
 /// Marks for one axis over the data or the range asked for.
-fn marks(axis: &Axis, data: [f64; 2], room: usize) -> Ticks {
+fn marks(axis: &Axis, data: [f64; 2], most: usize) -> Ticks {
     let (low, high, ends) = match axis.range {
         Range::Auto => (data[0], data[1], Ends::Rounded),
         Range::FromZero if axis.scale == Scale::Linear => (data[0].min(0.0), data[1].max(0.0), Ends::Rounded),
@@ -121,9 +121,9 @@ fn marks(axis: &Axis, data: [f64; 2], room: usize) -> Ticks {
         Range::Fixed(..) => (data[0], data[1], Ends::Rounded),
     };
     match axis.scale {
-        Scale::Linear => ticks::linear(low, high, room, ends),
+        Scale::Linear => ticks::linear(low, high, most, ends),
         // Decades carry short labels.
-        Scale::Log => ticks::logarithmic(low, high, room + room / 2, ends),
+        Scale::Log => ticks::logarithmic(low, high, most + most / 2, ends),
     }
 }
 

@@ -33,7 +33,7 @@ pub struct Heat {
 
 impl Heat {
     /// Room that the colour bar needs on the right, px.
-    pub(super) fn room(&self) -> f64 {
+    pub(super) fn width(&self) -> f64 {
         let ticks = self.ticks();
         let widest = ticks.major.iter().map(|mark| text_width(&mark.1, NUMBER)).fold(0.0, f64::max);
         GAP + BAR + 10.0 + widest + if self.label.is_empty() { 0.0 } else { 10.0 + 1.4 * LABEL }
@@ -53,8 +53,8 @@ impl Heat {
             return image;
         }
         let between = |pixel: usize, pixels: usize, boxes: usize| {
-            let place = ((pixel as f64 + 0.5) / pixels as f64 * boxes as f64 - 0.5).clamp(0.0, (boxes - 1) as f64);
-            (place as usize, (place as usize + 1).min(boxes - 1), place.fract())
+            let at = ((pixel as f64 + 0.5) / pixels as f64 * boxes as f64 - 0.5).clamp(0.0, (boxes - 1) as f64);
+            (at as usize, (at as usize + 1).min(boxes - 1), at.fract())
         };
         let [low, high] = self.range;
         for row in 0..height {

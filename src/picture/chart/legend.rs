@@ -64,17 +64,17 @@ impl Box {
         }
         let order = [Corner::TopLeft, Corner::TopRight, Corner::BottomRight, Corner::BottomLeft];
         let mut covered = [false; 4];
-        let places = order.map(|corner| self.corner(frame, corner));
+        let corners = order.map(|corner| self.corner(frame, corner));
         visit(chart, frame, |at| {
-            for (hidden, place) in covered.iter_mut().zip(&places) {
+            for (hidden, corner) in covered.iter_mut().zip(&corners) {
                 let margin = 6.0;
-                *hidden |= at[0] > place[0] - margin
-                    && at[0] < place[0] + self.width + margin
-                    && at[1] > place[1] - margin
-                    && at[1] < place[1] + self.height + margin;
+                *hidden |= at[0] > corner[0] - margin
+                    && at[0] < corner[0] + self.width + margin
+                    && at[1] > corner[1] - margin
+                    && at[1] < corner[1] + self.height + margin;
             }
         });
-        (0..4).find(|k| !covered[*k]).map(|k| places[k])
+        (0..4).find(|k| !covered[*k]).map(|k| corners[k])
     }
 }
 
@@ -88,7 +88,7 @@ fn visit(chart: &Chart, frame: &Frame, mut seen: impl FnMut([f64; 2])) {
     let mut along = |points: &mut dyn Iterator<Item = [f64; 2]>| {
         let mut last: Option<[f64; 2]> = None;
         for point in points {
-            let at = frame.place(point);
+            let at = frame.pixel(point);
             if let (Some(a), Some(b)) = (last, at) {
                 let pieces = ((b[0] - a[0]).hypot(b[1] - a[1]) / 5.0).ceil().clamp(1.0, 400.0);
                 for piece in 0..=pieces as usize {

@@ -23,7 +23,7 @@ pub(super) fn write_series(svg: &mut String, series: &Series, colour: Colour, fr
         }
         Series::Points { .. } => {}
         Series::Band { points, .. } => {
-            let finite = |p: &&[f64; 3]| frame.place([p[0], p[1]]).is_some() && frame.place([p[0], p[2]]).is_some();
+            let finite = |p: &&[f64; 3]| frame.pixel([p[0], p[1]]).is_some() && frame.pixel([p[0], p[2]]).is_some();
             for part in points.split(|p| !finite(&p)).filter(|part| part.len() > 1) {
                 let there = part.iter().map(|p| [p[0], p[1]]);
                 let back = part.iter().rev().map(|p| [p[0], p[2]]);
@@ -53,7 +53,7 @@ fn write_tracks(svg: &mut String, tracks: &[Vec<[f64; 2]>], one: Option<Colour>,
         let few = || if tracks.len() <= 6 { Colour::of_palette(number) } else { own() };
         let hex = one.unwrap_or_else(few).hex();
         let _ = writeln!(svg, r#"<path d="{}" stroke="{hex}"/>"#, path(track.iter().copied(), frame, step));
-        if let Some([x, y]) = track.iter().rev().find_map(|p| frame.place(*p)) {
+        if let Some([x, y]) = track.iter().rev().find_map(|p| frame.pixel(*p)) {
             let _ = writeln!(svg, r#"<circle cx="{x:.1}" cy="{y:.1}" r="{dot:.1}" fill="{hex}"/>"#);
         }
     }
@@ -65,7 +65,7 @@ fn path(points: impl Iterator<Item = [f64; 2]>, frame: &Frame, step: f64) -> Str
     let mut path = String::new();
     let mut last: Option<[f64; 2]> = None;
     let mut skipped: Option<[f64; 2]> = None;
-    for at in points.map(|point| frame.place(point)) {
+    for at in points.map(|point| frame.pixel(point)) {
         match (last, at) {
             (Some(from), Some(to)) if (from[0] - to[0]).abs() + (from[1] - to[1]).abs() < step => skipped = at,
             (Some(_), Some([x, y])) => {
@@ -112,8 +112,8 @@ pub(super) fn write_points(
             && at[1] <= frame.bottom + 0.5
     };
     for (number, point) in points.iter().enumerate() {
-        let Some([x, y]) = frame.place(*point).filter(inside) else { continue };
-        let ends = bars.get(number).map(|bar| bar.map(|end| frame.y.place(end)));
+        let Some([x, y]) = frame.pixel(*point).filter(inside) else { continue };
+        let ends = bars.get(number).map(|bar| bar.map(|end| frame.y.pixel(end)));
         if let Some([low, high]) = ends.filter(|ends| ends.iter().all(|end| end.is_finite())) {
             write_bar(svg, x, high.clamp(frame.top, frame.bottom), low.clamp(frame.top, frame.bottom), &hex);
         }

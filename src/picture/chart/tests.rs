@@ -112,7 +112,7 @@ fn values_without_a_logarithm_are_left_out() {
     };
     let frame = frame::Frame::fit(&chart, 500.0, 400.0, 0.0);
     assert_eq!((frame.x.ticks.low, frame.x.ticks.high), (1.0, 100.0));
-    assert!(frame.place([0.0, 1.0]).is_none());
+    assert!(frame.pixel([0.0, 1.0]).is_none());
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn equal_aspect_gives_both_axes_the_same_unit() {
     let chart = tracks(20, 50);
     let frame = frame::Frame::fit(&chart, 800.0, 500.0, 0.0);
     let (o, x, y) =
-        (frame.place([0.0, 0.0]).unwrap(), frame.place([1.0, 0.0]).unwrap(), frame.place([0.0, 1.0]).unwrap());
+        (frame.pixel([0.0, 0.0]).unwrap(), frame.pixel([1.0, 0.0]).unwrap(), frame.pixel([0.0, 1.0]).unwrap());
     // Rounding of coordinates only: positions are computed in f64 from ranges fixed in two passes.
     assert!(((x[0] - o[0]) - (o[1] - y[1])).abs() < 0.02 * (x[0] - o[0]));
 }

@@ -82,8 +82,8 @@ impl Ground {
                 let share = at[k] / spacing;
                 let away = (share - (share + 0.5f64.copysign(share)) as i64 as f64).abs() * spacing;
                 // Lines nearer than a few pixels would turn into a pattern; they fade out before.
-                let room = (spacing / width / 6.0 - 1.0).clamp(0.0, 1.0);
-                strength = strength.max(room * (1.2 - away / width).clamp(0.0, 1.0));
+                let visibility = (spacing / width / 6.0 - 1.0).clamp(0.0, 1.0);
+                strength = strength.max(visibility * (1.2 - away / width).clamp(0.0, 1.0));
             }
             strength as f32
         };
@@ -103,13 +103,13 @@ impl Ground {
 
     /// Shares of main light and of light from all around that are kept away at a place.
     fn shade(&self, at: [f64; 2]) -> [f32; 2] {
-        let place = [0, 1].map(|k| (at[k] as f32 - self.corner[k]) / self.texel - 0.5);
-        let inside = |k: usize| place[k] >= 0.0 && place[k] < self.size[k] as f32 - 1.001;
+        let point = [0, 1].map(|k| (at[k] as f32 - self.corner[k]) / self.texel - 0.5);
+        let inside = |k: usize| point[k] >= 0.0 && point[k] < self.size[k] as f32 - 1.001;
         if self.size[0] == 0 || !inside(0) || !inside(1) {
             return [0.0; 2];
         }
-        let (i, j) = (place[0] as usize, place[1] as usize);
-        let (s, t) = (place[0] - i as f32, place[1] - j as f32);
+        let (i, j) = (point[0] as usize, point[1] as usize);
+        let (s, t) = (point[0] - i as f32, point[1] - j as f32);
         [&self.shadow, &self.contact].map(|map| {
             let row = |j: usize| {
                 let start = j * self.size[0] + i;
@@ -134,10 +134,10 @@ impl Ground {
         let cast = |p: &[f32; 3]| [p[0] - lean[0] * p[2].max(0.0), p[1] - lean[1] * p[2].max(0.0)];
         let used = || geometry.triangles.iter().flat_map(|t| t.corners).map(|corner| &local[corner as usize]);
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-        for place in used().flat_map(|p| [[p[0], p[1]], cast(p)]) {
+        for point in used().flat_map(|p| [[p[0], p[1]], cast(p)]) {
             for k in 0..2 {
-                low[k] = low[k].min(place[k]);
-                high[k] = high[k].max(place[k]);
+                low[k] = low[k].min(point[k]);
+                high[k] = high[k].max(point[k]);
             }
         }
         if low[0] > high[0] {

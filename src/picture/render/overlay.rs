@@ -251,9 +251,9 @@ fn write_colour_bar(
     write_text(svg, left + long, top - 8.0 * unit, style, &label);
 }
 
-/// Names a run of colours for a bar; `way` says from where to where.
-fn write_gradient(svg: &mut String, name: &str, way: &str, map: ColourMap) {
-    let _ = write!(svg, r#"<linearGradient id="{name}" {way}>"#);
+/// Names a run of colours for a bar; `direction` says from where to where.
+fn write_gradient(svg: &mut String, name: &str, direction: &str, map: ColourMap) {
+    let _ = write!(svg, r#"<linearGradient id="{name}" {direction}>"#);
     for k in 0..=20 {
         let share = f64::from(k) / 20.0;
         let _ = write!(svg, r#"<stop offset="{share}" stop-color="{}"/>"#, map.at(share).hex());
@@ -275,13 +275,13 @@ fn write_standing_bar(svg: &mut String, bar: &FieldBar, right: f64, top: f64, un
     let small = 15.0 * unit;
     let marks = ticks.major.iter().map(|(_, text)| text_width(text, small)).fold(0.0, f64::max) + 10.0 * unit;
     let wide = text_width(&label, size).max(marks + thick);
-    let (above, room) = (30.0 * unit, 10.0 * unit);
+    let (above, margin) = (30.0 * unit, 10.0 * unit);
     let _ = writeln!(
         svg,
         r##"<rect class="ground" x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="{:.1}" fill="#ffffff" fill-opacity="0.82"/>"##,
-        right - wide - room,
+        right - wide - margin,
         top - 4.0 * unit,
-        wide + 2.0 * room,
+        wide + 2.0 * margin,
         above + long + 20.0 * unit,
         6.0 * unit
     );

@@ -71,9 +71,9 @@ impl Geometry {
         let mut visible = Vec::with_capacity(surface.positions.len());
         for position in &surface.positions {
             let point = crate::Vec3::from(*position) - view.target;
-            let placed = view.project(&point).filter(|(at, _)| at.iter().all(|v| v.is_finite() && v.abs() < 1e6));
-            visible.push(placed.is_some());
-            let ([x, y, near], weight) = placed.unwrap_or_default();
+            let projected = view.project(&point).filter(|(at, _)| at.iter().all(|v| v.is_finite() && v.abs() < 1e6));
+            visible.push(projected.is_some());
+            let ([x, y, near], weight) = projected.unwrap_or_default();
             self.screen.push([x * SAMPLES as f32, y * SAMPLES as f32, near]);
             self.weights.push(weight);
             self.points.push(point.cast());

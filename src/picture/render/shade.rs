@@ -78,13 +78,13 @@ impl<'a> Shader<'a> {
             let py = ((band.first + y) as f64 + 0.5) * per_sample;
             let row = carpet.nearness_along_row(py);
             for x in 0..band.width {
-                let place = y * band.width + x;
+                let sample = y * band.width + x;
                 let Some(near) = carpet.nearness(self.view, (x as f64 + 0.5) * per_sample, row, py) else { continue };
                 // A sheet on the floor hides it, whatever the last digits say.
-                let (below, hides) = (band.nearness[place], carpet.lies_on_floor() && band.seen[place] == FLOOR);
+                let (below, hides) = (band.nearness[sample], carpet.lies_on_floor() && band.seen[sample] == FLOOR);
                 if hides || near >= below {
-                    band.nearness[place] = near;
-                    band.seen[place] = SHEET;
+                    band.nearness[sample] = near;
+                    band.seen[sample] = SHEET;
                 }
             }
         }
@@ -97,19 +97,19 @@ impl<'a> Shader<'a> {
         for (py, row) in rows.chunks_exact_mut(3 * width).enumerate() {
             for (px, pixel) in row.chunks_exact_mut(3).enumerate() {
                 let corner = py * SAMPLES * band.width + px * SAMPLES;
-                let place = |k: usize| corner + k / SAMPLES * band.width + k % SAMPLES;
+                let sample = |k: usize| corner + k / SAMPLES * band.width + k % SAMPLES;
                 let mut waiting = ALL;
                 let mut sum = [0.0f32; 3];
                 while waiting != 0 {
-                    let lead = place(waiting.trailing_zeros() as usize);
+                    let lead = sample(waiting.trailing_zeros() as usize);
                     let shown = [band.seen[lead], band.veil[lead]];
                     let (mut count, mut x, mut y, mut near) = (0.0f32, 0.0f32, 0.0f32, 0.0f32);
                     for k in 0..SAMPLES * SAMPLES {
-                        if waiting >> k & 1 == 1 && [band.seen[place(k)], band.veil[place(k)]] == shown {
+                        if waiting >> k & 1 == 1 && [band.seen[sample(k)], band.veil[sample(k)]] == shown {
                             count += 1.0;
                             x += (k % SAMPLES) as f32;
                             y += (k / SAMPLES) as f32;
-                            near += band.nearness[place(k)];
+                            near += band.nearness[sample(k)];
                             waiting &= !(1 << k);
                         }
                     }
@@ -242,8 +242,8 @@ fn edge_strength(geometry: &Geometry, triangle: &Triangle, area: f32, flat: [f32
         nearest = nearest.min(flat[k] * height);
         smallest = smallest.min(height);
     }
-    let room = ((smallest - 2.0) / 6.0).clamp(0.0, 1.0);
-    room * (1.0 - nearest).clamp(0.0, 1.0)
+    let visibility = ((smallest - 2.0) / 6.0).clamp(0.0, 1.0);
+    visibility * (1.0 - nearest).clamp(0.0, 1.0)
 }
 
 impl Glass {

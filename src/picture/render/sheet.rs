@@ -95,9 +95,9 @@ impl<'a> Carpet<'a> {
     fn value(&self, share: [f64; 2]) -> f64 {
         let [nu, nv] = self.sheet.size;
         let along = |k: usize, n: usize| {
-            let place = (share[k] * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
-            let below = (place.floor() as usize).min(n.saturating_sub(2));
-            (below, place - below as f64)
+            let node = (share[k] * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
+            let below = (node.floor() as usize).min(n.saturating_sub(2));
+            (below, node - below as f64)
         };
         let ((i, s), (j, t)) = (along(0, nu), along(1, nv));
         let (mut sum, mut least, mut most) = (0.0, f64::INFINITY, f64::NEG_INFINITY);

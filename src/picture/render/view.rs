@@ -111,7 +111,7 @@ impl PlaneOnScreen {
         // A line of sight meets the plane `height / fall` along itself; multiplied by `fall` everything is affine.
         let height = |start: Vec3| normal.dot(&(point - start));
         let fall = |direction: Vec3| normal.dot(&direction);
-        let place = |axis: &Vec3, start: Vec3, direction: Vec3| {
+        let coordinate = |axis: &Vec3, start: Vec3, direction: Vec3| {
             axis.dot(&(start - point)) * fall(direction) + axis.dot(&direction) * height(start)
         };
         Self {
@@ -122,8 +122,8 @@ impl PlaneOnScreen {
                     view.distance - height(start) / fall(direction)
                 }
             }),
-            u: affine(&|start, direction| place(u, start, direction)),
-            v: affine(&|start, direction| place(v, start, direction)),
+            u: affine(&|start, direction| coordinate(u, start, direction)),
+            v: affine(&|start, direction| coordinate(v, start, direction)),
             w: affine(&|_, direction| fall(direction)),
         }
     }

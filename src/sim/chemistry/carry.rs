@@ -51,10 +51,10 @@ fn sense_fields(model: &Model, state: &State, scratch: &mut ChemistryScratch) {
         for (kind, now) in model.kinds.iter().zip(&state.kinds) {
             let atoms = kind.atoms();
             for cell in 0..now.cells() {
-                scratch.places.clear();
-                scratch.places.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
+                scratch.positions.clear();
+                scratch.positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
                 scratch.senses.resize(atoms, Sensed::default());
-                scratch.fields[field].sense_all(species, &scratch.places, &mut scratch.senses);
+                scratch.fields[field].sense_all(species, &scratch.positions, &mut scratch.senses);
                 let sum = scratch.senses.iter().fold(Sensed::default(), |sum, one| Sensed {
                     value: sum.value + one.value,
                     gradient: sum.gradient + one.gradient,
@@ -114,7 +114,7 @@ fn carry(
         }
         match (link.to, link.owner) {
             (Target::Own(open), Owner::Reactor(number)) => {
-                state.chemistry.populations[number].set_given(member, open, carried);
+                state.chemistry.populations[number].set_open(member, open, carried);
             }
             (Target::Own(input), Owner::Field(field)) => state.chemistry.fields[field].inputs[input] = carried,
             (Target::Cell(whose, control), _) => {

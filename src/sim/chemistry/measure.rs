@@ -92,12 +92,12 @@ fn near_cell<'a>(kind: &Kind, now: &KindState, found: &'a [AtomContact], cell: u
 }
 
 fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(u32) -> bool) -> CellNumbers {
-    let place = |atom: usize| vector(kind, x, cell, atom);
-    let base = place(0);
+    let position = |atom: usize| vector(kind, x, cell, atom);
+    let base = position(0);
     let (mut low, mut high, mut sum) = (base, base, Vec3::zeros());
     let (mut near_cells, mut on_planes) = (0_usize, 0_usize);
     for atom in 0..kind.atoms() {
-        let p = place(atom);
+        let p = position(atom);
         (low, high, sum) = (low.inf(&p), high.sup(&p), sum + (p - base));
         let touches = |plane: &super::super::Plane| (p - plane.point).dot(&plane.normal) < TOUCHING * kind.edge;
         on_planes += usize::from(model.planes.iter().any(touches));
@@ -105,7 +105,7 @@ fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(
     }
     let (mut area, mut volume, mut moment) = (0.0, 0.0, Vec3::zeros());
     for facet in &kind.rest.facets {
-        let [a, b, c] = facet.map(|atom| place(atom as usize) - base);
+        let [a, b, c] = facet.map(|atom| position(atom as usize) - base);
         area += 0.5 * (b - a).cross(&(c - a)).norm();
         // The tetrahedron with the first atom: its volume, and its centre a quarter of the way to a + b + c.
         let part = a.dot(&b.cross(&c)) / 6.0;

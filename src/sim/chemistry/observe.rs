@@ -81,16 +81,16 @@ fn mean(cells: std::ops::Range<usize>, one: impl Fn(usize) -> f64) -> f64 {
 
 /// What a source says of one cell.
 pub(super) fn read_cell(model: &Model, from: &Source, cell: usize, state: &State, scratch: &ChemistryScratch) -> f64 {
-    let place = |atom: usize| {
+    let position = |atom: usize| {
         let (kind, local) = state.kind_of(cell);
         vector(&model.kinds[kind], &state.kinds[kind].positions, local, atom)
     };
     match *from {
-        Source::Cell(_, Reading::Atom(atom, axis)) => place(atom)[axis],
+        Source::Cell(_, Reading::Atom(atom, axis)) => position(atom)[axis],
         Source::Cell(_, reading) => scratch.cells[cell].read(reading),
         Source::Sensed(_, channel, sense) => pick(&scratch.sensed[channel][cell], sense),
         Source::AtAtom(_, atom, field, species, sense) => {
-            pick(&scratch.fields[field].sense(species, place(atom)), sense)
+            pick(&scratch.fields[field].sense(species, position(atom)), sense)
         }
         Source::Own(_) | Source::Time | Source::Whole(..) | Source::Other(..) => f64::NAN,
     }

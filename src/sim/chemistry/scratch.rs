@@ -23,7 +23,7 @@ pub struct ChemistryScratch {
     /// What links read.
     pub(super) observed: Observed,
     /// Positions of atoms, what is sensed at them, and amounts released at them.
-    pub(super) places: Vec<Vec3>,
+    pub(super) positions: Vec<Vec3>,
     pub(super) senses: Vec<Sensed>,
     pub(super) amounts: Vec<f64>,
 }

@@ -128,15 +128,15 @@ fn deposit_secretion(model: &Model, dt: f64, state: &State, ws: &mut Workspace) 
         for (kind, now) in model.kinds.iter().zip(&state.kinds) {
             let atoms = kind.atoms();
             scratch.amounts.clear();
-            scratch.places.clear();
+            scratch.positions.clear();
             for cell in 0..now.cells() {
                 let rate = rates[now.first_cell + cell];
                 if rate != 0.0 {
-                    scratch.places.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
-                    scratch.amounts.resize(scratch.places.len(), rate * dt / atoms as f64);
+                    scratch.positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
+                    scratch.amounts.resize(scratch.positions.len(), rate * dt / atoms as f64);
                 }
             }
-            scratch.fields[field].deposit_all(species, &scratch.places, &scratch.amounts);
+            scratch.fields[field].deposit_all(species, &scratch.positions, &scratch.amounts);
         }
     }
 }

@@ -30,14 +30,14 @@ pub fn write_rows(
     empty_for(pulls, count);
     let mut add = |pairing,
                    atoms,
-                   places,
+                   coordinates,
                    Normal([x, y, z]),
                    gap: f64,
                    [least, shear]: [f64; 2],
                    (force, stored): ([f32; 3], f32)| {
         let normal_and_gap = [x, y, z, gap as f32];
         let (least, shear) = (least as f32, shear as f32);
-        let row = Row { atoms, places, normal_and_gap, least, shear, compliance: 0.0, kept: 1.0, stored, pairing };
+        let row = Row { atoms, coordinates, normal_and_gap, least, shear, compliance: 0.0, kept: 1.0, stored, pairing };
         let force = row.bound(Vec3::from(force.map(f64::from)));
         let force = [force.x as f32, force.y as f32, force.z as f32];
         rows.push(row);
@@ -69,7 +69,7 @@ pub fn write_rows(
         let strength = if own { Strength::default() } else { model.strength_between(body, other) };
         let kind = model.kind_of(body as u32);
         let area = SHARE * model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
-        let area = area / places_on_body(scene, found, number) as f64;
+        let area = area / contacts_on_body(scene, found, number) as f64;
         let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
         add(
             Pairing::AtomOnFacet,
@@ -128,7 +128,7 @@ pub fn write_rows(
 }
 
 /// In how many places the atom of a contact touches the body of it: in a groove in two or more, which share what it bears.
-fn places_on_body(scene: &Scene, found: &Contacts, number: usize) -> usize {
+fn contacts_on_body(scene: &Scene, found: &Contacts, number: usize) -> usize {
     let this = &found.atoms[number];
     let same = |other: &&AtomContact| other.atom == this.atom && other.body(scene) == this.body(scene);
     let before = found.atoms[..number].iter().rev().take_while(same).count();

@@ -47,11 +47,21 @@ mod tests {
 
     /// A contact along z of this compliance, µm/pN, with what is in it, pN·µm.
     fn row(compliance: f64, stored: f32) -> Row {
-        let (atoms, places) = ([0, 1, 2, 3], [0.3, 0.4]);
+        let (atoms, coordinates) = ([0, 1, 2, 3], [0.3, 0.4]);
         let normal_and_gap = [0.0, 0.0, 1.0, 0.05];
         let (least, shear) = (-10.0, 10.0);
         let pairing = Pairing::AtomOnFacet;
-        Row { atoms, places, normal_and_gap, least, shear, compliance: compliance as f32, kept: 1.0, stored, pairing }
+        Row {
+            atoms,
+            coordinates,
+            normal_and_gap,
+            least,
+            shear,
+            compliance: compliance as f32,
+            kept: 1.0,
+            stored,
+            pairing,
+        }
     }
 
     fn pull(carried: Vec3, force: Vec3) -> Pull {

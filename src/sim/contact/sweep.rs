@@ -138,15 +138,15 @@ impl NullaryFnOnce for Sweep<'_> {
             if row.compliance == 0.0 {
                 continue;
             }
-            let (weights, way, last) = (row.weights(), wide(pull.way), wide(pull.change));
+            let (weights, direction, last) = (row.weights(), wide(pull.direction), wide(pull.change));
             // As the numbers are kept, so that force and displacement go the same way.
             let force = wide(pull.force);
-            let force = wide(narrow(&map(|i| force[i] + share * way[i])));
+            let force = wide(narrow(&map(|i| force[i] + share * direction[i])));
             let new = narrow(&turn(row, weights, &force, &wide(pull.carried), moved));
             let found = wide(new);
             let step = map(|i| found[i] - force[i]);
             push(row, weights, &step, moved);
-            pull.way = narrow(&map(|i| share * way[i] + last[i]));
+            pull.direction = narrow(&map(|i| share * direction[i] + last[i]));
             pull.change = narrow(&step);
             pull.force = new;
             let compliance = f64::from(row.compliance);

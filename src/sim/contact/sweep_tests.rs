@@ -37,7 +37,7 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
         let sticks = count % 4 > 0;
         rows.push(Row {
             atoms,
-            places: [u, v],
+            coordinates: [u, v],
             normal_and_gap: [normal.x as f32, normal.y as f32, normal.z as f32, (0.05 * number(&mut dice)) as f32],
             least: if sticks { -0.3 } else { 0.0 },
             shear: if count % 4 > 1 { 0.2 } else { 0.0 },

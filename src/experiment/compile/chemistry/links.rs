@@ -264,7 +264,7 @@ impl Ends<'_, '_> {
             let inputs = self.chemistry.fields[self.part.number].system.inputs();
             inputs.iter().position(|(input, _)| input == id)
         } else {
-            self.chemistry.reactors[self.part.number].program.open_place(quantity)
+            self.chemistry.reactors[self.part.number].program.open_index(quantity)
         };
         place.map(Target::Own).ok_or_else(|| {
             let message = format!("{} cannot be set by a link", end.text);
