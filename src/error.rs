@@ -47,7 +47,7 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// A fault without a place.
+    /// A fault without a location.
     pub fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), place: None, help: None }
     }

@@ -2,7 +2,7 @@
 //!
 //! Everything inside the program is a bare number in base units: µm, s, pN and radian, so a stress is in
 //! pN/µm² = Pa, a line stiffness in pN/µm = µN/m, an energy in pN·µm and a mass in pN·s²/µm = 1 mg. This module is
-//! the only place that knows prefixes and other units.
+//! the only file that knows prefixes and other units.
 //!
 //! ```
 //! use pseudopod::units::{self, Dimension, Speed};

@@ -10,7 +10,7 @@ fn amoeba(space: Space) -> BrownianMotility {
     BrownianMotility { speed: 5.0 / 60.0, persistence: 120.0, space }
 }
 
-/// Places of a walker at the end of each of `steps` steps.
+/// Positions of a walker at the end of each of `steps` steps.
 fn positions(motility: &BrownianMotility, cell: u64, dt: f64, steps: usize) -> Vec<Vec3> {
     let mut walk = motility.start(SEED, cell);
     let mut position = Vec3::zeros();

@@ -39,7 +39,7 @@ impl FrameArgs {
             When::Last => return Ok(last),
             When::At(time) => time.value(),
         };
-        // Half a frame of room: a time near the end means the last frame.
+        // Half a frame of slack: a time near the end means the last frame.
         let slack = 0.5 * (times[last] - times[0]) / last.max(1) as f64;
         if self.time.is_some() && (time < times[0] - slack || time > times[last] + slack) {
             return Err(missing(result, &times, &format!("frame at t = {} s", short(time))));

@@ -42,7 +42,7 @@ pub struct PlotArgs {
     /// The axis of a profile or kymograph: x, y or z; x when absent.
     #[arg(long, value_name = "AXIS", value_parser = axis)]
     pub along: Option<Axis>,
-    /// A place that a profile or kymograph goes through, in um, as in 10,20,0; the mean over the other axes when absent.
+    /// A point that a profile or kymograph goes through, in um, as in 10,20,0; the mean over the other axes when absent.
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub through: Option<[Length; 3]>,
     /// The instants of a profile, by commas: first, last, or times such as "12 s"; five of the run when absent.

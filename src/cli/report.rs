@@ -72,7 +72,7 @@ pub fn print_failure(command: &str, error: &Error) -> Result<()> {
     print_object(command, false, facts)
 }
 
-/// A fault with its place: line and column from 1, in characters.
+/// A fault with its location: line and column from 1, in characters.
 fn fault_object(fault: &Fault) -> Value {
     let mut object = json!({ "message": fault.message, "help": fault.help });
     if let Some(place) = &fault.place {

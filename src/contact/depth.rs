@@ -10,7 +10,7 @@ use super::scene::Scene;
 use super::shape::Sides;
 use crate::Vec3;
 
-/// Places at which each part of an edge between two crossings is looked at.
+/// Points at which each part of an edge between two crossings is looked at.
 const SAMPLES: usize = 5;
 
 /// The first body, with another, that is deeper inside that than `most` of the two (µm), and the depth. The same whatever the threads.

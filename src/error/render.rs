@@ -1,4 +1,4 @@
-//! Errors as the terminal shows them: the place in the text, what was found, what to do.
+//! Errors as the terminal shows them: the location in the text, what was found, what to do.
 
 use super::{Error, Fault};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource};

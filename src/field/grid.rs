@@ -84,7 +84,7 @@ impl Grid {
         if self.is_flat() { area } else { area * self.spacing[2] }
     }
 
-    /// Place in memory of box (x, y, z).
+    /// Index in memory of box (x, y, z).
     pub fn at(&self, x: usize, y: usize, z: usize) -> usize {
         (z * self.cells[1] + y) * self.cells[0] + x
     }
@@ -97,7 +97,7 @@ impl Grid {
         format!("({})", numbers.join(", "))
     }
 
-    /// Centre of the box at a place in memory, µm.
+    /// Centre of the box at an index in memory, µm.
     pub fn centre(&self, at: usize) -> Vec3 {
         let [nx, ny, _] = self.cells;
         let index = [at % nx, at / nx % ny, at / (nx * ny)];

@@ -16,7 +16,7 @@ pub struct Chunk<'a> {
     pub values: &'a mut [f64],
     /// Number of points that count.
     pub points: usize,
-    /// Place in memory of the first point; see [`Grid::centre`].
+    /// Index in memory of the first point; see [`Grid::centre`].
     pub first: usize,
     /// Time at the start of the step, s.
     pub time: f64,

@@ -1,4 +1,4 @@
-//! Senses a field at many positions, four side by side; those near a wall are left to the plain way.
+//! Senses a field at many positions, four side by side; those near a wall are left to the reference.
 
 use pulp::{Simd, WithSimd};
 
@@ -46,7 +46,7 @@ fn all<const FLAT: bool>(mut work: SenseAll) {
     }
 }
 
-/// Four positions side by side, and those of them that are near a wall again in the plain way. What is found at one does
+/// Four positions side by side, and those of them that are near a wall again by the reference. What is found at one does
 /// not depend on the others.
 #[inline(always)]
 fn four_positions<const FLAT: bool>(work: &SenseAll, positions: &[Vec3; SIDE], out: &mut [Sensed; SIDE]) {

@@ -39,7 +39,7 @@ impl<'a> Shared<'a> {
         unsafe { std::slice::from_raw_parts_mut(self.first.add(at), len) }
     }
 
-    /// Asks the memory for a value that will be needed soon. Nothing happens if there is none at this place.
+    /// Asks the memory for a value that will be needed soon. Nothing happens if there is none at this address.
     #[inline(always)]
     pub fn ask(&self, at: usize) {
         #[cfg(target_arch = "x86_64")]

@@ -1,4 +1,4 @@
-//! The plain way to sense a field at one position, wherever it is: also beside a wall, beyond it, in a narrow grid.
+//! The plain reference that senses a field at one position, wherever it is: also beside a wall, beyond it, in a narrow grid.
 
 use super::axis::Axis;
 use super::grid::Wall;

@@ -56,7 +56,7 @@ impl FieldSystem {
     /// no multiple of the spacing is lengthened at its upper end, so that the spacing is kept.
     ///
     /// # Errors
-    /// All faults with their places: a grid that nothing places, with fewer than 4 boxes along an axis or more than
+    /// All faults with their locations: a grid that nothing places, with fewer than 4 boxes along an axis or more than
     /// memory holds; coefficients and walls without meaning; a scheme that reactions cannot be taken with.
     pub fn new(document: &eml::Document, placing: Option<&Placing>) -> Result<Self> {
         let grid = layout(document, placing)?;
@@ -125,7 +125,7 @@ impl FieldSystem {
         &self.units
     }
 
-    /// The place of a field among the species.
+    /// The index of a field among the species.
     pub fn species_number(&self, id: &str) -> Option<usize> {
         self.species.iter().position(|species| species.name == id)
     }
@@ -151,7 +151,7 @@ impl FieldSystem {
     /// The fields at time 0, as their profiles have them.
     ///
     /// # Errors
-    /// Values that are not finite or, of a concentration, negative, with the field's place in the document; what `load`
+    /// Values that are not finite or, of a concentration, negative, with the field's location in the document; what `load`
     /// finds.
     pub fn start(&self, load: &LoadProfile) -> Result<Fields> {
         let mut fields = Fields::new(self.grid.clone(), self.species.clone())?;
@@ -187,7 +187,7 @@ impl FieldSystem {
     /// [`Self::inputs`].
     ///
     /// # Errors
-    /// Numbers that fail: the message names document, field, time and place, and the fields are as they were before.
+    /// Numbers that fail: the message names document, field, time and position, and the fields are as they were before.
     ///
     /// # Panics
     /// When the fields are not this system's, or there is not one input for each.

@@ -49,9 +49,9 @@ impl Fields {
     /// Values and gradients of a species at positions; see [`Fields::sense`]. Allocates nothing.
     ///
     /// # Panics
-    /// If there is no such species, or not one place for each position.
+    /// If there is no such species, or not one slot for each position.
     pub fn sense_all(&self, species: usize, positions: &[Vec3], out: &mut [Sensed]) {
-        assert_eq!(positions.len(), out.len(), "a place for each position");
+        assert_eq!(positions.len(), out.len(), "a slot for each position");
         let axes = Axis::all(&self.grid, &self.species[species]);
         let values = self.values(species);
         let floor = if self.species[species].range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };

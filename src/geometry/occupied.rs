@@ -1,4 +1,4 @@
-//! Where there is room for another cell among those that are there.
+//! Where another cell fits among those that are there.
 
 use std::collections::HashMap;
 

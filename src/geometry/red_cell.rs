@@ -132,7 +132,7 @@ mod tests {
         for level in 1..=4 {
             let cell = red_cell(RED_CELL_DIAMETER, level);
             let errors = ((volume(&cell) / exact_volume - 1.0).abs(), (area(&cell) / exact_area - 1.0).abs());
-            // Second order: a level quarters the error; 2.5 leaves room for the coarsest meshes.
+            // Second order: a level quarters the error; 2.5 allows for the coarsest meshes.
             assert!(errors.0 < last.0 / 2.5 && errors.1 < last.1 / 2.5, "level {level}: {errors:?} after {last:?}");
             last = errors;
         }

@@ -39,7 +39,7 @@ impl Load {
         set.map(|factor| force * factor)
     }
 
-    /// Adds the total force (pN) to the atoms by their shares and returns the energy, pN·µm: minus the work done on the way from
+    /// Adds the total force (pN) to the atoms by their shares and returns the energy, pN·µm: minus the work done from
     /// the origin.
     #[inline(always)]
     pub fn add_forces<T: Real>(&self, force: T, x: &Vectors<T>, f: &mut VectorsMut<T>) -> T {

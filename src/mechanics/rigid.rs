@@ -68,7 +68,7 @@ impl<T: Real> RigidFrame<T> {
         (sum.scaled(1.0 / atoms as f64), spin)
     }
 
-    /// The rigid field at a place.
+    /// The rigid field at a position.
     #[inline(always)]
     pub fn at(&self, position: V3<T>, mean: V3<T>, spin: V3<T>) -> V3<T> {
         mean + spin.cross(position - self.centre)

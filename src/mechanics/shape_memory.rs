@@ -1,7 +1,7 @@
 //! Shape memory in the triplet form: every atom remembers where it stood among its neighbours.
 //!
 //! Each non-collinear triplet t = (a, b, c) of an atom's neighbours gives, at rest, the barycentric coordinates of the
-//! atom's projection on the triplet's plane and its signed height β_t above it. The place the atom is drawn to is the
+//! atom's projection on the triplet's plane and its signed height β_t above it. The point the atom is drawn to is the
 //! mean over its m triplets, eq. (shape.1), `X* = Σ_j w_j X_j + (1/m) Σ_t β_t n̂_t`: the projections collapse, once,
 //! into one fixed weight per neighbour; only the normals are recomputed. The energy is eq. (shape.2),
 //! `E = ½ k Σ_i |X*_i − X_i|²`, and its exact gradient conserves momentum and angular momentum.
@@ -177,7 +177,7 @@ impl ShapeMemory {
         energy
     }
 
-    /// How far the place of an atom moves at most when a corner of one of its triplets moves by one: the tilt of the
+    /// How far the target of an atom moves at most when a corner of one of its triplets moves by one: the tilt of the
     /// normals, eq. (shape.3).
     fn tilt(&self, atom: usize, x: &[Vec3]) -> f64 {
         let triplets = &self.triplets[self.first_triplet[atom] as usize..self.first_triplet[atom + 1] as usize];

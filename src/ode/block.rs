@@ -40,7 +40,7 @@ const FREE_SHARE: usize = 2;
 /// How far each lane has come in the window, beside what goes with its cell.
 struct Progress<const L: usize> {
     time: Lanes<L>,
-    /// Rounds since the cell took its seat.
+    /// Rounds since the cell entered its lane.
     rounds: Lanes<L>,
     refused: Mask<L>,
 }

@@ -1,4 +1,4 @@
-//! What populations work in: kept from window to window so that nothing is allocated on the way, and never saved.
+//! What populations work in: kept from window to window so that nothing is allocated meanwhile, and never saved.
 
 use std::sync::Mutex;
 

@@ -67,7 +67,7 @@ impl Controller {
 }
 
 /// The step after one that was good enough, by a factor of which no more than `most` is allowed. `cut` says that a longer
-/// one was wanted than the window left room for.
+/// one was wanted than fitted into the window.
 #[inline(always)]
 pub fn after_good(step: f64, (wanted, cut): (f64, bool), factor: f64, most: f64) -> f64 {
     let grown = if factor < most { factor } else { most };

@@ -1,4 +1,4 @@
-//! One system on its way from one time to another: its steps, cut where a trigger turns true or the clock switches.
+//! One system from one time to another: its steps, cut where a trigger turns true or the clock switches.
 
 use super::OdeTrouble;
 use super::events::{Events, STOPS, TRIGGERS};

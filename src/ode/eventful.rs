@@ -87,7 +87,7 @@ impl Eventful<'_> {
         let known = stepper.take().unwrap_or_else(|| StepperBuffers::new(program, method.is_implicit()));
         let mut own = Stepper::within(known, program, method, self.tolerances);
         let state = (0..program.size()).map(|position| population.state(cell, position));
-        let open = (0..program.open.len()).map(|position| population.open_values(cell, position));
+        let open = (0..program.open.len()).map(|position| population.open_value(cell, position));
         own.resume(from, state, open, population.pace(cell));
         own.longest = LONGEST_SHARE * self.span;
         let mut events = Events::new(self.plan, &mut arrived.memory, events);

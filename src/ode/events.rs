@@ -92,7 +92,7 @@ impl EventPlan {
     }
 }
 
-/// The events of a system on its way.
+/// The events of a system while it is solved.
 pub struct Events<'a> {
     plan: &'a EventPlan,
     memory: &'a mut EventMemory,

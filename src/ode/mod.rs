@@ -71,7 +71,7 @@ pub fn too_large(name: &str, variables: usize, scheme: &str, explicit: &str) -> 
 }
 
 impl Method {
-    /// Whether matrices are factored on the way.
+    /// Whether matrices are factored.
     pub fn is_implicit(self) -> bool {
         self == Self::Rosenbrock
     }

@@ -75,7 +75,7 @@ impl Population {
     ///
     /// # Panics
     /// When there is no such cell or open quantity.
-    pub fn open_values(&self, cell: usize, open: usize) -> f64 {
+    pub fn open_value(&self, cell: usize, open: usize) -> f64 {
         assert!(open < self.open, "open quantity {open} of {}", self.open);
         self.open_values[cell / LANES * self.open + open][cell % LANES]
     }

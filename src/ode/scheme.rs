@@ -20,7 +20,7 @@ pub enum Scheme {
 }
 
 impl Scheme {
-    /// Whether matrices are factored on the way.
+    /// Whether matrices are factored.
     pub fn is_implicit(self) -> bool {
         match self {
             Self::OneStep(method) => method.is_implicit(),

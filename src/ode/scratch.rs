@@ -1,4 +1,4 @@
-//! Buffers that are kept from window to window so that nothing is allocated on the way.
+//! Buffers that are kept from window to window so that nothing is allocated meanwhile.
 
 use super::lu::Swap;
 use crate::equations::program::{Lanes, Program, run};

@@ -9,7 +9,7 @@ use super::{Method, OdeTrouble, Reason, Work, explicit, rosenbrock};
 use crate::equations::program::code::Code;
 use crate::equations::program::{Program, run};
 
-/// A system on its way.
+/// A system while it is solved.
 pub struct Stepper<'a> {
     /// Its program.
     pub program: &'a Program,

@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use crate::equations::program::Lanes;
 
-/// Σ weight·stage for a place of one variable, without fused multiply-add: the same bits whatever the registers. The stages
+/// Σ weight·stage for a register of one variable, without fused multiply-add: the same bits whatever the registers. The stages
 /// stand one after the other, `n` variables each; those of weight 0 are left out.
 #[inline(always)]
 fn sum<S: Simd, const L: usize>(

@@ -333,7 +333,7 @@ pub(super) fn push_frames(frames: &mut [(&mut PackedColumn, Numbers)]) -> hdf5::
     Ok(())
 }
 
-/// Writes a dataset of integers that never changes; `value` gives the number at a place.
+/// Writes a dataset of integers that never changes; `value` returns the number of a row.
 pub(super) fn write_integers(
     file: &Group,
     plan: &Plan,

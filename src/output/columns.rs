@@ -399,7 +399,7 @@ fn of_list(file: &File, plan: &Plan, list: List, start: Start) -> hdf5::Result<C
     }
 }
 
-/// Gives a dataset a second name, making the groups on the way.
+/// Gives a dataset a second name, making the groups that it needs.
 fn link(file: &File, target: &str, path: &str) -> hdf5::Result<()> {
     if file.dataset(path).is_ok() {
         return Ok(());

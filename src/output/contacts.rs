@@ -91,7 +91,7 @@ pub fn clusters(cells: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<
     first
 }
 
-/// The smallest cell known of the cluster of a cell; shortens the way to it.
+/// The smallest cell known of the cluster of a cell; shortens the path to it.
 fn root(first: &mut [u32], mut cell: u32) -> u32 {
     while first[cell as usize] != cell {
         first[cell as usize] = first[first[cell as usize] as usize];

@@ -1,4 +1,4 @@
-//! A frame of a field for other programs: a table of places and values, or an image for VTK.
+//! A frame of a field for other programs: a table of positions and values, or an image for VTK.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -86,7 +86,7 @@ fn table(field: &FieldLayout, species: &[Values]) -> String {
     text
 }
 
-/// A place without the noise of its last digits.
+/// A coordinate without the noise of its last digits.
 fn rounded(coordinate: f64) -> f64 {
     (coordinate * 1e9).round() / 1e9
 }

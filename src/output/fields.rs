@@ -1,6 +1,6 @@
 //! Fields in the result file: one group for each grid, arranged as VTK's image data with time steps.
 //!
-//! VTK looks for its data at one place of a file, which the cells have. So beside the result lies a small file for each
+//! VTK looks for its data under one path of a file, which the cells have. So beside the result lies a small file for each
 //! field that leads to its group: `red.vtkhdf` has `red.attractant.vtkhdf`.
 
 use std::path::{Path, PathBuf};
@@ -73,11 +73,11 @@ impl FieldLayout {
         self.origin[axis] + (index as f64 + 0.5) * self.spacing[axis]
     }
 
-    /// The row of boxes along an axis that a place (µm) falls into; the first or last for places outside.
+    /// The row of boxes along an axis that a position (µm) falls into; the first or last for positions outside.
     pub fn nearest(&self, along: Along, position: f64) -> usize {
         let axis = along.number();
         let box_of = ((position - self.origin[axis]) / self.spacing[axis]).floor();
-        // Saturates: places below the first box give 0.
+        // Saturates: positions below the first box give 0.
         (box_of as usize).min(self.cells[axis].saturating_sub(1))
     }
 
@@ -86,7 +86,7 @@ impl FieldLayout {
         self.species.iter().position(|(known, _)| known == name)
     }
 
-    /// The values of a frame along an axis: through a place (µm), or the mean over all other boxes if there is none.
+    /// The values of a frame along an axis: through a point (µm), or the mean over all other boxes if there is none.
     ///
     /// # Panics
     /// If there is not one value for each box.

@@ -1,4 +1,4 @@
-//! The room that a result file takes on the disk, made ready before HDF5 writes what it knows of the file.
+//! The space that a result file takes on the disk, made ready before HDF5 writes what it knows of the file.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -10,7 +10,7 @@ const SUPERBLOCK: &[u8; 16] = b"\x89HDF\r\n\x1a\n\0\0\0\0\0\x08\x08\0";
 /// Where the superblock says how long the file is.
 const LENGTH_AT: u64 = 40;
 
-/// Makes the file as long as HDF5 is going to say it is, with room for all of it on the disk, and says so.
+/// Makes the file as long as HDF5 is going to say it is, with space for all of it on the disk, and says so.
 ///
 /// HDF5 writes the length before it makes the file that long, and a kill in between would leave a file that is too
 /// short to open. It writes the length after all that lies there, and a kill in between would leave a file that tells
@@ -38,18 +38,18 @@ fn tell_length(file: &mut File, length: u64) -> std::io::Result<()> {
     file.write_all(&length.to_le_bytes())
 }
 
-/// Takes room for the whole file on the disk; what is in the file stays.
+/// Reserves space for the whole file on the disk; what is in the file stays.
 #[cfg(target_os = "linux")]
 fn allocate(file: &File, size: u64) -> std::io::Result<()> {
     use rustix::io::Errno;
     match rustix::fs::fallocate(file, rustix::fs::FallocateFlags::empty(), 0, size) {
-        // Some file systems cannot promise room.
+        // Some file systems cannot promise space.
         Ok(()) | Err(Errno::OPNOTSUPP | Errno::INVAL | Errno::NOSYS) => Ok(()),
         Err(error) => Err(error.into()),
     }
 }
 
-/// Other systems have no common way to ask for room.
+/// Other systems have no common call that reserves space.
 #[cfg(not(target_os = "linux"))]
 fn allocate(_: &File, _: u64) -> std::io::Result<()> {
     Ok(())

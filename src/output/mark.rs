@@ -21,7 +21,7 @@ pub(super) struct FlushMark {
 }
 
 impl FlushMark {
-    /// Makes the dataset, with a place in the file from the beginning.
+    /// Makes the dataset, with space in the file from the beginning.
     pub fn create(file: &File) -> hdf5::Result<()> {
         let builder = file.new_dataset::<i64>().obj_track_times(false).alloc_time(Some(AllocTime::Early));
         let dataset = builder.create(MARK)?;

@@ -132,10 +132,10 @@ fn first_elements(shape: &[usize], piece: &[usize]) -> impl Iterator<Item = Vec<
     })
 }
 
-/// The bytes of a piece as they lie in the file, unless the way to them or they themselves are missing.
+/// The bytes of a piece as they lie in the file, unless the path to them or they themselves are missing.
 fn read_piece(dataset: &Dataset, bytes: &mut fs::File, first: &[u64]) -> Option<Vec<u8>> {
     let (mut filters, mut at, mut length) = (0, 0, 0);
-    // SAFETY: `first` has one number per dimension of the dataset, the others are places for one number each, and the
+    // SAFETY: `first` has one number per dimension of the dataset, the others are variables for one number each, and the
     // call holds the lock of the library.
     let found = hdf5::sync::sync(|| unsafe {
         hdf5::h5check(H5Dget_chunk_info_by_coord(dataset.id(), first.as_ptr(), &mut filters, &mut at, &mut length))

@@ -70,9 +70,9 @@ fn deflate(packer: &mut Compress, bytes: &[u8], packed: &mut Vec<u8>) {
     loop {
         packed.reserve(256);
         let taken = packer.total_in() as usize;
-        // The only error is a lack of room, which the next turn makes.
+        // The only error is a lack of space, which the next turn makes.
         let _ = packer.compress_vec(&bytes[taken..], packed, FlushCompress::Sync);
-        // Room left over means that nothing waits inside.
+        // Space left over means that nothing waits inside.
         if packer.total_in() as usize == bytes.len() && packed.len() < packed.capacity() {
             return;
         }

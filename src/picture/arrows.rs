@@ -1,4 +1,4 @@
-//! The loads of an experiment as arrows: where they act, which way, and how strong they are beside the strongest.
+//! The loads of an experiment as arrows: where they act, in which direction, and how strong they are beside the strongest.
 
 use crate::Vec3;
 use crate::error::Result;

@@ -64,7 +64,7 @@ pub enum ColourMap {
     Viridis,
     /// Black to pale yellow.
     Magma,
-    /// Pale yellow to dark purple: magma turned round and without its black, so that a field leaves its place light where
+    /// Pale yellow to dark purple: magma turned round and without its black, so that a field leaves its background light where
     /// it is absent, and cells and their shadows stand out on it.
     Ink,
     /// Blue to red through grey, for quantities with a meaningful middle such as a signed error.

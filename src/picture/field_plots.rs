@@ -33,7 +33,7 @@ impl<'a> Line<'a> {
         Ok(Self { result, field, species, along, through })
     }
 
-    /// Places (µm) and values in a frame.
+    /// Positions (µm) and values in a frame.
     fn points(&self, frame: usize) -> Result<Vec<[f64; 2]>> {
         let values = self.result.field_frame(&self.field.name, &self.field.species[self.species].0, frame)?;
         let profile = self.field.profile(&values, self.along, self.through);

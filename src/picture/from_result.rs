@@ -151,7 +151,7 @@ impl Framing {
         self
     }
 
-    /// Makes room for a frame that will be drawn.
+    /// Fits the view to a frame that will be drawn.
     pub fn include(&mut self, snapshot: &Snapshot) {
         let points = || snapshot.positions.iter().chain(snapshot.arrows.iter().flatten());
         for point in points().filter(|point| point.iter().all(|v| v.is_finite())) {
@@ -206,7 +206,7 @@ impl Framing {
     }
 }
 
-/// Two ends with room between them.
+/// Two ends apart from each other.
 fn opened([low, high]: [f64; 2]) -> [f64; 2] {
     match (low.is_finite() && high.is_finite(), high > low) {
         (true, true) => [low, high],

@@ -1,4 +1,4 @@
-//! A finished picture in memory and its way into a PNG file.
+//! A finished picture in memory, and how it is written as a PNG file.
 
 use std::path::Path;
 

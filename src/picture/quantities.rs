@@ -1,4 +1,4 @@
-//! What a picture may colour the atoms by: what the result stores of them, and what follows from their places.
+//! What a picture may colour the atoms by: what the result stores of them, and what follows from their positions.
 
 use crate::Vec3;
 use crate::error::Result;

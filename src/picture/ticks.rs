@@ -32,7 +32,7 @@ pub fn nice_below(value: f64) -> f64 {
     if (lead - 5.0).abs() < 0.1 { above * 0.4 } else { above * 0.5 }
 }
 
-/// Marks for values from `low` to `high` on a linear axis with room for about `most` labels.
+/// Marks for values from `low` to `high` on a linear axis for about `most` labels.
 pub(crate) fn linear(low: f64, high: f64, most: usize, ends: Ends) -> Ticks {
     let (low, high) = opened(low, high);
     let step = nice_above((high - low) / most.max(1) as f64);

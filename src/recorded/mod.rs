@@ -1,4 +1,4 @@
-//! What a run writes down: names, units, labels and meanings of all quantities, in one place.
+//! What a run writes down: names, units, labels and meanings of all quantities, in one table.
 //!
 //! Documents name them, the run fills them, the result file stores them, charts and messages speak of them; all by the
 //! tables here. A new quantity of cells is a field of [`CellRecord`] and a row of [`CELL`]; a

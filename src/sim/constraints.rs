@@ -68,7 +68,7 @@ pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Wo
     Ok(())
 }
 
-/// Cell by cell, the thorough way.
+/// Cell by cell, by alternating projections.
 fn project_block(
     model: &Model,
     kind: &super::kind::Kind,

@@ -49,11 +49,11 @@ pub enum PopulationTrouble {
         /// How deep, µm.
         depth: f64,
     },
-    /// A box has no room for all cells that were to come at random points of it.
+    /// A box has no space for all cells that were to come at random points of it.
     NoSpace {
         /// Name of the kind.
         kind: String,
-        /// How many found room.
+        /// How many fitted.
         found: usize,
         /// How many were to come.
         wanted: usize,

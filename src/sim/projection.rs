@@ -1,4 +1,4 @@
-//! The thorough way to put one cell right: planes and volume in turns until both hold. Cells that touch a plane and
+//! Alternating projections that put one cell right: planes and volume in turns until both hold. Cells that touch a plane and
 //! those whose volume one cubic could not restore go through it.
 
 use super::kind::Kind;

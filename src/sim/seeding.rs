@@ -1,4 +1,4 @@
-//! Finds room for cells that are placed at random, at the start of a run and during it.
+//! Finds free points for cells that are placed at random, at the start of a run and during it.
 
 use super::kind::Kind;
 use super::model::Model;
@@ -20,7 +20,7 @@ pub fn radius_around(kind: &Kind) -> f64 {
     kind.rest.positions.iter().map(|p| p.norm()).fold(0.0, f64::max)
 }
 
-/// Takes room for a cell of a kind in a box: points are drawn until the sphere around the cell keeps the gap from all that is taken and no
+/// Takes a free point for a cell of a kind in a box: points are drawn until the sphere around the cell keeps the gap from all that is taken and no
 /// atom is behind a plane. Returns its centre, µm; none when the box is too full.
 pub fn take_point(
     kind: &Kind,

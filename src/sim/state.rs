@@ -86,7 +86,7 @@ pub fn vector(kind: &Kind, values: &[f64], cell: usize, atom: usize) -> Vec3 {
 }
 
 impl KindState {
-    /// Places cells at rest, `positions[cell]` those of a cell's atoms, µm; their ids count from `first`. Behaviours begin as the seed
+    /// Cells at rest, `positions[cell]` those of a cell's atoms, µm; their ids count from `first`. Behaviours begin as the seed
     /// says.
     pub fn new(kind: &Kind, positions: &[Vec<Vec3>], first: u64, inertial: Inertia, seed: u64) -> Self {
         let cells = positions.len();
@@ -308,7 +308,7 @@ impl State {
     }
 
     /// Makes this state, which may hold anything, the one that a step from another leads to, as far as that is known before it: where
-    /// the step begins, and room for what its stages write. Positions, velocities, contacts and chemistry are written by the stages.
+    /// the step begins, and memory for what its stages write. Positions, velocities, contacts and chemistry are written by the stages.
     /// Nothing is allocated where both are as large.
     pub fn begin_from(&mut self, from: &Self) {
         (self.time, self.step, self.next_step) = (from.time, from.step, from.next_step);

@@ -63,7 +63,7 @@ impl<'a> Targets<'a> {
         }
     }
 
-    /// By how much a volume changes, to first order, over the way of the atom that goes farthest when all move along the gradient, µm²,
+    /// By how much a volume changes, to first order, over the displacement of the atom that goes farthest when all move along the gradient, µm²,
     /// eq. (volume.5).
     fn change_over_travel(&self, gradient: &[f64], lane: usize) -> f64 {
         let (mut squared, mut largest) = (0.0, 0.0f64);

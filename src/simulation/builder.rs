@@ -100,7 +100,7 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// As [`Simulation::from_document`]; the places of faults are in the text that the experiment is written as.
+    /// As [`Simulation::from_document`]; the locations of faults are in the text that the experiment is written as.
     pub fn from_experiment(experiment: Experiment) -> std::result::Result<Self, SimulationError> {
         Self::builder().experiment(experiment)
     }

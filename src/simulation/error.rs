@@ -62,7 +62,7 @@ pub enum SimulationError {
     Length {
         /// Positions that there are.
         expected: usize,
-        /// Positions that the buffer has room for.
+        /// Positions that fit into the buffer.
         found: usize,
     },
     /// A model and a state that do not belong together.

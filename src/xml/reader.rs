@@ -82,7 +82,7 @@ impl<'a> Reader<'a> {
             return Err(foreign_character(text, at, c));
         }
         let mut tokens = quick_xml::Reader::from_str(body);
-        // Told here, with places.
+        // Told here, with locations.
         tokens.config_mut().check_end_names = false;
         tokens.config_mut().allow_unmatched_ends = true;
         Ok(Self {

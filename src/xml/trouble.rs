@@ -30,7 +30,7 @@ pub enum What {
     Malformed {
         /// What was found, in one sentence.
         message: String,
-        /// A few words to set beside the place.
+        /// A few words to set beside the location.
         label: &'static str,
         /// What was expected and what to do.
         help: String,

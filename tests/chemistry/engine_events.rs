@@ -197,7 +197,7 @@ fn a_parameter_that_an_event_sets_stays_set_from_window_to_window() {
     for method in [Method::Rosenbrock, Method::Rk45, Method::Rk65, Method::Rk4 { step: 0.01 }] {
         let mut cells = Population::new(&program, 2, method);
         let (mut memories, mut scratch) = (vec![plan.before_start(); 2], PopulationScratch::default());
-        cells.set_given(1, 0, 0.5);
+        cells.set_open(1, 0, 0.5);
         let one = Eventful { program: &program, plan: &plan, tolerances: Tolerances::default(), span: 4.0 };
         for window in 0..10 {
             let (from, until) = (0.4 * f64::from(window), 0.4 * f64::from(window + 1));
@@ -205,7 +205,7 @@ fn a_parameter_that_an_event_sets_stays_set_from_window_to_window() {
         }
         // 1.5 at 2.5 and 3·1.5 after; with 0.5 at the start 1.5 at 2 and 3·2 after.
         for (cell, end) in [(0, 6.0), (1, 7.5)] {
-            assert_eq!(cells.given(cell, 0), 3.0, "{method:?}");
+            assert_eq!(cells.open_value(cell, 0), 3.0, "{method:?}");
             assert!((cells.state(cell, 0) - end).abs() < 1e-9, "{method:?}: {}", cells.state(cell, 0));
         }
     }

@@ -8,7 +8,7 @@ use pseudopod::ode::{LANES, Method, Population, PopulationScratch, Tolerances};
 /// Everything of a cell that decides about its future.
 fn cell(population: &Population, program: &Program, cell: usize) -> Vec<u64> {
     let states = (0..program.size()).map(|v| population.state(cell, v));
-    let open = (0..program.open.len()).map(|v| population.given(cell, v));
+    let open = (0..program.open.len()).map(|v| population.open_value(cell, v));
     states.chain(open).chain([population.next_step(cell)]).map(f64::to_bits).collect()
 }
 
@@ -100,8 +100,8 @@ fn a_new_cell_starts_as_the_system_does() {
     }
     grown.push(&program, &[0.5], &[7.0]);
     let last = grown.cells() - 1;
-    assert_eq!((grown.state(last, 0), grown.given(last, 0), grown.next_step(last)), (0.5, 7.0, 0.0));
-    assert_eq!((grown.state(last - 1, 0), grown.given(last - 1, 0)), (2.0, 3.0));
+    assert_eq!((grown.state(last, 0), grown.open_value(last, 0), grown.next_step(last)), (0.5, 7.0, 0.0));
+    assert_eq!((grown.state(last - 1, 0), grown.open_value(last - 1, 0)), (2.0, 3.0));
     grown.retain(|_| false);
     assert_eq!(grown, Population::new(&program, 0, Method::Rk45), "none is left");
     let mut scratch = PopulationScratch::default();

@@ -188,7 +188,7 @@ fn inputs_differ_between_cells() {
     assert_eq!(system.quantities[0].role, Role::Variable { rate: Expr::Quantity(1) });
     let program = Program::new(&system).expect("no circles");
     let mut population = Population::new(&program, 33, Method::Rk45);
-    (0..33).for_each(|cell| population.set_given(cell, 0, cell as f64));
+    (0..33).for_each(|cell| population.set_open(cell, 0, cell as f64));
     let mut scratch = PopulationScratch::default();
     population.advance(&program, 0.0, 2.0, &Tolerances::default(), &mut scratch).expect("a straight line");
     (0..33)
@@ -219,7 +219,7 @@ fn rates_kept_between_windows_change_no_bit() {
                 let input = if cell % 5 == 0 { 1.0 + 0.1 * f64::from(window) } else { 1.0 };
                 let jump = if (cell + window as usize).is_multiple_of(9) { 0.5 } else { 0.0 };
                 for population in [&mut kept, &mut anew] {
-                    population.set_given(cell, 0, input);
+                    population.set_open(cell, 0, input);
                     population.set_state(cell, 0, population.state(cell, 0) + jump);
                 }
             }
@@ -248,7 +248,7 @@ fn a_population_may_use_the_scratch_of_any_other() {
         // Populations of two programs and of many sizes, one after the other, with one scratch and each with a fresh one.
         let make = |cells: usize, program: &Program| {
             let mut population = Population::new(program, cells, method);
-            (0..cells).for_each(|cell| population.set_given(cell, 0, (cell as f64).sin()));
+            (0..cells).for_each(|cell| population.set_open(cell, 0, (cell as f64).sin()));
             population
         };
         let sizes = [(1, &slow), (2, &fast), (40, &slow), (40, &fast), (33, &fast), (2, &slow)];

@@ -55,7 +55,7 @@ pub fn run(args: &EmlArgs) -> Result<Report> {
     }
 }
 
-/// Refuses files that a command would read and write, or write twice, in one place.
+/// Refuses files that a command would read and write, or write twice.
 ///
 /// # Errors
 /// Two paths that lead to the same file, whether it is there or not.

@@ -86,7 +86,7 @@ impl Frame {
         }
     }
 
-    /// Where a point lies, px; `None` where it has no place.
+    /// Where a point lies, px; `None` where the axes cannot show it.
     pub fn pixel(&self, point: [f64; 2]) -> Option<[f64; 2]> {
         let at = [self.x.pixel(point[0]), self.y.pixel(point[1])];
         // Far outside, coordinates would lose their digits in the file; the drawing is clipped to the frame anyway.

@@ -32,7 +32,7 @@ pub struct Heat {
 }
 
 impl Heat {
-    /// Room that the colour bar needs on the right, px.
+    /// Width that the colour bar needs on the right, px.
     pub(super) fn width(&self) -> f64 {
         let ticks = self.ticks();
         let widest = ticks.major.iter().map(|mark| text_width(&mark.1, NUMBER)).fold(0.0, f64::max);

@@ -9,7 +9,7 @@ use crate::picture::text::{Anchor, Style, Weight, text_width, write_text};
 const ROW: f64 = 21.0;
 /// Length of the sample before each name, px.
 const SAMPLE: f64 = 30.0;
-/// Room between the legend and the frame, px.
+/// Margin between the legend and the frame, px.
 const GAP: f64 = 10.0;
 
 /// A legend of a certain size, not yet placed.
@@ -30,7 +30,7 @@ impl Box {
         Some(Self { width: widest + SAMPLE + 26.0, height, entries })
     }
 
-    /// Draws the legend with its top left corner at a place.
+    /// Draws the legend with its top left corner at a point.
     pub fn write(&self, svg: &mut String, left: f64, top: f64) {
         svg.push_str(&format!(
             r##"<rect x="{left:.1}" y="{top:.1}" width="{:.1}" height="{:.1}" rx="4" fill="#ffffff" fill-opacity="0.86" stroke="#e3e6ea"/>"##,
@@ -83,7 +83,7 @@ pub(super) fn always_beside(chart: &Chart) -> bool {
     chart.legend == Legend::Beside
 }
 
-/// Calls `seen` for places on the page that data cover, at most 5 px apart along lines.
+/// Calls `seen` for points on the page that data cover, at most 5 px apart along lines.
 fn visit(chart: &Chart, frame: &Frame, mut seen: impl FnMut([f64; 2])) {
     let mut along = |points: &mut dyn Iterator<Item = [f64; 2]>| {
         let mut last: Option<[f64; 2]> = None;

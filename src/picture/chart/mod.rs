@@ -1,6 +1,6 @@
 //! Charts of measured and simulated numbers: curves, points with error bars, bands and tracks, as SVG and PNG.
 //!
-//! A [`Chart`] says what is shown; [`to_svg`] decides ranges, marks and the place of the legend so that labels do not
+//! A [`Chart`] says what is shown; [`to_svg`] decides ranges, marks and the position of the legend so that labels do not
 //! meet and data stay visible. Values that are not finite, or not positive on a logarithmic axis, are left out, and
 //! a line is broken there.
 
@@ -68,10 +68,10 @@ pub enum Range {
 /// How values are spaced along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Scale {
-    /// Equal differences take equal room.
+    /// Equal differences take equal lengths.
     #[default]
     Linear,
-    /// Equal ratios take equal room.
+    /// Equal ratios take equal lengths.
     Log,
 }
 

@@ -60,7 +60,7 @@ fn write_tracks(svg: &mut String, tracks: &[Vec<[f64; 2]>], one: Option<Colour>,
     svg.push_str("</g>\n");
 }
 
-/// Path data through points, broken where one has no place; points nearer than `step` px to the last are skipped.
+/// Path data through points, broken where the axes cannot show one; points nearer than `step` px to the last are skipped.
 fn path(points: impl Iterator<Item = [f64; 2]>, frame: &Frame, step: f64) -> String {
     let mut path = String::new();
     let mut last: Option<[f64; 2]> = None;
@@ -82,7 +82,7 @@ fn path(points: impl Iterator<Item = [f64; 2]>, frame: &Frame, step: f64) -> Str
     if let Some([x, y]) = skipped {
         let _ = write!(path, "L{x:.1} {y:.1}");
     }
-    // SVG wants a command to begin with; an empty series draws nothing at a harmless place.
+    // SVG wants a command to begin with; an empty series draws nothing at a harmless point.
     if path.is_empty() { "M0 0".into() } else { path }
 }
 
@@ -130,7 +130,7 @@ pub(super) fn write_bar(svg: &mut String, x: f64, top: f64, bottom: f64, colour:
     );
 }
 
-/// Draws one marker around a place.
+/// Draws one marker around a point.
 pub(super) fn write_marker(svg: &mut String, marker: Marker, x: f64, y: f64, colour: &str) {
     let _ = match marker {
         Marker::Disc => writeln!(

@@ -9,7 +9,7 @@ pub struct Camera {
     pub eye: [f64; 3],
     /// What it looks at, µm; the scale bar holds at this depth.
     pub target: [f64; 3],
-    /// Which way is up in the picture (need not be at a right angle to the view).
+    /// Which direction is up in the picture (need not be at a right angle to the view).
     pub up: [f64; 3],
     /// How depth shows.
     pub projection: Projection,
@@ -32,7 +32,7 @@ pub enum Projection {
     },
 }
 
-/// Room that stays free around the fitted scene, each as a share of the picture's height.
+/// Margins that stay free around the fitted scene, each as a share of the picture's height.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Insets {
     /// Left and right.

@@ -62,14 +62,14 @@ impl Ground {
         Some(ground)
     }
 
-    /// How strongly the floor shows at a place: 1 in the middle, 0 at its radius.
+    /// How strongly the floor shows at a point: 1 in the middle, 0 at its radius.
     pub fn presence(&self, at: [f64; 2]) -> f32 {
         let share = ((at[0] * at[0] + at[1] * at[1]).sqrt() / self.radius).min(1.0) as f32;
         let t = ((1.0 - share) / 0.75).min(1.0);
         t * t * (3.0 - 2.0 * t)
     }
 
-    /// Strength of the grid's lines at a place, 0 to 1; `pixel` is the size of a pixel there, µm along u and v.
+    /// Strength of the grid's lines at a point, 0 to 1; `pixel` is the size of a pixel there, µm along u and v.
     pub fn grid_strength(&self, at: [f64; 2], pixel: [f64; 2]) -> f32 {
         if self.grid.is_nan() || self.grid <= 0.0 {
             return 0.0;
@@ -90,7 +90,7 @@ impl Ground {
         (0.5 * line(self.grid)).max(line(5.0 * self.grid))
     }
 
-    /// How much light reaches the floor at one of its places, 0 to 1.
+    /// How much light reaches the floor at one of its points, 0 to 1.
     pub fn light(&self, at: [f64; 2]) -> f32 {
         let [shadow, contact] = self.shade(at);
         (1.0 - SHADOW_DEPTH * shadow) * (1.0 - CONTACT_DEPTH * contact)
@@ -101,7 +101,7 @@ impl Ground {
         self.light(self.screen.meet(px, py).0)
     }
 
-    /// Shares of main light and of light from all around that are kept away at a place.
+    /// Shares of main light and of light from all around that are kept away at a point.
     fn shade(&self, at: [f64; 2]) -> [f32; 2] {
         let point = [0, 1].map(|k| (at[k] as f32 - self.corner[k]) / self.texel - 0.5);
         let inside = |k: usize| point[k] >= 0.0 && point[k] < self.size[k] as f32 - 1.001;

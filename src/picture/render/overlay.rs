@@ -55,7 +55,7 @@ pub enum Key {
     None,
     /// Kinds of cells.
     Names(Vec<(String, Colour)>),
-    /// A number per place.
+    /// A number per box.
     Bar {
         /// The colours.
         map: ColourMap,
@@ -85,7 +85,7 @@ pub fn time_text(time: f64, longest: f64) -> String {
 }
 
 impl Overlay {
-    /// Room that the lettering needs around the scene, for [`Camera::fit`].
+    /// Margin that the lettering needs around the scene, for [`Camera::fit`].
     pub fn insets(&self) -> Insets {
         let above = if self.title.is_empty() && self.time.is_empty() { 0.04 } else { 0.085 };
         let below = match (&self.key, self.scale_bar) {

@@ -125,7 +125,7 @@ impl Geometry {
         bins
     }
 
-    /// Twice the signed area of a facet on screen and the weights of its corners at a place.
+    /// Twice the signed area of a facet on screen and the weights of its corners at a point.
     pub fn barycentric(&self, triangle: &Triangle, x: f32, y: f32) -> (f32, [f32; 3]) {
         let [a, b, c] = triangle.corners.map(|corner| self.screen[corner as usize]);
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);

@@ -127,7 +127,7 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// sRGB colour, 0 to 1, seen at a place given in samples.
+    /// sRGB colour, 0 to 1, seen at a point given in samples.
     fn colour(&self, geometry: &Geometry, [seen, veil]: [u32; 2], x: f32, y: f32, near: f32) -> [f32; 3] {
         let (px, py) = (f64::from(x) / SAMPLES as f64, f64::from(y) / SAMPLES as f64);
         let behind = || {
@@ -173,10 +173,10 @@ impl<'a> Shader<'a> {
         })
     }
 
-    /// Colour of a facet at a place and how much of what lies behind it hides.
+    /// Colour of a facet at a point and how much of what lies behind it hides.
     fn facet_colour(&self, geometry: &Geometry, triangle: &Triangle, x: f32, y: f32) -> ([f32; 3], f32) {
         let (area, flat) = geometry.barycentric(triangle, x, y);
-        // The mean place of some samples may lie a little outside the facet.
+        // The mean position of some samples may lie a little outside the facet.
         let flat = flat.map(|w| w.clamp(0.0, 1.0));
         let true_weights: [f32; 3] =
             std::array::from_fn(|k| flat[k] * geometry.weights[triangle.corners[k] as usize].max(1e-9));
@@ -232,7 +232,7 @@ impl<'a> Shader<'a> {
     }
 }
 
-/// How strongly an edge of the facet's mesh shows at a place, 0 to 1.
+/// How strongly an edge of the facet's mesh shows at a point, 0 to 1.
 fn edge_strength(geometry: &Geometry, triangle: &Triangle, area: f32, flat: [f32; 3], samples: f32) -> f32 {
     let corners = triangle.corners.map(|corner| geometry.screen[corner as usize]);
     let (mut nearest, mut smallest) = (f32::INFINITY, f32::INFINITY);

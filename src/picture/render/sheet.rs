@@ -90,7 +90,7 @@ impl<'a> Carpet<'a> {
         paint.map(|channel| channel * (1.0 - SHADOW_SHARE * (1.0 - light)))
     }
 
-    /// The value at a place given as shares of the sides: a smooth curve through the values of the boxes' centres,
+    /// The value at a point given as shares of the sides: a smooth curve through the values of the boxes' centres,
     /// which never leaves the values around.
     fn value(&self, share: [f64; 2]) -> f64 {
         let [nu, nv] = self.sheet.size;
@@ -116,7 +116,7 @@ impl<'a> Carpet<'a> {
     }
 }
 
-/// Weights of four neighbours for a place between the second and the third (Catmull and Rom 1974).
+/// Weights of four neighbours for a point between the second and the third (Catmull and Rom 1974).
 fn catmull_rom(t: f64) -> [f64; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [0.5 * (-t3 + 2.0 * t2 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (-3.0 * t3 + 4.0 * t2 + t), 0.5 * (t3 - t2)]

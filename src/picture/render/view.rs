@@ -53,7 +53,7 @@ impl View {
         self.project(&(Vec3::from(point) - self.target)).map(|([_, _, near], _)| near)
     }
 
-    /// The line of sight through a place in the picture: a point on it, relative to the target, and its direction,
+    /// The line of sight through a point in the picture: a point on it, relative to the target, and its direction,
     /// which has length 1 along the camera's axis.
     fn ray(&self, x: f64, y: f64) -> (Vec3, Vec3) {
         let (a, b) = ((x - self.centre[0]) / self.scale, (self.centre[1] - y) / self.scale);
@@ -84,7 +84,7 @@ impl View {
     }
 }
 
-/// A plane as the camera sees it: how near it is and which of its places is seen at every pixel.
+/// A plane as the camera sees it: how near it is and which of its points is seen at every pixel.
 ///
 /// With x and y in pixels, nearness is an affine function of them and the plane's own coordinates are quotients of
 /// affine functions; each is kept as three factors, for x, y and 1.

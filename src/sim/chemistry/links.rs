@@ -161,7 +161,7 @@ pub enum Whole {
 /// Where a number goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Target {
-    /// An open quantity of the owner: its place among the inputs.
+    /// An open quantity of the owner: its index among the inputs.
     Own(usize),
     /// Something that mechanics reads of a cell.
     Cell(Whose, Control),

@@ -127,7 +127,7 @@ pub fn write_rows(
     }
 }
 
-/// In how many places the atom of a contact touches the body of it: in a groove in two or more, which share what it bears.
+/// How many contacts the atom of a contact has with the body of it: in a groove in two or more, which share what it bears.
 fn contacts_on_body(scene: &Scene, found: &Contacts, number: usize) -> usize {
     let this = &found.atoms[number];
     let same = |other: &&AtomContact| other.atom == this.atom && other.body(scene) == this.body(scene);

@@ -1,12 +1,12 @@
-//! How far contacts that hold give way while their forces change, and that they never return more than they took.
+//! How far contacts that hold yield while their forces change, and that they never return more than they took.
 
 use super::rows::{Pull, Row};
 use super::scratch::ContactScratch;
 use crate::Vec3;
 
-/// A contact that holds gives way by this share of what a free one would, at most, for each change of its force in the step,
+/// A contact that holds yields by this share of what a free one would, at most, for each change of its force in the step,
 /// eq. (adhesion.5). Where many contacts hold the same atoms their forces are not determined; this picks some, and at
-/// rest, when forces do not change, nothing gives way.
+/// rest, when forces do not change, nothing yields.
 const COMPLIANCE: f64 = 0.2;
 
 /// The parts of a force that hold: the pull along the normal, pN, 0 where it pushes, and the shear, pN.
@@ -25,7 +25,7 @@ pub fn set_compliance(row: &mut Row, pull: &Pull, in_account: bool) {
     row.kept = (1.0 / (1.0 + softness)) as f32;
 }
 
-/// The energy that has gone into what a contact gave way and can come back, after a step, pN·µm: that of a spring at most.
+/// The energy that has gone into what a contact yielded and can come back, after a step, pN·µm: that of a spring at most.
 pub fn stored_after(row: &Row, pull: &Pull) -> f32 {
     let ((along, across), (along_before, across_before)) = (holding(row, pull.force()), holding(row, pull.carried()));
     let (compliance, softness) = (f64::from(row.compliance), 1.0 / f64::from(row.kept) - 1.0);
@@ -34,7 +34,7 @@ pub fn stored_after(row: &Row, pull: &Pull) -> f32 {
     (f64::from(row.stored) + softness * compliance * work).clamp(0.0, most) as f32
 }
 
-/// The sum of [`given_after`] over all contacts, pN·µm.
+/// The sum of [`stored_after`] over all contacts, pN·µm.
 pub fn energy_of_compliance(s: &ContactScratch) -> f64 {
     s.rows.iter().zip(&s.pulls).map(|(row, pull)| f64::from(stored_after(row, pull))).sum()
 }

@@ -17,7 +17,7 @@ use crate::sim::workspace::Workspace;
 /// it a step may lose the contact, and the two would pass each other.
 const DEEPEST: f64 = 0.5;
 
-/// Refuses to go on where cells are too deep in each other: they have no room, and depths grow faster than they are
+/// Refuses to go on where cells are too deep in each other: they do not fit, and depths grow faster than they are
 /// mended. Contacts must have been found for this step, and the state must still hold those of the step before.
 ///
 /// # Errors

@@ -108,7 +108,7 @@ fn prepare(
     s.law.adhesives.begin();
 }
 
-/// Rows carry what they carried where the step begins; how they give way depends on the mobilities.
+/// Rows carry what they carried where the step begins; how they yield depends on the mobilities.
 fn load_rows(rules: SweepRules, s: &mut ContactScratch) {
     for (row, pull) in s.rows.iter_mut().zip(&mut s.pulls) {
         *pull = Pull { force: pull.carried, carried: pull.carried, ..Pull::default() };

@@ -9,7 +9,7 @@ use crate::Vec3;
 pub struct Row {
     /// Its atoms; those that are not there have weight 0.
     pub atoms: [u32; 4],
-    /// Where it is: the weights of the second and third atom of a facet, or the places along two edges; see [`Row::weights`].
+    /// Where it is: the weights of the second and third atom of a facet, or the positions along two edges; see [`Row::weights`].
     pub coordinates: [f64; 2],
     /// From the other side to the first, and the gap where the step began, µm.
     pub normal_and_gap: [f32; 4],
@@ -19,7 +19,7 @@ pub struct Row {
     pub shear: f32,
     /// Displacement over force, µm/pN; 0 where nothing can move.
     pub compliance: f32,
-    /// What it holds of a change of its force; the rest gives way.
+    /// What it holds of a change of its force; the rest yields.
     pub kept: f32,
     /// What went into its compliance and has not come back where the step began, pN·µm.
     pub stored: f32,

@@ -139,7 +139,7 @@ impl NullaryFnOnce for Sweep<'_> {
                 continue;
             }
             let (weights, direction, last) = (row.weights(), wide(pull.direction), wide(pull.change));
-            // As the numbers are kept, so that force and displacement go the same way.
+            // As the numbers are kept, so that force and displacement go together.
             let force = wide(pull.force);
             let force = wide(narrow(&map(|i| force[i] + share * direction[i])));
             let new = narrow(&turn(row, weights, &force, &wide(pull.carried), moved));
@@ -199,8 +199,8 @@ impl NullaryFnOnce for SweepVolumes<'_> {
     }
 }
 
-/// Pushes out what is inside, by no more than `most` (µm), and leaves no force behind: what curved ways let slip is
-/// mended by place, not by force, eq. (adhesion.7). `deep` are the rows that are inside and can move, each with the force that
+/// Pushes out what is inside, by no more than `most` (µm), and leaves no force behind: what curved paths let slip is
+/// mended by displacement, not by force, eq. (adhesion.7). `deep` are the rows that are inside and can move, each with the force that
 /// would do it, zero at first.
 pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], most: f64) {
     for (row, pushed) in deep {
