@@ -46,7 +46,7 @@ fn circles_are_found_through_several_files() {
 fn no_files_use_each_other_in_a_circle_but_those_on_the_list() {
     let library = Library::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
     let arrows = library.arrows();
-    assert!(arrows.values().map(BTreeSet::len).sum::<usize>() > 500, "the imports of the house were not found");
+    assert!(arrows.values().map(BTreeSet::len).sum::<usize>() > 500, "the imports of the code were not found");
     let found = circles(&arrows);
     let told = |circle: &[&str]| -> String {
         let within =

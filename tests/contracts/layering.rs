@@ -1,9 +1,9 @@
-//! The layers of the house, held by what each module imports. The table is that of docs/architecture.md.
+//! The layers of the code, held by what each module imports. The table is that of docs/architecture.md.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// A room and the rooms that it may use. Every room may use itself and those that see nothing else: `error`, `units`,
+/// A module and the modules that it may use. Every module may use itself and those that see nothing else: `error`, `units`,
 /// `random`, `recorded`, and the crate's own `Vec3`.
 const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
@@ -46,7 +46,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// What every room may use.
+/// What every module may use.
 const GROUND: [&str; 4] = ["error", "units", "random", "recorded"];
 
 /// Rooms that must not touch files or clocks, and the words that would show it.
@@ -75,11 +75,11 @@ fn sources() -> Vec<PathBuf> {
 /// The path of a file below src, with `/` everywhere.
 fn name(path: &Path) -> String {
     let below = path.strip_prefix(Path::new(env!("CARGO_MANIFEST_DIR")).join("src")).expect("a file of src");
-    below.to_string_lossy().replace('\\', "/")
+    below.to_string_lossy().reposition('\\', "/")
 }
 
-/// The room of a file: the first part of its path.
-fn room(name: &str) -> &str {
+/// The module of a file: the first part of its path.
+fn module(name: &str) -> &str {
     name.split('/').next().unwrap_or_default().trim_end_matches(".rs")
 }
 
@@ -90,14 +90,14 @@ fn code(path: &Path) -> String {
     body.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
 
-/// The rooms that a code names by `crate::room` or `crate::{room, …}`.
+/// The modules that a code names by `crate::module` or `crate::{module, …}`.
 fn used(code: &str) -> BTreeSet<String> {
     let word = |text: &str| -> String { text.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect() };
-    let mut rooms = BTreeSet::new();
+    let mut modules = BTreeSet::new();
     for rest in code.split("crate::").skip(1) {
         match rest.strip_prefix('{') {
             None => {
-                rooms.insert(word(rest));
+                modules.insert(word(rest));
             }
             Some(list) => {
                 // Names at the first level of the braces.
@@ -109,7 +109,7 @@ fn used(code: &str) -> BTreeSet<String> {
                         '}' => depth -= 1,
                         ',' if depth == 0 => fresh = true,
                         _ if fresh && depth == 0 && !sign.is_whitespace() => {
-                            rooms.insert(word(&list[at..]));
+                            modules.insert(word(&list[at..]));
                             fresh = false;
                         }
                         _ => {}
@@ -118,7 +118,7 @@ fn used(code: &str) -> BTreeSet<String> {
             }
         }
     }
-    rooms
+    modules
 }
 
 #[test]
@@ -129,17 +129,17 @@ fn imports_are_found_in_all_their_forms() {
 }
 
 #[test]
-fn every_room_uses_only_what_stands_below_it() {
+fn every_module_uses_only_what_stands_below_it() {
     let table: BTreeMap<&str, &[&str]> = TABLE.iter().copied().collect();
     let mut faults = Vec::new();
     for path in sources() {
         let name = name(&path);
-        let own = room(&name);
+        let own = module(&name);
         if ["main", "lib"].contains(&own) {
             continue;
         }
         let Some(allowed) = table.get(own) else {
-            faults.push(format!("src/{name}: the room `{own}` is not in the table of this test"));
+            faults.push(format!("src/{name}: the module `{own}` is not in the table of this test"));
             continue;
         };
         for other in used(&code(&path)).iter().filter(|other| table.contains_key(other.as_str()) && *other != own) {
@@ -155,7 +155,7 @@ fn every_room_uses_only_what_stands_below_it() {
 fn the_ground_sees_nothing_else() {
     for path in sources() {
         let name = name(&path);
-        let own = room(&name);
+        let own = module(&name);
         if GROUND.contains(&own) {
             let others: Vec<String> = used(&code(&path)).into_iter().filter(|other| other != own).collect();
             assert!(others.iter().all(|other| other == "Vec3" || other == "error"), "src/{name} uses {others:?}");
@@ -167,7 +167,7 @@ fn the_ground_sees_nothing_else() {
 fn the_simulator_knows_no_files_formats_or_clocks() {
     for path in sources() {
         let name = name(&path);
-        if PURE.contains(&room(&name)) && !FILES_OF_GEOMETRY.iter().any(|file| name.starts_with(file)) {
+        if PURE.contains(&module(&name)) && !FILES_OF_GEOMETRY.iter().any(|file| name.starts_with(file)) {
             let code = code(&path);
             for word in WORLD {
                 assert!(!code.contains(word), "src/{name} uses {word}");
@@ -178,12 +178,12 @@ fn the_simulator_knows_no_files_formats_or_clocks() {
 
 #[test]
 fn the_table_has_no_circle_but_the_pictures_that_a_run_makes() {
-    let order: Vec<&str> = TABLE.iter().map(|(room, _)| *room).collect();
-    let place = |room: &str| order.iter().position(|other| *other == room).expect("a room of the table");
-    for (room, allowed) in TABLE {
+    let order: Vec<&str> = TABLE.iter().map(|(module, _)| *module).collect();
+    let position = |module: &str| order.iter().position(|other| *other == module).expect("a module of the table");
+    for (module, allowed) in TABLE {
         for other in *allowed {
-            let exception = *room == "picture" && *other == "run";
-            assert!(exception || place(other) < place(room), "{room} uses {other}, which stands above it");
+            let exception = *module == "picture" && *other == "run";
+            assert!(exception || position(other) < position(module), "{module} uses {other}, which stands above it");
         }
     }
 }
