@@ -33,19 +33,19 @@ pub fn packed(count: usize) -> (Scene, Vec<Vec3>) {
     let shape = Shape::new(&rest, Sides::Outer, 1.5 * REACH.proximity);
     let side = (1..).find(|side: &usize| side.pow(3).div_ceil(2) >= count).expect("a cube large enough");
     let cube = (0..side.pow(3)).map(|i| [i % side, i / side % side, i / side / side]);
-    let ways = [[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]];
-    let ways = ways.map(|way: [i8; 3]| Vec3::from(way.map(f64::from)) / 2f64.sqrt());
+    let directions = [[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]];
+    let directions = directions.map(|direction: [i8; 3]| Vec3::from(direction.map(f64::from)) / 2f64.sqrt());
     let mut positions = Vec::with_capacity(42 * count);
     for site in cube.filter(|site| site.iter().sum::<usize>() % 2 == 0).take(count) {
         let centre = Vec3::from(site.map(|index| index as f64)) * (2f64.sqrt() * HALF_DISTANCE);
         let turn = turning(vector(&mut dice));
         for x in &rest.positions {
-            let mut place = turn(x);
-            for way in ways {
-                let height = place.dot(&way);
-                place -= way * (height - height.clamp(0.02 - HALF_DISTANCE, HALF_DISTANCE - 0.02));
+            let mut position = turn(x);
+            for direction in directions {
+                let height = position.dot(&direction);
+                position -= direction * (height - height.clamp(0.02 - HALF_DISTANCE, HALF_DISTANCE - 0.02));
             }
-            positions.push(centre + place + vector(&mut dice) * 0.01);
+            positions.push(centre + position + vector(&mut dice) * 0.01);
         }
     }
     (Scene::new(vec![shape], &vec![0; count], Vec::new(), REACH), positions)

@@ -65,14 +65,14 @@ fn fastest(mut work: impl FnMut()) -> f64 {
 }
 
 /// The cell drawn out a little, once for each lane.
-fn places(surface: &Surface, lanes: usize) -> Vec<f64> {
+fn positions(surface: &Surface, lanes: usize) -> Vec<f64> {
     let drawn = |p: &Vec3| [p.x / 1.1, p.y / 1.1, p.z * 1.21];
     surface.positions.iter().flat_map(drawn).flat_map(|value| vec![value; lanes]).collect()
 }
 
 /// Million atoms a second of a force on a block of `lanes` cells.
 fn rate(force: &Force, surface: &Surface, lanes: usize) -> f64 {
-    let x = places(surface, lanes);
+    let x = positions(surface, lanes);
     let (mut f, mut energy) = (vec![0.0; x.len()], vec![0.0; lanes]);
     let context = Context::at(0.0);
     let repeats = 40_000 / surface.positions.len() + 1;
@@ -86,7 +86,7 @@ fn rate(force: &Force, surface: &Surface, lanes: usize) -> f64 {
 
 /// Million atoms a second of the projection onto the exact volume; each round starts from the same error.
 fn projection_rate(surface: &Surface, lanes: usize) -> f64 {
-    let start = places(surface, lanes);
+    let start = positions(surface, lanes);
     let (mut x, mut gradient, mut second) = (start.clone(), start.clone(), start.clone());
     let (target, mut left) = (vec![500.0; lanes], vec![0.0; lanes]);
     let repeats = 40_000 / surface.positions.len() + 1;

@@ -29,9 +29,9 @@ unsafe impl GlobalAlloc for Counting {
         unsafe { System.alloc(layout) }
     }
 
-    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
         HELD.fetch_sub(layout.size(), Ordering::Relaxed);
-        unsafe { System.dealloc(place, layout) }
+        unsafe { System.dealloc(block, layout) }
     }
 }
 
@@ -67,11 +67,11 @@ fn population(cells: usize, largest: f64) -> (Model, State) {
     let side = (1..).find(|side: &usize| side.pow(3).div_ceil(2) >= cells).expect("a cube large enough");
     let sites = (0..side.pow(3)).map(|site| [site / side / side, site / side % side, site % side]);
     let middle = Vec3::repeat(0.5 * (side - 1) as f64);
-    let places = sites.filter(|site| site.iter().sum::<usize>() % 2 == 0).take(cells).map(|site| {
+    let positions = sites.filter(|site| site.iter().sum::<usize>() % 2 == 0).take(cells).map(|site| {
         let centre = (Vec3::from(site.map(|index| index as f64)) - middle) * (2f64.sqrt() * 5.02);
         rest.positions.iter().map(|x| x + centre).collect()
     });
-    let state = State::new(&model, &[places.collect()]);
+    let state = State::new(&model, &[positions.collect()]);
     (model, state)
 }
 

@@ -39,10 +39,10 @@ fn relax(kind: &Kind, method: Method, size: StepSize) -> Option<Relaxed> {
     let integrator = Integrator { method, size };
     let model = Model::of(vec![kind.clone()], integrator, 1e9);
     let drawn = |p: &Vec3| Vec3::new(p.x / 1.1, p.y / 1.1, p.z * 1.21);
-    let place: Vec<Vec3> = kind.rest.positions.iter().map(drawn).collect();
+    let position: Vec<Vec3> = kind.rest.positions.iter().map(drawn).collect();
     let mut best: Option<Relaxed> = None;
     for _ in 0..3 {
-        let (mut state, mut ws) = (State::new(&model, &[vec![place.clone()]]), Workspace::new(&model));
+        let (mut state, mut ws) = (State::new(&model, &[vec![position.clone()]]), Workspace::new(&model));
         let goal = LEFT * stretch(kind, &state);
         let began = Instant::now();
         // The look at the stretch costs both the same and is made every step.

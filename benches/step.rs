@@ -75,8 +75,8 @@ fn lane_rate() -> f64 {
 fn step_rate(cells: usize, threads: usize, method: Method) -> f64 {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
     let model = model(kind(1, cells), method, 0.2);
-    let place = stretched(&model.kinds[0]);
-    let (mut state, mut ws) = (State::new(&model, &[vec![place; cells]]), Workspace::new(&model));
+    let position = stretched(&model.kinds[0]);
+    let (mut state, mut ws) = (State::new(&model, &[vec![position; cells]]), Workspace::new(&model));
     let steps = (20_000 / cells).clamp(2, 2000);
     let seconds = pool.install(|| {
         fastest(3, || {

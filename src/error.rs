@@ -24,7 +24,7 @@ pub struct Source {
 
 /// Where in a text a fault lies: a byte range.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// The text.
     pub source: Arc<Source>,
     /// First byte.
@@ -41,7 +41,7 @@ pub struct Fault {
     /// What was found, in one sentence.
     pub message: String,
     /// Where, if the fault lies in a text.
-    pub place: Option<Place>,
+    pub location: Option<Location>,
     /// What was expected and what to do.
     pub help: Option<String>,
 }
@@ -49,7 +49,7 @@ pub struct Fault {
 impl Fault {
     /// A fault without a location.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { message: message.into(), place: None, help: None }
+        Self { message: message.into(), location: None, help: None }
     }
     /// Adds what was expected and what to do.
     pub fn help(mut self, help: impl Into<String>) -> Self {
@@ -57,8 +57,8 @@ impl Fault {
         self
     }
     /// Adds where the fault lies.
-    pub fn at(mut self, place: Place) -> Self {
-        self.place = Some(place);
+    pub fn at(mut self, location: Location) -> Self {
+        self.location = Some(location);
         self
     }
 }

@@ -99,8 +99,8 @@ fn allocations(method: Method, acting: Acting, threads: usize) -> usize {
         .build()
         .unwrap();
     let model = scene(method, acting, 20);
-    let places = vec![model.kinds[0].rest.positions.clone(); 20];
-    let (mut state, mut ws) = (State::new(&model, &[places]), Workspace::new(&model));
+    let positions = vec![model.kinds[0].rest.positions.clone(); 20];
+    let (mut state, mut ws) = (State::new(&model, &[positions]), Workspace::new(&model));
     pool.install(|| {
         let mut run = |steps: usize| {
             for _ in 0..steps {
@@ -170,8 +170,8 @@ fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
     assert_eq!(allocations_of_everything(), 0, "where there is everything");
     let before = BYTES.load(Ordering::Relaxed);
     let model = scene(Method::Implicit { order: Order::Second }, Acting::Elastic, 100_000);
-    let places = vec![model.kinds[0].rest.positions.clone(); 100_000];
-    let (mut state, mut ws) = (State::new(&model, &[places]), Workspace::new(&model));
+    let positions = vec![model.kinds[0].rest.positions.clone(); 100_000];
+    let (mut state, mut ws) = (State::new(&model, &[positions]), Workspace::new(&model));
     step(&model, &mut state, &mut ws).unwrap();
     let bytes = (BYTES.load(Ordering::Relaxed) - before) as f64 / state.atoms(&model) as f64;
     println!("{bytes:.0} bytes an atom on {} cells of {} atoms", state.cells(), model.kinds[0].atoms());

@@ -26,15 +26,15 @@ fn axes_of(space: Space) -> usize {
 /// When there is no such field, place or time.
 pub(super) fn field_value(wanted: &FieldValue, times: &[f64], fields: Fields) -> Result<f64> {
     let field = fields.field(&wanted.field)?;
-    let place = wanted.at.map(|at| at.map(Length::value));
-    if let Some(place) = place {
-        fields::check_inside(field.layout, place)?;
+    let position = wanted.at.map(|at| at.map(Length::value));
+    if let Some(position) = position {
+        fields::check_inside(field.layout, position)?;
     }
     let frames = frames_for(wanted.time, times)?;
     let value = |frame: usize| -> Result<f64> {
         let values = field.frame(frame)?;
-        Ok(match place {
-            Some(place) => fields::value_at(field.layout, &values, place),
+        Ok(match position {
+            Some(position) => fields::value_at(field.layout, &values, position),
             None => fields::reduce(field.layout, &values, wanted.over.unwrap_or_default()),
         })
     };
@@ -161,9 +161,9 @@ pub(super) fn wave_speed(wanted: &WaveSpeed, recording: &Recording, fields: Fiel
     let first = waves::first_frame(times, wanted.from.map(Time::value));
     let arrivals = match (&wanted.field, &wanted.series) {
         (Some(name), _) => {
-            let place = wanted.direction.map_or(Where::Boxes, Where::Ray);
+            let position = wanted.direction.map_or(Where::Boxes, Where::Ray);
             let (centre, axes) = (wanted.centre.map(Length::value), axes_of(wanted.space));
-            waves::arrivals_in_field(&fields.field(name)?, times, first, wanted.level, centre, &place, axes)?
+            waves::arrivals_in_field(&fields.field(name)?, times, first, wanted.level, centre, &position, axes)?
         }
         (None, Some(series)) => arrivals_at_cells(wanted, series, first, recording)?,
         (None, None) => {
@@ -193,13 +193,13 @@ fn arrivals_at_cells(wanted: &WaveSpeed, name: &str, first: usize, recording: &R
         cells.iter().map(|&cell| series.column(cell).iter().skip(first).copied().collect()).collect();
     let [least, most] = waves::extremes(courses.iter().flatten());
     let level = wanted.level.unwrap_or(0.5 * (least + most));
-    let mut arrivals = Arrivals { places: cells.len(), ..Arrivals::default() };
+    let mut arrivals = Arrivals { points: cells.len(), ..Arrivals::default() };
     for (cell, course) in courses.iter().enumerate() {
         let Some(time) = waves::rises(times, course, level).next() else { continue };
         let part = |axis: usize| {
-            let way: Vec<f64> = (first..recording.times.len()).map(|frame| positions[[frame, cell, axis]]).collect();
-            let place = statistics::interpolate(times, &way, time).unwrap_or(f64::NAN);
-            (place - wanted.centre[axis].value()).powi(2)
+            let path: Vec<f64> = (first..recording.times.len()).map(|frame| positions[[frame, cell, axis]]).collect();
+            let position = statistics::interpolate(times, &path, time).unwrap_or(f64::NAN);
+            (position - wanted.centre[axis].value()).powi(2)
         };
         arrivals.distances.push((0..axes_of(wanted.space)).map(part).sum::<f64>().sqrt());
         arrivals.times.push(time);

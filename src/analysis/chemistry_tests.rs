@@ -25,7 +25,7 @@ mechanics = { drag = "20 pN s/um" }
 
 /// Where a cell is at a time. Amoebae begin at 10, 20, … µm from the origin along x and go to it at 0.1 µm/s, the odd ones
 /// in zigzag, so that they come 3 µm nearer on a way of 5 µm; rocks stand still.
-fn place(cell: usize, frame: usize) -> [f64; 3] {
+fn position(cell: usize, frame: usize) -> [f64; 3] {
     let begin = 10.0 * (cell + 1) as f64;
     match cell {
         6.. => [begin, 0.0, 1.0],
@@ -78,7 +78,7 @@ fn recorded(path: &Path) -> ResultFile {
     for frame in 0..=100 {
         let time = frame as f64;
         let stripes = |at: usize| (TAU * (at % 30) as f64 / 5.0).cos();
-        let record = |cell: usize| CellRecord { position: place(cell, frame), ..CellRecord::default() };
+        let record = |cell: usize| CellRecord { position: position(cell, frame), ..CellRecord::default() };
         let frame = Frame {
             time,
             step: frame as u64,
@@ -142,7 +142,7 @@ fn series_of_chemistry_are_reduced_like_others_over_the_cells_that_have_them() {
 }
 
 #[test]
-fn fields_are_read_at_places_and_over_all_boxes() {
+fn fields_are_read_at_points_and_over_all_boxes() {
     // Boxes of the medium are numbered x fastest; a step along x, y, z adds 1, 4, 12; a second adds 1.
     let medium = |rest: &str| format!("kind = 'field_value'; field = 'medium'; {rest}");
     all_are(&[
@@ -159,7 +159,7 @@ fn fields_are_read_at_places_and_over_all_boxes() {
 }
 
 #[test]
-fn chemotactic_indices_are_one_for_straight_ways_and_the_cosine_for_zigzags() {
+fn chemotactic_indices_are_one_for_straight_paths_and_the_cosine_for_zigzags() {
     let index = |rest: &str| format!("kind = 'chemotactic_index'; towards = ['0 um', '0 um', '0 um']; {rest}");
     // Three cells go straight; three come 0.06 µm nearer on each step of 0.1 µm.
     let error = 0.2 * (6.0_f64 / 5.0 / 6.0).sqrt();

@@ -1,6 +1,6 @@
 //! What an experiment claims to reproduce, as its `expected.toml` says it, and whether a run keeps the word.
 
-use crate::error::{Error, Fault, Place, Result, Source};
+use crate::error::{Error, Fault, Location, Result, Source};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -123,13 +123,13 @@ pub fn parse(name: &str, text: &str) -> Result<Vec<Claim>> {
     let document: Document = toml::from_str(text).map_err(|error| {
         let fault = Fault::new(error.message().to_owned());
         let fault = match error.span() {
-            Some(span) => fault.at(place(&source, span, "here")),
+            Some(span) => fault.at(location(&source, span, "here")),
             None => fault,
         };
         Error::input(fault.help("a [[claim]] has measure, source, and at_most, at_least or equals"))
     })?;
     if document.claims.is_empty() {
-        let fault = Fault::new(format!("{name} claims nothing")).at(place(&source, 0..0, "no [[claim]] here"));
+        let fault = Fault::new(format!("{name} claims nothing")).at(location(&source, 0..0, "no [[claim]] here"));
         return Err(Error::input(fault.help("add a [[claim]] with measure, source, and at_most, at_least or equals")));
     }
     let (mut claims, mut faults) = (Vec::new(), Vec::new());
@@ -137,14 +137,14 @@ pub fn parse(name: &str, text: &str) -> Result<Vec<Claim>> {
         let span = written.span();
         match understand(written.into_inner()) {
             Ok(claim) => claims.push(claim),
-            Err(fault) => faults.push(fault.at(place(&source, span, "this claim"))),
+            Err(fault) => faults.push(fault.at(location(&source, span, "this claim"))),
         }
     }
     if faults.is_empty() { Ok(claims) } else { Err(Error::Input(faults)) }
 }
 
-fn place(source: &Arc<Source>, span: Range<usize>, label: &str) -> Place {
-    Place { source: source.clone(), start: span.start, length: span.len(), label: label.to_owned() }
+fn location(source: &Arc<Source>, span: Range<usize>, label: &str) -> Location {
+    Location { source: source.clone(), start: span.start, length: span.len(), label: label.to_owned() }
 }
 
 /// Makes one bound of the keys that were written.

@@ -43,11 +43,11 @@ fn a_measure_that_is_not_there_fails() {
 fn faults_point_into_the_document() {
     let text = claim("at_mots = 1");
     let fault = &faults(&text)[0];
-    let place = fault.place.as_ref().unwrap();
-    assert_eq!(&text[place.start..place.start + place.length], "at_mots");
+    let location = fault.location.as_ref().unwrap();
+    assert_eq!(&text[location.start..location.start + location.length], "at_mots");
     assert!(fault.message.contains("unknown field `at_mots`"), "{}", fault.message);
     assert!(faults("[[claim]]\nmeasure = \"m\"\nat_most = 1\n")[0].message.contains("source"));
-    assert!(faults("[[claim]\n")[0].place.is_some());
+    assert!(faults("[[claim]\n")[0].location.is_some());
     assert!(faults("")[0].message.contains("claims nothing"));
 }
 
@@ -57,7 +57,7 @@ fn every_claim_needs_one_bound_and_tolerances_a_reason() {
     let text: String = wrong.iter().map(|keys| claim(keys)).collect();
     let faults = faults(&text);
     assert_eq!(faults.len(), wrong.len());
-    assert!(faults.iter().all(|fault| fault.message.contains("no single bound") && fault.place.is_some()));
+    assert!(faults.iter().all(|fault| fault.message.contains("no single bound") && fault.location.is_some()));
     assert!(self::faults(&claim("equals = 1\nwithin = 0.1"))[0].message.contains("without a reason"));
     assert!(self::faults(&claim("at_most = nan"))[0].message.contains("not finite"));
 }

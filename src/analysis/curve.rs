@@ -38,8 +38,8 @@ impl Curve {
         let mut ends: Vec<usize> =
             holds.iter().copied().enumerate().filter(counts).map(|(_, hold)| hold[hold.len() - 1]).collect();
         ends.sort_by(|&a, &b| x[a].total_cmp(&x[b]));
-        let places = ends.chunk_by(|&a, &b| same(x[a], x[b]));
-        let (x, y) = places.filter_map(|place| place.iter().max()).map(|&last| (x[last], y[last])).unzip();
+        let abscissas = ends.chunk_by(|&a, &b| same(x[a], x[b]));
+        let (x, y) = abscissas.filter_map(|abscissa| abscissa.iter().max()).map(|&last| (x[last], y[last])).unzip();
         Self { x, y }
     }
 
@@ -64,9 +64,9 @@ impl Curve {
     ///
     /// # Errors
     /// When a measured place lies outside of the curve, or none is left.
-    fn at_rows(&self, places: &[f64], values: &[f64]) -> Result<Vec<(usize, f64)>> {
-        let rows = (0..places.len()).filter(|&row| !places[row].is_nan() && !values[row].is_nan());
-        let found: Result<Vec<(usize, f64)>> = rows.map(|row| self.at(places[row]).map(|y| (row, y))).collect();
+    fn at_rows(&self, abscissas: &[f64], values: &[f64]) -> Result<Vec<(usize, f64)>> {
+        let rows = (0..abscissas.len()).filter(|&row| !abscissas[row].is_nan() && !values[row].is_nan());
+        let found: Result<Vec<(usize, f64)>> = rows.map(|row| self.at(abscissas[row]).map(|y| (row, y))).collect();
         let found = found?;
         if found.is_empty() {
             let fault = Fault::new("the measured table has no row to compare with");
@@ -75,29 +75,33 @@ impl Curve {
         Ok(found)
     }
 
-    fn at(&self, place: f64) -> Result<f64> {
+    fn at(&self, abscissa: f64) -> Result<f64> {
         let last = self.x.len().saturating_sub(1);
         // Rounded time courses may end short of the last measured place by a few units in the last digit.
         let slack = self.slack();
         let near = match (self.x.first(), self.x.get(last)) {
-            (Some(&first), Some(&end)) if first - slack <= place && place <= end + slack => place.clamp(first, end),
-            _ => place,
+            (Some(&first), Some(&end)) if first - slack <= abscissa && abscissa <= end + slack => {
+                abscissa.clamp(first, end)
+            }
+            _ => abscissa,
         };
         interpolate(&self.x, &self.y, near).ok_or_else(|| {
             let reach = match (self.x.first(), self.x.get(last)) {
                 (Some(first), Some(end)) => format!("runs from {first} to {end}"),
                 _ => "has no points".to_owned(),
             };
-            let fault = Fault::new(format!("the simulated curve {reach} and does not reach the measured x = {place}"));
+            let fault =
+                Fault::new(format!("the simulated curve {reach} and does not reach the measured x = {abscissa}"));
             Error::input(fault.help("simulate as far as was measured, or give a table without that row"))
         })
     }
 
     /// The curve over what was measured, for each row.
-    fn ratios(&self, places: &[f64], values: &[f64]) -> Result<Vec<f64>> {
-        let found = self.at_rows(places, values)?;
+    fn ratios(&self, abscissas: &[f64], values: &[f64]) -> Result<Vec<f64>> {
+        let found = self.at_rows(abscissas, values)?;
         if let Some((row, _)) = found.iter().find(|(row, _)| values[*row] == 0.0) {
-            let fault = Fault::new(format!("nothing can be told relative to the measured 0 at x = {}", places[*row]));
+            let fault =
+                Fault::new(format!("nothing can be told relative to the measured 0 at x = {}", abscissas[*row]));
             return Err(Error::input(fault.help("give a table without that row, or compare with its bars")));
         }
         Ok(found.into_iter().map(|(row, y)| y / values[row]).collect())
@@ -107,8 +111,8 @@ impl Curve {
     ///
     /// # Errors
     /// When a measured place lies outside of the curve, a measured value is 0 or no row has numbers.
-    pub fn relative_rms(&self, places: &[f64], values: &[f64]) -> Result<f64> {
-        let squares: Vec<f64> = self.ratios(places, values)?.iter().map(|ratio| (ratio - 1.0).powi(2)).collect();
+    pub fn relative_rms(&self, abscissas: &[f64], values: &[f64]) -> Result<f64> {
+        let squares: Vec<f64> = self.ratios(abscissas, values)?.iter().map(|ratio| (ratio - 1.0).powi(2)).collect();
         Ok(mean(&squares).sqrt())
     }
 
@@ -116,16 +120,16 @@ impl Curve {
     ///
     /// # Errors
     /// As [`Curve::relative_rms`].
-    pub fn mean_ratio(&self, places: &[f64], values: &[f64]) -> Result<f64> {
-        Ok(mean(&self.ratios(places, values)?))
+    pub fn mean_ratio(&self, abscissas: &[f64], values: &[f64]) -> Result<f64> {
+        Ok(mean(&self.ratios(abscissas, values)?))
     }
 
     /// Number of rows whose bar from `low` to `high` holds the curve, ends included.
     ///
     /// # Errors
     /// When a measured place lies outside of the curve or no row has numbers.
-    pub fn rows_within(&self, places: &[f64], low: &[f64], high: &[f64]) -> Result<usize> {
-        let found = self.at_rows(places, low)?;
+    pub fn rows_within(&self, abscissas: &[f64], low: &[f64], high: &[f64]) -> Result<usize> {
+        let found = self.at_rows(abscissas, low)?;
         Ok(found.iter().filter(|&&(row, y)| low[row] <= y && y <= high[row]).count())
     }
 }
@@ -141,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_on_the_way_up_a_staircase_do_not_count() {
+    fn frames_between_the_holds_of_a_staircase_do_not_count() {
         let x = [0.0, 1.0, 2.0, 2.0, 3.0, 4.0, 4.0 + 1e-12, 5.0, 6.0, 6.0, 7.0];
         let y = [0.0, 0.1, 1.0, 2.0, 2.1, 3.0, 4.0, 4.1, 5.0, 6.0, 6.1];
         let curve = Curve::new(&x, &y);
@@ -161,9 +165,9 @@ mod tests {
     fn distances_are_relative_to_what_was_measured() {
         let curve = Curve::new(&[0.0, 10.0], &[0.0, 20.0]);
         // The curve has 10 and 20 there, a tenth less and a tenth more than measured.
-        let (places, values) = ([5.0, f64::NAN, 10.0], [10.0 / 0.9, 1.0, 20.0 / 1.1]);
-        assert!((curve.relative_rms(&places, &values).unwrap() - 0.1).abs() < 1e-14);
-        assert!((curve.mean_ratio(&places, &values).unwrap() - 1.0).abs() < 1e-14);
+        let (abscissas, values) = ([5.0, f64::NAN, 10.0], [10.0 / 0.9, 1.0, 20.0 / 1.1]);
+        assert!((curve.relative_rms(&abscissas, &values).unwrap() - 0.1).abs() < 1e-14);
+        assert!((curve.mean_ratio(&abscissas, &values).unwrap() - 1.0).abs() < 1e-14);
     }
 
     #[test]

@@ -70,15 +70,15 @@ pub fn reduce(layout: &FieldLayout, values: &[f64], over: OverBoxes) -> f64 {
 ///
 /// # Errors
 /// When it does.
-pub fn check_inside(layout: &FieldLayout, place: [f64; 3]) -> Result<()> {
+pub fn check_inside(layout: &FieldLayout, position: [f64; 3]) -> Result<()> {
     for axis in AXES.iter().copied().filter(|axis| *axis != Along::Z || !layout.is_flat()) {
         let number = axis.number();
         let (low, size) = (layout.origin[number], layout.cells[number] as f64 * layout.spacing[number]);
         // The round-off of a corner that is meant to be the corner.
         let slack = 1e-9 * size;
-        if !(low - slack..=low + size + slack).contains(&place[number]) {
+        if !(low - slack..=low + size + slack).contains(&position[number]) {
             let letter = axis.letter();
-            let found = format!("the field {} does not reach {letter} = {} µm", layout.name, place[number]);
+            let found = format!("the field {} does not reach {letter} = {} µm", layout.name, position[number]);
             let help = format!("give a place with {letter} from {low} µm to {} µm", low + size);
             return Err(Error::input(Fault::new(found).help(help)));
         }
@@ -88,11 +88,11 @@ pub fn check_inside(layout: &FieldLayout, place: [f64; 3]) -> Result<()> {
 
 /// The value at a place, µm: straight between the centres of boxes along each axis, eq. (analysis.10), and that of the
 /// box at the wall within half a box from it.
-pub fn value_at(layout: &FieldLayout, values: &[f64], place: [f64; 3]) -> f64 {
+pub fn value_at(layout: &FieldLayout, values: &[f64], position: [f64; 3]) -> f64 {
     let sides = AXES.map(|along| {
         let axis = along.number();
         let last = layout.cells[axis].saturating_sub(1);
-        let steps = ((place[axis] - layout.origin[axis]) / layout.spacing[axis] - 0.5).clamp(0.0, last as f64);
+        let steps = ((position[axis] - layout.origin[axis]) / layout.spacing[axis] - 0.5).clamp(0.0, last as f64);
         let lower = (steps as usize).min(last.saturating_sub(1));
         let share = steps - lower as f64;
         [(lower, 1.0 - share), ((lower + 1).min(last), share)]
@@ -140,11 +140,11 @@ mod tests {
     /// The values of a function at the centres of all boxes.
     fn sampled(layout: &FieldLayout, of: impl Fn([f64; 3]) -> f64) -> Vec<f64> {
         let [nx, ny, _] = layout.cells;
-        let place = |at: usize| {
+        let position = |at: usize| {
             let index = [at % nx, at / nx % ny, at / (nx * ny)];
             AXES.map(|axis| layout.centre(axis, index[axis.number()]))
         };
-        (0..layout.len()).map(|at| of(place(at))).collect()
+        (0..layout.len()).map(|at| of(position(at))).collect()
     }
 
     #[test]
@@ -152,8 +152,8 @@ mod tests {
         let layout = grid([4, 5, 6]);
         let plane = |[x, y, z]: [f64; 3]| 1.0 + 2.0 * x - y + 4.0 * z;
         let values = sampled(&layout, plane);
-        for place in [[-3.0, 0.5, 1.25], [0.3, 2.2, 2.9], [3.0, 4.5, 3.75]] {
-            assert!((value_at(&layout, &values, place) - plane(place)).abs() < 1e-12, "{place:?}");
+        for position in [[-3.0, 0.5, 1.25], [0.3, 2.2, 2.9], [3.0, 4.5, 3.75]] {
+            assert!((value_at(&layout, &values, position) - plane(position)).abs() < 1e-12, "{position:?}");
         }
         assert_eq!(value_at(&layout, &values, [-4.0, 0.0, 1.0]), values[0]);
         assert_eq!(value_at(&layout, &values, [4.0, 5.0, 4.0]), values[119]);

@@ -48,13 +48,13 @@ impl Body {
         Self { atoms, facets, centre, radius }
     }
 
-    fn has_inside(&self, place: Vec3) -> bool {
-        (place - self.centre).norm() < self.radius && winding_number(place, &self.atoms, &self.facets) > 0.5
+    fn has_inside(&self, position: Vec3) -> bool {
+        (position - self.centre).norm() < self.radius && winding_number(position, &self.atoms, &self.facets) > 0.5
     }
 
-    fn distance(&self, place: Vec3) -> f64 {
+    fn distance(&self, position: Vec3) -> f64 {
         let of_facet = |facet: &[u32; 3]| {
-            closest_on_facet(place, facet.map(|atom| self.atoms[atom as usize])).offset.norm_squared()
+            closest_on_facet(position, facet.map(|atom| self.atoms[atom as usize])).offset.norm_squared()
         };
         self.facets.iter().map(of_facet).fold(f64::INFINITY, f64::min).sqrt()
     }
@@ -67,14 +67,14 @@ impl Body {
 }
 
 /// The room around a place: the distance to the nearest cell, µm, 0 inside one.
-fn room(bodies: &[Body], place: Vec3) -> f64 {
-    if bodies.iter().any(|body| body.has_inside(place)) {
+fn clearance(bodies: &[Body], position: Vec3) -> f64 {
+    if bodies.iter().any(|body| body.has_inside(position)) {
         return 0.0;
     }
     let mut nearest = f64::INFINITY;
     for body in bodies {
-        if (place - body.centre).norm() - body.radius < nearest {
-            nearest = nearest.min(body.distance(place));
+        if (position - body.centre).norm() - body.radius < nearest {
+            nearest = nearest.min(body.distance(position));
         }
     }
     nearest
@@ -88,18 +88,26 @@ struct Inside {
 
 impl Inside {
     fn of(bodies: &[Body]) -> Self {
-        let farthest = |way: &Vec3| bodies.iter().map(|body| body.centre.dot(way)).fold(f64::NEG_INFINITY, f64::max);
-        Self { planes: icosphere(1.0, 3).positions.into_iter().map(|way| (way, farthest(&way))).collect() }
+        let farthest =
+            |direction: &Vec3| bodies.iter().map(|body| body.centre.dot(direction)).fold(f64::NEG_INFINITY, f64::max);
+        Self {
+            planes: icosphere(1.0, 3)
+                .positions
+                .into_iter()
+                .map(|direction| (direction, farthest(&direction)))
+                .collect(),
+        }
     }
 
     /// How thick it is where it is thinnest, µm.
     fn thickness(&self, bodies: &[Body]) -> f64 {
-        let nearest = |way: &Vec3| bodies.iter().map(|body| body.centre.dot(way)).fold(f64::INFINITY, f64::min);
-        self.planes.iter().map(|(way, farthest)| farthest - nearest(way)).fold(f64::INFINITY, f64::min)
+        let nearest =
+            |direction: &Vec3| bodies.iter().map(|body| body.centre.dot(direction)).fold(f64::INFINITY, f64::min);
+        self.planes.iter().map(|(direction, farthest)| farthest - nearest(direction)).fold(f64::INFINITY, f64::min)
     }
 
-    fn holds(&self, place: &Vec3) -> bool {
-        self.planes.iter().all(|(way, farthest)| place.dot(way) <= *farthest)
+    fn holds(&self, position: &Vec3) -> bool {
+        self.planes.iter().all(|(direction, farthest)| position.dot(direction) <= *farthest)
     }
 }
 
@@ -120,18 +128,18 @@ pub(super) fn find_empty(bodies: &[Body]) -> Option<Empty> {
     let counts = size.map(|side| (side / spacing).ceil().max(1.0));
     let step = size.component_div(&counts);
     let [nx, ny, nz] = [counts.x, counts.y, counts.z].map(|count| count as usize);
-    let rooms: Vec<(f64, Vec3)> = (0..nx * ny * nz)
+    let clearances: Vec<(f64, Vec3)> = (0..nx * ny * nz)
         .into_par_iter()
         .map(|number| [number / ny / nz, number / nz % ny, number % nz].map(|index| index as f64 + 0.5))
         .map(|index| low + Vec3::from(index).component_mul(&step))
-        .filter(|place| inside.holds(place))
-        .map(|place| (room(bodies, place), place))
+        .filter(|position| inside.holds(position))
+        .map(|position| (clearance(bodies, position), position))
         .collect();
-    if rooms.is_empty() {
+    if clearances.is_empty() {
         return None;
     }
-    let share = rooms.iter().filter(|(room, _)| *room > 0.0).count() as f64 / rooms.len() as f64;
-    let mut starts = rooms;
+    let share = clearances.iter().filter(|(clearance, _)| *clearance > 0.0).count() as f64 / clearances.len() as f64;
+    let mut starts = clearances;
     starts.sort_by(|one, other| other.0.total_cmp(&one.0));
     starts.truncate(STARTS);
     let largest = starts.into_par_iter().map(|start| climb(bodies, &inside, start, step.max()));
@@ -140,15 +148,15 @@ pub(super) fn find_empty(bodies: &[Body]) -> Option<Empty> {
 
 /// The most room near a place: the best of the points around it, ever closer. Room has ridges, where it rises along few directions, so
 /// that points on all sides are looked at.
-fn climb(bodies: &[Body], inside: &Inside, (mut most, mut place): (f64, Vec3), first: f64) -> f64 {
+fn climb(bodies: &[Body], inside: &Inside, (mut most, mut position): (f64, Vec3), first: f64) -> f64 {
     let mut step = 0.5 * first;
     while step > EXACT * first {
         let around =
             (0..125).map(|number| [number / 25, number / 5 % 5, number % 5].map(|index| f64::from(index) - 2.0));
-        let next = around.map(|index| place + step * Vec3::from(index)).filter(|next| inside.holds(next));
-        let next = next.map(|next| (room(bodies, next), next)).max_by(|one, other| one.0.total_cmp(&other.0));
+        let next = around.map(|index| position + step * Vec3::from(index)).filter(|next| inside.holds(next));
+        let next = next.map(|next| (clearance(bodies, next), next)).max_by(|one, other| one.0.total_cmp(&other.0));
         match next.filter(|next| next.0 > most) {
-            Some(next) => (most, place) = next,
+            Some(next) => (most, position) = next,
             None => step *= 0.5,
         }
     }

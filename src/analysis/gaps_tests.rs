@@ -5,13 +5,13 @@ use crate::Vec3;
 use crate::geometry::{box_surface, icosphere, translate, volume};
 
 /// Bodies of one shape at these places.
-fn at(places: &[Vec3], shape: &crate::geometry::Surface) -> Vec<Body> {
-    let moved = |place: &Vec3| {
+fn at(positions: &[Vec3], shape: &crate::geometry::Surface) -> Vec<Body> {
+    let moved = |position: &Vec3| {
         let mut surface = shape.clone();
-        translate(&mut surface, *place);
+        translate(&mut surface, *position);
         Body::new(surface.positions, surface.facets)
     };
-    places.iter().map(moved).collect()
+    positions.iter().map(moved).collect()
 }
 
 #[test]
@@ -20,10 +20,10 @@ fn spheres_that_touch_in_the_densest_packing_leave_its_holes() {
     // a ball of (√2 − 1) R fits.
     let (radius, side) = (1.0, 8f64.sqrt());
     let of = |i: usize| Vec3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64) * 0.5 * side;
-    let places: Vec<Vec3> = (0..27).filter(|i| (i % 3 + i / 3 % 3 + i / 9) % 2 == 0).map(of).collect();
-    assert_eq!(places.len(), 14);
+    let positions: Vec<Vec3> = (0..27).filter(|i| (i % 3 + i / 3 % 3 + i / 9) % 2 == 0).map(of).collect();
+    assert_eq!(positions.len(), 14);
     let sphere = icosphere(radius, 2);
-    let empty = find_empty(&at(&places, &sphere)).expect("an inside");
+    let empty = find_empty(&at(&positions, &sphere)).expect("an inside");
     // Its centre is found to a thousandth of the distance of points, and an atom of each sphere stands on each axis.
     assert!((empty.largest_ball - (2f64.sqrt() - 1.0)).abs() < 1e-3, "{empty:?}");
     // Four spheres to a cube. Of 40 000 points a few hundred are so near a surface that chance places them.
@@ -35,8 +35,8 @@ fn spheres_that_touch_in_the_densest_packing_leave_its_holes() {
 fn boxes_with_slits_between_them_leave_slits() {
     let (side, slit) = (2.0, 0.5);
     let of = |i: usize| Vec3::new((i % 2) as f64, (i / 2 % 2) as f64, (i / 4) as f64) * (side + slit);
-    let places: Vec<Vec3> = (0..8).map(of).collect();
-    let empty = find_empty(&at(&places, &box_surface([side; 3], [1; 3]))).expect("an inside");
+    let positions: Vec<Vec3> = (0..8).map(of).collect();
+    let empty = find_empty(&at(&positions, &box_surface([side; 3], [1; 3]))).expect("an inside");
     // Where three slits cross the next corners are farthest.
     assert!((empty.largest_ball - 0.75f64.sqrt() * slit).abs() < 1e-3, "{empty:?}");
     let share = 1.0 - (side / (side + slit)).powi(3);
@@ -47,7 +47,7 @@ fn boxes_with_slits_between_them_leave_slits() {
 
 #[test]
 fn cells_in_one_plane_have_nothing_inside() {
-    let places = [Vec3::zeros(), 2.0 * Vec3::x(), 2.0 * Vec3::y(), 2.0 * Vec3::new(1.0, 1.0, 0.0)];
-    assert_eq!(find_empty(&at(&places, &icosphere(1.0, 1))), None);
-    assert_eq!(find_empty(&at(&places[..1], &icosphere(1.0, 1))), None);
+    let positions = [Vec3::zeros(), 2.0 * Vec3::x(), 2.0 * Vec3::y(), 2.0 * Vec3::new(1.0, 1.0, 0.0)];
+    assert_eq!(find_empty(&at(&positions, &icosphere(1.0, 1))), None);
+    assert_eq!(find_empty(&at(&positions[..1], &icosphere(1.0, 1))), None);
 }

@@ -159,16 +159,16 @@ fn walkers(number: u32) -> Recording {
     let mut runs = Vec::new();
     for cell in 0..number {
         let mut uniform = noise::uniform(1 + u64::from(cell));
-        let (mut begin, mut place, mut frame) = (0.0, [0.0, 0.0], 0);
+        let (mut begin, mut position, mut frame) = (0.0, [0.0, 0.0], 0);
         while frame < FRAMES {
             let duration = -PERSISTENCE * (-uniform()).ln_1p();
             let (sine, cosine) = (std::f64::consts::TAU * uniform()).sin_cos();
             while frame < FRAMES && times[frame] <= begin + duration {
-                x[[frame, cell as usize]] = place[0] + cosine * (times[frame] - begin);
-                y[[frame, cell as usize]] = place[1] + sine * (times[frame] - begin);
+                x[[frame, cell as usize]] = position[0] + cosine * (times[frame] - begin);
+                y[[frame, cell as usize]] = position[1] + sine * (times[frame] - begin);
                 frame += 1;
             }
-            place = [place[0] + cosine * duration, place[1] + sine * duration];
+            position = [position[0] + cosine * duration, position[1] + sine * duration];
             begin += duration;
             if begin <= times[FRAMES - 1] {
                 runs.push((cell as usize, begin, duration));

@@ -46,7 +46,8 @@ pub fn measure_result(file: &ResultFile, document: &Document) -> Result<(Vec<Mea
             Err(Error::Input(found)) => faults.extend(found.into_iter().map(|mut fault| {
                 fault.message = format!("the measure `{name}` cannot be computed: {}", fault.message);
                 // A fault that points into a table keeps its place there.
-                fault.place = fault.place.or_else(|| document.key_place(&format!("measure.{name}"), "this measure"));
+                fault.location =
+                    fault.location.or_else(|| document.key_location(&format!("measure.{name}"), "this measure"));
                 fault
             })),
             Err(other) => return Err(other),

@@ -13,8 +13,9 @@ fn grid(cells: [usize; 2], spacing: [f64; 2]) -> FieldLayout {
 fn pattern(layout: &FieldLayout, wavelength: f64, angles: &[f64], phase: f64) -> Vec<f64> {
     let nx = layout.cells[0];
     let wave = |x: f64, y: f64, angle: f64| (TAU / wavelength * (x * angle.cos() + y * angle.sin()) + phase).cos();
-    let place = |at: usize| [(at % nx) as f64 * layout.spacing[0], (at / nx) as f64 * layout.spacing[1]];
-    let value = |at: usize| 1.0 + angles.iter().map(|angle| wave(place(at)[0], place(at)[1], *angle)).sum::<f64>();
+    let position = |at: usize| [(at % nx) as f64 * layout.spacing[0], (at / nx) as f64 * layout.spacing[1]];
+    let value =
+        |at: usize| 1.0 + angles.iter().map(|angle| wave(position(at)[0], position(at)[1], *angle)).sum::<f64>();
     (0..layout.len()).map(value).collect()
 }
 

@@ -86,8 +86,8 @@ fn a_measure_that_cannot_be_taken_costs_no_other_and_says_where_it_stands() {
     let (measures, faults) = measure_result(&file, &document).unwrap();
     assert_eq!((measures.len(), faults.len()), (1, 1));
     assert_eq!(faults[0].message, "the measure `late` cannot be computed: nothing was recorded at 5 s");
-    let place = faults[0].place.as_ref().unwrap();
-    assert_eq!(&EXPERIMENT[place.start..place.start + place.length], "late");
+    let location = faults[0].location.as_ref().unwrap();
+    assert_eq!(&EXPERIMENT[location.start..location.start + location.length], "late");
 }
 
 #[test]

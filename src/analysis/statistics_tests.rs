@@ -32,7 +32,7 @@ fn a_line_through_anscombes_first_set() {
 }
 
 #[test]
-fn a_line_through_one_place_is_refused() {
+fn a_line_through_one_point_is_refused() {
     let message = fit_line(&[2.0, 2.0], &[1.0, 3.0]).unwrap_err().to_string();
     assert!(message.contains("all 2 values of x are 2"), "{message}");
     assert!(fit_line(&[2.0], &[1.0]).is_err());

@@ -1,6 +1,6 @@
 //! Measured tables: CSV files with named columns, read with errors that point at the faulty cell.
 
-use crate::error::{Error, Fault, Place, Result, Source};
+use crate::error::{Error, Fault, Location, Result, Source};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -48,7 +48,7 @@ impl Table {
         for (line, fields) in lines {
             if fields.len() != names.len() {
                 let found = format!("a row of {} fields under {} column names", fields.len(), names.len());
-                let fault = Fault::new(found).at(place(&source, line, "in this row"));
+                let fault = Fault::new(found).at(location(&source, line, "in this row"));
                 faults.push(fault.help("give one number for each column; leave a missing one empty"));
                 continue;
             }
@@ -85,7 +85,7 @@ impl Table {
         let guess = near.map_or(String::new(), |(_, known)| format!("; did you mean \"{known}\"?"));
         let fault = Fault::new(format!("there is no column \"{name}\" in {}", self.source.name));
         let help = format!("its columns are {}{guess}", self.names.join(", "));
-        Err(Error::input(fault.at(place(&self.source, self.heading.clone(), "these are the columns")).help(help)))
+        Err(Error::input(fault.at(location(&self.source, self.heading.clone(), "these are the columns")).help(help)))
     }
 }
 
@@ -140,9 +140,9 @@ fn number(field: &str) -> Option<f64> {
 
 fn number_fault(source: &Arc<Source>, field: Field) -> Fault {
     let fault = Fault::new(format!("\"{}\" is not a number", field.text));
-    let place = place(source, field.range, "expected a finite number");
+    let location = location(source, field.range, "expected a finite number");
     fault
-        .at(place)
+        .at(location)
         .help("write numbers with a point, such as 15.987, and leave a field empty where nothing was measured")
 }
 
@@ -150,21 +150,21 @@ fn number_fault(source: &Arc<Source>, field: Field) -> Fault {
 fn name_faults(source: &Arc<Source>, names: &[Field]) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (index, field) in names.iter().enumerate() {
-        let place = place(source, field.range.clone(), "this name");
+        let location = location(source, field.range.clone(), "this name");
         if field.text.is_empty() {
             faults.push(
-                Fault::new(format!("column {} has no name", index + 1)).at(place).help("give each column a name"),
+                Fault::new(format!("column {} has no name", index + 1)).at(location).help("give each column a name"),
             );
         } else if names[..index].iter().any(|earlier| earlier.text == field.text) {
             let fault = Fault::new(format!("two columns are called \"{}\"", field.text));
-            faults.push(fault.at(place).help("give each column a name of its own"));
+            faults.push(fault.at(location).help("give each column a name of its own"));
         }
     }
     faults
 }
 
-fn place(source: &Arc<Source>, range: Range<usize>, label: &str) -> Place {
-    Place { source: source.clone(), start: range.start, length: range.len(), label: label.to_owned() }
+fn location(source: &Arc<Source>, range: Range<usize>, label: &str) -> Location {
+    Location { source: source.clone(), start: range.start, length: range.len(), label: label.to_owned() }
 }
 
 #[cfg(test)]
@@ -177,8 +177,8 @@ mod tests {
     }
 
     fn marked(fault: &Fault) -> &str {
-        let place = fault.place.as_ref().unwrap();
-        &place.source.text[place.start..place.start + place.length]
+        let location = fault.location.as_ref().unwrap();
+        &location.source.text[location.start..location.start + location.length]
     }
 
     #[test]

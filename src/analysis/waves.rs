@@ -40,7 +40,7 @@ pub struct Arrivals {
     /// When it came there, s.
     pub times: Vec<f64>,
     /// Number of places that were looked at.
-    pub places: usize,
+    pub points: usize,
 }
 
 impl Arrivals {
@@ -62,7 +62,7 @@ impl Arrivals {
     /// When the wave came to fewer than three places, to all of them at the same distance, or at once.
     pub fn line(&self) -> Result<Line> {
         if self.times.len() < 3 {
-            let found = format!("a wave came to {} of {} places; three are needed", self.times.len(), self.places);
+            let found = format!("a wave came to {} of {} places; three are needed", self.times.len(), self.points);
             let help = "give a level that the wave rises through, or a wider range of times or distances";
             return Err(Error::input(Fault::new(found).help(help)));
         }
@@ -104,16 +104,17 @@ pub fn arrivals_in_field(
     first: usize,
     level: Option<f64>,
     centre: [f64; 3],
-    place: &Where,
+    origin: &Where,
     axes: usize,
 ) -> Result<Arrivals> {
     let axes = if field.layout.is_flat() { 2 } else { axes };
-    let (distances, ray) = match place {
+    let (distances, ray) = match origin {
         Where::Boxes => (fields::distances(field.layout, centre, axes), None),
         Where::Ray(direction) => {
             let points = points_of_ray(field, centre, *direction, axes)?;
-            let way = |point: &[f64; 3]| (0..axes).map(|axis| (point[axis] - centre[axis]).powi(2)).sum::<f64>().sqrt();
-            (points.iter().map(way).collect(), Some(points))
+            let radial =
+                |point: &[f64; 3]| (0..axes).map(|axis| (point[axis] - centre[axis]).powi(2)).sum::<f64>().sqrt();
+            (points.iter().map(radial).collect(), Some(points))
         }
     };
     let read = |frame: usize| -> Result<Vec<f64>> {
@@ -144,9 +145,9 @@ pub fn arrivals_in_field(
         }
         before = Some(now);
     }
-    let places = distances.len();
+    let points = distances.len();
     let (distances, times) = distances.into_iter().zip(came).filter_map(|(d, came)| Some((d, came?))).unzip();
-    Ok(Arrivals { distances, times, places })
+    Ok(Arrivals { distances, times, points })
 }
 
 /// Places on a ray from a point to the wall of a field, a box apart. Those within half a box of a wall that the ray leads
@@ -158,8 +159,8 @@ fn points_of_ray(field: &Field, centre: [f64; 3], direction: [f64; 3], axes: usi
     let mut points = Vec::new();
     if length > 0.0 {
         let point = |number: usize| {
-            let way = number as f64 * step / length;
-            let part = |axis: usize| if axis < axes { centre[axis] + way * direction[axis] } else { centre[axis] };
+            let radial = number as f64 * step / length;
+            let part = |axis: usize| if axis < axes { centre[axis] + radial * direction[axis] } else { centre[axis] };
             [part(0), part(1), part(2)]
         };
         points = (0..).map(point).take_while(|point| fields::check_inside(field.layout, *point).is_ok()).collect();
@@ -170,8 +171,8 @@ fn points_of_ray(field: &Field, centre: [f64; 3], direction: [f64; 3], axes: usi
 }
 
 /// Whether a place lies between the centres of the first and the last box along an axis.
-fn between_centres(field: &Field, axis: usize, place: f64) -> bool {
-    let boxes = (place - field.layout.origin[axis]) / field.layout.spacing[axis];
+fn between_centres(field: &Field, axis: usize, origin: f64) -> bool {
+    let boxes = (origin - field.layout.origin[axis]) / field.layout.spacing[axis];
     // A billionth of a box forgives the round-off of a place that is meant to be a centre.
     (0.5 - 1e-9..=field.layout.cells[axis] as f64 - 0.5 + 1e-9).contains(&boxes)
 }

@@ -75,10 +75,10 @@ pub fn print_failure(command: &str, error: &Error) -> Result<()> {
 /// A fault with its location: line and column from 1, in characters.
 fn fault_object(fault: &Fault) -> Value {
     let mut object = json!({ "message": fault.message, "help": fault.help });
-    if let Some(place) = &fault.place {
-        let text = &place.source.text;
-        let before = text.get(..place.start).unwrap_or(text);
-        object["file"] = place.source.name.clone().into();
+    if let Some(location) = &fault.location {
+        let text = &location.source.text;
+        let before = text.get(..location.start).unwrap_or(text);
+        object["file"] = location.source.name.clone().into();
         object["line"] = (1 + before.matches('\n').count()).into();
         object["column"] = (1 + before.rsplit('\n').next().unwrap_or_default().chars().count()).into();
     }

@@ -1,7 +1,7 @@
 //! One entrance for documents of equations: EML, and SBML models wherever an EML document can stand.
 
 use super::{eml, sbml};
-use crate::error::{Place, Result, Source};
+use crate::error::{Location, Result, Source};
 use std::sync::Arc;
 
 /// A document of equations as it was read.
@@ -24,13 +24,13 @@ pub fn read(source: Arc<Source>) -> Result<Read> {
         return Ok(Read { document: eml::read(source)?, notices: Vec::new(), sbml: None });
     }
     let model = sbml::read(&source)?;
-    let whole = Place { source, start: 0, length: 0, label: String::new() };
+    let whole = Location { source, start: 0, length: 0, label: String::new() };
     let document = eml::Document {
         name: model.system.name.clone(),
         level: eml::Level::Scene,
         time_unit: "s".into(),
         seconds: 1.0,
-        places: vec![whole; model.system.quantities.len()],
+        locations: vec![whole; model.system.quantities.len()],
         system: model.system.clone(),
         grid: None,
         fields: Vec::new(),

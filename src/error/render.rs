@@ -48,14 +48,14 @@ fn fault_text(fault: &Fault, paint: Paint) -> String {
     };
     let handler = GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_context_lines(1).with_links(false);
     let mut text = String::new();
-    let rendered = match &fault.place {
-        Some(place) => {
-            let label = (!place.label.is_empty()).then(|| place.label.clone());
-            let end = place.source.text.len();
-            let start = place.start.min(end);
-            let span = (start, place.length.min(end - start));
+    let rendered = match &fault.location {
+        Some(location) => {
+            let label = (!location.label.is_empty()).then(|| location.label.clone());
+            let end = location.source.text.len();
+            let start = location.start.min(end);
+            let span = (start, location.length.min(end - start));
             let diagnostic = diagnostic.with_label(LabeledSpan::new_primary_with_span(label, span));
-            let source = NamedSource::new(&place.source.name, place.source.text.clone());
+            let source = NamedSource::new(&location.source.name, location.source.text.clone());
             handler.render_report(&mut text, miette::Report::new(diagnostic).with_source_code(source).as_ref())
         }
         None => handler.render_report(&mut text, &diagnostic),
@@ -69,8 +69,8 @@ fn fault_text(fault: &Fault, paint: Paint) -> String {
 /// "3 faults in experiment.toml".
 fn count(faults: &[Fault]) -> String {
     let mut names: Vec<&str> = Vec::new();
-    for place in faults.iter().filter_map(|fault| fault.place.as_ref()) {
-        let name = if place.source.name.starts_with("--set") { "--set" } else { &place.source.name };
+    for location in faults.iter().filter_map(|fault| fault.location.as_ref()) {
+        let name = if location.source.name.starts_with("--set") { "--set" } else { &location.source.name };
         if !names.contains(&name) {
             names.push(name);
         }
@@ -84,15 +84,15 @@ fn count(faults: &[Fault]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Place, Source};
+    use super::super::{Location, Source};
     use super::*;
     use std::sync::Arc;
 
     #[test]
     fn a_fault_shows_file_line_column_and_caret() {
         let source = Arc::new(Source { name: "a.toml".into(), text: "one\ntwo three\n".into() });
-        let place = Place { source, start: 8, length: 5, label: "a number was expected".into() };
-        let error = Error::input(Fault::new("`three` is a word").at(place).help("write 3"));
+        let location = Location { source, start: 8, length: 5, label: "a number was expected".into() };
+        let error = Error::input(Fault::new("`three` is a word").at(location).help("write 3"));
         let text = render(&error, Paint::Plain);
         for part in ["a.toml:2:5", "two three", "──┬──", "a number was expected", "help: write 3", "1 fault in a.toml"]
         {
@@ -102,9 +102,9 @@ mod tests {
     }
 
     #[test]
-    fn a_place_beyond_the_text_is_no_reason_to_panic() {
+    fn a_location_beyond_the_text_is_no_reason_to_panic() {
         let source = Arc::new(Source { name: "a.toml".into(), text: String::new() });
-        let place = Place { source, start: 8, length: 5, label: "here".into() };
-        assert!(render(&Error::input(Fault::new("lost").at(place)), Paint::Plain).contains("lost"));
+        let location = Location { source, start: 8, length: 5, label: "here".into() };
+        assert!(render(&Error::input(Fault::new("lost").at(location)), Paint::Plain).contains("lost"));
     }
 }

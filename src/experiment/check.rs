@@ -125,7 +125,7 @@ impl Walk<'_> {
             ("boolean", Value::Truth(truth)) => {
                 if schema.get("const").and_then(Json::as_bool).is_some_and(|only| only != *truth) {
                     let fault = Fault::new(format!("`{path}` can only be {}", !truth));
-                    self.faults.push(fault.at(node.place("has no meaning")).help("leave the key out instead"));
+                    self.faults.push(fault.at(node.location("has no meaning")).help("leave the key out instead"));
                 }
             }
             ("string", Value::Text(text)) => self.text(node, text, schema, path),
@@ -144,7 +144,7 @@ impl Walk<'_> {
             let entries = if list.len() == 1 { "entry" } else { "entries" };
             let fault = Fault::new(format!("`{path}` has {} {entries}; {wanted} expected", list.len()));
             let label = if least == most { format!("{least} entries expected") } else { "too few".to_owned() };
-            self.faults.push(with_purpose(fault.at(node.place(label)), schema));
+            self.faults.push(with_purpose(fault.at(node.location(label)), schema));
         }
         let prefix = schema.get("prefixItems").and_then(Json::as_array);
         for (index, entry) in list.iter().enumerate() {
@@ -168,12 +168,12 @@ impl Walk<'_> {
             Value::Text(text) => {
                 let meant = words::meant(text, known.iter().map(String::as_str));
                 let label = meant.map_or("unknown word".to_owned(), |word| format!("did you mean \"{word}\"?"));
-                let fault = Fault::new(format!("`{path}` cannot be \"{text}\"")).at(node.place(label));
+                let fault = Fault::new(format!("`{path}` cannot be \"{text}\"")).at(node.location(label));
                 self.faults.push(fault.help(format!("it is {}", list())));
             }
             _ => {
                 let fault = Fault::new(format!("`{path}` is {}; a word was expected", node.kind()));
-                self.faults.push(fault.at(node.place("a word was expected")).help(format!("it is {}", list())));
+                self.faults.push(fault.at(node.location("a word was expected")).help(format!("it is {}", list())));
             }
         }
     }
@@ -192,8 +192,8 @@ impl Walk<'_> {
             }
         };
         if let Some(error) = fault {
-            let place = node.place_in_text(error.at, format!("a {kind} was expected"));
-            self.faults.push(Fault::new(format!("`{path}`: {}", error.message)).at(place).help(error.help));
+            let location = node.location_in_text(error.at, format!("a {kind} was expected"));
+            self.faults.push(Fault::new(format!("`{path}`: {}", error.message)).at(location).help(error.help));
         }
     }
 
@@ -214,13 +214,14 @@ impl Walk<'_> {
                     dimension.with_article(),
                     dimension.example()
                 );
-                self.faults.push(Fault::new(format!("`{path}` cannot be \"{text}\"")).at(node.place(label)).help(help));
+                self.faults
+                    .push(Fault::new(format!("`{path}` cannot be \"{text}\"")).at(node.location(label)).help(help));
             }
             Value::Text(text) => match units::parse_as(text, dimension) {
                 Ok(value) => self.quantity_bounds(node, value, dimension, schema, path),
                 Err(error) => {
-                    let place = node.place_in_text(error.at, expected);
-                    self.faults.push(Fault::new(format!("`{path}`: {}", error.message)).at(place).help(error.help));
+                    let location = node.location_in_text(error.at, expected);
+                    self.faults.push(Fault::new(format!("`{path}`: {}", error.message)).at(location).help(error.help));
                 }
             },
             // Nothing is nothing in every unit.
@@ -232,7 +233,7 @@ impl Walk<'_> {
                 let unit = example.split_once(' ').map_or("", |(_, unit)| unit);
                 let fault = Fault::new(format!("`{path}` is a bare number; {article} was expected"));
                 let help = format!("{article} needs a unit, such as \"{} {unit}\"", node.written());
-                self.faults.push(fault.at(node.place("a unit is missing")).help(help));
+                self.faults.push(fault.at(node.location("a unit is missing")).help(help));
             }
             _ => self.wrong_kind(node, &expectation(schema), path, schema),
         }
@@ -241,7 +242,7 @@ impl Walk<'_> {
     fn wrong_kind(&mut self, node: &Node, wanted: &str, path: &str, schema: &Map<String, Json>) {
         let path = if path.is_empty() { "the document" } else { path };
         let fault = Fault::new(format!("`{path}` is {}; {wanted} was expected", node.kind()));
-        let fault = fault.at(node.place(format!("{wanted} was expected")));
+        let fault = fault.at(node.location(format!("{wanted} was expected")));
         self.faults.push(match rewrite(node, wanted) {
             Some(advice) => fault.help(advice),
             None => with_purpose(fault, schema),

@@ -2,7 +2,7 @@
 
 use super::tree::{Node, Value};
 use super::{Experiment, check, schema, semantics};
-use crate::error::{Error, Fault, Place, Result, Source};
+use crate::error::{Error, Fault, Location, Result, Source};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -87,8 +87,8 @@ impl Document {
                 return Ok(document);
             }
         }
-        let order = |fault: &Fault| match &fault.place {
-            Some(place) => (sources.iter().position(|source| Arc::ptr_eq(source, &place.source)), place.start),
+        let order = |fault: &Fault| match &fault.location {
+            Some(location) => (sources.iter().position(|source| Arc::ptr_eq(source, &location.source)), location.start),
             None => (None, 0),
         };
         faults.sort_by_key(order);
@@ -143,19 +143,19 @@ impl Document {
         self.base_dir.join(path)
     }
 
-    /// Where the value of a key stands, for a fault: `document.place("cells.red.fixed[0].atoms", "label")`. A key that
+    /// Where the value of a key stands, for a fault: `document.location("cells.red.fixed[0].atoms", "label")`. A key that
     /// is not written (its default holds) is placed at the nearest table around it; `None` only if that is the document.
-    pub fn place(&self, path: &str, label: impl Into<String>) -> Option<Place> {
+    pub fn location(&self, path: &str, label: impl Into<String>) -> Option<Location> {
         let (node, _) = self.tree.follow(path);
         node.key.as_ref().or((!node.span.is_empty()).then_some(&node.span))?;
-        Some(node.place(label))
+        Some(node.location(label))
     }
 
-    /// Where a key itself stands, with the same rules as [`Document::place`].
-    pub fn key_place(&self, path: &str, label: impl Into<String>) -> Option<Place> {
+    /// Where a key itself stands, with the same rules as [`Document::location`].
+    pub fn key_location(&self, path: &str, label: impl Into<String>) -> Option<Location> {
         let (node, _) = self.tree.follow(path);
         node.key.as_ref().or((!node.span.is_empty()).then_some(&node.span))?;
-        Some(node.key_place(label))
+        Some(node.key_location(label))
     }
 
     /// Whether a key is written in the document or set, rather than left at its default.
@@ -175,7 +175,7 @@ fn not_an_experiment(tree: &Node) -> Option<Fault> {
     let claim = keys.get("claim").filter(|_| !keys.contains_key("cells") && !keys.contains_key("run"))?;
     let fault = Fault::new("this is not an experiment but what one is expected to measure");
     let help = "name the experiment itself, usually experiment.toml in the same folder";
-    Some(fault.at(claim.key_place("a claim")).help(help))
+    Some(fault.at(claim.key_location("a claim")).help(help))
 }
 
 /// What a tree without faults says. The checker has seen everything that `serde` could refuse; should it refuse
@@ -183,9 +183,10 @@ fn not_an_experiment(tree: &Node) -> Option<Fault> {
 fn experiment_of(tree: &Node) -> Result<Experiment> {
     Experiment::deserialize(tree.plain()).map_err(|error| {
         let span = toml::from_str::<Experiment>(&tree.source.text).err().and_then(|error| error.span()).unwrap_or(0..0);
-        let place = Place { source: tree.source.clone(), start: span.start, length: span.len(), label: "here".into() };
+        let location =
+            Location { source: tree.source.clone(), start: span.start, length: span.len(), label: "here".into() };
         let message = format!("the document cannot be understood: {}", error.message().trim());
-        Error::input(Fault::new(message).at(place).help("compare the key with the schema: `pseudopod schema`"))
+        Error::input(Fault::new(message).at(location).help("compare the key with the schema: `pseudopod schema`"))
     })
 }
 

@@ -46,7 +46,7 @@ impl Check<'_> {
     /// A fault at the value of a key.
     pub(super) fn fault(&mut self, path: &str, label: &str, message: String, help: impl Into<String>) {
         let mut fault = Fault::new(message).help(help);
-        fault.place = self.document.place(path, label);
+        fault.location = self.document.location(path, label);
         self.faults.push(fault);
     }
 

@@ -1,6 +1,6 @@
 //! The text of a document as a tree that remembers where everything stands; `--set` changes it.
 
-use crate::error::{Fault, Place, Source};
+use crate::error::{Fault, Location, Source};
 use indexmap::IndexMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -69,31 +69,31 @@ impl Node {
     }
 
     /// Where the value stands; its key when the value goes over several lines.
-    pub(super) fn place(&self, label: impl Into<String>) -> Place {
+    pub(super) fn location(&self, label: impl Into<String>) -> Location {
         let written = self.written();
         let span = match &self.key {
             Some(key) if written.contains('\n') => key.clone(),
             _ => self.span.start..self.span.start + written.find('\n').unwrap_or(written.len()),
         };
-        Place { source: self.source.clone(), start: span.start, length: span.len(), label: label.into() }
+        Location { source: self.source.clone(), start: span.start, length: span.len(), label: label.into() }
     }
 
     /// Where the key stands; the value if it has none.
-    pub(super) fn key_place(&self, label: impl Into<String>) -> Place {
-        let Some(key) = &self.key else { return self.place(label) };
-        Place { source: self.source.clone(), start: key.start, length: key.len(), label: label.into() }
+    pub(super) fn key_location(&self, label: impl Into<String>) -> Location {
+        let Some(key) = &self.key else { return self.location(label) };
+        Location { source: self.source.clone(), start: key.start, length: key.len(), label: label.into() }
     }
 
     /// Where some bytes of a text stand; the whole text when its escapes hide them.
-    pub(super) fn place_in_text(&self, at: Range<usize>, label: impl Into<String>) -> Place {
-        let (written, mut place) = (self.written(), self.place(label));
-        let Value::Text(text) = &self.value else { return place };
+    pub(super) fn location_in_text(&self, at: Range<usize>, label: impl Into<String>) -> Location {
+        let (written, mut location) = (self.written(), self.location(label));
+        let Value::Text(text) = &self.value else { return location };
         let quoted = written.len() == text.len() + 2 && written.get(1..=text.len()) == Some(text.as_str());
         if (quoted || written == text) && at.end <= text.len() {
-            place.start = self.span.start + at.start + usize::from(quoted);
-            place.length = at.len();
+            location.start = self.span.start + at.start + usize::from(quoted);
+            location.length = at.len();
         }
-        place
+        location
     }
 
     /// Goes along a path as far as the tree does: the last node reached and whether that is the end of the path.
@@ -143,8 +143,8 @@ fn node_of(source: &Arc<Source>, shift: usize, spanned: &Spanned<DeValue>, fault
             Ok(number) => Value::Integer(number),
             Err(_) => {
                 let (length, label) = (span.len(), "too large".to_owned());
-                let place = Place { source: source.clone(), start: span.start, length, label };
-                let fault = Fault::new(format!("{} is too large a whole number", integer.as_str())).at(place);
+                let location = Location { source: source.clone(), start: span.start, length, label };
+                let fault = Fault::new(format!("{} is too large a whole number", integer.as_str())).at(location);
                 faults.push(fault.help("whole numbers go to 9223372036854775807; write a decimal point for a number"));
                 Value::Integer(0)
             }
@@ -178,8 +178,8 @@ fn syntax_faults(source: &Arc<Source>, errors: &[toml::de::Error]) -> Vec<Fault>
         let inside = source.text.get(start..span.end.min(source.text.len())).unwrap_or("");
         let length = inside.find('\n').unwrap_or(inside.len());
         let message = error.message().lines().collect::<Vec<_>>().join("; ");
-        let place = Place { source: source.clone(), start, length, label: "here".into() };
-        let fault = Fault::new(format!("this is not TOML: {message}")).at(place);
+        let location = Location { source: source.clone(), start, length, label: "here".into() };
+        let fault = Fault::new(format!("this is not TOML: {message}")).at(location);
         faults.push(fault.help(syntax_help(source, line, &message)));
     }
     faults

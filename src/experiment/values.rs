@@ -169,8 +169,8 @@ impl Default for LengthUnit {
 impl FromStr for LengthUnit {
     type Err = UnitError;
     fn from_str(text: &str) -> Result<Self, UnitError> {
-        let number_is_given = text.trim_start().starts_with(|c: char| c.is_ascii_digit());
-        if number_is_given {
+        let number_is_written = text.trim_start().starts_with(|c: char| c.is_ascii_digit());
+        if number_is_written {
             return units::parse_as(text, Dimension::LENGTH).map(Self);
         }
         let unit = units::parse_unit(text)?;

@@ -30,12 +30,12 @@ pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
     let Some(wanted) = &document.grid else {
         let message = format!("the document '{}' has no grid", document.name);
         let fault = Fault::new(message).help("give it a <grid> and a <field>");
-        return Err(Error::input(match document.places.first() {
-            Some(place) => fault.at(place.clone()),
+        return Err(Error::input(match document.locations.first() {
+            Some(location) => fault.at(location.clone()),
             None => fault,
         }));
     };
-    let fault = |message: String, help: String| Fault::new(message).at(wanted.place.clone()).help(help);
+    let fault = |message: String, help: String| Fault::new(message).at(wanted.location.clone()).help(help);
     let in_micrometres = |numbers: [f64; 3]| numbers.map(|number| number * wanted.micrometres);
     let flat = wanted.dimension == 2;
     let origin = wanted.origin.map(in_micrometres).or(placing.map(|placing| placing.origin));
@@ -91,7 +91,7 @@ pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
         return Err(Error::input(fault(message, "choose a wider spacing or a smaller size".into())));
     }
     Grid::new(counts.map(|count| count as usize), [spacing; 3], Vec3::from(origin)).map_err(|error| match error {
-        Error::Input(more) => Error::Input(more.into_iter().map(|one| one.at(wanted.place.clone())).collect()),
+        Error::Input(more) => Error::Input(more.into_iter().map(|one| one.at(wanted.location.clone())).collect()),
         other => other,
     })
 }

@@ -20,9 +20,9 @@ pub const POSITION: [&str; 3] = ["x", "y", "z"];
 pub fn in_circle(document: &eml::Document, circle: &[String]) -> Error {
     let first = circle.first().and_then(|id| document.system.find(id));
     let fault = Fault::new(format!("a circle of {}", circle.join(", "))).help("let one of them be a number");
-    let place = first.and_then(|number| document.places.get(number as usize));
-    Error::input(match place {
-        Some(place) => fault.at(place.clone()),
+    let location = first.and_then(|number| document.locations.get(number as usize));
+    Error::input(match location {
+        Some(location) => fault.at(location.clone()),
         None => fault,
     })
 }

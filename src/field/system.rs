@@ -16,7 +16,7 @@ use super::step::{Report, Stepping};
 use crate::equations::eml;
 use crate::equations::program::initial_values;
 use crate::equations::tree::{QuantityId, Role, System};
-use crate::error::{Error, Fault, Place, Result};
+use crate::error::{Error, Fault, Location, Result};
 
 /// Gives the values of a profile that lies in a file, its `scale` included: one for each box of the grid, x fastest.
 pub type LoadProfile<'a> = dyn Fn(&eml::Profile, &Grid) -> Result<Vec<f64>> + 'a;
@@ -42,12 +42,12 @@ pub struct FieldSystem {
 struct Start {
     quantity: QuantityId,
     profile: eml::Profile,
-    place: Place,
+    location: Location,
 }
 
 impl Start {
     fn of(field: &eml::FieldDescription) -> Self {
-        Self { quantity: field.quantity, profile: field.initial.clone(), place: field.place.clone() }
+        Self { quantity: field.quantity, profile: field.initial.clone(), location: field.location.clone() }
     }
 }
 
@@ -71,7 +71,9 @@ impl FieldSystem {
         for field in &document.fields {
             let one = describe(field, &constants, scales);
             match one.check(&grid) {
-                Err(Error::Input(more)) => faults.extend(more.into_iter().map(|fault| fault.at(field.place.clone()))),
+                Err(Error::Input(more)) => {
+                    faults.extend(more.into_iter().map(|fault| fault.at(field.location.clone())))
+                }
                 Err(other) => return Err(other),
                 Ok(()) => {}
             }
@@ -159,9 +161,10 @@ impl FieldSystem {
         let mut take = |fields: &mut Fields, number: usize, values: Result<Vec<f64>>| -> Result<()> {
             match values.and_then(|values| fields.set_values(number, &values)) {
                 Err(Error::Input(more)) => {
-                    let place = &self.starts[number].place;
-                    let placed = |fault: Fault| if fault.place.is_none() { fault.at(place.clone()) } else { fault };
-                    faults.extend(more.into_iter().map(placed));
+                    let location = &self.starts[number].location;
+                    let located =
+                        |fault: Fault| if fault.location.is_none() { fault.at(location.clone()) } else { fault };
+                    faults.extend(more.into_iter().map(located));
                     Ok(())
                 }
                 other => other,

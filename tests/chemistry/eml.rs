@@ -171,12 +171,12 @@ fn any_bytes_of_a_good_document_may_be_lost_without_a_panic() {
 }
 
 #[test]
-fn a_text_with_escapes_and_comments_keeps_its_places() {
+fn a_text_with_escapes_and_comments_keeps_its_locations() {
     let text = "<eml name=\"e\"><variable id=\"U\" initial=\"1\"/>\n<equation of=\"U\">piecewise(1, U &lt; 2, 2, <!-- why --> Uu\
                 <![CDATA[ < 3 ]]>, 0)</equation></eml>";
     let Err(Error::Input(faults)) = read_text(text) else { panic!("Uu is unknown") };
-    let place = faults[0].place.as_ref().expect("a place");
-    assert_eq!(&text[place.start..place.start + place.length], "Uu");
+    let location = faults[0].location.as_ref().expect("a place");
+    assert_eq!(&text[location.start..location.start + location.length], "Uu");
 }
 
 /// Names of elements and, of each, attributes, as the schema has them: `NAME attribute attribute`.

@@ -159,8 +159,8 @@ fn every_model_from_sbml_keeps_its_rates_at_the_start() {
         let new = rewritten(&format!("{} as EML", path.display()), &old);
         let start = initial_values(&old.system, 0.0).expect("no circle");
         let (a, b) = (rates(&old.system, &old.system, &start), rates(&new, &old.system, &start));
-        for (place, (a, b)) in a.iter().zip(&b).enumerate() {
-            assert!(near(*a, *b), "{}: number {place} is {b} instead of {a}", path.display());
+        for (index, (a, b)) in a.iter().zip(&b).enumerate() {
+            assert!(near(*a, *b), "{}: number {index} is {b} instead of {a}", path.display());
         }
         let again = initial_values(&new, 0.0).expect("no circle");
         for (quantity, (a, b)) in old.system.quantities.iter().zip(start.iter().zip(&again)) {

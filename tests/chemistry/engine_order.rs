@@ -120,8 +120,8 @@ fn crowd(cells: std::ops::Range<usize>, method: Method, threads: usize) -> Vec<u
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
     let program = Program::new(&van_der_pol_pair(20.0)).expect("no circles");
     let mut population = Population::new(&program, cells.len(), method);
-    for (place, cell) in cells.clone().enumerate() {
-        (0..4).for_each(|v| population.set_state(place, v, (cell as f64 * 0.37 + v as f64).sin() * 2.0));
+    for (index, cell) in cells.clone().enumerate() {
+        (0..4).for_each(|v| population.set_state(index, v, (cell as f64 * 0.37 + v as f64).sin() * 2.0));
     }
     pool.install(|| {
         let mut scratch = PopulationScratch::default();

@@ -22,14 +22,14 @@ fn no_file(_: &eml::Profile, _: &Grid) -> Result<Vec<f64>> {
     Err(Error::input(Fault::new("no file was expected")))
 }
 
-fn placed(document: &eml::Document, placing: Option<&Placing>) -> (FieldSystem, Fields) {
+fn on_grid(document: &eml::Document, placing: Option<&Placing>) -> (FieldSystem, Fields) {
     let system = FieldSystem::new(document, placing).expect("a good document");
     let fields = system.start(&no_file).expect("good profiles");
     (system, fields)
 }
 
 fn open(text: &str) -> (FieldSystem, Fields) {
-    placed(&read(text), None)
+    on_grid(&read(text), None)
 }
 
 /// Largest difference over all species and boxes.
@@ -43,7 +43,7 @@ fn apart(a: &Fields, b: &Fields) -> f64 {
 fn all_documents_of_fields_start_and_advance() {
     let placing = Placing { origin: [-50.0, -50.0, 2.0], size: [102.0, 100.0, 0.0] };
     for (name, boxes) in [("attractant", 21 * 20), ("brusselator", 128 * 128), ("gray_scott", 256 * 256)] {
-        let (system, mut fields) = placed(&from_file(name), Some(&placing));
+        let (system, mut fields) = on_grid(&from_file(name), Some(&placing));
         assert_eq!((system.grid().len(), system.name()), (boxes, name));
         let report = system.advance(&mut fields, 1.0, &[], ADAPTIVE).expect("a window");
         assert!(report.error <= 1.0 && fields.time() == 1.0, "{name} {report:?}");
@@ -267,7 +267,7 @@ fn a_document_in_other_units_is_the_same() {
 }
 
 #[test]
-fn reactions_know_time_and_place() {
+fn reactions_know_time_and_position() {
     let text = "<eml name=\"clock\"><grid dimension=\"2\" spacing=\"1\" origin=\"5 -3\" size=\"19 7\"/>
         <field id=\"c\" initial=\"0\"><reaction>(x + 10*y^2)*time</reaction></field></eml>";
     let (system, mut fields) = open(text);
@@ -276,9 +276,9 @@ fn reactions_know_time_and_place() {
     }
     for (at, value) in fields.values(0).iter().enumerate() {
         // The midpoint step is exact for what grows evenly; ∫ t dt from 0 to 4 is 8.
-        let place = fields.grid().centre(at);
-        let expected = 8.0 * (place.x + 10.0 * place.y * place.y);
-        assert!((value - expected).abs() < 1e-12 * expected.abs(), "{place:?} {value} {expected}");
+        let position = fields.grid().centre(at);
+        let expected = 8.0 * (position.x + 10.0 * position.y * position.y);
+        assert!((value - expected).abs() < 1e-12 * expected.abs(), "{position:?} {value} {expected}");
     }
 }
 
@@ -312,7 +312,7 @@ fn the_number_of_threads_changes_no_bit() {
     let run = |threads: usize, stepping: Stepping| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
         pool.install(|| {
-            let (system, mut fields) = placed(&document, None);
+            let (system, mut fields) = on_grid(&document, None);
             system.advance(&mut fields, 20.0, &[], stepping).expect("a window");
             [fields.values(0).to_vec(), fields.values(1).to_vec()]
         })
@@ -343,7 +343,7 @@ fn fields_start_from_files_and_others_from_them() {
 
 #[test]
 fn the_method_of_lines_refuses_what_it_is_not_for() {
-    let (system, fields) = placed(&from_file("brusselator"), None);
+    let (system, fields) = on_grid(&from_file("brusselator"), None);
     let error = system.reference(&fields, 1.0, &[], 1e-6, 1e-9).expect_err("too many values");
     assert!(matches!(error, Error::Input(_)), "{error}");
     assert_eq!(error.to_string(), "the method of lines is given 32768 values; 4000 at most were expected");

@@ -34,11 +34,11 @@ fn walls_that_nothing_passes_keep_the_mass_to_round_off() {
 #[test]
 fn a_point_source_never_gives_a_negative_value_however_large_the_step() {
     for walls in [CLOSED, RING, [[Wall::Fixed(0.0); 2], [Wall::NoFlux, Wall::Fixed(0.5)], [Wall::NoFlux; 2]]] {
-        for (cells, place) in [([40, 33, 1], Vec3::new(11.5, 8.5, 0.0)), ([20, 17, 22], Vec3::new(3.5, 8.2, 20.9))] {
+        for (cells, point) in [([40, 33, 1], Vec3::new(11.5, 8.5, 0.0)), ([20, 17, 22], Vec3::new(3.5, 8.2, 20.9))] {
             for ratio in [0.01, 0.3, 1.0, 7.0, 100.0, 1e5] {
                 let mut fields = one(cells, 1.0, Species::new("s", ratio, 0.1).with_walls(walls));
                 for _ in 0..6 {
-                    fields.deposit(0, place, 1.0);
+                    fields.deposit(0, point, 1.0);
                     fields.advance(1.0, Stepping::Fixed(1), None).unwrap();
                     assert!(least(&fields) >= 0.0, "{walls:?} {cells:?} {ratio}: {:e}", least(&fields));
                 }
@@ -261,12 +261,12 @@ fn what_blows_up_is_told_and_leaves_the_last_good_state() {
 }
 
 #[test]
-fn a_ring_has_no_place_of_its_own() {
+fn a_ring_has_no_beginning() {
     let run = |shift: [usize; 2]| {
         let (nx, ny) = (23, 19);
         let mut fields = one([nx, ny, 1], 1.0, Species::new("s", 2.0, 0.1).with_walls(RING));
-        let place = Vec3::new((5 + shift[0]) as f64 % nx as f64 + 0.3, (7 + shift[1]) as f64 % ny as f64 + 0.6, 0.0);
-        fields.deposit(0, place, 1.0);
+        let point = Vec3::new((5 + shift[0]) as f64 % nx as f64 + 0.3, (7 + shift[1]) as f64 % ny as f64 + 0.6, 0.0);
+        fields.deposit(0, point, 1.0);
         fields.advance(3.0, Stepping::Fixed(5), None).unwrap();
         let at = |x: usize, y: usize| fields.values(0)[fields.grid().at((x + shift[0]) % nx, (y + shift[1]) % ny, 0)];
         (0..nx * ny).map(|i| at(i % nx, i / nx)).collect::<Vec<_>>()
@@ -304,14 +304,14 @@ fn threads_do_not_change_a_bit() {
 fn releasing_is_conservative_wherever_it_happens() {
     for (cells, walls) in [([11, 13, 1], CLOSED), ([11, 13, 9], RING), ([11, 1, 1], CLOSED)] {
         let mut fields = one(cells, 0.7, Species::new("s", 1.0, 0.0).with_walls(walls));
-        let places: Vec<Vec3> =
+        let points: Vec<Vec3> =
             (0..500).map(|i| Vec3::new(0.037, 0.041, 0.029) * f64::from(i) - Vec3::new(2.0, 3.0, 1.0)).collect();
         let amounts: Vec<f64> = (0..500).map(|i| 0.1 + f64::from(i % 7)).collect();
-        let gained = fields.deposit_all(0, &places, &amounts);
+        let gained = fields.deposit_all(0, &points, &amounts);
         assert!((gained / amounts.iter().sum::<f64>() - 1.0).abs() < 1e-14);
         assert!((fields.amount(0) / gained - 1.0).abs() < 1e-14);
         // Taking up gives back what was there and no more.
-        let taken = fields.deposit_all(0, &places, &vec![-9.0; places.len()]);
+        let taken = fields.deposit_all(0, &points, &vec![-9.0; points.len()]);
         assert!((gained + taken - fields.amount(0)).abs() < 1e-12 * gained && least(&fields) >= 0.0);
         assert_eq!(fields.deposit(0, Vec3::new(f64::NAN, 0.0, 0.0), 1.0), 0.0);
         assert_eq!(fields.deposit(0, Vec3::zeros(), f64::INFINITY), 0.0);
@@ -326,11 +326,11 @@ fn releasing_together_is_releasing_one_after_the_other() {
             let mut together = one(cells, 0.7, species);
             let mut apart = together.clone();
             // Beyond the walls too, and some are taken up.
-            let place = |i: i32| Vec3::new(0.037, 0.041, 0.029) * f64::from(i) - Vec3::new(2.0, 3.0, 1.0);
-            let places: Vec<Vec3> = (0..501).map(place).collect();
+            let point = |i: i32| Vec3::new(0.037, 0.041, 0.029) * f64::from(i) - Vec3::new(2.0, 3.0, 1.0);
+            let points: Vec<Vec3> = (0..501).map(point).collect();
             let amounts: Vec<f64> = (0..501).map(|i| (0.7 * f64::from(i)).sin() + 0.3).collect();
-            let gained = together.deposit_all(0, &places, &amounts);
-            let sum: f64 = places.iter().zip(&amounts).map(|(place, amount)| apart.deposit(0, *place, *amount)).sum();
+            let gained = together.deposit_all(0, &points, &amounts);
+            let sum: f64 = points.iter().zip(&amounts).map(|(point, amount)| apart.deposit(0, *point, *amount)).sum();
             assert!(together.values(0) == apart.values(0), "{cells:?} {range:?}");
             assert!((gained - sum).abs() < 1e-12 * sum.abs());
         }
@@ -344,14 +344,14 @@ fn sensing_errors(n: usize, flat: bool, walls: Walls, profile: impl Fn(Vec3) -> 
     let flatten = |p: Vec3| if flat { Vec3::new(p.x, p.y, 0.0) } else { p };
     fields.set(0, |p| profile(flatten(p)).0).unwrap();
     let fraction = |i: i32, by: f64| (f64::from(i) * by).fract();
-    let mut places: Vec<Vec3> = (0..4000)
+    let mut points: Vec<Vec3> = (0..4000)
         .map(|i| Vec3::new(fraction(i, 0.819_172_5), fraction(i, 0.671_043_6), fraction(i, 0.549_700_4)))
         .collect();
-    places.extend([Vec3::zeros(), Vec3::new(1.0, 1.0, 1.0), Vec3::new(0.0, 0.5, 1.0), Vec3::new(1.0, 0.2, 0.0)]);
-    let places: Vec<Vec3> = places.into_iter().map(flatten).collect();
-    let mut sensed = vec![Sensed::default(); places.len()];
-    fields.sense_all(0, &places, &mut sensed);
-    places.iter().zip(&sensed).fold([0.0; 2], |worst, (p, sensed)| {
+    points.extend([Vec3::zeros(), Vec3::new(1.0, 1.0, 1.0), Vec3::new(0.0, 0.5, 1.0), Vec3::new(1.0, 0.2, 0.0)]);
+    let points: Vec<Vec3> = points.into_iter().map(flatten).collect();
+    let mut sensed = vec![Sensed::default(); points.len()];
+    fields.sense_all(0, &points, &mut sensed);
+    points.iter().zip(&sensed).fold([0.0; 2], |worst, (p, sensed)| {
         let (value, gradient) = profile(*p);
         [worst[0].max((sensed.value - value).abs()), worst[1].max((sensed.gradient - gradient).norm())]
     })

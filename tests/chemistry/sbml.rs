@@ -34,10 +34,10 @@ fn distance(folder: &Path) -> Result<f64, String> {
     let solution = solve(&model.system, times[0], times[times.len() - 1], &times, &options);
     let solved = solution.map_err(|trouble| trouble.to_string())?.values;
     let mut worst: f64 = 0.0;
-    for (place, column) in columns.iter().enumerate() {
-        let largest = rows.iter().map(|row| row[place + 1].abs()).fold(0.0, f64::max);
+    for (index, column) in columns.iter().enumerate() {
+        let largest = rows.iter().map(|row| row[index + 1].abs()).fold(0.0, f64::max);
         for (row, values) in rows.iter().zip(&solved) {
-            let off = (row[place + 1] - values[*column as usize]).abs();
+            let off = (row[index + 1] - values[*column as usize]).abs();
             worst = worst.max(if off == 0.0 { 0.0 } else { off / largest });
         }
     }

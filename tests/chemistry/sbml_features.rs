@@ -244,8 +244,8 @@ fn units_are_told_of_once() {
 /// The value of a formula at time 0.25.
 fn value(formula: &str) -> f64 {
     let model = read(3, 2, &rules(&[rule("assignmentRule", "p", formula)]));
-    let place = model.column("p").expect("p") as usize;
-    let Role::Defined { rule } = &model.system.quantities[place].role else { panic!("a rule") };
+    let index = model.column("p").expect("p") as usize;
+    let Role::Defined { rule } = &model.system.quantities[index].role else { panic!("a rule") };
     rule.evaluate(0.25, &|other| if Some(other) == model.column("two") { 2.0 } else { f64::NAN })
 }
 

@@ -193,7 +193,7 @@ const AROUND: [(&str, &str, &str); 8] = [
 ];
 
 #[test]
-fn what_is_not_well_formed_is_told_at_its_place() {
+fn what_is_not_well_formed_is_told_at_its_location() {
     for (text, part, marked) in MALFORMED.iter().chain(&AROUND) {
         let trouble = read(text).expect_err(text);
         let What::Malformed { message, help, .. } = trouble.what else { panic!("{text}: {trouble:?}") };
@@ -203,7 +203,7 @@ fn what_is_not_well_formed_is_told_at_its_place() {
 }
 
 #[test]
-fn what_has_no_place_in_a_document_is_refused() {
+fn what_does_not_belong_in_a_document_is_refused() {
     let refused = |text: &str, limits: Limits| {
         let trouble = Document::read(text, limits).expect_err(text);
         (trouble.what, trouble.at.start)

@@ -75,7 +75,7 @@ fn sources() -> Vec<PathBuf> {
 /// The path of a file below src, with `/` everywhere.
 fn name(path: &Path) -> String {
     let below = path.strip_prefix(Path::new(env!("CARGO_MANIFEST_DIR")).join("src")).expect("a file of src");
-    below.to_string_lossy().reposition('\\', "/")
+    below.to_string_lossy().replace('\\', "/")
 }
 
 /// The module of a file: the first part of its path.

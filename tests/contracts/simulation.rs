@@ -442,7 +442,9 @@ fn what_was_kept_of_later_times_is_dropped_by_going_back() {
 fn faults_of_a_document_keep_their_positions() {
     let error = Simulation::from_text("wrong.toml", &EXAMPLE.replace("drag", "darg")).unwrap_err();
     let SimulationError::Input(pseudopod::error::Error::Input(faults)) = &error else { panic!("{error:?}") };
-    assert!(faults.iter().any(|fault| fault.place.as_ref().is_some_and(|place| place.source.name == "wrong.toml")));
+    assert!(
+        faults.iter().any(|fault| fault.location.as_ref().is_some_and(|location| location.source.name == "wrong.toml"))
+    );
     assert!(std::error::Error::source(&error).is_none(), "the message is that of the faults themselves");
     let threads = Simulation::builder().threads(0).text("example", EXAMPLE).unwrap_err();
     assert_eq!(threads.to_string(), "a run cannot be made by 0 threads");

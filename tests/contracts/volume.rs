@@ -224,8 +224,8 @@ fn a_compressible_cell_under_an_outer_load_is_in_the_balance_of_its_equation_of_
 fn root(f: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
     let (mut low, mut high) = (low, high);
     // From above: the state next to rest, not the collapsed one.
-    let places = (0..=1000).map(|i| high - (high - low) * f64::from(i) / 1000.0).collect::<Vec<_>>();
-    if let Some(pair) = places.windows(2).find(|pair| f(pair[0]) * f(pair[1]) <= 0.0) {
+    let positions = (0..=1000).map(|i| high - (high - low) * f64::from(i) / 1000.0).collect::<Vec<_>>();
+    if let Some(pair) = positions.windows(2).find(|pair| f(pair[0]) * f(pair[1]) <= 0.0) {
         (high, low) = (pair[0], pair[1]);
     }
     for _ in 0..80 {

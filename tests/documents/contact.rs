@@ -111,7 +111,7 @@ fn cells_at_random_start_apart_and_above_the_planes() {
 }
 
 #[test]
-fn a_cell_that_has_room_at_once_is_where_it_is_without_contacts() {
+fn a_cell_that_fits_at_once_is_where_it_is_without_contacts() {
     let (with, without) = (compiled("[contact]\n"), compiled(""));
     let same = centres(&with).iter().zip(centres(&without)).filter(|(one, other)| **one == *other).count();
     // Spheres that drew a free place at once; the others drew again.
@@ -186,8 +186,8 @@ fn aggregates_are_what_links_join_and_pairs_are_what_touches() {
 fn linked_aggregates_merge_when_driven_together_and_split_where_the_pull_is_largest() {
     // Two linked pairs in a row. What pulls them apart acts on every cell, so that the link in the middle bears twice what the
     // others do.
-    let pair = |name: &str, places: [&str; 2], direction: i32| {
-        let [one, other] = places;
+    let pair = |name: &str, names_of: [&str; 2], direction: i32| {
+        let [one, other] = names_of;
         format!(
             r#"[cells.{name}]
 mesh = {{ shape = "icosphere", radius = "5 um", level = 1 }}

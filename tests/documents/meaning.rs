@@ -59,18 +59,18 @@ fn a_bare_zero_is_nothing_in_any_unit() {
 }
 
 #[test]
-fn a_key_is_placed_where_it_stands_and_a_default_at_the_table_around_it() {
+fn a_key_is_located_where_it_stands_and_a_default_at_the_table_around_it() {
     let document = everything(&["cells.ball.mesh.level=3"]);
     let marked = |path: &str| {
-        let place = document.place(path, "here")?;
-        Some(place.source.text[place.start..place.start + place.length].to_owned())
+        let location = document.location(path, "here")?;
+        Some(location.source.text[location.start..location.start + location.length].to_owned())
     };
     assert_eq!(marked("cells.red.fixed[0].atoms").as_deref(), Some("[0, 1]"));
     assert_eq!(marked("cells.red.loads[0].force[1][1]").as_deref(), Some("\"16 pN\""));
     assert_eq!(marked("cells.red.mechanics.volume.nothing").as_deref().map(|text| &text[..9]), Some("{ rule = "));
     assert_eq!(marked("output.nothing").as_deref(), Some("[output]"));
     assert_eq!(marked("nothing"), None);
-    let set = document.place("cells.ball.mesh.level", "here").expect("set");
+    let set = document.location("cells.ball.mesh.level", "here").expect("set");
     assert_eq!((set.source.name.as_str(), &set.source.text[set.start..]), ("--set cells.ball.mesh.level=…", "3"));
     assert!(document.says("output.every") && !document.says("output.nothing"));
 }

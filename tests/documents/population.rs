@@ -95,7 +95,7 @@ fn the_same_cells_come_and_go_for_any_threads_and_after_a_checkpoint() {
 }
 
 #[test]
-fn a_seeding_without_room_names_the_type_and_how_many_found_some() {
+fn a_seeding_without_space_names_the_type_and_how_many_fitted() {
     let crowded = DISH.replacen("number = 10\n", "number = 400\n", 1);
     let mut simulation = Simulation::from_text("dish.toml", &crowded).unwrap_or_else(|error| panic!("{error}"));
     let before = simulation.run_until(12.0).expect_err("400 cells do not fit").to_string();

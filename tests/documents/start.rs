@@ -12,7 +12,7 @@ use pseudopod::sim::{Workspace, step};
 use std::path::Path;
 
 /// Cells of 5 µm at these places, with more lines of their type.
-fn spheres(places: &str, more: &str) -> String {
+fn spheres(positions: &str, more: &str) -> String {
     format!(
         r#"
 title = "Spheres"
@@ -20,7 +20,7 @@ title = "Spheres"
 until = "0.2 s"
 [cells.ball]
 mesh = {{ shape = "icosphere", radius = "5 um", level = 1 }}
-placement = {places}
+placement = {positions}
 mechanics = {{ drag = "20 pN s/um", shape_memory = {{ shape_modulus = "50 pN/um" }} }}
 {more}
 [contact]
@@ -72,11 +72,11 @@ fn proximity(of: &Compiled) -> f64 {
 #[test]
 fn two_spheres_that_overlap_end_just_touching_where_their_common_centre_was() {
     // Along z the poles meet, so that the meshes touch as spheres do; obliquely they touch a little sooner.
-    for (places, poles) in [
+    for (positions, poles) in [
         (r#"{ at = [["0 um", "0 um", "-4.2 um"], ["0 um", "0 um", "4.2 um"]] }"#, true),
         (r#"{ at = [["-3 um", "1 um", "2 um"], ["3.5 um", "-2 um", "0.5 um"]] }"#, false),
     ] {
-        let (before, after, pushed) = settled(&spheres(places, ""));
+        let (before, after, pushed) = settled(&spheres(positions, ""));
         assert!(overlaps(&before) == 1 && overlaps(&after) == 0);
         let (was, is, near) = (centres(&before), centres(&after), proximity(&after));
         // Round-off of a few moves by micrometres.
@@ -132,7 +132,7 @@ normal = [0, 0, -1]
 }
 
 #[test]
-fn a_cell_on_a_floor_stays_on_it_and_the_one_above_makes_way() {
+fn a_cell_on_a_floor_stays_on_it_and_the_one_above_moves() {
     let stack = spheres(r#"{ at = [["0 um", "0 um", "5 um"], ["0 um", "0 um", "14 um"]] }"#, "");
     let (_, after, _) = settled(&format!("{stack}{}", planes(40.0)));
     let lowest = cells(&after).concat().iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
@@ -164,7 +164,7 @@ mechanics = { drag = "20 pN s/um" }
 }
 
 #[test]
-fn cells_deep_in_each_other_and_long_ways_are_refused() {
+fn cells_deep_in_each_other_and_long_moves_are_refused() {
     let words = refused(&spheres(r#"{ at = [["0 um", "0 um", "0 um"], ["4 um", "0 um", "0 um"]] }"#, ""));
     assert!(words.contains("too deep in each other"), "{words}");
     // Nine in a row at 7 µm: those at its ends would have to move by 12 µm.
@@ -182,8 +182,8 @@ placement = { at = [["12 um", "5 um", "0 um"]] }
 mechanics = { drag = "20 pN s/um", springs = { stiffness = "10 pN/um" } }
 fixed = [{ all = true }]
 "#;
-        let places = format!(r#"{{ at = [["0 um", "0 um", "{} um"]] }}"#, 3.5 * side);
-        let (_, after, pushed) = settled(&spheres(&places, sheet));
+        let positions = format!(r#"{{ at = [["0 um", "0 um", "{} um"]] }}"#, 3.5 * side);
+        let (_, after, pushed) = settled(&spheres(&positions, sheet));
         let z = centres(&after)[0].z * side;
         assert!(overlaps(&after) == 0 && pushed.cells == 1 && z > 4.0 && z < 6.0, "{z}");
     }

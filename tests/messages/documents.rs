@@ -69,13 +69,16 @@ fn a_document_that_is_not_there_is_looked_for_nearby() {
 }
 
 #[test]
-fn every_fault_of_a_document_has_a_place() {
+fn every_fault_of_a_document_has_a_location() {
     for path in documents() {
         let text = std::fs::read_to_string(&path).expect("a text");
         if let Err(Error::Input(faults)) = Document::read(&path, &sets(&text)) {
             for fault in faults {
-                let place = fault.place.unwrap_or_else(|| panic!("{}: {}", path.display(), fault.message));
-                assert!(place.source.text.get(place.start..place.start + place.length).is_some(), "inside the text");
+                let location = fault.location.unwrap_or_else(|| panic!("{}: {}", path.display(), fault.message));
+                assert!(
+                    location.source.text.get(location.start..location.start + location.length).is_some(),
+                    "inside the text"
+                );
                 assert!(fault.help.is_some(), "{}: {} says what to do", path.display(), fault.message);
             }
         }
@@ -132,7 +135,7 @@ fn every_measure_that_cannot_be_taken_says_why() {
     let taken: Vec<&str> = measures.iter().map(|measure| measure.name.as_str()).collect();
     assert!(taken.is_empty(), "can be taken: {taken:?}");
     assert!(
-        faults.iter().all(|fault| fault.help.is_some() && fault.place.is_some()),
+        faults.iter().all(|fault| fault.help.is_some() && fault.location.is_some()),
         "each says what to do, and where"
     );
     let message = render(&Error::Input(faults), Paint::Plain).replace(&folder.path().display().to_string(), "FOLDER");

@@ -42,12 +42,15 @@ fn every_bad_document_gets_the_message_beside_it() {
 }
 
 #[test]
-fn every_fault_of_a_document_has_a_place_and_says_what_to_do() {
+fn every_fault_of_a_document_has_a_location_and_says_what_to_do() {
     for (path, text) in documents() {
         let Err(Error::Input(faults)) = read(&path, text) else { continue };
         for fault in faults {
-            let place = fault.place.unwrap_or_else(|| panic!("{}: {}", path.display(), fault.message));
-            assert!(place.source.text.get(place.start..place.start + place.length).is_some(), "inside the text");
+            let location = fault.location.unwrap_or_else(|| panic!("{}: {}", path.display(), fault.message));
+            assert!(
+                location.source.text.get(location.start..location.start + location.length).is_some(),
+                "inside the text"
+            );
             assert!(fault.help.is_some_and(|help| !help.is_empty()), "{}: {}", path.display(), fault.message);
         }
     }

@@ -17,12 +17,12 @@ fn refusal(path: &Path) -> String {
 
 fn describe(fault: &Fault) -> String {
     let mut text = format!("{}\n", fault.message);
-    if let Some(place) = &fault.place {
-        let before = &place.source.text[..place.start];
+    if let Some(location) = &fault.location {
+        let before = &location.source.text[..location.start];
         let line = before.matches('\n').count() + 1;
         let column = before.len() - before.rfind('\n').map_or(0, |end| end + 1) + 1;
-        let marked = &place.source.text[place.start..place.start + place.length];
-        writeln!(text, "  at {}:{line}:{column} `{marked}`: {}", place.source.name, place.label).unwrap();
+        let marked = &location.source.text[location.start..location.start + location.length];
+        writeln!(text, "  at {}:{line}:{column} `{marked}`: {}", location.source.name, location.label).unwrap();
     }
     if let Some(help) = &fault.help {
         writeln!(text, "  help: {help}").unwrap();

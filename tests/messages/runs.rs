@@ -112,12 +112,12 @@ fn every_refusal_says_what_to_do_and_ends_as_promised() {
             if part.lines().next().is_some_and(|command| command.contains(" && ") || command.contains(" | ")) {
                 continue;
             }
-            let place = format!("{}: {part}", path.display());
-            assert!(["1", "2", "3", "130"].contains(&code), "{place}");
+            let part_of = format!("{}: {part}", path.display());
+            assert!(["1", "2", "3", "130"].contains(&code), "{part_of}");
             let helps = part.contains("help: ") || part.contains("\"help\": ") || part.contains("--help");
             // Words that went to a file are shown by the next command of the transcript.
-            assert!(helps || part.contains("2> words"), "{place}");
-            assert!(!part.contains("panicked") && !part.contains("RUST_BACKTRACE"), "{place}");
+            assert!(helps || part.contains("2> words"), "{part_of}");
+            assert!(!part.contains("panicked") && !part.contains("RUST_BACKTRACE"), "{part_of}");
         }
     }
 }

@@ -41,14 +41,17 @@ fn every_bad_model_gets_the_message_beside_it() {
 }
 
 #[test]
-fn every_fault_of_a_model_has_a_place_and_says_what_to_do() {
+fn every_fault_of_a_model_has_a_location_and_says_what_to_do() {
     for path in texts() {
         let Err(Error::Input(faults)) = read("model", std::fs::read_to_string(&path).expect("a text")) else {
             continue;
         };
         for fault in faults {
-            let place = fault.place.unwrap_or_else(|| panic!("{}: {}", path.display(), fault.message));
-            assert!(place.source.text.get(place.start..place.start + place.length).is_some(), "inside the text");
+            let location = fault.location.unwrap_or_else(|| panic!("{}: {}", path.display(), fault.message));
+            assert!(
+                location.source.text.get(location.start..location.start + location.length).is_some(),
+                "inside the text"
+            );
             assert!(fault.help.is_some(), "{}: {} says what to do", path.display(), fault.message);
         }
     }

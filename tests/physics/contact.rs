@@ -61,7 +61,7 @@ fn model(mut kinds: Vec<Kind>, integrator: Integrator, until: f64, strength: Str
 }
 
 /// Cells of a kind at centres.
-fn places(kind: &Kind, centres: &[Vec3]) -> Vec<Vec<Vec3>> {
+fn atoms_at(kind: &Kind, centres: &[Vec3]) -> Vec<Vec<Vec3>> {
     centres.iter().map(|centre| kind.rest.positions.iter().map(|x| x + centre).collect()).collect()
 }
 
@@ -98,7 +98,7 @@ fn a_cell_that_hangs_on_a_rigid_one_is_held_with_its_load_whatever_the_step() {
             soft.forces.push(load(direction, &[(0.0, -8.0), (20.0, -8.0), (21.0, 8.0), (160.0, 8.0)]));
             let model = model(vec![rigid, soft], adaptive(largest), 160.0, GLUE);
             let centres = [Vec3::zeros(), Vec3::new(0.0, 0.0, 2.0 * RADIUS + 0.1)];
-            let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
+            let mut state = State::new(&model, &[0, 1].map(|i| atoms_at(&model.kinds[i], &centres[i..=i])));
             let rows = run(&model, &mut state, |_, ws| force_from(ws, 42));
             let (_, end) = rows.last().unwrap();
             assert!((end + 8.0 * direction).norm() < 8e-3, "{largest}: {end:?}");
@@ -126,11 +126,11 @@ fn sheets_part_at(tensile: f64, largest: f64, parts: u32) -> f64 {
     let force = Course::through(vec![(0.0, 0.0), (100.0, 60.0)]).unwrap();
     soft.forces.push(Force::Load(Load::new("pull", atoms, Vec3::z(), force)));
     let model = model(vec![rigid, soft], adaptive(largest), 100.0, Strength { tensile, shear: 0.0, energy: 0.0 });
-    let places = [(0, 0.0), (1, 0.02)].map(|(kind, height)| {
+    let atoms_at = [(0, 0.0), (1, 0.02)].map(|(kind, height)| {
         let shifted = |x: &Vec3| x + Vec3::new(0.0, 0.0, height);
         vec![model.kinds[kind].rest.positions.iter().map(shifted).collect()]
     });
-    let mut state = State::new(&model, &places);
+    let mut state = State::new(&model, &atoms_at);
     let rows = run(&model, &mut state, |_, ws| -force_from(ws, own.len() as u32).z);
     assert_eq!(rows.last().unwrap().1, 0.0, "they are apart in the end");
     rows.into_iter().map(|(_, force)| force).fold(0.0, f64::max)
@@ -157,13 +157,13 @@ fn a_sheet_pressed_onto_another_stays_on_its_side() {
         let force = Course::through(vec![(0.0, 0.0), (50.0, 60.0)]).unwrap();
         soft.forces.push(Force::Load(Load::new("press", atoms, -Vec3::z(), force)));
         let above: Vec<Vec3> = soft.rest.positions.iter().map(|x| x + Vec3::new(0.013, 0.007, 0.02)).collect();
-        let (mut kinds, mut places) = (vec![rigid.clone(), soft], vec![vec![rigid.rest.positions], vec![above]]);
+        let (mut kinds, mut atoms_at) = (vec![rigid.clone(), soft], vec![vec![rigid.rest.positions], vec![above]]);
         if is_first {
             kinds.reverse();
-            places.reverse();
+            atoms_at.reverse();
         }
         let (model, number) = (model(kinds, adaptive(0.5), 50.0, Strength::default()), usize::from(!is_first));
-        let mut state = State::new(&model, &places);
+        let mut state = State::new(&model, &atoms_at);
         let lowest = |state: &State| {
             let atoms = state.kinds[number].cell(&model.kinds[number], 0);
             atoms.iter().map(|x| x.z).fold(f64::INFINITY, f64::min)
@@ -185,7 +185,7 @@ fn parting(tensile: f64, shear: f64, largest: f64) -> (f64, f64) {
     pair[1].forces.push(load(-Vec3::x(), &course));
     let model = model(pair.into(), adaptive(largest), 121.0, Strength { tensile, shear, energy: 0.0 });
     let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
-    let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
+    let mut state = State::new(&model, &[0, 1].map(|i| atoms_at(&model.kinds[i], &centres[i..=i])));
     let rows = run(&model, &mut state, |_, ws| {
         let bears: f64 = ws.contact.rows.iter().map(|row| f64::from(row.least) * row.normal().x.abs()).sum();
         (-force_from(ws, 42).x, -bears)
@@ -295,12 +295,12 @@ fn gathered(seed: u64, cells: usize, pull: f64, strength: Strength) -> (Model, S
     let mut centres: Vec<Vec3> = Vec::new();
     while centres.len() < cells {
         let ([x, y], [z, _]) = (dice.uniform_pair(), dice.uniform_pair());
-        let place = (Vec3::new(x, y, z) - Vec3::repeat(0.5)) * 40.0;
-        if centres.iter().all(|other| (other - place).norm() > 2.0 * RADIUS + 0.3) {
-            centres.push(place);
+        let position = (Vec3::new(x, y, z) - Vec3::repeat(0.5)) * 40.0;
+        if centres.iter().all(|other| (other - position).norm() > 2.0 * RADIUS + 0.3) {
+            centres.push(position);
         }
     }
-    let state = State::new(&model, &[places(&model.kinds[0], &centres)]);
+    let state = State::new(&model, &[atoms_at(&model.kinds[0], &centres)]);
     (model, state)
 }
 
@@ -365,7 +365,7 @@ fn cells_inside_each_other_are_seen_whatever_their_contacts_say() {
     let model = model(vec![kind], adaptive(0.1), 1.0, GLUE);
     let at = |x: f64| {
         let centres = [Vec3::zeros(), Vec3::new(30.0, 0.0, 0.0), Vec3::new(30.0 + x, 0.0, 0.0)];
-        check_passed(&model, &State::new(&model, &[places(&model.kinds[0], &centres)]))
+        check_passed(&model, &State::new(&model, &[atoms_at(&model.kinds[0], &centres)]))
     };
     assert_eq!(at(2.0 * RADIUS), Ok(()), "side by side");
     // Far deeper than contacts are found.
@@ -383,7 +383,7 @@ fn contacts_that_do_not_come_to_rest_end_a_run_name_the_cells_and_leave_the_stat
     pair[1].forces.push(load(-Vec3::x(), &[(0.0, 10.0), (10.0, 10.0)]));
     let mut model = model(pair.into(), adaptive(0.1), 10.0, Strength::default());
     let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
-    let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
+    let mut state = State::new(&model, &[0, 1].map(|i| atoms_at(&model.kinds[i], &centres[i..=i])));
     let mut ws = Workspace::new(&model);
     while state.time < 5.0 {
         step(&model, &mut state, &mut ws).unwrap();
@@ -417,7 +417,7 @@ fn the_help_for_contacts_that_fail_fits_what_the_cells_look_like() {
     let kinds = || vec![cell("left", 5.0), cell("right", 5.0)];
     let centres = [-1.0, 1.0].map(|side| Vec3::new(side * (RADIUS + 0.1), 0.0, 0.0));
     let model = model(kinds(), adaptive(0.1), 10.0, Strength::default());
-    let apart = |centres: &[Vec3]| [0, 1].map(|i| places(&model.kinds[i], &centres[i..=i]));
+    let apart = |centres: &[Vec3]| [0, 1].map(|i| atoms_at(&model.kinds[i], &centres[i..=i]));
     let open = advice(&model, &State::new(&model, &apart(&centres)));
     assert!(open.contains("move or yield faster than contacts follow"), "{open}");
     // An atom is pushed through to the other side of its cell.
@@ -447,7 +447,7 @@ fn explicit_steps_press_as_implicit_ones_do() {
     let integrator = Integrator { method: Method::Explicit, size: StepSize::Fixed(5e-3) };
     let model = model(vec![rigid, soft], integrator, 160.0, GLUE);
     let centres = [Vec3::zeros(), Vec3::new(0.0, 0.0, 2.0 * RADIUS + 0.1)];
-    let mut state = State::new(&model, &[0, 1].map(|i| places(&model.kinds[i], &centres[i..=i])));
+    let mut state = State::new(&model, &[0, 1].map(|i| atoms_at(&model.kinds[i], &centres[i..=i])));
     let (_, end) = *run(&model, &mut state, |_, ws| force_from(ws, 42)).last().unwrap();
     // Sweeps end when they move nothing by more than 1e-4 edges; in a step so short that is this force on an atom.
     let open = 1e-4 * model.kinds[1].edge * model.kinds[1].drag / 5e-3;

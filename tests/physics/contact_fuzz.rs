@@ -254,9 +254,9 @@ fn check_strength(scene: &Scene, model: &Model, state: &State, ws: &Workspace, s
     let of_atoms = bonds.atoms.iter().map(|bond| {
         let (own, other) = (body_of(bond.atom), bond.body(on) as usize);
         let strength = if own == other { [0.0; 2] } else { scene.between[kind_of(own)][kind_of(other)] };
-        let places =
+        let shared_by =
             bonds.atoms.iter().filter(|other| (other.atom, other.body(on)) == (bond.atom, bond.body(on))).count();
-        (strength, 0.5 * area_of(bond.atom) / places as f64)
+        (strength, 0.5 * area_of(bond.atom) / shared_by as f64)
     });
     // Of edges only those are kept that carry a force.
     let edges = s.rows.iter().filter(|row| row.pairing == Pairing::Edges).count();
@@ -306,14 +306,14 @@ fn check_inside(model: &Model, state: &State, cells: &[CellMeasure]) -> Result<(
             let (low, high) = boxes[other];
             for &[a, b] in &scene.shape(one as u32).edges {
                 for part in 0..=8 {
-                    let place = cell.positions[a as usize].lerp(&cell.positions[b as usize], f64::from(part) / 8.0);
-                    if (0..3).any(|axis| place[axis] < low[axis] || place[axis] > high[axis])
-                        || winding_number(place, there, &shape.facets) < 0.5
+                    let point = cell.positions[a as usize].lerp(&cell.positions[b as usize], f64::from(part) / 8.0);
+                    if (0..3).any(|axis| point[axis] < low[axis] || point[axis] > high[axis])
+                        || winding_number(point, there, &shape.facets) < 0.5
                     {
                         continue;
                     }
                     let corners = shape.facets.iter().map(|facet| facet.map(|corner| there[corner as usize]));
-                    let depths = corners.map(|corners| closest_on_facet(place, corners).offset.norm());
+                    let depths = corners.map(|corners| closest_on_facet(point, corners).offset.norm());
                     let depth = depths.fold(f64::INFINITY, f64::min) / edge;
                     if depth > DEEPEST {
                         return Err(format!("an edge of cell {one} is {depth:.4} edges inside cell {other}"));

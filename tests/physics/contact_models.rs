@@ -61,25 +61,25 @@ fn model(mut kinds: Vec<Kind>, until: f64, binds: impl Fn(usize, usize) -> bool)
 }
 
 /// The atoms of a cell of a kind around a centre, turned a little so that nothing is symmetric.
-fn place(kind: &Kind, centre: Vec3, angle: f64) -> Vec<Vec3> {
+fn atoms_at(kind: &Kind, centre: Vec3, angle: f64) -> Vec<Vec3> {
     let turn = nalgebra::Rotation3::new(Vec3::new(0.3, 0.5, 0.8).normalize() * angle);
     kind.rest.positions.iter().map(|x| turn * x + centre).collect()
 }
 
 /// Two cells on the x axis whose surfaces are nearer than the proximity.
 fn pair(model: &Model) -> State {
-    let places = |gap: f64| {
+    let start_at = |gap: f64| {
         let ahead = Vec3::new(gap, 0.4, -0.3);
-        [vec![place(&model.kinds[0], Vec3::zeros(), 0.2)], vec![place(&model.kinds[1], ahead, 0.9)]]
+        [vec![atoms_at(&model.kinds[0], Vec3::zeros(), 0.2)], vec![atoms_at(&model.kinds[1], ahead, 0.9)]]
     };
     let gap = |apart: f64| {
-        let state = State::new(model, &places(apart));
+        let state = State::new(model, &start_at(apart));
         detect(&scene(model, &state), &positions(model, &state)).smallest_gap()
     };
     // Down from where nothing touches.
     let apart =
         (0..400).map(|i| 12.0 - 0.01 * f64::from(i)).find(|apart| gap(*apart) < 0.3 * 0.1 * model.kinds[0].edge);
-    State::new(model, &places(apart.expect("they touch")))
+    State::new(model, &start_at(apart.expect("they touch")))
 }
 
 /// Contacts of the cells of a state.
@@ -176,8 +176,8 @@ fn a_link_joins_every_atom_of_both_facets_by_the_nearest_pairs_and_a_facet_has_o
         let [a, b, c] = link.pairs.map(|pair| pair[0]);
         let [p, q, r] = link.pairs.map(|pair| pair[1]);
         let sum = |[p, q, r]: [u32; 3]| length(a, p) + length(b, q) + length(c, r);
-        let ways = [[p, q, r], [p, r, q], [q, p, r], [q, r, p], [r, p, q], [r, q, p]];
-        assert!(ways.into_iter().all(|way| sum(way) >= sum([p, q, r])), "no other way is shorter");
+        let spans = [[p, q, r], [p, r, q], [q, p, r], [q, r, p], [r, p, q], [r, q, p]];
+        assert!(spans.into_iter().all(|span| sum(span) >= sum([p, q, r])), "no other way is shorter");
     }
     let number = facets.len();
     facets.sort_unstable();
@@ -381,9 +381,9 @@ fn impulse_left(tolerance: f64) -> f64 {
             impulse += report.dt * (borne(&ws, &state) - 5.0 * Vec3::x());
         }
     }
-    let (time, place) = began.expect("there are steps after 30 s");
+    let (time, atoms_at) = began.expect("there are steps after 30 s");
     let load = 5.0 * (state.time - time);
-    let left = impulse - 20.0 * (mean(&state) - place);
+    let left = impulse - 20.0 * (mean(&state) - atoms_at);
     println!("{left:?} left of {load} pN s, in {} steps", state.step);
     left.norm() / load
 }

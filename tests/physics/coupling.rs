@@ -41,7 +41,7 @@ fn a_cell_that_swims_by_its_own_position_follows_the_exponential_to_first_order(
         text += "placement = { at = [[\"10 um\", \"0 um\", \"0 um\"]] }\n";
         let mut scene = scene(&[("own", eml)], &text);
         scene.run();
-        (scene.place(0, 0) - 10.0 * (-1.0_f64).exp()).abs()
+        (scene.position(0, 0) - 10.0 * (-1.0_f64).exp()).abs()
     };
     let (coarse, fine) = (error("0.2 s"), error("0.1 s"));
     let order = (coarse / fine).log2();
@@ -134,9 +134,9 @@ fn walks_loads_and_volumes_obey() {
            loads = [{ name = \"push\", all = true, direction = [0, 0, 1], force = \"1 nN\" }]\n";
     let mut scene = scene(&[("own", own)], &text);
     scene.run();
-    let way = scene.place(0, 0).hypot(scene.place(0, 1));
-    assert!((way - 0.75).abs() < 1e-9, "0.25 um/s for 3 s, straight: {way}");
-    assert!(scene.place(0, 2).abs() < 1e-9, "a load of factor 0 does nothing: {}", scene.place(0, 2));
+    let travelled = scene.position(0, 0).hypot(scene.position(0, 1));
+    assert!((travelled - 0.75).abs() < 1e-9, "0.25 um/s for 3 s, straight: {travelled}");
+    assert!(scene.position(0, 2).abs() < 1e-9, "a load of factor 0 does nothing: {}", scene.position(0, 2));
     assert!((scene.value(0, "strain", 0) - 0.2).abs() < 1e-9);
     let rest = pseudopod::geometry::volume(&scene.compiled.model.kinds[0].rest);
     assert!((scene.value(0, "volume", 0) / rest - 1.2).abs() < 1e-10);
@@ -179,7 +179,7 @@ fn systems_read_each_other_and_the_means_of_types() {
     assert_eq!(scene.value(1, "twice", 0), 4.0);
     assert!((scene.value(1, "mean_x", 0) - 20.0).abs() < 1e-9);
     for cell in 0..2 {
-        assert!((scene.place(cell, 1) - 0.8).abs() < 1e-9, "0.4 um/s for 2 s");
+        assert!((scene.position(cell, 1) - 0.8).abs() < 1e-9, "0.4 um/s for 2 s");
     }
 }
 
@@ -351,8 +351,8 @@ fn an_sbml_model_stands_where_an_eml_document_can() {
     let exact = |t: f64| 2.0 * (-0.5 * t).exp();
     assert!((scene.value(0, "S", 0) / exact(4.0) - 1.0).abs() < 1e-7, "the link has set the model's parameter");
     // Each step is made with the amount at its start.
-    let way: f64 = (0..40).map(|n| 0.1 * 0.1 * exact(0.1 * f64::from(n))).sum();
-    assert!((scene.place(0, 0) - way).abs() < 1e-7, "{} against {way}", scene.place(0, 0));
+    let travelled: f64 = (0..40).map(|n| 0.1 * 0.1 * exact(0.1 * f64::from(n))).sum();
+    assert!((scene.position(0, 0) - travelled).abs() < 1e-7, "{} against {travelled}", scene.position(0, 0));
 }
 
 #[test]

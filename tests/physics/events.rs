@@ -58,10 +58,10 @@ fn a_ball_bounces_in_windows_of_any_length_when_it_should() {
         let mut scene = alone(BALL, "3 s", step);
         let (times, rows): (Vec<f64>, Vec<_>) = scene.rows_until(3.0, values).into_iter().unzip();
         for ((time, row), single) in times.iter().zip(&rows).zip(solved(BALL, &times)) {
-            for (place, exact) in ball(*time).into_iter().enumerate() {
+            for (index, exact) in ball(*time).into_iter().enumerate() {
                 // Parabolas are exact for the method; only the times of the bounces have an error, of round-off.
-                assert!((row[place] - exact).abs() < 1e-9, "{step}, {time}: {row:?} instead of {exact}");
-                assert!((row[place] - single[place]).abs() < 1e-9, "{step}, {time}: {row:?} and alone {single:?}");
+                assert!((row[index] - exact).abs() < 1e-9, "{step}, {time}: {row:?} instead of {exact}");
+                assert!((row[index] - single[index]).abs() < 1e-9, "{step}, {time}: {row:?} and alone {single:?}");
             }
         }
         assert_eq!(rows[rows.len() - 1][2], 6.0, "the sixth bounce is at 2.68 s");

@@ -20,8 +20,8 @@ fn drawn_together(cells: usize, size: StepSize) -> f64 {
     kind.bound_stiffness();
     let integrator = Integrator { method: Method::Implicit { order: Order::Second }, size };
     let model = Model::of(vec![kind], integrator, 5.0);
-    let places = vec![model.kinds[0].rest.positions.clone(); cells];
-    let mut state = State::new(&model, &[places]);
+    let positions = vec![model.kinds[0].rest.positions.clone(); cells];
+    let mut state = State::new(&model, &[positions]);
     let mut ws = Workspace::new(&model);
     while state.time < model.until {
         step(&model, &mut state, &mut ws).unwrap();

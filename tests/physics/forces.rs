@@ -36,8 +36,8 @@ fn every_force_that_says_so_is_the_gradient_of_its_energy() {
         let (energy, forces) = on(&case.force, &positions);
         assert!(energy.abs() > 1e-3, "{}: the test must wake the force, its energy is {energy}", case.name);
         // Central differences: 1e-10 of the third derivative, which is largest in the barrier, and round-off 1e-16/1e-5.
-        let (error, place) = gradient_error(&case.force, &positions, &forces);
-        assert!(error < 1e-7, "{}, {place}: off by {error:e} of the largest force", case.name);
+        let (error, at) = gradient_error(&case.force, &positions, &forces);
+        assert!(error < 1e-7, "{}, {at}: off by {error:e} of the largest force", case.name);
     }
 }
 

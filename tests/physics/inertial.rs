@@ -175,7 +175,7 @@ fn a_free_cell_keeps_its_volume_its_momentum_and_its_spin_at_rest() {
             let now = Surface { positions: state.kinds[0].cell(&model.kinds[0], 0), ..model.kinds[0].rest.clone() };
             assert!((geometry::volume(&now) / target - 1.0).abs() < 1e-10, "{method:?}");
         }
-        let middle = |places: &[Vec3]| places.iter().sum::<Vec3>() / places.len() as f64;
+        let middle = |positions: &[Vec3]| positions.iter().sum::<Vec3>() / positions.len() as f64;
         let drift = (middle(&state.kinds[0].cell(&model.kinds[0], 0)) - middle(&shape)).norm();
         // Round-off of two thousand steps of a few micrometres.
         assert!(drift < 1e-11, "{method:?}: {drift}");

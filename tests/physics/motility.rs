@@ -23,15 +23,15 @@ fn walks(space: Space) -> (Array3<f64>, Vec<(f64, f64)>) {
     let mut runs = Vec::new();
     for walker in 0..WALKERS {
         let mut walk = motility.start(SEED, walker as u64);
-        let mut place = Vec3::zeros();
+        let mut position = Vec3::zeros();
         for frame in 1..FRAMES {
             let began = (frame - 1) as f64 * INTERVAL;
             let velocity = motility.advance(SEED, walker as u64, &mut walk, INTERVAL, |duration, offset| {
                 runs.push((duration, began + offset - duration));
             });
-            place += INTERVAL * velocity;
+            position += INTERVAL * velocity;
             for axis in 0..3 {
-                positions[[frame, walker, axis]] = place[axis];
+                positions[[frame, walker, axis]] = position[axis];
             }
         }
     }

@@ -125,8 +125,8 @@ fn a_drop_whose_atoms_were_crowded_regains_even_facets_and_stays_a_ball_where_it
     println!("radius {mean}, scatter {scatter:e}");
     assert!(scatter < 0.011, "{scatter}");
     // Nothing drives it: drag is on atoms, and their mean stays to round-off.
-    let mean_place = |surface: &Surface| surface.positions.iter().sum::<Vec3>() / surface.positions.len() as f64;
-    let moved = (mean_place(&end) - mean_place(&begun)).norm();
+    let mean_position = |surface: &Surface| surface.positions.iter().sum::<Vec3>() / surface.positions.len() as f64;
+    let moved = (mean_position(&end) - mean_position(&begun)).norm();
     assert!(moved < 1e-9, "{moved}");
 }
 

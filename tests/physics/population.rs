@@ -230,11 +230,11 @@ fn lanes_are_filled_and_emptied_in_any_order() {
         kind.behaviours = vec![Behaviour::Brownian(walk)];
         let integrator = Integrator { method: Method::Implicit { order: Order::Second }, size: STEP };
         let model = Model::of(vec![kind], integrator, 1e9);
-        let places = |count: usize| -> Vec<Vec<Vec3>> {
+        let atoms_of = |count: usize| -> Vec<Vec<Vec3>> {
             (0..count).map(|n| at(&model, 0, [20.0 * n as f64, 0.0, 0.0]).positions).collect()
         };
-        let (mut all, mut ws) = (State::new(&model, &[places(20)]), Workspace::new(&model));
-        let (mut some, mut other) = (State::new(&model, &[places(3)]), Workspace::new(&model));
+        let (mut all, mut ws) = (State::new(&model, &[atoms_of(20)]), Workspace::new(&model));
+        let (mut some, mut other) = (State::new(&model, &[atoms_of(3)]), Workspace::new(&model));
         let rest: Vec<NewCell> = (3..20).map(|n| at(&model, 0, [20.0 * f64::from(n), 0.0, 0.0])).collect();
         add_cells(&model, &mut some, &mut other, 0, &rest[..9]).unwrap();
         add_cells(&model, &mut some, &mut other, 0, &rest[9..]).unwrap();

@@ -36,8 +36,8 @@ fn stretched(kind: &Kind, factor: f64) -> Vec<Vec3> {
     kind.rest.positions.iter().map(drawn).collect()
 }
 
-fn start(model: &Model, places: Vec<Vec<Vec3>>) -> (State, Workspace) {
-    (State::new(model, &[places]), Workspace::new(model))
+fn start(model: &Model, positions: Vec<Vec<Vec3>>) -> (State, Workspace) {
+    (State::new(model, &[positions]), Workspace::new(model))
 }
 
 fn run_until_end(model: &Model, state: &mut State, ws: &mut Workspace) -> u32 {
@@ -55,8 +55,8 @@ fn a_stretched_cell_relaxes_to_its_rest_shape_with_exact_volume() {
         let kind = sphere_kind(level, 10.0);
         let rest = kind.rest.clone();
         let model = model_of(kind, SECOND, ADAPTIVE, 500.0);
-        let places = stretched(&model.kinds[0], 1.4);
-        let (mut state, mut ws) = start(&model, vec![places]);
+        let positions = stretched(&model.kinds[0], 1.4);
+        let (mut state, mut ws) = start(&model, vec![positions]);
         let target = geometry::volume(&rest);
         let mut steps = 0;
         while state.time < model.until {
@@ -75,8 +75,8 @@ fn a_stretched_cell_relaxes_to_its_rest_shape_with_exact_volume() {
 
 fn shape_after(method: Method, dt: f64, until: f64) -> Vec<Vec3> {
     let model = model_of(sphere_kind(1, 10.0), method, StepSize::Fixed(dt), until);
-    let places = stretched(&model.kinds[0], 1.3);
-    let (mut state, mut ws) = start(&model, vec![places]);
+    let positions = stretched(&model.kinds[0], 1.3);
+    let (mut state, mut ws) = start(&model, vec![positions]);
     run_until_end(&model, &mut state, &mut ws);
     state.kinds[0].cell(&model.kinds[0], 0)
 }
@@ -104,10 +104,10 @@ fn a_constant_force_moves_a_cell_rigidly_at_force_over_drag() {
     kind.mass = 2.0;
     kind.forces.push(Force::Gravity(Gravity { acceleration: Vec3::new(0.1, 0.0, -0.3) }));
     let model = model_of(kind, SECOND, StepSize::Fixed(3.0), 30.0);
-    let places = model.kinds[0].rest.positions.clone();
-    let (mut state, mut ws) = start(&model, vec![places.clone()]);
+    let positions = model.kinds[0].rest.positions.clone();
+    let (mut state, mut ws) = start(&model, vec![positions.clone()]);
     run_until_end(&model, &mut state, &mut ws);
-    let moved: Vec<Vec3> = places.iter().map(|p| p + Vec3::new(6.0, 0.0, -18.0)).collect();
+    let moved: Vec<Vec3> = positions.iter().map(|p| p + Vec3::new(6.0, 0.0, -18.0)).collect();
     // Round-off of ten steps.
     assert!(distance(&state.kinds[0].cell(&model.kinds[0], 0), &moved) < 1e-11);
 }
@@ -129,8 +129,8 @@ fn steps_of_a_long_pull(cells: usize) -> (u32, f64) {
     kind.bound_stiffness();
     kind.drag = 0.01;
     let model = model_of(kind, SECOND, ADAPTIVE, 2.0);
-    let places = model.kinds[0].rest.positions.clone();
-    let (mut state, mut ws) = start(&model, vec![places; cells]);
+    let positions = model.kinds[0].rest.positions.clone();
+    let (mut state, mut ws) = start(&model, vec![positions; cells]);
     let steps = run_until_end(&model, &mut state, &mut ws);
     let end = state.kinds[0].cell(&model.kinds[0], 0);
     (steps, end.iter().map(|p| p.z).fold(0.0, f64::max))
@@ -207,8 +207,8 @@ fn a_cell_on_a_plane_rests_in_balance_whatever_the_step() {
         let mut model = model_of(kind, SECOND, size, 400.0);
         let normal = Vec3::z();
         model.planes = vec![Plane { name: "ground".into(), point: Vec3::zeros(), normal }];
-        let places = model.kinds[0].rest.positions.iter().map(|p| p + Vec3::new(0.0, 0.0, 5.0)).collect();
-        let (mut state, mut ws) = start(&model, vec![places]);
+        let positions = model.kinds[0].rest.positions.iter().map(|p| p + Vec3::new(0.0, 0.0, 5.0)).collect();
+        let (mut state, mut ws) = start(&model, vec![positions]);
         let steps = run_until_end(&model, &mut state, &mut ws);
         let end = state.kinds[0].cell(&model.kinds[0], 0);
         let low = end.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);

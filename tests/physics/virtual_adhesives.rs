@@ -62,10 +62,10 @@ const IMPLICIT: Method = Method::Implicit { order: Order::Second };
 
 /// One cell of each kind, moved from where it is at rest.
 fn state(model: &Model, at: &[Vec3]) -> State {
-    let places: Vec<_> = (model.kinds.iter().zip(at))
+    let positions: Vec<_> = (model.kinds.iter().zip(at))
         .map(|(kind, at)| vec![kind.rest.positions.iter().map(|x| x + at).collect()])
         .collect();
-    State::new(model, &places)
+    State::new(model, &positions)
 }
 
 fn positions(model: &Model, state: &State) -> Vec<Vec3> {

@@ -72,8 +72,8 @@ fn pictures_colour_by_what_the_atoms_have() {
         let picture = Picture { colour_by: name.into(), width: 160, height: 90, loads: true, ..Picture::default() };
         still(&file, &document, &picture).unwrap();
     }
-    let places = file.positions(0).unwrap();
-    let curvature = AtomQuantity::Curvature.of_frame(&file, 0, &places).unwrap();
+    let positions = file.positions(0).unwrap();
+    let curvature = AtomQuantity::Curvature.of_frame(&file, 0, &positions).unwrap();
     // A sphere of 5 µm; 42 atoms know its curvature to a few percent.
     assert!(curvature.iter().all(|h| (h - 0.2).abs() < 0.02), "{curvature:?}");
     let moved = AtomQuantity::Displacement.of_frame(&file, 4, &file.positions(4).unwrap()).unwrap();

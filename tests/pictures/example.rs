@@ -76,14 +76,14 @@ fn frame(layout: &Layout, number: usize) -> Frame {
     let time = number as f64;
     let sphere = icosphere(5.0, 2);
     let centre = |n: usize| [CENTRES[n][0] + 0.3 * time, CENTRES[n][1], CENTRES[n][2]];
-    let place = |field: &FieldLayout, at: usize| {
+    let position = |field: &FieldLayout, at: usize| {
         let [nx, ny, _] = field.cells;
         let index = [at % nx, at / nx % ny, at / (nx * ny)];
         let along = |k: usize| field.origin[k] + (index[k] as f64 + 0.5) * field.spacing[k];
         [along(0), along(1), along(2)]
     };
     let values = |field: &FieldLayout, value: &dyn Fn([f64; 3]) -> f64| -> Vec<f64> {
-        (0..field.len()).map(|at| value(place(field, at))).collect()
+        (0..field.len()).map(|at| value(position(field, at))).collect()
     };
     let (flat, medium) = (&layout.fields[0], &layout.fields[1]);
     let clock = |phase: f64| vec![(time + phase).sin(), (time + phase + 1.0).sin(), f64::NAN];

@@ -53,7 +53,10 @@ fn atoms_move_from_where_their_cell_was_first_seen() {
     let moved = AtomQuantity::Displacement.of_frame(&result, 3, &result.positions(3).unwrap()).unwrap();
     // The frame has the cells 2 and 1, seen first in frames 2 and 1; all go 2 µm a frame.
     let (of_two, of_one) = moved.split_at(moved.len() / 2);
-    assert!(of_two.iter().all(|way| (way - 2.0).abs() < 1e-12) && of_one.iter().all(|way| (way - 4.0).abs() < 1e-12));
+    assert!(
+        of_two.iter().all(|travelled| (travelled - 2.0).abs() < 1e-12)
+            && of_one.iter().all(|travelled| (travelled - 4.0).abs() < 1e-12)
+    );
     let curvature = AtomQuantity::Curvature.of_frame(&result, 3, &result.positions(3).unwrap()).unwrap();
     assert!(curvature.iter().all(|h| (h - 0.2).abs() < 0.02));
 }

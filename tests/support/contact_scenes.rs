@@ -87,7 +87,7 @@ pub struct Scene {
     /// Planes of a box around the cells: below, above, left, right, before, behind.
     pub planes: usize,
     /// Room between cells and planes, µm.
-    pub room: f64,
+    pub spare: f64,
     /// Weight of an atom downwards, pN.
     pub weight: f64,
     /// Strengths between types: `[one][other]`, tensile and shear.
@@ -258,7 +258,7 @@ impl Scene {
             purpose,
             types,
             planes,
-            room: if purpose == Purposed::Overfull { 0.1 } else { dice.decades(0.1, 4.0) },
+            spare: if purpose == Purposed::Overfull { 0.1 } else { dice.decades(0.1, 4.0) },
             weight,
             between,
             on_planes,
@@ -301,11 +301,11 @@ impl Scene {
             kinds.push(self.kind(number, of).for_cells(of.cells));
         }
         let turn = dice.turn();
-        let (places, half) = match self.purpose {
+        let (centres, half) = match self.purpose {
             Purposed::Alone => (pair(&mut dice, self, &kinds), 0.0),
             _ => scatter(&mut dice, self, &kinds),
         };
-        let places: Vec<Vec<Vec<Vec3>>> = places
+        let centres: Vec<Vec<Vec<Vec3>>> = centres
             .iter()
             .map(|cells| cells.iter().map(|atoms| atoms.iter().map(|x| turn * x).collect()).collect())
             .collect();
@@ -315,7 +315,7 @@ impl Scene {
             .enumerate()
             .map(|(number, normal)| Plane {
                 name: format!("plane {number}"),
-                point: turn * normal * -(half + self.room),
+                point: turn * normal * -(half + self.spare),
                 normal: turn * normal,
             })
             .collect();
@@ -351,7 +351,7 @@ impl Scene {
         let integrator = Integrator { method: self.method, size };
         let model =
             Model { seed: self.seed, contact: Some(contact), planes, ..Model::of(kinds, integrator, self.until) };
-        let state = State::new(&model, &places);
+        let state = State::new(&model, &centres);
         (model, state)
     }
 
@@ -463,7 +463,7 @@ fn scatter(dice: &mut Dice, scene: &Scene, kinds: &[Kind]) -> (Vec<Vec<Vec<Vec3>
         closed.iter().map(|number| scene.types[*number].cells as f64 * (2.0 * radius(&kinds[*number])).powi(3)).sum();
     let mut half = 0.5 * filled.cbrt();
     let mut taken: Vec<(Vec3, f64)> = Vec::new();
-    let mut places = vec![Vec::new(); kinds.len()];
+    let mut centres = vec![Vec::new(); kinds.len()];
     for &number in &closed {
         let (kind, own) = (&kinds[number], radius(&kinds[number]));
         for _ in 0..scene.types[number].cells {
@@ -476,10 +476,10 @@ fn scatter(dice: &mut Dice, scene: &Scene, kinds: &[Kind]) -> (Vec<Vec<Vec<Vec3>
             };
             taken.push((centre, own));
             let turn = dice.turn();
-            places[number].push(kind.rest.positions.iter().map(|x| turn * x + centre).collect());
+            centres[number].push(kind.rest.positions.iter().map(|x| turn * x + centre).collect());
         }
     }
-    let all = places.iter().flatten().flatten();
+    let all = centres.iter().flatten().flatten();
     let half = all.clone().flat_map(|x: &Vec3| [x.x, x.y, x.z]).map(f64::abs).fold(0.0, f64::max);
     let lowest = all.map(|x| x.z).fold(f64::INFINITY, f64::min);
     let mut reach = half.max(largest);
@@ -487,7 +487,7 @@ fn scatter(dice: &mut Dice, scene: &Scene, kinds: &[Kind]) -> (Vec<Vec<Vec<Vec3>
         let below = Vec3::new(0.0, 0.0, lowest - 0.1 * kinds[number].edge);
         let sheet: Vec<Vec3> = kinds[number].rest.positions.iter().map(|x| x + below).collect();
         reach = sheet.iter().flat_map(|x| [x.x, x.y, x.z]).map(f64::abs).fold(reach, f64::max);
-        places[number].push(sheet);
+        centres[number].push(sheet);
     }
-    (places, reach)
+    (centres, reach)
 }

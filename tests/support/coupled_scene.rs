@@ -79,7 +79,7 @@ impl Scene {
     }
 
     /// The mean of a cell's atoms along an axis.
-    pub fn place(&self, cell: usize, axis: usize) -> f64 {
+    pub fn position(&self, cell: usize, axis: usize) -> f64 {
         let kind = &self.compiled.model.kinds[0];
         let atoms = self.state().kinds[0].cell(kind, cell);
         atoms.iter().map(|p| p[axis]).sum::<f64>() / atoms.len() as f64

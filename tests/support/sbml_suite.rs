@@ -79,12 +79,12 @@ fn case(folder: &Path, file: &Path, solve: &dyn Fn(&Case) -> Solved) -> Result<(
     let (absolute, relative) = (tolerance("absolute"), tolerance("relative"));
     let solved = solve(&Case { file: file.to_owned(), model, times, absolute })?;
     for (row, values) in rows.iter().zip(&solved) {
-        for (place, column) in columns.iter().enumerate() {
-            let (expected, got) = (row[place + 1], values[*column as usize]);
+        for (index, column) in columns.iter().enumerate() {
+            let (expected, got) = (row[index + 1], values[*column as usize]);
             let same = expected == got || (expected.is_nan() && got.is_nan());
             let near = (expected - got).abs() <= absolute + relative * expected.abs();
             if !same && !near {
-                return Err(format!("{} at {}: {got} instead of {expected}", names[place + 1], row[0]));
+                return Err(format!("{} at {}: {got} instead of {expected}", names[index + 1], row[0]));
             }
         }
     }

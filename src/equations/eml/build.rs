@@ -7,7 +7,7 @@ use super::document::Level;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
 use crate::equations::tree::{Expr, Quantity, QuantityId, Role, System};
-use crate::error::Place;
+use crate::error::Location;
 use std::collections::HashMap;
 
 /// The most definitions of which each uses the one before: what orders them is recursive.
@@ -111,7 +111,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         let value = self.number(element, name)?;
         if value <= 0.0 {
             let message = format!("`{name}` is {value}; a number above 0 was expected");
-            self.context.fault(element.place(name), &message, "not above 0", "write a number such as 0.1 or 1e-6");
+            self.context.fault(element.location(name), &message, "not above 0", "write a number such as 0.1 or 1e-6");
             return None;
         }
         Some(value)
@@ -123,9 +123,9 @@ impl<'a, 'd> Builder<'a, 'd> {
     }
 
     /// The quantities of the document and where they are declared.
-    pub(super) fn quantities(&mut self, root: &Element) -> (Vec<Quantity>, Vec<Place>) {
+    pub(super) fn quantities(&mut self, root: &Element) -> (Vec<Quantity>, Vec<Location>) {
         let mut equations = self.equations(root);
-        let (mut quantities, mut places) = (Vec::new(), Vec::new());
+        let (mut quantities, mut locations) = (Vec::new(), Vec::new());
         for number in 0..self.known.quantities.len() {
             let (id, element) = (self.known.quantities[number].id.clone(), self.known.quantities[number].element);
             let own = self.unit_of(&id);
@@ -158,7 +158,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                 unit: element.word("unit"),
                 id,
             });
-            places.push(self.context.place(element.place("id"), "declared here"));
+            locations.push(self.context.location(element.location("id"), "declared here"));
         }
         if self.known.level == Level::Field {
             for name in POSITION {
@@ -171,10 +171,10 @@ impl<'a, 'd> Builder<'a, 'd> {
                     initial,
                     unit,
                 });
-                places.push(self.context.place(root.at.clone(), "the position"));
+                locations.push(self.context.location(root.at.clone(), "the position"));
             }
         }
-        (quantities, places)
+        (quantities, locations)
     }
 
     fn value(&mut self, element: &Element, attribute: &str, allowed: Use, id: &str) -> Option<Expr> {
@@ -210,7 +210,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                     (format!("there is no variable `{id}`"), help)
                 }
             };
-            self.context.fault(element.place("of"), &message, "this equation", &help);
+            self.context.fault(element.location("of"), &message, "this equation", &help);
         }
         found
     }
@@ -219,7 +219,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         let text = match (element.attribute("rate"), equation) {
             (Some(_), Some(equation)) => {
                 let message = format!("`{id}` has a rate and an equation");
-                self.context.fault(equation.place("of"), &message, "a second equation", "remove one of them");
+                self.context.fault(equation.location("of"), &message, "a second equation", "remove one of them");
                 return None;
             }
             (Some(rate), None) => rate.clone(),
@@ -227,7 +227,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             (None, None) => {
                 let help =
                     format!("write <equation of=\"{id}\">…</equation>, or rate=\"0\" for what only events change");
-                self.context.fault(element.place("id"), &format!("`{id}` has no equation"), "changes how?", &help);
+                self.context.fault(element.location("id"), &format!("`{id}` has no equation"), "changes how?", &help);
                 return None;
             }
         };
@@ -273,14 +273,14 @@ impl<'a, 'd> Builder<'a, 'd> {
             let defined = |number: &usize| matches!(system.quantities[*number].role, Role::Defined { .. });
             let what = if circle.iter().all(defined) { "definitions" } else { "initial values" };
             let message = format!("{what} go in a circle: {}", path.join(" → "));
-            let at = self.known.quantities[circle[0]].element.place("id");
+            let at = self.known.quantities[circle[0]].element.location("id");
             let help = "let one of them be a number, or a <variable> with an equation";
             self.context.fault(at, &message, "in the circle", help);
         }
         if found.is_empty() {
             let lengths = super::start::lengths(system.quantities.len(), &uses);
             if let Some(number) = lengths.iter().position(|length| *length > LONGEST_CHAIN) {
-                let at = self.known.quantities[number].element.place("id");
+                let at = self.known.quantities[number].element.location("id");
                 let message = format!("more than {LONGEST_CHAIN} quantities in a row use each other to be computed");
                 self.context.fault(at, &message, "too far down", "let expressions do more at once");
             } else if self.context.is_clean() {
@@ -301,7 +301,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             };
             if !value.is_finite() {
                 let message = format!("`{attribute}` of `{}` is {value}, which is not finite", declared.id);
-                let at = declared.element.place(attribute);
+                let at = declared.element.location(attribute);
                 self.context.fault(at, &message, &value.to_string(), "correct it: a run must start from numbers");
             }
         }

@@ -1,8 +1,8 @@
 //! Collects faults with their places, so that a reader hears of all of them.
 
-use crate::equations::fault::at_place;
+use crate::equations::fault::at_location;
 use crate::error::words::meant;
-use crate::error::{Error, Fault, Place, Source};
+use crate::error::{Error, Fault, Location, Source};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -29,8 +29,8 @@ impl Context {
     }
 
     /// A place in the source.
-    pub(super) fn place(&self, at: Range<usize>, label: &str) -> Place {
-        Place { source: self.source.clone(), start: at.start, length: at.len(), label: label.to_owned() }
+    pub(super) fn location(&self, at: Range<usize>, label: &str) -> Location {
+        Location { source: self.source.clone(), start: at.start, length: at.len(), label: label.to_owned() }
     }
 
     /// A fault: what was found, a few words beside the place, what to do.
@@ -39,7 +39,7 @@ impl Context {
             self.untold += 1;
             return;
         }
-        self.faults.push(at_place(&self.source, at, message.to_owned(), label, help));
+        self.faults.push(at_location(&self.source, at, message.to_owned(), label, help));
     }
 
     /// A fault without a place.
@@ -66,7 +66,7 @@ impl Context {
 
     /// All faults in the order of the text.
     pub(super) fn error(mut self) -> Error {
-        self.faults.sort_by_key(|fault| fault.place.as_ref().map_or(0, |place| place.start));
+        self.faults.sort_by_key(|fault| fault.location.as_ref().map_or(0, |location| location.start));
         if self.untold > 0 {
             let message = format!("{} more faults are not told", self.untold);
             self.faults.push(Fault::new(message).help("correct these first"));

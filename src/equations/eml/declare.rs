@@ -58,7 +58,7 @@ impl<'a> Declarations<'a> {
 
 /// Tells a trouble of an expression at its place in the document.
 pub(super) fn tell(context: &mut Context, text: &Text, trouble: &Trouble) {
-    context.fault(text.place(&trouble.at), &trouble.message, &trouble.label, &trouble.help);
+    context.fault(text.location(&trouble.at), &trouble.message, &trouble.label, &trouble.help);
 }
 
 /// Reads the unit in an attribute.
@@ -67,7 +67,7 @@ pub(super) fn unit(context: &mut Context, element: &Element, attribute: &str) ->
     match Unit::read(&text.text) {
         Ok(unit) => Some(unit),
         Err(error) => {
-            context.fault(text.place(&error.at), &error.message, "this unit", &error.help);
+            context.fault(text.location(&error.at), &error.message, "this unit", &error.help);
             None
         }
     }
@@ -132,7 +132,7 @@ fn level(context: &mut Context, root: &Element) -> Level {
         "" => Level::Scene,
         other => {
             let message = format!("there is no level \"{other}\"");
-            context.fault(root.place("level"), &message, "unknown level", "write \"scene\", \"cell\" or \"field\"");
+            context.fault(root.location("level"), &message, "unknown level", "write \"scene\", \"cell\" or \"field\"");
             return if has_fields { Level::Field } else { Level::Scene };
         }
     };
@@ -168,7 +168,7 @@ fn base_unit(context: &mut Context, element: &Element, attribute: &str, usual: &
     let wanted = base.dimension().map_or(String::new(), |dimension| dimension.with_article());
     let told = found.dimension().map_or(String::new(), |dimension| dimension.with_article());
     let message = format!("`{attribute}` is {told}; {wanted} was expected");
-    context.fault(element.place(attribute), &message, &told, &format!("write a unit such as \"{}\"", base.text()));
+    context.fault(element.location(attribute), &message, &told, &format!("write a unit such as \"{}\"", base.text()));
     usual()
 }
 
@@ -186,12 +186,12 @@ fn usable(context: &mut Context, element: &Element, id: &str, position: bool) ->
     } else {
         return true;
     };
-    context.fault(element.place("id"), &message, "this identifier", help);
+    context.fault(element.location("id"), &message, "this identifier", help);
     false
 }
 
 fn unique(context: &mut Context, element: &Element, id: &str, lines: &mut BTreeMap<String, usize>) -> bool {
-    let at = element.place("id");
+    let at = element.location("id");
     if let Some(line) = lines.get(id) {
         let label = format!("already declared in line {line}");
         context.fault(
@@ -226,7 +226,7 @@ fn functions(context: &mut Context, root: &Element, scope: &mut Scope) {
         let path: Vec<String> = circle.iter().chain([&circle[0]]).map(|id| format!("`{id}`")).collect();
         let message = format!("functions call each other in a circle: {}", path.join(" → "));
         context.fault(
-            element.place("id"),
+            element.location("id"),
             &message,
             "in the circle",
             "a function may only call others that do not call it",
@@ -255,7 +255,7 @@ fn arguments(context: &mut Context, element: &Element) -> Vec<String> {
     let mut start = 0;
     for part in text.text.split(',') {
         let name = part.trim();
-        let at = text.place(&(start..start + part.len()));
+        let at = text.location(&(start..start + part.len()));
         start += part.len() + 1;
         if !is_identifier(name) || is_reserved(name) || names.iter().any(|known| known == name) {
             let message = format!("\"{name}\" cannot be the name of an argument");

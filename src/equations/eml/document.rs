@@ -2,7 +2,7 @@
 
 use crate::equations::Range;
 use crate::equations::tree::{Expr, QuantityId, System};
-use crate::error::Place;
+use crate::error::Location;
 
 /// A document without fault.
 #[derive(Debug, Clone)]
@@ -19,7 +19,7 @@ pub struct Document {
     /// are in [`FieldDescription`]) and the position is given by inputs `x`, `y`, `z` where it is used.
     pub system: System,
     /// Where each quantity of the system is declared.
-    pub places: Vec<Place>,
+    pub locations: Vec<Location>,
     /// The grid of the fields.
     pub grid: Option<GridDescription>,
     /// The fields.
@@ -89,7 +89,7 @@ pub struct GridDescription {
     /// µm in the unit of length.
     pub micrometres: f64,
     /// Where it is written.
-    pub place: Place,
+    pub location: Location,
 }
 
 /// A field.
@@ -110,7 +110,7 @@ pub struct FieldDescription {
     /// Walls at x-, x+, y-, y+, z-, z+.
     pub walls: [Wall; 6],
     /// Where it is declared.
-    pub place: Place,
+    pub location: Location,
 }
 
 /// How a field starts.
@@ -125,7 +125,7 @@ pub enum Profile {
         /// The value of white.
         scale: f64,
         /// Where it is written.
-        place: Place,
+        location: Location,
     },
     /// A dataset of an HDF5 file, times `scale`.
     Dataset {
@@ -136,7 +136,7 @@ pub enum Profile {
         /// Factor of the values.
         scale: f64,
         /// Where it is written.
-        place: Place,
+        location: Location,
     },
 }
 
@@ -169,7 +169,7 @@ pub struct LinkDescription {
     /// Factor of what the transfer gives.
     pub gain: f64,
     /// Where it is written.
-    pub place: Place,
+    pub location: Location,
 }
 
 impl LinkDescription {
@@ -187,7 +187,7 @@ pub struct Endpoint {
     /// As written.
     pub text: String,
     /// Where it is written.
-    pub place: Place,
+    pub location: Location,
 }
 
 /// What an end of a link belongs to.

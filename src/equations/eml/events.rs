@@ -33,7 +33,7 @@ impl Builder<'_, '_> {
             let target = value.as_ref().map(|(target, _)| *target);
             if target.is_some_and(|target| !targets.insert(target)) {
                 let message = format!("the event sets `{}` twice", set.word("id"));
-                self.context.fault(set.place("id"), &message, "a second time", "remove one of the two");
+                self.context.fault(set.location("id"), &message, "a second time", "remove one of the two");
             }
             assignments.extend(value);
         }
@@ -59,7 +59,7 @@ impl Builder<'_, '_> {
                     (format!("nothing has the identifier `{id}`"), help)
                 }
             };
-            self.context.fault(set.place("id"), &message, "set here", &help);
+            self.context.fault(set.location("id"), &message, "set here", &help);
         }
         let unit = self.unit_of(&id);
         let what = format!("the new value of `{id}`");

@@ -29,7 +29,7 @@ impl Builder<'_, '_> {
             && size[..dimension].iter().any(|side| *side < spacing.unwrap_or(0.0).max(f64::MIN_POSITIVE))
         {
             let help = "write lengths that hold several points";
-            self.context.fault(element.place("size"), "a side is shorter than the spacing", "too short", help);
+            self.context.fault(element.location("size"), "a side is shorter than the spacing", "too short", help);
         }
         Some(GridDescription {
             dimension,
@@ -38,7 +38,7 @@ impl Builder<'_, '_> {
             size,
             unit: self.known.length_text.clone(),
             micrometres: self.known.length.size(),
-            place: self.context.place(element.at.clone(), "the grid"),
+            location: self.context.location(element.at.clone(), "the grid"),
         })
     }
 
@@ -96,7 +96,7 @@ impl Builder<'_, '_> {
             initial: initial?,
             range,
             walls,
-            place: self.context.place(element.place("id"), "the field"),
+            location: self.context.location(element.location("id"), "the field"),
             id,
         })
     }
@@ -109,13 +109,13 @@ impl Builder<'_, '_> {
                 let message = format!("the field `{}` has no initial value", element.word("id"));
                 let help =
                     "write initial=\"0\" or an expression of x, y, z, or image=\"…\" or dataset=\"FILE:/DATASET\"";
-                self.context.fault(element.place("id"), &message, "starts how?", help);
+                self.context.fault(element.location("id"), &message, "starts how?", help);
                 return None;
             }
             [_, second, ..] => {
                 let message = format!("the field `{}` starts in {} ways", element.word("id"), given.len());
                 self.context.fault(
-                    element.place(second),
+                    element.location(second),
                     &message,
                     "a second way",
                     "keep one of `initial`, `image`, `dataset`",
@@ -124,24 +124,24 @@ impl Builder<'_, '_> {
             _ => {}
         }
         let scale = self.number(element, "scale").unwrap_or(1.0);
-        let place = self.context.place(element.place(given[0]), "the start");
+        let location = self.context.location(element.location(given[0]), "the start");
         Some(match given[0] {
             // The system has the expression, and has been told of its faults.
             "initial" => Profile::Expression(Expr::Number(0.0)),
-            "image" => Profile::Image { file: element.word("image"), scale, place },
+            "image" => Profile::Image { file: element.word("image"), scale, location },
             _ => {
                 let text = element.word("dataset");
                 let Some((file, dataset)) = text.rsplit_once(":/") else {
                     let help = "write dataset=\"FILE:/DATASET\", such as \"start.h5:/fields/U\"";
                     self.context.fault(
-                        element.place("dataset"),
+                        element.location("dataset"),
                         "the dataset of the file is not named",
                         "which dataset?",
                         help,
                     );
                     return None;
                 };
-                Profile::Dataset { file: file.to_owned(), dataset: format!("/{dataset}"), scale, place }
+                Profile::Dataset { file: file.to_owned(), dataset: format!("/{dataset}"), scale, location }
             }
         })
     }
@@ -158,18 +158,18 @@ impl Builder<'_, '_> {
                     1 => ("a fixed wall has no value", "write value=\"…\""),
                     _ => ("only a fixed wall has a value", "write kind=\"fixed\", or remove `value`"),
                 };
-                self.context.fault(wall.place("kind"), message, "this kind", help);
+                self.context.fault(wall.location("kind"), message, "this kind", help);
             }
             let side = wall.word("side");
             let Some(index) = SIDES[..2 * dimension].iter().position(|known| *known == side) else {
                 let sides = SIDES[..2 * dimension].join(", ");
                 let message = format!("a grid of {dimension} dimensions has no side \"{side}\"");
-                self.context.fault(wall.place("side"), &message, "unknown side", &format!("its sides are {sides}"));
+                self.context.fault(wall.location("side"), &message, "unknown side", &format!("its sides are {sides}"));
                 continue;
             };
             if walls[index].is_some() {
                 let message = format!("`{id}` has two walls at {side}");
-                self.context.fault(wall.place("side"), &message, "a second one", "remove one of them");
+                self.context.fault(wall.location("side"), &message, "a second one", "remove one of them");
             }
             walls[index] = Some(match kind {
                 0 => Wall::NoFlux,
@@ -186,7 +186,7 @@ impl Builder<'_, '_> {
                 let other = SIDES[2 * axis + usize::from(periodic[0])];
                 let message = format!("`{id}` is periodic at {alone} and not at {other}");
                 let help = format!("write <wall side=\"{other}\" kind=\"periodic\"/> too");
-                self.context.fault(wall.place("side"), &message, "what leaves here comes in where?", &help);
+                self.context.fault(wall.location("side"), &message, "what leaves here comes in where?", &help);
             }
         }
         walls
@@ -211,7 +211,7 @@ impl Builder<'_, '_> {
                         "decay" => "what grows belongs into <reaction>",
                         _ => "a field that gathers by itself has no solution; attraction belongs into <reaction>",
                     };
-                    self.context.fault(element.place(name), &message, "not 0 or more", help);
+                    self.context.fault(element.location(name), &message, "not 0 or more", help);
                 }
             }
         }

@@ -41,7 +41,7 @@ impl Builder<'_, '_> {
             to,
             transfer: transfer?,
             gain: gain.unwrap_or(1.0),
-            place: self.context.place(element.at.clone(), "this link"),
+            location: self.context.location(element.at.clone(), "this link"),
         })
     }
 
@@ -51,7 +51,7 @@ impl Builder<'_, '_> {
             (Root::System(_), Root::System(_)) => {
                 let help = "inside a system write expressions; a link joins it to scene, cell, type or field";
                 self.context.fault(
-                    element.place("to"),
+                    element.location("to"),
                     "both ends of the link are in the system",
                     "the same system",
                     help,
@@ -64,12 +64,12 @@ impl Builder<'_, '_> {
                     let message =
                         format!("a link cannot set `{}`, which is a <{}>", target.id, target.element.kind.name);
                     let help = format!("declare <input id=\"{}\" default=\"…\"/> and use it in an equation", target.id);
-                    self.context.fault(element.place("to"), &message, "set from outside", &help);
+                    self.context.fault(element.location("to"), &message, "set from outside", &help);
                 }
             }
             _ => {
                 let help = "let one end be system.ID: a link joins this system to the model";
-                self.context.fault(element.place("from"), "no end of the link is in the system", "this link", help);
+                self.context.fault(element.location("from"), "no end of the link is in the system", "this link", help);
             }
         }
     }
@@ -108,8 +108,8 @@ impl Builder<'_, '_> {
     fn endpoint(&mut self, text: &Text) -> Option<Endpoint> {
         match end_of(&text.text, self.known.ids(), |id| self.find(id)) {
             Ok((root, path)) => {
-                let place = self.context.place(text.whole(), "this end");
-                Some(Endpoint { root, path, text: text.text.trim().to_owned(), place })
+                let location = self.context.location(text.whole(), "this end");
+                Some(Endpoint { root, path, text: text.text.trim().to_owned(), location })
             }
             Err(trouble) => {
                 tell(self.context, text, &trouble);

@@ -49,7 +49,7 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
         context.fault(root.at.clone(), "the document declares nothing", "empty", help);
     }
     let mut builder = Builder::new(&mut context, known);
-    let (quantities, places) = builder.quantities(&root);
+    let (quantities, locations) = builder.quantities(&root);
     let events = builder.events(&root);
     let grid = builder.grid(&root);
     let mut fields = builder.fields(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
@@ -63,5 +63,5 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
         return Err(context.error());
     }
     let name = root.word("name");
-    Ok(Document { name, level, time_unit, seconds, system, places, grid, fields, links, solver })
+    Ok(Document { name, level, time_unit, seconds, system, locations, grid, fields, links, solver })
 }

@@ -38,19 +38,19 @@ impl Builder<'_, '_> {
             let help =
                 "write inner_step=\"…\" in the unit of time, or take rk45, rk65, rosenbrock or bdf, which find it";
             let message = format!("the scheme {} has no inner step", element.word("scheme"));
-            self.context.fault(element.place("scheme"), &message, "a fixed step", help);
+            self.context.fault(element.location("scheme"), &message, "a fixed step", help);
         }
         if let (Level::Field, Some(Scheme::Bdf | Scheme::Euler)) = (self.known.level, scheme) {
             let message = format!("the reactions of fields cannot be taken with {}", element.word("scheme"));
             let help =
                 "write \"rk4\", \"rk45\", \"rk65\" or, for stiff reactions, \"rosenbrock\", or leave the scheme out";
-            self.context.fault(element.place("scheme"), &message, "this scheme", help);
+            self.context.fault(element.location("scheme"), &message, "this scheme", help);
         }
         if let (Some(step), Some(inner)) = (choice.step, choice.inner_step)
             && inner > step
         {
             let message = format!("the inner step {inner} is longer than the step {step}");
-            self.context.fault(element.place("inner_step"), &message, "too long", "let it be a part of `step`");
+            self.context.fault(element.location("inner_step"), &message, "too long", "let it be a part of `step`");
         }
         choice
     }

@@ -27,7 +27,7 @@ pub(super) struct Text {
 
 impl Text {
     /// The bytes of the source behind a part of the text.
-    pub(super) fn place(&self, at: &Range<usize>) -> Range<usize> {
+    pub(super) fn location(&self, at: &Range<usize>) -> Range<usize> {
         let end_of =
             |position: usize| position.checked_sub(1).and_then(|last| self.origin.get(last)).map(|last| last.1);
         let end = end_of(at.end.min(self.origin.len())).unwrap_or(self.start);
@@ -39,7 +39,7 @@ impl Text {
     pub(super) fn whole(&self) -> Range<usize> {
         let trimmed = self.text.trim();
         let start = self.text.len() - self.text.trim_start().len();
-        self.place(&(start..start + trimmed.len()))
+        self.location(&(start..start + trimmed.len()))
     }
 
     fn push(&mut self, c: char, at: Range<usize>) {
@@ -80,7 +80,7 @@ impl Element {
     }
 
     /// Where an attribute's value stands, or else the element's name.
-    pub(super) fn place(&self, name: &str) -> Range<usize> {
+    pub(super) fn location(&self, name: &str) -> Range<usize> {
         self.attribute(name).map_or(self.at.clone(), Text::whole)
     }
 

@@ -75,7 +75,7 @@ fn operators_bind_as_in_mathematics() {
 }
 
 #[test]
-fn every_fault_of_an_expression_is_told_at_its_place() {
+fn every_fault_of_an_expression_is_told_at_its_location() {
     for (text, expected) in [
         ("(x + 1", &[(0..1, "the parenthesis is not closed")][..]),
         ("x + 1)", &[(5..6, "never opened")]),
@@ -104,8 +104,8 @@ fn every_fault_of_an_expression_is_told_at_its_place() {
         let troubles = read(text).expect_err(text);
         let found: Vec<_> = troubles.iter().map(|trouble| (trouble.at.clone(), trouble.message.as_str())).collect();
         assert_eq!(found.len(), expected.len(), "{text}: {found:?}");
-        for ((at, message), (place, part)) in found.iter().zip(expected) {
-            assert!(at == place && message.contains(part), "{text}: {at:?} {message}");
+        for ((at, message), (location, part)) in found.iter().zip(expected) {
+            assert!(at == location && message.contains(part), "{text}: {at:?} {message}");
         }
         assert!(troubles.iter().all(|trouble| !trouble.help.is_empty()), "{text}");
     }

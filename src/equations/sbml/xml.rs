@@ -1,6 +1,6 @@
 //! The XML under an SBML text: hostile texts are refused, and every fault gets its place.
 
-use crate::equations::fault::at_place;
+use crate::equations::fault::at_location;
 use crate::error::{Error, Fault, Result, Source};
 use crate::xml::{Document, Limits, Trouble, What};
 use std::cell::RefCell;
@@ -70,7 +70,7 @@ fn refused(source: &Arc<Source>, trouble: Trouble) -> Error {
         What::DocumentType => {
             let help = "delete the `<!DOCTYPE …>`: SBML needs none, and entities are not expanded";
             let at = start..start + 1;
-            return Error::input(at_place(source, at, "a document type is declared".into(), "here", help));
+            return Error::input(at_location(source, at, "a document type is declared".into(), "here", help));
         }
         What::TooDeep => {
             let help = "SBML does not nest so deeply; write long sums with one <plus/> for all terms";
@@ -88,7 +88,7 @@ fn refused(source: &Arc<Source>, trouble: Trouble) -> Error {
             (format!("the text is not well-formed XML: {message}"), label, help)
         }
     };
-    Error::input(at_place(source, start..start + length, message, label, &help))
+    Error::input(at_location(source, start..start + length, message, label, &help))
 }
 
 impl<'a> Page<'a> {
@@ -166,7 +166,7 @@ impl<'a> Page<'a> {
         faults.truncate(FAULT_LIMIT);
         let told = |fault: Noted| {
             let at = fault.start..fault.start + fault.length;
-            at_place(&self.source, at, fault.message, "here", &fault.help)
+            at_location(&self.source, at, fault.message, "here", &fault.help)
         };
         Err(Error::Input(faults.into_iter().map(told).collect()))
     }

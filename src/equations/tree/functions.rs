@@ -193,7 +193,7 @@ mod tests {
     use super::{Binary, Unary, larger, smaller};
 
     #[test]
-    fn the_lists_hold_every_function_at_its_place() {
+    fn the_lists_hold_every_function_at_its_number() {
         assert!(Unary::ALL.iter().enumerate().all(|(index, &function)| function as usize == index));
         assert!(Binary::ALL.iter().enumerate().all(|(index, &function)| function as usize == index));
         // A new function at the end is to be named here.

@@ -52,7 +52,7 @@ impl Walk<'_> {
         };
         if let Some(demand) = demand {
             let found = node.written().trim_matches(['"', '\'']);
-            let fault = Fault::new(format!("`{path}` is {found} and {demand}")).at(node.place(demand));
+            let fault = Fault::new(format!("`{path}` is {found} and {demand}")).at(node.location(demand));
             self.faults.push(with_purpose(fault, schema));
         }
     }

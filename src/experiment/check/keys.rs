@@ -53,12 +53,12 @@ impl Walk<'_> {
     ) {
         if schema.get("minProperties").is_some() && table.is_empty() {
             let fault = Fault::new(format!("`{path}` is empty; at least one was expected"));
-            self.faults.push(super::with_purpose(fault.at(node.key_place("nothing here")), schema));
+            self.faults.push(super::with_purpose(fault.at(node.key_location("nothing here")), schema));
         }
         for (name, value) in table {
             if let Some(error) = name_error(name) {
                 let fault = Fault::new(format!("in `{path}`: {}", error.message));
-                self.faults.push(fault.at(value.key_place("a name was expected")).help(error.help));
+                self.faults.push(fault.at(value.key_location("a name was expected")).help(error.help));
             }
             match self.meant_for_another(value, name, table, named, path) {
                 Some(fault) => self.faults.push(fault),
@@ -92,7 +92,7 @@ impl Walk<'_> {
         let meant = words::meant(name, others.map(|(other, _)| other.as_str()))?;
         let lacking = words::all_of(lacking.into_iter().map(String::as_str));
         let fault = Fault::new(format!("`{}` lacks {lacking}", join(path, name)));
-        let fault = fault.at(value.key_place(format!("did you mean `{meant}`?")));
+        let fault = fault.at(value.key_location(format!("did you mean `{meant}`?")));
         Some(fault.help(format!(
             "what is meant for `{0}` is written under its name; another one needs {lacking} too",
             join(path, meant)
@@ -149,8 +149,8 @@ impl Walk<'_> {
         let Some(value) = table.get(tag) else {
             let list = words::any_of(words.iter().map(String::as_str));
             let fault = Fault::new(format!("{} lacks `{tag}`", named(path)));
-            let place = node.place(format!("`{tag}` is missing here"));
-            self.faults.push(fault.at(place).help(format!("add `{tag}`: it is {list}")));
+            let location = node.location(format!("`{tag}` is missing here"));
+            self.faults.push(fault.at(location).help(format!("add `{tag}`: it is {list}")));
             return None;
         };
         self.word(value, &words, &join(path, tag));
@@ -177,13 +177,13 @@ impl Walk<'_> {
             [] => {
                 let list = words::any_of(firsts());
                 let fault = Fault::new(format!("{} lacks one of {list}", named(path)));
-                self.faults.push(fault.at(node.place("missing here")).help(format!("add exactly one: {list}")));
+                self.faults.push(fault.at(node.location("missing here")).help(format!("add exactly one: {list}")));
                 None
             }
             [(_, (first, _)), .., (_, (last, value))] => {
                 let fault = Fault::new(format!("{} has both `{first}` and `{last}`", named(path)));
                 let help = format!("give exactly one of {}", words::any_of(firsts()));
-                self.faults.push(fault.at(value.key_place("only one of them may be given")).help(help));
+                self.faults.push(fault.at(value.key_location("only one of them may be given")).help(help));
                 None
             }
         }
@@ -237,7 +237,7 @@ fn missing(node: &Node, key: &str, property: &Map<String, Json>, path: &str) -> 
     };
     let purpose = property.get("description").and_then(Json::as_str).map(|text| format!(": {text}"));
     let help = format!("add {example}{}", purpose.unwrap_or_default());
-    fault.at(node.place(format!("`{key}` is missing here"))).help(help)
+    fault.at(node.location(format!("`{key}` is missing here"))).help(help)
 }
 
 fn unknown(value: &Node, key: &str, keys: &Keys, path: &str) -> Fault {
@@ -246,13 +246,13 @@ fn unknown(value: &Node, key: &str, keys: &Keys, path: &str) -> Fault {
     let help = format!("keys {here} are {list}");
     if let Some(chosen) = keys.chosen.as_ref().filter(|_| keys.elsewhere.iter().any(|other| other == key)) {
         let fault = Fault::new(format!("`{key}` in {} does not go with {chosen}", named(path)));
-        return fault.at(value.key_place("not with this one")).help(help);
+        return fault.at(value.key_location("not with this one")).help(help);
     }
     if let Some(instead) = keys.gone.get(key).and_then(Json::as_str) {
         let fault = Fault::new(format!("`{key}` in {} is no key any more", named(path)));
-        return fault.at(value.key_place("without meaning")).help(instead);
+        return fault.at(value.key_location("without meaning")).help(instead);
     }
     let meant = words::meant(key, keys.known());
     let label = meant.map_or("unknown key".to_owned(), |meant| format!("did you mean `{meant}`?"));
-    Fault::new(format!("unknown key `{key}` in {}", named(path))).at(value.key_place(label)).help(help)
+    Fault::new(format!("unknown key `{key}` in {}", named(path))).at(value.key_location(label)).help(help)
 }

@@ -50,8 +50,8 @@ impl<'a> Builder<'a> {
 
     /// Tells a fault at a key of the type.
     pub fn fault(&mut self, path: &str, label: &str, found: impl Into<String>, help: impl Into<String>) {
-        let place = self.document.place(&format!("{}.{path}", self.key), label);
-        self.faults.push(place.into_iter().fold(Fault::new(found).help(help), Fault::at));
+        let location = self.document.location(&format!("{}.{path}", self.key), label);
+        self.faults.push(location.into_iter().fold(Fault::new(found).help(help), Fault::at));
     }
 
     /// The atoms that the selection at a key means, each once, rising; those that the mesh does not have are faults.

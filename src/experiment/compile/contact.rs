@@ -31,8 +31,8 @@ pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
             short(edge)
         ))
         .help(format!("give at most {} um, or leave it out: then it is a tenth of the edge", short(LARGEST * edge)));
-        let place = document.place("contact.proximity", "above half of the mean edge");
-        return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
+        let location = document.location("contact.proximity", "above half of the mean edge");
+        return Err(Error::input(location.into_iter().fold(fault, Fault::at)));
     }
     let depth = if text.model == Text::Penalty { PENALTY_DEPTH * edge } else { proximity };
     Ok(Some(Reach { proximity, depth, margin: proximity }))

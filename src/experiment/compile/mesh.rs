@@ -26,11 +26,11 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
                 Ok(surface) => surface,
                 Err(Error::Input(found)) => {
                     let key = format!("cells.{name}.mesh.path");
-                    let placed = |fault: Fault| match (&fault.place, document.place(&key, "this file")) {
-                        (None, Some(place)) => fault.at(place),
+                    let located = |fault: Fault| match (&fault.location, document.location(&key, "this file")) {
+                        (None, Some(location)) => fault.at(location),
                         _ => fault,
                     };
-                    faults.extend(found.into_iter().map(placed));
+                    faults.extend(found.into_iter().map(located));
                     return None;
                 }
                 Err(other) => {

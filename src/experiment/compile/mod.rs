@@ -8,8 +8,8 @@ mod mesh;
 mod notices;
 mod numbers;
 mod overlap;
-mod place;
 mod population;
+mod positions;
 mod select;
 mod spacing;
 mod start;
@@ -73,7 +73,7 @@ impl Prepared {
     pub fn build(self) -> Compiled {
         let Self { model, schedule, centres, fields } = self;
         let cells = model.kinds.iter().zip(&centres);
-        let positions: Vec<_> = cells.map(|(kind, centres)| place::atoms_at(kind, centres)).collect();
+        let positions: Vec<_> = cells.map(|(kind, centres)| positions::atoms_at(kind, centres)).collect();
         let mut state = State::new(&model, &positions);
         state.chemistry = ChemistryState::new(&model, &state.counts(), &fields);
         Compiled { model, state, schedule }
@@ -121,8 +121,8 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let centres = match reach {
         Some(reach) => spacing::centres_apart(document, &kinds, &planes, reach.proximity)?,
         None => {
-            let cells = experiment.cells.values().zip(&kinds).zip(place::first_cells(experiment));
-            cells.map(|((cell, kind), first)| place::centres(experiment, cell, kind, first)).collect()
+            let cells = experiment.cells.values().zip(&kinds).zip(positions::first_cells(experiment));
+            cells.map(|((cell, kind), first)| positions::centres(experiment, cell, kind, first)).collect()
         }
     };
     let integrator = steps::integrator(document, &mut kinds)?;
@@ -179,8 +179,8 @@ fn volume_rule(document: &Document, key: &str, cell: &CellType, kind: &Kind, fau
     if rule != Rule::Free && !kind.closed {
         let fault = Fault::new(format!("the surface of `{}` is open and encloses no volume", kind.name))
             .help("use volume = { rule = \"free\" }, or a closed mesh");
-        let place = document.place(&format!("{key}.mechanics.volume"), "needs a closed surface");
-        faults.push(place.into_iter().fold(fault, Fault::at));
+        let location = document.location(&format!("{key}.mechanics.volume"), "needs a closed surface");
+        faults.push(location.into_iter().fold(fault, Fault::at));
         return VolumeRule::Free;
     }
     // What cannot move keeps its volume by itself, and has no gradient along which it could be restored.

@@ -36,8 +36,8 @@ pub fn refusal(document: &Document, model: &Model, head: &str, found: &[Found], 
         kind.name,
         short(extent)
     ));
-    let place = document.key_place(&format!("cells.{}.placement", kind.name), "these cells");
-    Err(Error::input(place.into_iter().fold(fault, Fault::at)))
+    let location = document.key_location(&format!("cells.{}.placement", kind.name), "these cells");
+    Err(Error::input(location.into_iter().fold(fault, Fault::at)))
 }
 
 /// Whether one of two cells is wholly inside the other, or most of its atoms or its centre are: then none knows the way

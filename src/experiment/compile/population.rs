@@ -2,7 +2,7 @@
 
 use super::super::{Added, Experiment, Placement, Removed};
 use super::numbers::vector;
-use super::place::positions_of;
+use super::positions::positions_of;
 use crate::sim::{Change, Kind, PopulationChange, Removal};
 
 /// The changes of a document; those of one instant in its order, by type, first the cells that come.

@@ -22,8 +22,8 @@ pub fn atoms(
             for (i, &atom) in list.iter().enumerate().filter(|(_, atom)| **atom as usize >= count) {
                 let fault = Fault::new(format!("atom {atom} does not exist: the mesh has {count} atoms"))
                     .help(format!("atoms are numbered from 0 to {}", count - 1));
-                let place = document.place(&format!("{key}.atoms[{i}]"), "no such atom");
-                faults.push(place.into_iter().fold(fault, Fault::at));
+                let location = document.location(&format!("{key}.atoms[{i}]"), "no such atom");
+                faults.push(location.into_iter().fold(fault, Fault::at));
             }
             list.iter().copied().filter(|&atom| (atom as usize) < count).collect()
         }
@@ -80,10 +80,10 @@ fn lowest(along: &[f64], atoms: &[u32]) -> f64 {
 /// Pairs of atoms that are each other's image under a symmetry of the plain mesh, each pair once.
 pub fn mirrored(plain: &Surface, image: impl Fn(Vec3) -> Vec3) -> Vec<[u32; 2]> {
     let size = plain.positions.iter().map(|p| p.norm()).fold(0.0, f64::max);
-    let find = |place: Vec3| plain.positions.iter().position(|p| (p - place).norm() < 1e-6 * size);
+    let find = |position: Vec3| plain.positions.iter().position(|p| (p - position).norm() < 1e-6 * size);
     let mut pairs = Vec::new();
-    for (i, place) in plain.positions.iter().enumerate() {
-        if let Some(j) = find(image(*place)).filter(|&j| j > i) {
+    for (i, position) in plain.positions.iter().enumerate() {
+        if let Some(j) = find(image(*position)).filter(|&j| j > i) {
             pairs.push([i as u32, j as u32]);
         }
     }

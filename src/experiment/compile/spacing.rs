@@ -2,7 +2,7 @@
 
 use super::super::{CellType, Document, Placement};
 use super::numbers::vector;
-use super::place::{centres, first_cells};
+use super::positions::{centres, first_cells};
 use crate::Vec3;
 use crate::error::{Error, Fault, Result};
 use crate::geometry::{Occupied, bounding_box};
@@ -34,7 +34,7 @@ pub fn centres_apart(document: &Document, kinds: &[Kind], planes: &[Plane], gap:
         all.push(match &cell.placement {
             Some(Placement::Random { random_from, random_to }) => {
                 let corners = [random_from, random_to].map(|corner| vector(corner.map(|x| x.value())));
-                place_kind(document, kind, first..first + cell.count(), planes, corners, &mut taken)?
+                seed_kind(document, kind, first..first + cell.count(), planes, corners, &mut taken)?
             }
             _ => centres(experiment, cell, kind, first),
         });
@@ -43,7 +43,7 @@ pub fn centres_apart(document: &Document, kinds: &[Kind], planes: &[Plane], gap:
 }
 
 /// Centres of the cells of a kind, drawn until each has room.
-fn place_kind(
+fn seed_kind(
     document: &Document,
     kind: &Kind,
     cells: Range<usize>,
@@ -84,6 +84,6 @@ fn too_full(
     );
     let help = "make the box larger or the cells fewer; places at random rarely fill more than 30 %, a grid fills more";
     let fault = Fault::new(message).help(help);
-    let place = document.place(&format!("cells.{}.placement", kind.name), "too full");
-    Error::input(place.into_iter().fold(fault, Fault::at))
+    let location = document.location(&format!("cells.{}.placement", kind.name), "too full");
+    Error::input(location.into_iter().fold(fault, Fault::at))
 }

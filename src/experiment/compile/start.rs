@@ -64,17 +64,17 @@ pub fn settle_start(document: &Document, compiled: &mut Compiled) -> Result<Push
     let list =
         |overlaps: &[Overlap]| overlaps.iter().map(|overlap| told(model, state, overlap)).collect::<Vec<Found>>();
     let head = format!("cells overlap at the start, and {ROUNDS} rounds of pushing have not parted them all: ");
-    let room = if model.planes.is_empty() { "" } else { ", or give them more room between the planes" };
-    refusal(document, model, &head, &list(&left), room)?;
+    let space = if model.planes.is_empty() { "" } else { ", or give them more room between the planes" };
+    refusal(document, model, &head, &list(&left), space)?;
     let far = too_far(model, state, &moves);
     let head = "cells overlap at the start, and to part them some would have to move farther than their radius: ";
     refusal(document, model, head, &far, "")?;
-    for (body, way) in moves.iter().enumerate() {
+    for (body, displacement) in moves.iter().enumerate() {
         let (kind, cell) = state.kind_of(body);
-        state.kinds[kind].shift(&model.kinds[kind], cell, way);
+        state.kinds[kind].shift(&model.kinds[kind], cell, displacement);
     }
     // Pushes from both sides may leave round-off.
-    let lengths = moves.iter().map(|way| way.norm()).filter(|length| *length > 1e-9 * gap);
+    let lengths = moves.iter().map(|displacement| displacement.norm()).filter(|length| *length > 1e-9 * gap);
     Ok(PushedApart { cells: lengths.clone().count(), farthest: lengths.fold(0.0, f64::max) })
 }
 
@@ -136,10 +136,10 @@ fn stride(model: &Model) -> f64 {
 /// Cells that would be moved farther than half of their largest extent.
 fn too_far(model: &Model, state: &State, moves: &[Vec3]) -> Vec<Found> {
     let radii = of_cells(model, state, |kind| 0.5 * extents(kind).max());
-    let far = moves.iter().zip(radii).enumerate().filter(|(_, (way, radius))| way.norm() > *radius);
-    let words = |(body, (way, radius)): (usize, (&Vec3, f64))| {
+    let far = moves.iter().zip(radii).enumerate().filter(|(_, (displacement, radius))| displacement.norm() > *radius);
+    let words = |(body, (displacement, radius)): (usize, (&Vec3, f64))| {
         let (kind, cell) = state.kind_of(body);
-        let (name, far) = (&model.kinds[kind].name, short(way.norm()));
+        let (name, far) = (&model.kinds[kind].name, short(displacement.norm()));
         Found { kind, words: format!("cell {cell} of type `{name}` by {far} um of {} um", short(radius)) }
     };
     far.map(words).collect()

@@ -34,8 +34,8 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
             (None, Order::First) => {
                 let fault = Fault::new("the implicit scheme of order 1 has no error estimate to choose a step by")
                     .help("give run.integrator.step, or use order = 2");
-                let place = document.place("run.integrator.order", "needs a fixed step");
-                return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
+                let location = document.location("run.integrator.order", "needs a fixed step");
+                return Err(Error::input(location.into_iter().fold(fault, Fault::at)));
             }
         };
         return Ok(Integrator { method, size });
@@ -69,8 +69,8 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
                  method = \"implicit\", or set allow_unstable = true to see it fail",
             limit.1
         ));
-        let place = document.place("run.integrator.step", "too large");
-        return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
+        let location = document.location("run.integrator.step", "too large");
+        return Err(Error::input(location.into_iter().fold(fault, Fault::at)));
     }
     Ok(Integrator { method, size: StepSize::Fixed(step) })
 }
@@ -90,8 +90,8 @@ pub fn schedule(document: &Document, model: &Model) -> Result<Schedule> {
             short(longest)
         ))
         .help("output never shortens a step: set run.integrator.max_step (or step) to at most output.every");
-        let place = document.place("output.every", "shorter than a step");
-        return Err(Error::input(place.into_iter().fold(fault, Fault::at)));
+        let location = document.location("output.every", "shorter than a step");
+        return Err(Error::input(location.into_iter().fold(fault, Fault::at)));
     }
     let checkpoint = output.checkpoint.map_or(0.1 * model.until, |checkpoint| checkpoint.value());
     Ok(Schedule { every, checkpoint, forces: output.forces })

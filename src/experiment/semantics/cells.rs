@@ -64,8 +64,8 @@ impl Check<'_> {
     fn placement(&mut self, placement: &str, number: usize, given: Option<&Placement>) {
         match given {
             Some(Placement::At { at }) if at.len() != number || at.is_empty() => {
-                let places = if at.len() == 1 { "1 place".to_owned() } else { format!("{} places", at.len()) };
-                let message = format!("`{placement}.at` has {places} for {number} cells");
+                let points = if at.len() == 1 { "1 place".to_owned() } else { format!("{} places", at.len()) };
+                let message = format!("`{placement}.at` has {points} for {number} cells");
                 self.fault(
                     &format!("{placement}.at"),
                     "not one for each cell",
@@ -74,9 +74,9 @@ impl Check<'_> {
                 );
             }
             Some(Placement::Grid { grid, .. }) => {
-                let places = grid.iter().map(|n| *n as usize).fold(1, usize::saturating_mul);
-                if places < number {
-                    let message = format!("`{placement}.grid` has {places} places for {number} cells");
+                let points = grid.iter().map(|n| *n as usize).fold(1, usize::saturating_mul);
+                if points < number {
+                    let message = format!("`{placement}.grid` has {points} places for {number} cells");
                     self.fault(
                         &format!("{placement}.grid"),
                         "too small",

@@ -1,7 +1,7 @@
 //! Paths of keys, and `--set`, which changes the value at one.
 
 use super::{Node, Value, node_of};
-use crate::error::{Fault, Place, Source};
+use crate::error::{Fault, Location, Source};
 use indexmap::IndexMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -29,15 +29,15 @@ impl Node {
     pub(in crate::experiment) fn set(&mut self, source: &Arc<Source>) -> Result<(), Fault> {
         let text = &source.text;
         let whole =
-            |label: &str| Place { source: source.clone(), start: 0, length: text.len(), label: label.to_owned() };
+            |label: &str| Location { source: source.clone(), start: 0, length: text.len(), label: label.to_owned() };
         let Some((path, raw)) = text.split_once('=') else {
             let fault = Fault::new(format!("`--set {text}` gives no value")).at(whole("no `=` here"));
             return Err(fault.help(format!("write --set {text}=VALUE, with quotes if your shell needs them")));
         };
         let steps = steps(path).map_err(|at| {
-            let place = Place { source: source.clone(), start: at.start, length: at.len(), label: "here".into() };
+            let location = Location { source: source.clone(), start: at.start, length: at.len(), label: "here".into() };
             let help = "name a key as in `cells.red.loads[0].force`";
-            Fault::new(format!("`{path}` is not the name of a key")).at(place).help(help)
+            Fault::new(format!("`{path}` is not the name of a key")).at(location).help(help)
         })?;
         let mut node = self;
         let mut walked = String::new();
@@ -60,7 +60,8 @@ impl Node {
 
     /// The node one step further, made if it lacks.
     fn enter(&mut self, step: &Step, source: &Arc<Source>, walked: &str) -> Result<&mut Self, Fault> {
-        let place = Place { source: source.clone(), start: step.at.start, length: step.at.len(), label: "here".into() };
+        let location =
+            Location { source: source.clone(), start: step.at.start, length: step.at.len(), label: "here".into() };
         let kind = self.kind();
         let empty = || {
             let value = Value::Table(IndexMap::new());
@@ -85,20 +86,20 @@ impl Node {
                         1 => "its only entry is 0; entry 1 can be added".to_owned(),
                         _ => format!("entries count from 0 to {}; entry {length} can be added", length - 1),
                     };
-                    Fault::new(format!("`{walked}` has no entry {index}")).at(place).help(help)
+                    Fault::new(format!("`{walked}` has no entry {index}")).at(location).help(help)
                 })
             }
             (Value::List(_), Name::Key(key)) => {
                 let help = format!("name the entry, from 0: `{walked}[0].{key}`");
-                Err(Fault::new(format!("`{walked}` is a list and has no key `{key}`")).at(place).help(help))
+                Err(Fault::new(format!("`{walked}` is a list and has no key `{key}`")).at(location).help(help))
             }
             (_, Name::Key(key)) => {
                 let help = format!("set `{walked}` itself");
-                Err(Fault::new(format!("`{walked}` is {kind} and has no key `{key}`")).at(place).help(help))
+                Err(Fault::new(format!("`{walked}` is {kind} and has no key `{key}`")).at(location).help(help))
             }
             (_, Name::Entry(_)) => {
                 let help = format!("write `{walked}` without brackets");
-                Err(Fault::new(format!("`{walked}` is {kind}, not a list")).at(place).help(help))
+                Err(Fault::new(format!("`{walked}` is {kind}, not a list")).at(location).help(help))
             }
         }
     }

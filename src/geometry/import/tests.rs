@@ -91,13 +91,13 @@ fn obj_takes_polygons_negative_numbers_textures_and_comments() {
 }
 
 #[test]
-fn obj_faults_are_reported_together_with_their_places() {
+fn obj_faults_are_reported_together_with_their_locations() {
     let text = "v 0 0 zero\nv 1 2\nv 0 0 inf\nf 1 2\nf 0 1 2\nf 1 2 -9\n";
     let faults = obj::parse("bad.obj", text.as_bytes()).unwrap_err();
     let found: Vec<_> = faults
         .iter()
         .map(|fault| {
-            let position = fault.place.as_ref().unwrap();
+            let position = fault.location.as_ref().unwrap();
             let line = position.source.text[..position.start].matches('\n').count() + 1;
             format!(
                 "{line}: {} [{}]",

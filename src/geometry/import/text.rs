@@ -1,7 +1,7 @@
 //! Words of a text file with their locations, so that a fault can point at them.
 
 use crate::Vec3;
-use crate::error::{Fault, Place, Source};
+use crate::error::{Fault, Location, Source};
 use std::sync::Arc;
 
 /// A word and the byte where it starts.
@@ -47,7 +47,7 @@ impl Text {
     /// A fault that points at a word.
     pub fn fault(&self, at: Word, message: impl Into<String>, label: &str, help: &str) -> Fault {
         let position =
-            Place { source: self.source.clone(), start: at.start, length: at.text.len(), label: label.into() };
+            Location { source: self.source.clone(), start: at.start, length: at.text.len(), label: label.into() };
         Fault::new(message).at(position).help(help)
     }
 

@@ -137,8 +137,8 @@ pub fn gradient_error(force: &Force, positions: &[Vec3], forces: &[Vec3]) -> (f6
         moved[i][axis] += by;
         on(force, &moved).0
     };
-    let places = (0..positions.len()).flat_map(|i| (0..3).map(move |axis| (i, axis)));
-    let errors = places.map(|(i, axis)| {
+    let components = (0..positions.len()).flat_map(|i| (0..3).map(move |axis| (i, axis)));
+    let errors = components.map(|(i, axis)| {
         let difference = (energy_at(i, axis, step) - energy_at(i, axis, -step)) / (2.0 * step);
         ((forces[i][axis] + difference).abs() / largest(forces), format!("atom {i}, axis {axis}"))
     });

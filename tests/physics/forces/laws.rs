@@ -26,9 +26,9 @@ fn shape_memory_stays_smooth_where_a_triplet_collapses_and_turns_over() {
         positions[corner[1]] = b + share * (0.5 * (a + c) - b);
         let force = Force::ShapeMemory(memory.clone());
         let (energy, forces) = on(&force, &positions);
-        let (error, place) = gradient_error(&force, &positions, &forces);
+        let (error, at) = gradient_error(&force, &positions, &forces);
         // As above; the third derivative near the collapse is larger by (1/0.2)^2.
-        assert!(error < 1e-6, "{share} of the way, {place}: off by {error:e} of the largest force");
+        assert!(error < 1e-6, "{share} of the way, {at}: off by {error:e} of the largest force");
         let mut plain = vec![Vec3::zeros(); positions.len()];
         let plain_energy = reference::add_forces(&memory, &positions, &mut plain);
         assert!((energy - plain_energy).abs() < 1e-12 * energy, "{share}: energy {energy} and plainly {plain_energy}");
@@ -234,7 +234,7 @@ fn the_barrier_does_nothing_in_ordinary_deformation() {
 }
 
 #[test]
-fn angles_draw_an_atom_on_two_fixed_ones_back_to_its_place() {
+fn angles_draw_an_atom_on_two_fixed_ones_back_to_its_target() {
     let positions = [Vec3::new(-1.0, 0.0, 0.0), Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.3, 0.8, 0.0)];
     let angles = Angles::new(&positions, &[vec![], vec![], vec![0, 1]], 2.0);
     assert!((angles.stances()[2].gamma - 0.3f64.hypot(0.8)).abs() < 1e-15);

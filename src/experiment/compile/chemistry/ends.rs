@@ -50,7 +50,7 @@ impl Ends<'_, '_> {
             [("chemistry", Some(Index::Name(name))), (id, None)] => self.other(end, name, id, None),
             _ => {
                 let message = format!("the scene has no number `{}`", end.text);
-                Err(within(&end.place, "not known", message, "it has scene.time and scene.chemistry[NAME].ID"))
+                Err(within(&end.location, "not known", message, "it has scene.time and scene.chemistry[NAME].ID"))
             }
         }
     }
@@ -104,7 +104,7 @@ impl Ends<'_, '_> {
         let Some(reading) = ends::reading(&end.path) else {
             let message = format!("a cell has nothing to read that is called `{}`", end.text);
             let help = format!("it has {}", words::all_of(ends::READABLE));
-            return Err(within(&end.place, &meant(end, ends::READABLE), message, help));
+            return Err(within(&end.location, &meant(end, ends::READABLE), message, help));
         };
         if let Reading::Atom(atom, _) = reading {
             self.check_atom(end, whose, atom)?;
@@ -112,7 +112,7 @@ impl Ends<'_, '_> {
         let open = self.kinds_of(whose).into_iter().find(|kind| !self.kinds[*kind].closed);
         if let (Some(kind), Reading::Volume | Reading::VolumeStrain) = (open, reading) {
             let message = format!("cells of type `{}` enclose no volume", self.kinds[kind].name);
-            return Err(within(&end.place, "no volume", message, "read the area, or give the type a closed mesh"));
+            return Err(within(&end.location, "no volume", message, "read the area, or give the type a closed mesh"));
         }
         Ok(Source::Cell(whose, reading))
     }
@@ -122,7 +122,7 @@ impl Ends<'_, '_> {
         if matches!(end.root, Root::Scene | Root::Field(_)) {
             let message = format!("{} cannot be set", end.text);
             let help = "set an <input> of the field's document from there, or what belongs to a cell or a type";
-            return Err(within(&end.place, "cannot be set", message, help));
+            return Err(within(&end.location, "cannot be set", message, help));
         }
         let whose = self.whose(end, Side::To)?;
         let Some(setting) = ends::setting(&end.path) else {
@@ -130,7 +130,7 @@ impl Ends<'_, '_> {
             let known = ends::settable();
             let known = || known.iter().map(String::as_str);
             let help = format!("of a cell can be set {}", words::all_of(known()));
-            return Err(within(&end.place, &meant(end, known()), message, help));
+            return Err(within(&end.location, &meant(end, known()), message, help));
         };
         self.check_setting(end, whose, &setting)?;
         let control = match setting {
@@ -176,7 +176,7 @@ impl Ends<'_, '_> {
                 _ => continue,
             };
             let message = format!("{} cannot be set: type `{}` {lacking}", end.text, kind.name);
-            return Err(within(&end.place, "cannot be set", message, help));
+            return Err(within(&end.location, "cannot be set", message, help));
         }
         if let Setting::Atom(atom, _) = setting {
             self.check_atom(end, whose, *atom)?;
@@ -197,12 +197,12 @@ impl Ends<'_, '_> {
                     true => format!("add [[cells.{}.{many}]] with that name to the experiment", kind.name),
                     false => format!("its {many} are {}", words::all_of(known)),
                 };
-                return Err(within(&end.place, &format!("no such {one}"), message, help));
+                return Err(within(&end.location, &format!("no such {one}"), message, help));
             };
             if found.is_some_and(|other| other != number) {
                 let message = format!("{one} `{name}` stands at another place in type `{}`", kind.name);
                 let help = format!("list the {many} of the types that share the system in the same order");
-                return Err(within(&end.place, "not the same", message, help));
+                return Err(within(&end.location, "not the same", message, help));
             }
             found = Some(number);
         }
@@ -215,24 +215,24 @@ impl Ends<'_, '_> {
         let Some(part) = systems().find(|part| part.name == name) else {
             let message = format!("there is no system `{name}`");
             let help = format!("systems here are {}", words::all_of(systems().map(|part| part.name)));
-            return Err(within(&end.place, "not known", message, help));
+            return Err(within(&end.location, "not known", message, help));
         };
         let Some(quantity) = part.document.system.find(id) else {
             let ids = part.document.system.quantities.iter().map(|q| q.id.as_str());
             let label = words::meant(id, ids).map_or("not known".to_owned(), |near| format!("did you mean `{near}`?"));
             let message = format!("the system `{name}` has no quantity `{id}`");
-            return Err(within(&end.place, &label, message, "name a quantity that its document declares"));
+            return Err(within(&end.location, &label, message, "name a quantity that its document declares"));
         };
         let has = |kind: &usize| part.kinds.contains(kind);
         match whose {
             None if !part.kinds.is_empty() => {
                 let message = format!("`{name}` is a system of cells, so that the scene has no single one");
-                Err(within(&end.place, "of cells", message, format!("write cell.chemistry[{name}].{id}")))
+                Err(within(&end.location, "of cells", message, format!("write cell.chemistry[{name}].{id}")))
             }
             Some(whose) if !self.kinds_of(whose).iter().all(has) => {
                 let message = format!("not all cells of {} have the system `{name}`", end.text);
                 let help = format!("add \"{name}\" to the `chemistry` of their type, or write scene.chemistry[{name}]");
-                Err(within(&end.place, "no such system there", message, help))
+                Err(within(&end.location, "no such system there", message, help))
             }
             _ => Ok(Source::Other(part.number, quantity, whose.unwrap_or(Whose::Own))),
         }
@@ -246,14 +246,14 @@ impl Ends<'_, '_> {
                 let cells = self.counts.iter().sum::<usize>();
                 if *cell >= cells {
                     let message = format!("there is no cell {cell}: the experiment has {cells}");
-                    return Err(within(&end.place, "no such cell", message, "cells are numbered from 0"));
+                    return Err(within(&end.location, "no such cell", message, "cells are numbered from 0"));
                 }
                 Whose::Cell(*cell as u64)
             }
             Root::Cell(Some(Index::Name(name))) => {
                 let message = format!("cells have numbers, not names such as `{name}`");
                 let help = format!("write cell[0], or type[{name}] for all cells of a type");
-                return Err(within(&end.place, "not a number", message, help));
+                return Err(within(&end.location, "not a number", message, help));
             }
             Root::Type(Index::Name(name)) => match self.kinds.iter().position(|kind| kind.name == *name) {
                 Some(kind) => Whose::Kind(kind),
@@ -262,12 +262,12 @@ impl Ends<'_, '_> {
                     let label = words::meant(name, known()).map(|near| format!("did you mean `{near}`?"));
                     let help = format!("types of cells here are {}", words::all_of(known()));
                     let message = format!("there is no type of cells `{name}`");
-                    return Err(within(&end.place, label.as_deref().unwrap_or("unknown type"), message, help));
+                    return Err(within(&end.location, label.as_deref().unwrap_or("unknown type"), message, help));
                 }
             },
             Root::Type(Index::Number(_)) => {
                 let message = "types of cells have names, not numbers".to_owned();
-                return Err(within(&end.place, "not a name", message, "write type[NAME]"));
+                return Err(within(&end.location, "not a name", message, "write type[NAME]"));
             }
             _ if shared => {
                 let message = format!("{} is of the cell that has the system, but the scene has it", end.text);
@@ -275,14 +275,14 @@ impl Ends<'_, '_> {
                     "add `chemistry = [\"{}\"]` to a type of cells, or name cell[0] or type[NAME]",
                     self.part.name
                 );
-                return Err(within(&end.place, "which cell?", message, help));
+                return Err(within(&end.location, "which cell?", message, help));
             }
             _ => Whose::Own,
         };
         if side == Side::To && whose != Whose::Own && !shared {
             let message = format!("each cell that has `{}` would set {}", self.part.name, end.text);
             return Err(within(
-                &end.place,
+                &end.location,
                 "set by many",
                 message,
                 "a system of cells sets its own cell: write cell.…",
@@ -306,7 +306,7 @@ impl Ends<'_, '_> {
             if atom >= atoms {
                 let message = format!("cells of type `{name}` have no atom {atom}");
                 let help = format!("their atoms are numbered from 0 to {}", atoms - 1);
-                return Err(within(&end.place, "no such atom", message, help));
+                return Err(within(&end.location, "no such atom", message, help));
             }
         }
         Ok(())
@@ -314,11 +314,11 @@ impl Ends<'_, '_> {
 
     /// Whether the cells that sense or feed a field are larger than its boxes.
     pub(super) fn check_grid(&self, link: &LinkDescription, from: &Source, to: &Target) -> Result<(), Fault> {
-        let (whose, field, place) = match (*from, *to) {
-            (Source::Sensed(whose, channel, _), _) => (whose, self.chemistry.sensed[channel].0, &link.from.place),
-            (Source::AtAtom(whose, _, field, ..), _) => (whose, field, &link.from.place),
+        let (whose, field, location) = match (*from, *to) {
+            (Source::Sensed(whose, channel, _), _) => (whose, self.chemistry.sensed[channel].0, &link.from.location),
+            (Source::AtAtom(whose, _, field, ..), _) => (whose, field, &link.from.location),
             (_, Target::Cell(whose, Control::Secretion(channel))) => {
-                (whose, self.chemistry.secreted[channel].0, &link.to.place)
+                (whose, self.chemistry.secreted[channel].0, &link.to.location)
             }
             _ => return Ok(()),
         };
@@ -338,7 +338,7 @@ impl Ends<'_, '_> {
                     kind.name
                 );
                 let help = format!("give the document's <grid> a spacing of at most {size} um, better half of it");
-                return Err(within(place, "here cells and field meet", message, help));
+                return Err(within(location, "here cells and field meet", message, help));
             }
         }
         Ok(())
@@ -348,7 +348,7 @@ impl Ends<'_, '_> {
     fn species(&self, end: &Endpoint, index: &Index) -> Result<(usize, usize), Fault> {
         let Index::Name(name) = index else {
             let message = "fields have names, not numbers".to_owned();
-            return Err(within(&end.place, "not a name", message, "write field[NAME]"));
+            return Err(within(&end.location, "not a name", message, "write field[NAME]"));
         };
         let fields = || self.chemistry.fields.iter().enumerate();
         let found: Vec<(usize, usize)> =
@@ -364,11 +364,11 @@ impl Ends<'_, '_> {
                     None => "the experiment has no fields: name a document with <field> in [chemistry]".to_owned(),
                 };
                 let message = format!("there is no field `{name}`");
-                Err(within(&end.place, label.as_deref().unwrap_or("unknown field"), message, help))
+                Err(within(&end.location, label.as_deref().unwrap_or("unknown field"), message, help))
             }
             _ => {
                 let message = format!("{} documents have a field `{name}`", found.len());
-                Err(within(&end.place, "which one?", message, "give fields of different documents different names"))
+                Err(within(&end.location, "which one?", message, "give fields of different documents different names"))
             }
         }
     }
@@ -378,7 +378,7 @@ fn unknown_of_field(end: &Endpoint) -> Fault {
     let message = format!("a field has nothing to read that is called `{}`", end.text);
     let help = "cells sense field[NAME], field[NAME].gradient.x and field[NAME].steepness; the whole field has .mean, \
                 .largest, .smallest and .amount";
-    within(&end.place, "not known", message, help)
+    within(&end.location, "not known", message, help)
 }
 
 /// The word that was meant by the path of an end.

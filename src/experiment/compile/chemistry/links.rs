@@ -7,7 +7,7 @@ use super::{Part, at, within};
 use crate::equations::eml::{self, Endpoint, LinkDescription, Root};
 use crate::equations::expression::Trouble;
 use crate::equations::tree::{Event, Expr, Role, System};
-use crate::error::{Fault, Place};
+use crate::error::{Fault, Location};
 use crate::ode::assigned_parameters;
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, Control, Link, Owner, Target};
@@ -39,16 +39,16 @@ pub(super) fn links(
     faults: &mut Vec<Fault>,
 ) {
     let before = faults.len();
-    let mut links: Vec<(Link, Place)> = Vec::new();
+    let mut links: Vec<(Link, Location)> = Vec::new();
     for part in parts {
-        let described = part.document.links.iter().map(|link| (link.clone(), Ok(link.place.clone())));
+        let described = part.document.links.iter().map(|link| (link.clone(), Ok(link.location.clone())));
         let own: Vec<_> = described.chain(outside(document, part, faults)).collect();
-        for (description, place) in own {
-            let place = place.unwrap_or_else(|key| nowhere(document, &key));
+        for (description, location) in own {
+            let location = location.unwrap_or_else(|key| nowhere(document, &key));
             let touching = document.experiment.contact.is_some();
             let mut ends = Ends { parts, part, kinds, counts, chemistry, touching };
             match link(&mut ends, &description) {
-                Ok(link) => links.push((link, place)),
+                Ok(link) => links.push((link, location)),
                 Err(fault) => faults.push(fault),
             }
         }
@@ -58,7 +58,7 @@ pub(super) fn links(
     }
     let systems: Vec<&System> =
         parts.iter().filter(|part| !part.is_field()).map(|part| &part.document.system).collect();
-    let (plain, places): (Vec<Link>, Vec<Place>) = links.into_iter().unzip();
+    let (plain, locations): (Vec<Link>, Vec<Location>) = links.into_iter().unzip();
     match order(&plain, &systems, &chemistry.reactors) {
         Ok(order) => {
             for &number in &order {
@@ -70,15 +70,15 @@ pub(super) fn links(
             let texts: Vec<&str> = circle.iter().map(|&number| plain[number].text.as_str()).collect();
             let message = format!("links close a loop without a time step: {}", texts.join(", then "));
             let help = "let a variable stand between them: what only definitions join has no beginning";
-            faults.push(within(&places[circle[0]], "in the loop", message, help));
+            faults.push(within(&locations[circle[0]], "in the loop", message, help));
         }
     }
 }
 
 /// A place for a link of the experiment that is not written there.
-fn nowhere(document: &Document, key: &str) -> Place {
-    let whole = Place { source: document.source.clone(), start: 0, length: 0, label: String::new() };
-    document.place(key, "this link").unwrap_or(whole)
+fn nowhere(document: &Document, key: &str) -> Location {
+    let whole = Location { source: document.source.clone(), start: 0, length: 0, label: String::new() };
+    document.location(key, "this link").unwrap_or(whole)
 }
 
 /// What links do to the model as a whole.
@@ -142,10 +142,10 @@ fn link(ends: &mut Ends, description: &LinkDescription) -> Result<Link, Fault> {
     Ok(Link { text, owner, from, to, transfer, uses, gain })
 }
 
-type Placed = (LinkDescription, Result<Place, String>);
+type Located = (LinkDescription, Result<Location, String>);
 
 /// The links that the experiment adds to a document.
-fn outside(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Vec<Placed> {
+fn outside(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Vec<Located> {
     let mut found = Vec::new();
     for (index, link) in part.entry.links.iter().enumerate() {
         let key = part.key(&format!("links[{index}]"));
@@ -168,7 +168,7 @@ fn described(
         let key = format!("{key}.{name}");
         match eml::read_end(text, system) {
             Ok((root, path)) => {
-                Some(Endpoint { root, path, text: text.trim().to_owned(), place: nowhere(document, &key) })
+                Some(Endpoint { root, path, text: text.trim().to_owned(), location: nowhere(document, &key) })
             }
             Err(trouble) => {
                 faults.push(fault_of(document, &key, &trouble));
@@ -218,22 +218,22 @@ fn described(
     if faults.len() > before {
         return None;
     }
-    let place = nowhere(document, key);
-    Some(LinkDescription { id: String::new(), from, to, transfer: transfer?, gain: link.gain.unwrap_or(1.0), place })
+    let location = nowhere(document, key);
+    Some(LinkDescription { id: String::new(), from, to, transfer: transfer?, gain: link.gain.unwrap_or(1.0), location })
 }
 
 /// A trouble in a text of the experiment, marked where it is in the text.
 fn fault_of(document: &Document, key: &str, trouble: &Trouble) -> Fault {
     let fault = Fault::new(trouble.message.clone()).help(trouble.help.clone());
-    let Some(mut place) = document.place(key, trouble.label.clone()) else { return fault };
-    let written = &place.source.text[place.start..place.start + place.length];
+    let Some(mut location) = document.location(key, trouble.label.clone()) else { return fault };
+    let written = &location.source.text[location.start..location.start + location.length];
     // In a text with escapes places shift; then the whole text is marked.
     let plain = written.len() >= 2 && written.starts_with(['"', '\'']) && !written.contains('\\');
     if plain && trouble.at.end <= written.len() - 2 {
-        place.start += 1 + trouble.at.start;
-        place.length = trouble.at.len();
+        location.start += 1 + trouble.at.start;
+        location.length = trouble.at.len();
     }
-    fault.at(place)
+    fault.at(location)
 }
 
 impl Ends<'_, '_> {
@@ -247,7 +247,7 @@ impl Ends<'_, '_> {
         match &end.root {
             Root::System(quantity) if !self.part.is_field() => Ok(crate::sim::chemistry::Source::Own(*quantity)),
             Root::System(_) => Err(within(
-                &end.place,
+                &end.location,
                 "of fields",
                 "a document of fields has no single number to give".to_owned(),
                 "link from field[NAME].mean, .largest, .smallest or .amount in the system that wants it",
@@ -259,16 +259,16 @@ impl Ends<'_, '_> {
     /// Where a number goes.
     fn target(&mut self, end: &Endpoint) -> Result<Target, Fault> {
         let Root::System(quantity) = end.root else { return self.set(end) };
-        let place = if self.part.is_field() {
+        let location = if self.part.is_field() {
             let id = &self.part.document.system.quantities[quantity as usize].id;
             let inputs = self.chemistry.fields[self.part.number].system.inputs();
             inputs.iter().position(|(input, _)| input == id)
         } else {
             self.chemistry.reactors[self.part.number].program.open_index(quantity)
         };
-        place.map(Target::Own).ok_or_else(|| {
+        location.map(Target::Own).ok_or_else(|| {
             let message = format!("{} cannot be set by a link", end.text);
-            within(&end.place, "not an input", message, "link to an <input>")
+            within(&end.location, "not an input", message, "link to an <input>")
         })
     }
 }

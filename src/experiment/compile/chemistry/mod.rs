@@ -11,7 +11,7 @@ use super::super::{Chemistry as Entry, Document, Scheme};
 use crate::equations::eml;
 use crate::equations::program::{Program, initial_values};
 use crate::equations::tree::Role;
-use crate::error::{Error, Fault, Place};
+use crate::error::{Error, Fault, Location};
 use crate::field::{FieldSystem, Fields, Placing};
 use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Tolerances, assigned_parameters, too_large};
 use crate::sim::Kind;
@@ -89,12 +89,12 @@ pub fn chemistry(
 
 /// A fault at a key of the experiment.
 fn at(document: &Document, key: &str, label: &str, fault: Fault) -> Fault {
-    document.place(key, label).into_iter().fold(fault, Fault::at)
+    document.location(key, label).into_iter().fold(fault, Fault::at)
 }
 
 /// A fault in the document of equations, at a place there.
-fn within(place: &Place, label: &str, message: String, help: impl Into<String>) -> Fault {
-    Fault::new(message).at(Place { label: label.to_owned(), ..place.clone() }).help(help)
+fn within(location: &Location, label: &str, message: String, help: impl Into<String>) -> Fault {
+    Fault::new(message).at(Location { label: label.to_owned(), ..location.clone() }).help(help)
 }
 
 /// What a failed part of chemistry adds to the faults.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::equations::eml::Profile;
-use crate::error::{Error, Fault, Place, Result};
+use crate::error::{Error, Fault, Location, Result};
 use crate::field::Grid;
 
 /// Values of a profile that a file gives, one for each box of the grid in the order of its memory. The picture covers
@@ -16,30 +16,30 @@ pub(super) fn load(document: &Path, profile: &Profile, grid: &Grid) -> Result<Ve
     let folder = document.parent().unwrap_or(Path::new("."));
     match profile {
         Profile::Expression(_) => Ok(Vec::new()),
-        Profile::Image { file, scale, place } => {
-            let table = image(&folder.join(file)).map_err(|message| refuse(place, &message))?;
+        Profile::Image { file, scale, location } => {
+            let table = image(&folder.join(file)).map_err(|message| refuse(location, &message))?;
             if !grid.is_flat() {
-                return Err(refuse(place, "an image has two dimensions, the grid has three"));
+                return Err(refuse(location, "an image has two dimensions, the grid has three"));
             }
             Ok(table.onto(grid).into_iter().map(|value| value * scale).collect())
         }
-        Profile::Dataset { file, dataset, scale, place } => {
-            let table = table(&folder.join(file), dataset).map_err(|message| refuse(place, &message))?;
+        Profile::Dataset { file, dataset, scale, location } => {
+            let table = table(&folder.join(file), dataset).map_err(|message| refuse(location, &message))?;
             if grid.is_flat() != (table.size[2] == 1) {
-                return Err(refuse(place, "the dataset and the grid have different numbers of dimensions"));
+                return Err(refuse(location, "the dataset and the grid have different numbers of dimensions"));
             }
             let values: Vec<f64> = table.onto(grid).into_iter().map(|value| value * scale).collect();
             if values.iter().any(|value| !value.is_finite()) {
-                return Err(refuse(place, "the dataset has values that are not finite"));
+                return Err(refuse(location, "the dataset has values that are not finite"));
             }
             Ok(values)
         }
     }
 }
 
-fn refuse(place: &Place, message: &str) -> Error {
+fn refuse(location: &Location, message: &str) -> Error {
     let help = "give a PNG image, or FILE.h5:/DATASET with numbers [y][x] or [z][y][x]";
-    Error::input(Fault::new(message).at(place.clone()).help(help))
+    Error::input(Fault::new(message).at(location.clone()).help(help))
 }
 
 /// Numbers on a regular grid, x running fastest, the first row at the smallest y.
@@ -54,8 +54,8 @@ impl Table {
         // The two points of the table on either side of a box's centre, and the share of the second.
         let along = |axis: usize| -> Vec<(usize, usize, f64)> {
             let (n, boxes) = (self.size[axis], grid.cells[axis]);
-            let place = |b: usize| ((b as f64 + 0.5) / boxes as f64 * n as f64 - 0.5).clamp(0.0, n as f64 - 1.0);
-            (0..boxes).map(place).map(|p| (p as usize, (p as usize + 1).min(n - 1), p.fract())).collect()
+            let location = |b: usize| ((b as f64 + 0.5) / boxes as f64 * n as f64 - 0.5).clamp(0.0, n as f64 - 1.0);
+            (0..boxes).map(location).map(|p| (p as usize, (p as usize + 1).min(n - 1), p.fract())).collect()
         };
         let (xs, ys, zs) = (along(0), along(1), along(2));
         let at = |x: usize, y: usize, z: usize| self.values[(z * self.size[1] + y) * self.size[0] + x];
