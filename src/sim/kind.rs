@@ -185,15 +185,16 @@ impl Kind {
         self.behaviours.iter().any(|behaviour| behaviour.speed().is_some())
     }
 
-    /// Whether a velocity may be set of its cells.
+    /// Whether links set a velocity of its cells.
     pub fn is_biased(&self) -> bool {
         self.behaviours.contains(&Behaviour::Bias)
     }
 
-    /// Lets a velocity be set of its cells, or no more.
-    pub fn set_biased(&mut self, biased: bool) {
-        self.behaviours.retain(|behaviour| *behaviour != Behaviour::Bias);
-        self.behaviours.extend(biased.then_some(Behaviour::Bias));
+    /// Lets links set a velocity of its cells.
+    pub fn make_biased(&mut self) {
+        if !self.is_biased() {
+            self.behaviours.push(Behaviour::Bias);
+        }
     }
 
     /// Its loads.
