@@ -18,7 +18,7 @@ use motility::{BrownianMotility, Walk};
 pub enum Behaviour {
     /// Brownian persistence.
     Brownian(BrownianMotility),
-    /// A velocity that chemistry or a program sets.
+    /// A velocity that chemistry sets.
     Bias,
 }
 

@@ -1,5 +1,7 @@
 //! Exact answers for the start of a run: whether a point is inside a closed surface, and which surfaces overlap.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::boxes::Bounds;
@@ -100,6 +102,25 @@ pub fn centre_is_inside(scene: &Scene, positions: &[Vec3], inner: u32, outer: u3
     is_inside(scene, positions, centre(scene.of_body(inner, positions)), outer, &bounds)
 }
 
+/// The first of `bodies` that has the mean of its atoms inside another, or inside which another has its own: the inner one and the outer
+/// one. Where that is so, boxes meet, so that other pairs are not looked at.
+///
+/// # Panics
+/// When there are not as many positions as atoms.
+pub fn find_centre_inside(scene: &Scene, positions: &[Vec3], bodies: Range<u32>) -> Option<[u32; 2]> {
+    assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
+    let mut neighbours = Neighbours::default();
+    neighbours.find(&bounds_of_bodies(scene, positions));
+    let mut both = near_pairs(&neighbours, bodies).flat_map(|[one, other]| [[one, other], [other, one]]);
+    both.find(|&[inner, outer]| centre_is_inside(scene, positions, inner, outer))
+}
+
+/// Each of `bodies` with each other one whose box meets its own.
+fn near_pairs(neighbours: &Neighbours, bodies: Range<u32>) -> impl Iterator<Item = [u32; 2]> {
+    let with_others = |body: u32| neighbours.of(body).iter().map(move |other| [body, *other]);
+    bodies.flat_map(with_others).filter(|[body, other]| body != other)
+}
+
 /// How often edges of one body pass through facets of another.
 fn crossings(scene: &Scene, positions: &[Vec3], with_edges: u32, with_facets: u32, bounds: &Bounds) -> u32 {
     let (here, there) = (scene.of_body(with_edges, positions), scene.of_body(with_facets, positions));
@@ -132,4 +153,37 @@ pub(super) fn crossing(from: Vec3, to: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f64
     let turns = [turn(a, b), turn(b, c), turn(c, a)];
     let through = turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0);
     through.then(|| before / (before - after))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Reach;
+    use super::super::test_scenes::stage;
+    use super::*;
+    use crate::geometry::icosphere;
+
+    const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+
+    #[test]
+    fn middles_are_looked_for_among_neighbours_alone() {
+        let ball = icosphere(1.0, 0);
+        let shifted = |way: Vec3| ball.positions.iter().map(|position| position + way).collect::<Vec<_>>();
+        // A lattice so tight that boxes of neighbours meet: each of its 5000 balls has up to 26.
+        let at = |n: u32| Vec3::new(f64::from(n % 20), f64::from(n / 20 % 25), f64::from(n / 500)) * 1.5;
+        let mut bodies: Vec<_> = (0..5000).map(|n| (&ball, Sides::Outer, shifted(at(n)))).collect();
+        let lattice = stage(&bodies, Vec::new(), REACH);
+        let mut neighbours = Neighbours::default();
+        neighbours.find(&bounds_of_bodies(&lattice.scene, &lattice.positions));
+        let looked_at = near_pairs(&neighbours, 0..5000).count();
+        assert!(looked_at <= 26 * 5000, "{looked_at} of 25 million pairs");
+        assert_eq!(find_centre_inside(&lattice.scene, &lattice.positions, 0..5000), None);
+        // One more in the place of another, and one beside it that is in nobody's place.
+        bodies.push((&ball, Sides::Outer, shifted(Vec3::new(-9.0, 0.0, 0.0))));
+        bodies.push((&ball, Sides::Outer, shifted(at(4321))));
+        let with_more = stage(&bodies, Vec::new(), REACH);
+        let found = |bodies: Range<u32>| find_centre_inside(&with_more.scene, &with_more.positions, bodies);
+        assert_eq!(found(5000..5002), Some([5001, 4321]));
+        assert_eq!(found(4000..5000), Some([4321, 5001]));
+        assert_eq!(found(0..4321), None);
+    }
 }

@@ -35,7 +35,7 @@ pub use detect::{Detection, Detector};
 pub use edge_edge::edges_still_touch;
 pub use found::{AtomContact, Contacts, EdgeContact, Facing, Normal, PlaneContact};
 pub use groove::add_walls_of_grooves;
-pub use inside::{Overlap, centre_is_inside, find_overlaps, winding_number};
+pub use inside::{Overlap, centre_is_inside, find_centre_inside, find_overlaps, winding_number};
 pub use passages::{Coverage, Pair, Passage};
 pub use reference::detect_all_pairs;
 pub use scene::{Body, Plane, Reach, Scene};

@@ -202,7 +202,7 @@ impl Barrier {
         let stiffness = match self.stiffness {
             Some(stiffness) => stiffness.value(),
             None => {
-                let matrix = sum::stiffness(&to.forces, true, &rest.positions, &rest.positions);
+                let matrix = sum::stiffness(&to.forces, &rest.positions, &rest.positions);
                 BARRIER_SHARE * (0..rest.positions.len()).map(|i| matrix.diagonal(i)).fold(0.0, f64::max)
             }
         };

@@ -56,4 +56,12 @@ impl Fibres {
     pub fn add_stiffness(&self, matrix: &mut StiffnessMatrix) {
         self.pairs.iter().for_each(|&[from, to]| matrix.add_spring(from as usize, to as usize, self.stiffness));
     }
+
+    /// What the largest eigenvalue of the stiffness at full activation is at most, pN/µm: twice that of the fibres of one atom.
+    pub fn largest_stiffness(&self) -> f64 {
+        let mut ends: Vec<u32> = self.pairs.iter().flatten().copied().collect();
+        ends.sort_unstable();
+        let most = ends.chunk_by(|one, other| one == other).map(<[u32]>::len).max().unwrap_or(0);
+        2.0 * self.stiffness * most as f64
+    }
 }

@@ -128,6 +128,17 @@ impl Force {
         }
     }
 
+    /// What the largest eigenvalue of its stiffness is at most, pN/µm, where it is not elastic; of elastic forces it is measured.
+    pub fn largest_stiffness(&self) -> Option<f64> {
+        match self {
+            Self::Fibres(force) => Some(force.largest_stiffness()),
+            Self::Attraction(force) => Some(force.stiffness),
+            Self::Load(_) | Self::Gravity(_) => Some(0.0),
+            Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => None,
+            Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) => None,
+        }
+    }
+
     /// How strongly it acts on the cell of each lane of a block where these numbers are `set`; elastic forces act as they are.
     fn strength(&self, context: &Context, set: &[f64; LANES]) -> [f64; LANES] {
         match self {

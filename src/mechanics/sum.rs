@@ -36,12 +36,12 @@ pub fn measure_elastic(forces: &[Force], lanes: usize, x: &[f64], f: &mut [f64],
     dispatch(lanes, Work { forces, elastic: true, strength: &[1.0; LANES][..lanes], x, f, energy });
 }
 
-/// The linear part for the implicit step, pN/µm, of those forces that are elastic or that are not, as it is fit for the shape `x`
-/// (µm) of a cell with this rest shape.
-pub fn stiffness(forces: &[Force], elastic: bool, rest: &[Vec3], x: &[Vec3]) -> StiffnessMatrix {
+/// The linear part of the elastic forces for the implicit step, pN/µm, as it is fit for the shape `x` (µm) of a cell with this rest
+/// shape.
+pub fn stiffness(forces: &[Force], rest: &[Vec3], x: &[Vec3]) -> StiffnessMatrix {
     let mut matrix = StiffnessMatrix::new(rest.len());
-    let wanted = forces.iter().filter(|force| force.is_elastic() == elastic);
-    wanted.for_each(|force| force.add_stiffness(rest, x, &mut matrix));
+    let elastic = forces.iter().filter(|force| force.is_elastic());
+    elastic.for_each(|force| force.add_stiffness(rest, x, &mut matrix));
     matrix
 }
 

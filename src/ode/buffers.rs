@@ -1,10 +1,11 @@
 //! What populations work in: kept from window to window so that nothing is allocated meanwhile, and never saved.
 
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 use super::cells::kept_numbers;
 use super::course::CourseBuffers;
-use super::events::{EventBuffers, EventMemory};
+use super::events::{EventBuffers, EventPlan};
+use super::memory::EventMemory;
 use super::narrow::Narrow;
 use super::scratch::Scratch;
 use super::stepper::StepperBuffers;
@@ -90,6 +91,16 @@ impl PopulationScratch {
     pub(super) fn suit_threads(&mut self) {
         let threads = rayon::current_num_threads().max(self.threads.len());
         self.threads.resize_with(threads, Mutex::default);
+    }
+
+    /// Makes buffers for so many cells with events, in which each of these can wait once and be executed.
+    pub(super) fn suit_events(&mut self, program: &Program, plan: &EventPlan, cells: usize) {
+        self.suit_threads();
+        for own in &mut self.threads {
+            own.get_mut().unwrap_or_else(PoisonError::into_inner).single.events.suit(plan, program);
+        }
+        self.arrived.resize_with(cells, Arrived::default);
+        self.arrived.iter_mut().for_each(|arrived| plan.suit(&mut arrived.memory));
     }
 
     /// Forgets everything.

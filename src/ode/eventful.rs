@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use super::buffers::{Arrived, CellBuffers, PopulationScratch};
 use super::course::{Course, LONGEST_SHARE};
-use super::events::{EventMemory, EventPlan, Events};
+use super::events::{EventPlan, Events};
+use super::memory::EventMemory;
 use super::population::Population;
 use super::stepper::{Stepper, StepperBuffers};
 use super::{OdeTrouble, Tolerances, Work};
@@ -30,7 +31,8 @@ impl Eventful<'_> {
     /// Advances all cells through a window, as [`Population::advance`] does for systems without events. `memories`
     /// holds one entry a cell. Triggers that have turned true since the last window, because an open quantity was set
     /// or because nothing was before, fire at `from`; what is due at `until` is executed. A window of no length
-    /// does only that. Nothing is allocated after the first window with the same scratch but for events that fire.
+    /// does only that. Nothing is allocated after the first window with the same scratch, unless an event
+    /// that waits fires again.
     ///
     /// # Errors
     /// The cell of the smallest number that could not be advanced. Cells in trouble keep the state of the window's
@@ -48,9 +50,8 @@ impl Eventful<'_> {
     ) -> Result<Work, OdeTrouble> {
         assert_eq!(memories.len(), population.cells(), "one memory a cell");
         scratch.suit(self.program, population.method(), population.blocks());
-        scratch.suit_threads();
+        scratch.suit_events(self.program, self.plan, memories.len());
         let PopulationScratch { threads, arrived, .. } = scratch;
-        arrived.resize_with(memories.len(), Arrived::default);
         let before = &*population;
         arrived.par_iter_mut().zip(memories.par_iter()).enumerate().for_each(|(cell, (arrived, memory))| {
             let own = &threads[rayon::current_thread_index().unwrap_or(0)];

@@ -1,7 +1,6 @@
 //! Events as SBML means them: triggers, delays, priorities, and what is still to be executed.
 
-use serde::{Deserialize, Serialize};
-
+use super::memory::{EventMemory, reserve};
 use super::stepper::Stepper;
 use super::{OdeTrouble, Reason};
 use crate::equations::program::Program;
@@ -16,45 +15,6 @@ const PRIORITIES: usize = 1;
 /// Group of the differences whose roots in time are met exactly.
 pub const STOPS: usize = 2;
 const FIRST_EVENT: usize = 3;
-
-/// An event that has fired and waits.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Pending {
-    event: usize,
-    time: f64,
-    /// New values, when they are those of the firing.
-    values: Option<Vec<f64>>,
-}
-
-/// What a system knows of its events at a time: which triggers hold, and what has fired and waits.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct EventMemory {
-    holds: Vec<bool>,
-    pending: Vec<Pending>,
-}
-
-impl EventMemory {
-    /// Becomes another; where as much waits as before, nothing is allocated.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.holds.clone_from(&other.holds);
-        self.pending.truncate(other.pending.len());
-        for (to, from) in self.pending.iter_mut().zip(&other.pending) {
-            (to.event, to.time) = (from.event, from.time);
-            match (&mut to.values, &from.values) {
-                (Some(to), Some(from)) => to.clone_from(from),
-                (to, from) => *to = from.clone(),
-            }
-        }
-        self.pending.extend_from_slice(&other.pending[self.pending.len()..]);
-    }
-
-    /// Whether another is of as many events.
-    pub fn has_shape_of(&self, other: &Self) -> bool {
-        let count = self.holds.len();
-        let known = |memory: &Self| memory.pending.iter().all(|pending| pending.event < count);
-        count == other.holds.len() && known(self) && known(other)
-    }
-}
 
 /// The events of a system beside its program.
 #[derive(Debug, Clone, Default)]
@@ -88,7 +48,13 @@ impl EventPlan {
 
     /// What is known of the events before the start.
     pub fn before_start(&self) -> EventMemory {
-        EventMemory { holds: self.events.iter().map(|event| event.true_before_start).collect(), pending: Vec::new() }
+        EventMemory::new(self.events.iter().map(|event| event.true_before_start).collect())
+    }
+
+    /// Makes sure that every event can wait once before a memory allocates.
+    pub(super) fn suit(&self, memory: &mut EventMemory) {
+        let kept = self.events.iter().filter(|event| event.values_from_firing).map(|event| event.assignments.len());
+        memory.reserve(self.events.len(), kept.sum());
     }
 }
 
@@ -106,6 +72,19 @@ pub struct EventBuffers {
     triggers: Vec<f64>,
     /// Delay of an event that fires, and the values that it sets.
     firing: Vec<f64>,
+    priorities: Vec<f64>,
+    /// The same as `firing`, or the values alone, of an event that is executed.
+    execution: Vec<f64>,
+}
+
+impl EventBuffers {
+    /// Makes sure that the events of a plan and their program find memory.
+    pub fn suit(&mut self, plan: &EventPlan, program: &Program) {
+        let results = 1 + plan.slots.iter().map(Vec::len).max().unwrap_or(0);
+        reserve(&mut self.state, program.size());
+        [&mut self.triggers, &mut self.priorities].into_iter().for_each(|list| reserve(list, plan.events.len()));
+        [&mut self.firing, &mut self.execution].into_iter().for_each(|list| reserve(list, results));
+    }
 }
 
 /// Parameters that events set; they must stay open in the program.
@@ -204,12 +183,12 @@ impl<'a> Events<'a> {
 
     /// When the next waiting event is due.
     pub fn next(&self) -> f64 {
-        self.memory.pending.iter().map(|pending| pending.time).fold(f64::INFINITY, f64::min)
+        self.memory.next()
     }
 
     /// Takes note of the triggers now: fires those that turned true, drops what no longer persists.
     pub fn update(&mut self, stepper: &mut Stepper) {
-        let EventBuffers { state, triggers, firing } = &mut *self.buffers;
+        let EventBuffers { state, triggers, firing, .. } = &mut *self.buffers;
         let program = stepper.program;
         stepper.state_into(state);
         stepper.evaluate(&program.further[TRIGGERS], stepper.time, state, triggers);
@@ -219,10 +198,10 @@ impl<'a> Events<'a> {
             if !held && holds {
                 stepper.evaluate(&program.further[FIRST_EVENT + event], stepper.time, state, firing);
                 let delay = firing[0].max(0.0);
-                let values = self.plan.events[event].values_from_firing.then(|| firing[1..].to_vec());
-                self.memory.pending.push(Pending { event, time: stepper.time + delay, values });
+                let values = self.plan.events[event].values_from_firing.then(|| &firing[1..]);
+                self.memory.add(event, stepper.time + delay, values);
             } else if held && !holds && !self.plan.events[event].persistent {
-                self.memory.pending.retain(|pending| pending.event != event);
+                self.memory.forget(event);
             }
         }
     }
@@ -231,7 +210,7 @@ impl<'a> Events<'a> {
     pub fn note_falling(&mut self, now: &[f64]) {
         for (event, _) in now.iter().enumerate().filter(|(_, now)| **now == 0.0) {
             if self.memory.holds[event] && !self.plan.events[event].persistent {
-                self.memory.pending.retain(|pending| pending.event != event);
+                self.memory.forget(event);
             }
             self.memory.holds[event] = false;
         }
@@ -241,25 +220,26 @@ impl<'a> Events<'a> {
     /// and equals in the order of their firing. Returns whether anything was executed.
     pub fn execute(&mut self, stepper: &mut Stepper) -> Result<bool, OdeTrouble> {
         let mut count = 0;
-        let (mut state, mut priorities, mut values) = (Vec::new(), Vec::new(), Vec::new());
         while self.next() <= stepper.time {
+            let EventBuffers { state, priorities, execution, .. } = &mut *self.buffers;
             let program = stepper.program;
-            stepper.state_into(&mut state);
-            stepper.evaluate(&program.further[PRIORITIES], stepper.time, &state, &mut priorities);
-            let due = self.memory.pending.iter().enumerate().filter(|(_, pending)| pending.time <= stepper.time);
+            stepper.state_into(state);
+            stepper.evaluate(&program.further[PRIORITIES], stepper.time, state, priorities);
+            let due = self.memory.waiting().iter().enumerate().filter(|(_, waiting)| waiting.time <= stepper.time);
             // The first of equals: the later one must be strictly larger.
             let first = due
                 .reduce(|best, other| if priorities[other.1.event] > priorities[best.1.event] { other } else { best });
-            let Some((index, _)) = first else { break };
-            let pending = self.memory.pending.remove(index);
-            match pending.values {
-                Some(known) => values = known,
+            let Some((first, _)) = first else { break };
+            let executed = self.memory.take(first, execution);
+            let values = match executed.kept {
+                Some(_) => &execution[..],
                 None => {
-                    stepper.evaluate(&program.further[FIRST_EVENT + pending.event], stepper.time, &state, &mut values);
-                    values.remove(0);
+                    let results = &program.further[FIRST_EVENT + executed.event];
+                    stepper.evaluate(results, stepper.time, state, execution);
+                    &execution[1..]
                 }
-            }
-            for (&slot, &value) in self.plan.slots[pending.event].iter().zip(&values) {
+            };
+            for (&slot, &value) in self.plan.slots[executed.event].iter().zip(values) {
                 let n = program.size();
                 if slot < n {
                     stepper.set_state(slot, value);
@@ -271,7 +251,7 @@ impl<'a> Events<'a> {
             self.update(stepper);
             count += 1;
             if count > MOST_AT_ONCE {
-                let detail = format!("event '{}'", self.plan.events[pending.event].id);
+                let detail = format!("event '{}'", self.plan.events[executed.event].id);
                 return Err(OdeTrouble { detail, variable: None, ..stepper.trouble(Reason::EndlessEvents) });
             }
         }

@@ -15,6 +15,7 @@ mod fixed;
 mod lu;
 mod mask;
 mod members;
+mod memory;
 #[cfg(feature = "diffsol")]
 mod multistep;
 mod narrow;
@@ -30,7 +31,8 @@ mod wide;
 pub use buffers::PopulationScratch;
 pub use control::Tolerances;
 pub use eventful::Eventful;
-pub use events::{EventMemory, EventPlan, assigned_parameters};
+pub use events::{EventPlan, assigned_parameters};
+pub use memory::EventMemory;
 pub use population::{BlockView, LANES, Population};
 pub use scheme::Scheme;
 pub use solve::{Solution, SolveOptions, solve, solve_each};

@@ -18,8 +18,10 @@ pub struct Controls {
     pub adhesion: Vec<f64>,
     /// What is set of forces: for each handle of [`CONTROLLED`] one list for each such force of a kind, in its order.
     pub forces: Vec<Vec<Vec<f64>>>,
-    /// Amount released per second, one list for each species secreted.
+    /// Amount released per second, one list for each species secreted: those of the model first, then those of `secreted`.
     pub secretion: Vec<Vec<f64>>,
+    /// Fields and species that a program lets cells secrete into and the model does not.
+    pub secreted: Vec<(usize, usize)>,
 }
 
 impl Controls {
@@ -52,6 +54,7 @@ impl Controls {
         self.adhesion.clone_from(&other.adhesion);
         self.forces.clone_from(&other.forces);
         self.secretion.clone_from(&other.secretion);
+        self.secreted.clone_from(&other.secreted);
     }
 
     /// The velocity added to a cell's walk, µm/s.

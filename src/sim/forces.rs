@@ -47,7 +47,9 @@ impl Forces<'_> {
         let numbers = cells.numbers_of_block(kind, block);
         let context = context(kind, controls, numbers.clone(), time);
         measure_forces(&kind.forces, &context, kind.lanes, x, f, energy);
-        add_drive(kind, &drive[numbers], f);
+        if cells.is_driven(kind) {
+            add_drive(kind, &drive[numbers], f);
+        }
         add_pressure(kind, time, x, rest, spare, f, energy);
         add_contact_forces(kind, cells, block, contact, f);
     }
@@ -120,9 +122,6 @@ fn context<'a>(kind: &Kind, controls: &'a Controls, cells: Range<usize>, time: f
 }
 
 fn add_drive(kind: &Kind, drive: &[[f64; 3]], f: &mut [f64]) {
-    if kind.behaviours.is_empty() {
-        return;
-    }
     for (lane, velocity) in drive.iter().enumerate() {
         for atom in 0..kind.atoms() {
             for axis in 0..3 {

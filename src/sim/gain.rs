@@ -23,7 +23,7 @@ const VOLUME_OFF: f64 = 1e-9;
 /// The energy where a step begins, pN·µm; none where something may do work on the cells: loads, gravity, motility, chemistry, the
 /// energy that contacts release, volumes that change, elastic forces without an energy.
 pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option<f64> {
-    is_left_alone(model).then(|| {
+    is_left_alone(model, state).then(|| {
         measure_energy(model, state.time, &state.chemistry.controls, &state.kinds, ws);
         energy(&state.kinds, ws) + state.contact.stored()
     })
@@ -41,21 +41,19 @@ pub fn has_gained(model: &Model, dt: f64, before: Option<f64>, from: &State, to:
     energy(&to.kinds, ws) + energy_of_compliance(&ws.contact) > before * (1.0 + ROUND_OFF) + left
 }
 
-fn is_left_alone(model: &Model) -> bool {
+fn is_left_alone(model: &Model, state: &State) -> bool {
     let sticks_only = |contact: &super::contact::ContactModel| {
         let strengths = contact.between.iter().chain(&contact.on_planes);
         contact.law.is_passive() && strengths.into_iter().all(|strength| strength.energy == 0.0)
     };
-    let is_alone = |kind: &Kind| {
+    let is_alone = |(kind, now): (&Kind, &KindState)| {
         let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
-        steady
-            && kind.behaviours.is_empty()
-            && kind.forces.iter().all(|force| force.is_elastic() && force.is_conservative())
+        steady && !now.is_driven(kind) && kind.forces.iter().all(|force| force.is_elastic() && force.is_conservative())
     };
     matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)
         && model.contact.as_ref().is_some_and(sticks_only)
         && model.chemistry.is_empty()
-        && model.kinds.iter().all(is_alone)
+        && model.kinds.iter().zip(&state.kinds).all(is_alone)
 }
 
 /// Whether all exact volumes were where they are to be when the step began.

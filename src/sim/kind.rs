@@ -82,7 +82,7 @@ impl Kind {
     /// closed. The stiffness is that of the elastic forces as they are; see [`Kind::bound_stiffness`].
     pub fn new(name: &str, rest: Surface, forces: Vec<Force>) -> Self {
         let closed = !rest.facets.is_empty() && Topology::of(&rest).is_closed();
-        let stiffness = stiffness(&forces, true, &rest.positions, &rest.positions);
+        let stiffness = stiffness(&forces, &rest.positions, &rest.positions);
         Self {
             name: name.to_owned(),
             closed,
@@ -112,11 +112,16 @@ impl Kind {
     }
 
     /// Largest eigenvalue of the true stiffness at rest, pN/µm: of elastic forces by power iteration on differences, of all others
-    /// (fibres at full activation) by a bound; what explicit schemes need to know.
+    /// (fibres at full activation) by the sum of a bound of each; what explicit schemes need to know.
     pub fn measure_largest_stiffness(&self) -> f64 {
         // Power iteration approaches from below; two percent cover what is left after the last round.
-        let rest = &self.rest.positions;
-        1.02 * self.power_iteration(rest, |_| ()) + stiffness(&self.forces, false, rest, rest).largest()
+        let elastic = 1.02 * self.power_iteration(&self.rest.positions, |_| ());
+        // Each by itself, so that what one bound is does not depend on which atoms others act on; those that are driven first.
+        let bounds = |driven: bool| -> f64 {
+            let forces = self.forces.iter().filter(|force| force.handle().is_some() == driven);
+            forces.filter_map(Force::largest_stiffness).sum()
+        };
+        elastic + bounds(true) + bounds(false)
     }
 
     /// Sets the stiffness K of the implicit step to the one that fits the rest shape; see [`Kind::stiffness_at`].
@@ -128,7 +133,7 @@ impl Kind {
     /// raised until the true stiffness J there is nowhere more than [`LARGEST_RATIO`] times as large, since the scheme
     /// bears a K that is too small by two and cells go on deforming; then that of all other forces.
     pub fn stiffness_at(&self, x: &[Vec3]) -> StiffnessMatrix {
-        let mut matrix = stiffness(&self.forces, true, &self.rest.positions, x);
+        let mut matrix = stiffness(&self.forces, &self.rest.positions, x);
         let free = vec![false; self.atoms()];
         // A little of the identity makes K invertible; J does not resist what K does not resist.
         let inverse = Factor::new(&matrix, 1e-5 * matrix.largest().max(f64::MIN_POSITIVE), 1.0, &free);
@@ -180,15 +185,16 @@ impl Kind {
         self.behaviours.iter().any(|behaviour| behaviour.speed().is_some())
     }
 
-    /// Whether a velocity may be set of its cells.
+    /// Whether links set a velocity of its cells.
     pub fn is_biased(&self) -> bool {
         self.behaviours.contains(&Behaviour::Bias)
     }
 
-    /// Lets a velocity be set of its cells, or no more.
-    pub fn set_biased(&mut self, biased: bool) {
-        self.behaviours.retain(|behaviour| *behaviour != Behaviour::Bias);
-        self.behaviours.extend(biased.then_some(Behaviour::Bias));
+    /// Lets links set a velocity of its cells.
+    pub fn make_biased(&mut self) {
+        if !self.is_biased() {
+            self.behaviours.push(Behaviour::Bias);
+        }
     }
 
     /// Its loads.

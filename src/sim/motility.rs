@@ -13,7 +13,7 @@ pub fn advance_behaviours(model: &Model, dt: f64, from: &State, to: &mut State, 
     let State { kinds, ended_runs, .. } = to;
     for ((kind, begun), now) in model.kinds.iter().zip(&from.kinds).zip(kinds) {
         now.behaviours.clone_from(&begun.behaviours);
-        if kind.behaviours.is_empty() {
+        if !begun.is_driven(kind) {
             continue;
         }
         for (local, (cell, &id)) in begun.numbers().zip(&begun.ids).enumerate() {
@@ -24,6 +24,9 @@ pub fn advance_behaviours(model: &Model, dt: f64, from: &State, to: &mut State, 
                 velocity += behaviour.advance(dt, &circumstances, &mut states[local], |duration, offset| {
                     ended_runs.push((id, from.time + offset, duration));
                 });
+            }
+            if begun.is_biased {
+                velocity += Vec3::from(bias);
             }
             ws.drive[cell] = velocity.into();
         }

@@ -67,10 +67,12 @@ pub struct KindState {
     pub mean_velocities: Vec<[f64; 3]>,
     /// What every cell remembers of each behaviour of the kind: `[behaviour][cell]`.
     pub behaviours: Vec<Vec<BehaviourState>>,
+    /// Whether a program has set a velocity of any of them, which is then added to what behaviours ask for.
+    pub is_biased: bool,
 }
 
 /// What cells with these ids remember of a behaviour where it begins.
-pub fn start_of(ids: &[u64], behaviour: Behaviour, seed: u64) -> Vec<BehaviourState> {
+fn start_of(ids: &[u64], behaviour: Behaviour, seed: u64) -> Vec<BehaviourState> {
     ids.iter().map(|id| behaviour.start(seed, *id)).collect()
 }
 
@@ -113,6 +115,7 @@ impl KindState {
             stiffness_shape: Vec::new(),
             mean_velocities: vec![[0.0; 3]; cells],
             behaviours: kind.behaviours.iter().map(|behaviour| start_of(&ids, *behaviour, seed)).collect(),
+            is_biased: false,
             ids,
         }
     }
@@ -138,6 +141,11 @@ impl KindState {
         first..(first + kind.lanes).min(self.first_cell + self.cells())
     }
 
+    /// Whether anything asks for a velocity of them.
+    pub fn is_driven(&self, kind: &Kind) -> bool {
+        self.is_biased || !kind.behaviours.is_empty()
+    }
+
     /// How many blocks of lanes they fill.
     pub fn blocks(&self, kind: &Kind) -> usize {
         self.cells().div_ceil(kind.lanes)
@@ -152,6 +160,7 @@ impl KindState {
         self.velocities.resize(from.velocities.len(), 0.0);
         self.rest_volumes.clone_from(&from.rest_volumes);
         self.stiffness_shape.clone_from(&from.stiffness_shape);
+        self.is_biased = from.is_biased;
         self.mean_velocities.resize(from.mean_velocities.len(), [0.0; 3]);
     }
 

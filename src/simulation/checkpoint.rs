@@ -1,40 +1,17 @@
 //! Checkpoints: a simulation at one instant as bytes, and back.
 //!
-//! Magic, version, fingerprint of the model, what a program changed in the model, the state, checksum of all before it.
-
-use serde::{Deserialize, Serialize};
+//! Magic, version, fingerprint of the model, the state, checksum of all before it.
 
 use super::error::{CheckpointFault, SimulationError};
 use super::fingerprint::fingerprint;
 use super::fits::check_fits;
 use super::stepping::Simulation;
-use crate::sim::{Kind, Model, State, Workspace};
+use crate::sim::{State, Workspace};
 
 /// First bytes of a checkpoint.
 const MAGIC: &[u8; 8] = b"PSEUDSIM";
 /// Version of the arrangement of the bytes, the state's included.
-const VERSION: u32 = 2;
-
-/// What [`Simulation::set`] changes in the model beside the state.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Changes {
-    /// For each kind whether something adds a velocity to its walk.
-    biased: Vec<bool>,
-    /// The species that cells secrete: (field, species).
-    secreted: Vec<(usize, usize)>,
-}
-
-impl Changes {
-    fn of(model: &Model) -> Self {
-        let biased = model.kinds.iter().map(Kind::is_biased).collect();
-        Self { biased, secreted: model.chemistry.secreted.clone() }
-    }
-
-    fn apply(self, model: &mut Model) {
-        model.kinds.iter_mut().zip(self.biased).for_each(|(kind, biased)| kind.set_biased(biased));
-        model.chemistry.secreted = self.secreted;
-    }
-}
+const VERSION: u32 = 3;
 
 impl Simulation {
     /// The simulation at this instant as bytes: [`Simulation::restore`] goes on from them along the same course, to the last
@@ -64,9 +41,7 @@ impl Simulation {
         let mut bytes = MAGIC.to_vec();
         bytes.extend_from_slice(&VERSION.to_le_bytes());
         bytes.extend_from_slice(&self.fingerprint().to_le_bytes());
-        let bytes = postcard::to_extend(&Changes::of(&self.model), bytes);
-        let bytes = bytes.and_then(|bytes| postcard::to_extend(state, bytes));
-        let mut bytes = bytes.expect("plain numbers always encode");
+        let mut bytes = postcard::to_extend(state, bytes).expect("plain numbers always encode");
         let sum = crc32fast::hash(&bytes);
         bytes.extend_from_slice(&sum.to_le_bytes());
         bytes
@@ -78,18 +53,8 @@ impl Simulation {
     /// [`SimulationError::Checkpoint`] for bytes that are damaged, no checkpoint, of another version, or of a model that
     /// differs in anything; the simulation is then as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), SimulationError> {
-        let (changes, state) = decode(bytes, self.fingerprint())?;
-        let known = self.model.chemistry.fields.iter().map(|field| field.system.species().len()).collect::<Vec<_>>();
-        let is_known = |(field, species): &(usize, usize)| known.get(*field).is_some_and(|count| species < count);
-        if changes.biased.len() != self.model.kinds.len() || !changes.secreted.iter().all(is_known) {
-            return Err(CheckpointFault::Foreign.into());
-        }
-        let before = Changes::of(&self.model);
-        changes.apply(&mut self.model);
-        if check_fits(&self.model, &state).is_err() {
-            before.apply(&mut self.model);
-            return Err(CheckpointFault::Foreign.into());
-        }
+        let state = decode(bytes, self.fingerprint())?;
+        check_fits(&self.model, &state).map_err(|_| CheckpointFault::Foreign)?;
         self.state = state;
         self.scratch = Workspace::new(&self.model);
         self.last_step = 0.0;
@@ -102,7 +67,7 @@ impl Simulation {
     }
 }
 
-fn decode(bytes: &[u8], expected: u64) -> Result<(Changes, State), CheckpointFault> {
+fn decode(bytes: &[u8], expected: u64) -> Result<State, CheckpointFault> {
     let damaged = |found: &str| CheckpointFault::Damaged(found.to_owned());
     let (body, sum) = bytes.split_last_chunk::<4>().ok_or(CheckpointFault::NotACheckpoint)?;
     let rest = body.strip_prefix(MAGIC).ok_or(CheckpointFault::NotACheckpoint)?;
@@ -118,7 +83,5 @@ fn decode(bytes: &[u8], expected: u64) -> Result<(Changes, State), CheckpointFau
     if u64::from_le_bytes(*found) != expected {
         return Err(CheckpointFault::Foreign);
     }
-    let (changes, rest) = postcard::take_from_bytes(rest).map_err(|error| damaged(&error.to_string()))?;
-    let state = postcard::from_bytes(rest).map_err(|error| damaged(&error.to_string()))?;
-    Ok((changes, state))
+    postcard::from_bytes(rest).map_err(|error| damaged(&error.to_string()))
 }

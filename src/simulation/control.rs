@@ -3,13 +3,11 @@
 use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
-use crate::cell::Behaviour;
 use crate::cell::ends::{Setting, settable, setting, word_of};
 use crate::equations::eml::{Step, read_end};
 use crate::equations::tree::System;
 use crate::geometry;
 use crate::sim::chemistry::{Control, Target, Whose, missed, set_control};
-use crate::sim::state::start_of;
 use crate::sim::{Kind, VolumeRule};
 
 impl Simulation {
@@ -51,13 +49,10 @@ impl Simulation {
         let (number, cells) = (self.position_of(cell)?, self.state.cells());
         self.state.chemistry.controls.admit(control, cells);
         match control {
-            Control::Bias(_) if !self.model.kinds[kind].is_biased() => {
-                self.model.kinds[kind].set_biased(true);
-                let start = start_of(&self.state.kinds[kind].ids, Behaviour::Bias, self.model.seed);
-                self.state.kinds[kind].behaviours.push(start);
-            }
-            Control::Secretion(channel) if channel == self.model.chemistry.secreted.len() => {
-                self.model.chemistry.secreted.extend(self.species(what));
+            Control::Bias(_) => self.state.kinds[kind].is_biased = !self.model.kinds[kind].is_biased(),
+            Control::Secretion(channel) if channel == self.secreted().count() => {
+                let species = self.species(what);
+                self.state.chemistry.controls.secreted.extend(species);
             }
             _ => {}
         }
@@ -106,9 +101,8 @@ impl Simulation {
             },
             Setting::Secretion(name) => match self.species(what) {
                 Some(channel) => {
-                    let secreted = &self.model.chemistry.secreted;
-                    let known = secreted.iter().position(|known| *known == channel);
-                    Ok(Control::Secretion(known.unwrap_or(secreted.len())))
+                    let known = self.secreted().position(|known| *known == channel);
+                    Ok(Control::Secretion(known.unwrap_or(self.secreted().count())))
                 }
                 None => {
                     let known = self.fields().flat_map(|field| field.species().map(str::to_owned)).collect();
@@ -116,6 +110,11 @@ impl Simulation {
                 }
             },
         }
+    }
+
+    /// What is secreted, field and species: by links of the document, or since a program set it.
+    fn secreted(&self) -> impl Iterator<Item = &(usize, usize)> {
+        self.model.chemistry.secreted.iter().chain(&self.state.chemistry.controls.secreted)
     }
 
     /// The species that a word such as `secretion[cAMP]` names: field and species.

@@ -2,7 +2,6 @@
 
 use std::fmt::{Debug, Write};
 
-use crate::cell::Behaviour;
 use crate::sim::contact::ContactModel;
 use crate::sim::{Chemistry, Kind, Model};
 
@@ -32,8 +31,7 @@ impl Write for Fnv {
     }
 }
 
-/// The fingerprint of a model: of all that decides the course of a state, and of nothing that follows from the rest or that
-/// a program changes while a simulation runs.
+/// The fingerprint of a model: of all that decides the course of a state, and of nothing that follows from the rest.
 pub fn fingerprint(model: &Model) -> u64 {
     let Model { seed, kinds, planes, contact, chemistry, integrator, until, kinks: _, changes } = model;
     let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
@@ -50,8 +48,7 @@ fn add_kind(hash: &mut Fnv, kind: &Kind) {
     hash.value(&(&kind.name, kind.lanes, &kind.rest.positions, &kind.rest.facets));
     hash.value(&kind.forces);
     hash.value(&(kind.drag, kind.mass, &kind.held, &kind.volume));
-    // A velocity may be set while a simulation runs.
-    kind.behaviours.iter().filter(|one| **one != Behaviour::Bias).for_each(|behaviour| hash.value(behaviour));
+    kind.behaviours.iter().for_each(|behaviour| hash.value(behaviour));
 }
 
 fn add_contact(hash: &mut Fnv, contact: &ContactModel) {

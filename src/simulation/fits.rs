@@ -48,12 +48,19 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
     if !fresh.has_shape_of(&state.chemistry) {
         return mismatch("its systems or fields are others".to_owned());
     }
-    check_controls(state.cells(), &state.chemistry.controls)
+    check_controls(model, state.cells(), &state.chemistry.controls)
 }
 
-/// A list of controls is empty or has one number a cell.
-fn check_controls(cells: usize, controls: &Controls) -> Result<(), SimulationError> {
-    let Controls { speed, bias, stiffness, adhesion, forces, secretion } = controls;
+/// A list of controls is empty or has one number a cell, and what is secreted is known.
+fn check_controls(model: &Model, cells: usize, controls: &Controls) -> Result<(), SimulationError> {
+    let Controls { speed, bias, stiffness, adhesion, forces, secretion, secreted } = controls;
+    let fields = &model.chemistry.fields;
+    let is_known = |&(field, species): &(usize, usize)| {
+        fields.get(field).is_some_and(|field| species < field.system.species().len())
+    };
+    if !secreted.iter().all(is_known) || secretion.len() != model.chemistry.secreted.len() + secreted.len() {
+        return Err(SimulationError::Mismatch("its cells secrete something else".to_owned()));
+    }
     let lists = [speed, stiffness, adhesion].into_iter().chain(forces.iter().flatten()).chain(secretion);
     match lists.map(Vec::len).chain([bias.len()]).find(|length| ![0, cells].contains(length)) {
         None => Ok(()),

@@ -70,26 +70,41 @@ fn example() -> Simulation {
 fn driven(threads: usize) -> Simulation {
     let mut simulation = everything(threads);
     let cells: Vec<CellId> = simulation.cells().collect();
-    for (cell, what, value) in [
-        (cells[0], "motility.speed", 0.5),
-        (cells[1], "adhesion", 0.5),
-        (cells[2], "secretion[waste]", 3.0),
-        (cells[5], "motility.bias.y", -0.3),
-        (cells[5], "fibre[belt]", 0.4),
-        (cells[6], "load[pull]", 2.0),
-        (cells[6], "stiffness", 1.5),
-        (cells[6], "rest_volume_ratio", 1.05),
-    ] {
-        simulation.set(cell, what, value).unwrap_or_else(|error| panic!("{what}: {error}"));
+    for (cell, what, value) in SET {
+        simulation.set(cells[cell], what, value).unwrap_or_else(|error| panic!("{what}: {error}"));
     }
     simulation
 }
+
+/// What a test makes a program set of the cells of [`everything`].
+const SET: [(usize, &str, f64); 8] = [
+    (0, "motility.speed", 0.5),
+    (1, "adhesion", 0.5),
+    (2, "secretion[waste]", 3.0),
+    (5, "motility.bias.y", -0.3),
+    (5, "fibre[belt]", 0.4),
+    (6, "load[pull]", 2.0),
+    (6, "stiffness", 1.5),
+    (6, "rest_volume_ratio", 1.05),
+];
 
 /// Compares all bits: what nobody has set is NaN in some lists.
 fn assert_same(one: &State, other: &State) {
     let same = postcard::to_stdvec(one).unwrap() == postcard::to_stdvec(other).unwrap();
     // The whole states would fill the screen.
     assert!(same, "states differ at {} and {} s, steps {} and {}", one.time, other.time, one.step, other.step);
+}
+
+#[test]
+fn what_a_program_sets_is_state_and_the_model_is_as_it_was() {
+    let mut simulation = everything(1);
+    let (before, cells) = (format!("{:?}", simulation.model()), simulation.cells().collect::<Vec<_>>());
+    for (cell, what, value) in SET {
+        let state = postcard::to_stdvec(simulation.state()).unwrap();
+        simulation.set(cells[cell], what, value).unwrap();
+        assert!(postcard::to_stdvec(simulation.state()).unwrap() != state, "{what} is in the state");
+        assert!(format!("{:?}", simulation.model()) == before, "{what} is not in the model");
+    }
 }
 
 #[test]

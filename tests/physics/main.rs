@@ -7,6 +7,7 @@ mod coupling;
 mod events;
 mod fibres;
 mod forces;
+mod glossary;
 mod inertial;
 mod modulus;
 mod motility;

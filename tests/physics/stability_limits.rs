@@ -1,8 +1,14 @@
 //! The limits of step and stiffness for one atom on two fixed ones: found by simulation, within 1 % of the derivation
 //! in the book's chapter on stability. The scene is the document of `experiments/stability_limits`.
 
+use pseudopod::Vec3;
 use pseudopod::experiment::{Document, compile};
-use pseudopod::sim::{Workspace, step};
+use pseudopod::geometry::icosphere;
+use pseudopod::mechanics::Force;
+use pseudopod::mechanics::attraction::Attraction;
+use pseudopod::mechanics::course::Course;
+use pseudopod::mechanics::fibres::Fibres;
+use pseudopod::sim::{Kind, Workspace, step};
 use std::path::Path;
 
 /// The models of the triangle, as the document names them.
@@ -199,4 +205,16 @@ fn oscillation_begins_at_a_quarter_and_a_sixth_of_the_drag_squared_over_mass() {
             }
         }
     });
+}
+
+#[test]
+fn forces_that_are_not_elastic_are_bounded_each_by_itself() {
+    let fibres = |pairs: &[[u32; 2]], stiffness: f64| {
+        Force::Fibres(Fibres::new("fibres", pairs.to_vec(), stiffness, Course::constant(0.0)))
+    };
+    // No atom has fibres of both lists: a bound on their sum would be that of one of them, 8 pN/um, and 5 for the attraction.
+    let attraction = Force::Attraction(Attraction { to: Vec3::zeros(), stiffness: 5.0 });
+    let forces = vec![attraction, fibres(&[[0, 1], [0, 2]], 2.0), fibres(&[[3, 4], [5, 6]], 3.0)];
+    let kind = Kind::new("cell", icosphere(5.0, 1), forces);
+    assert_eq!(kind.measure_largest_stiffness(), 8.0 + 6.0 + 5.0);
 }

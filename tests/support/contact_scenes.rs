@@ -379,7 +379,7 @@ impl Scene {
             forces.push(Force::Springs(Springs::on_edges(&rest.positions, &topology.edges, of.stiffness)));
         }
         let edge = geometry::mean_edge_length(&rest);
-        let matrix = sum::stiffness(&forces, true, &rest.positions, &rest.positions);
+        let matrix = sum::stiffness(&forces, &rest.positions, &rest.positions);
         let stiffest = (0..rest.positions.len()).map(|atom| matrix.diagonal(atom)).fold(0.0, f64::max);
         let rules = BarrierRules::with_energy(0.1 * stiffest * edge * edge);
         forces.push(Force::Barrier(Barrier::new(&rest.positions, &rest.facets, &topology.flaps, rules)));

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::raster::{Geometry, SLACK, row_span};
+use super::raster::Geometry;
 use super::scene::Floor;
+use super::spans::{SLACK, row_span};
 use super::view::{PlaneOnScreen, View};
 use crate::Vec3;
 

@@ -13,6 +13,7 @@ mod samples;
 mod scene;
 mod shade;
 mod sheet;
+mod spans;
 #[cfg(test)]
 pub(in crate::picture) mod tests;
 mod tubes;

@@ -6,6 +6,7 @@ use super::camera::Bounds;
 use super::cut::{Cut, Face, Side};
 use super::samples::{BAND_ROWS, NOTHING, SAMPLES};
 use super::scene::{Edges, Scene, Surface, SurfaceColour};
+use super::spans::{SLACK, row_span, samples_between};
 use super::view::View;
 
 /// All facets of a scene in the coordinates of the picture.
@@ -184,15 +185,12 @@ impl Band {
         let triangle = &geometry.triangles[number as usize];
         let [a, b, c] = triangle.corners.map(|corner| geometry.screen[corner as usize]);
         let range = |k: usize, from: usize, count: usize| {
-            let (low, high) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
-            let low = (low - 0.5).ceil().max(from as f32) as usize;
-            let high = (high - 0.5).floor().min((from + count) as f32 - 1.0);
-            (low, if high < from as f32 { None } else { Some(high as usize) })
+            samples_between(a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]), from, count)
         };
-        let ((left, Some(right)), (top, Some(bottom))) = (range(0, 0, self.width), range(1, self.first, self.height))
-        else {
+        let (columns, rows) = (range(0, 0, self.width), range(1, self.first, self.height));
+        if columns.is_empty() || rows.is_empty() {
             return;
-        };
+        }
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
         if area.is_nan() || area.abs() <= 1e-9 {
             return;
@@ -206,14 +204,14 @@ impl Band {
         let steps = [-step_b - step_c, step_b, step_c];
         let cut = geometry.cut.map_or(f32::INFINITY, |cut| cut.nearness);
         let side = triangle.side.filter(|_| !self.faces.is_empty());
-        for y in top..=bottom {
-            let (dx, dy) = (left as f32 + 0.5 - a[0], y as f32 + 0.5 - a[1]);
+        for y in rows {
+            let (dx, dy) = (columns.start as f32 + 0.5 - a[0], y as f32 + 0.5 - a[1]);
             let start_b = (dx * (c[1] - a[1]) - (c[0] - a[0]) * dy) / area;
             let start_c = ((b[0] - a[0]) * dy - dx * (b[1] - a[1])) / area;
             let row = (y - self.first) * self.width;
             let starts = [1.0 - start_b - start_c, start_b, start_c];
-            for n in row_span(starts, steps, SLACK, right - left + 1) {
-                let (x, n) = (left + n, n as f32);
+            for n in row_span(starts, steps, SLACK, columns.len()) {
+                let (x, n) = (columns.start + n, n as f32);
                 let (wb, wc) = (start_b + n * step_b, start_c + n * step_c);
                 let wa = 1.0 - wb - wc;
                 if wa >= SLACK && wb >= SLACK && wc >= SLACK {
@@ -232,26 +230,4 @@ impl Band {
             }
         }
     }
-}
-
-/// A sample on an edge may miss both neighbours by rounding; an overlap of a ten-thousandth closes the gap.
-pub(super) const SLACK: f32 = -1e-4;
-
-/// The columns, counted from the start of a row of `count`, where all three weights of a triangle's corners can be at
-/// least `least`, given the weights at column 0 and their change per column; a column too many at either end, so that
-/// the exact test stays with the caller. Thin slanted triangles would otherwise cost their whole bounding box.
-pub(super) fn row_span(starts: [f32; 3], steps: [f32; 3], least: f32, count: usize) -> std::ops::Range<usize> {
-    let (mut from, mut to) = (0.0f32, count as f32);
-    for (start, step) in starts.into_iter().zip(steps) {
-        let crossing = (least - start) / step;
-        if step > 0.0 {
-            from = from.max(crossing - 1.0);
-        } else if step < 0.0 {
-            to = to.min(crossing + 2.0);
-        } else if start < least {
-            return 0..0;
-        }
-    }
-    let from = from.max(0.0) as usize;
-    from..(to.max(0.0) as usize).min(count).max(from)
 }

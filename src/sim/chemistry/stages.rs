@@ -124,7 +124,9 @@ fn system_trouble(model: &Model, state: &State, reactor: &Reactor, trouble: &Ode
 /// Releases into the fields what cells secrete in a step, spread evenly over the atoms.
 fn deposit_secretion(model: &Model, dt: f64, state: &State, ws: &mut Workspace) {
     let scratch = &mut ws.chemistry;
-    for (&(field, species), rates) in model.chemistry.secreted.iter().zip(&state.chemistry.controls.secretion) {
+    let controls = &state.chemistry.controls;
+    for (&(field, species), rates) in model.chemistry.secreted.iter().chain(&controls.secreted).zip(&controls.secretion)
+    {
         for (kind, now) in model.kinds.iter().zip(&state.kinds) {
             let atoms = kind.atoms();
             scratch.amounts.clear();

@@ -6,7 +6,7 @@ use super::laws::PROMISED;
 use super::remember::find_at;
 use super::scene::ContactScene;
 use crate::Vec3;
-use crate::contact::{Contacts, Sides, centre_is_inside, find_deeper, winding_number};
+use crate::contact::{Contacts, Sides, find_centre_inside, find_deeper, winding_number};
 use crate::sim::model::Model;
 use crate::sim::population_trouble::PopulationTrouble;
 use crate::sim::state::State;
@@ -176,12 +176,8 @@ pub fn check_added(model: &Model, state: &State, kind: usize, added: usize) -> R
         return Err(PopulationTrouble::Overlap { cells: [name(one), name(other)], depth });
     }
     // One exactly in the place of another, or in its middle, has no atom near its surface.
-    let bodies = 0..contact.scene.bodies.len() as u32;
-    let pairs =
-        bodies.clone().filter(|body| is_new(*body)).flat_map(|new| bodies.clone().map(move |other| [new, other]));
-    let is_within = |[one, other]: [u32; 2]| one != other && centre_is_inside(&contact.scene, &positions, one, other);
-    let within = pairs.flat_map(|[new, other]| [[new, other], [other, new]]).find(|pair| is_within(*pair));
-    if let Some([inner, outer]) = within {
+    let new = (end - added) as u32..end as u32;
+    if let Some([inner, outer]) = find_centre_inside(&contact.scene, &positions, new.clone()) {
         let atoms = |body: u32| {
             let first = contact.scene.bodies[body as usize].first_atom as usize;
             &positions[first..first + contact.scene.shape(body).atoms]
@@ -190,7 +186,7 @@ pub fn check_added(model: &Model, state: &State, kind: usize, added: usize) -> R
         let depth = atoms(outer).iter().map(|x| (x - centre).norm()).fold(f64::INFINITY, f64::min);
         return Err(PopulationTrouble::Overlap { cells: [name(inner), name(outer)], depth });
     }
-    for body in (end - added..end).map(|body| body as u32) {
+    for body in new {
         let first = contact.scene.bodies[body as usize].first_atom as usize;
         let atoms = &positions[first..first + contact.scene.shape(body).atoms];
         for plane in &model.planes {

@@ -91,7 +91,7 @@ fn act(link: &Link, chemistry: &mut Chemistry, counts: &[usize], kinds: &mut [Ki
     for kind in cells {
         let kind = &mut kinds[kind];
         match control {
-            Control::Bias(_) => kind.set_biased(true),
+            Control::Bias(_) => kind.make_biased(),
             Control::Atom(atom, axis) => {
                 chemistry.imposes_atoms = true;
                 let held =
