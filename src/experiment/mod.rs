@@ -44,6 +44,7 @@ mod motility;
 mod pictures;
 mod placement;
 mod population;
+mod read;
 mod scene;
 mod schema;
 mod selection;

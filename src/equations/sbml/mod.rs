@@ -8,6 +8,7 @@ mod checks;
 mod document;
 mod events;
 mod math;
+mod notes;
 mod operators;
 mod pieces;
 mod plan;
