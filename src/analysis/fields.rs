@@ -1,8 +1,9 @@
 //! The fields of a finished run, frame by frame: their values at places, means, extremes and amounts.
 
 use crate::error::{Error, Fault, Result};
-use crate::experiment::OverBoxes;
 use crate::output::{Along, FieldLayout, ResultFile};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The axes of a field.
 const AXES: [Along; 3] = [Along::X, Along::Y, Along::Z];
@@ -51,6 +52,22 @@ impl Field<'_> {
     pub fn frame(&self, frame: usize) -> Result<Vec<f64>> {
         self.file.field_frame(&self.layout.name, self.species, frame)
     }
+}
+
+/// How the values of all boxes of a field become one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum OverBoxes {
+    /// Their mean.
+    #[default]
+    Mean,
+    /// The smallest.
+    Min,
+    /// The largest.
+    Max,
+    /// The amount: the sum of value times volume (µm³) of a box, or times its area (µm²) in a flat field.
+    Amount,
 }
 
 /// Makes one of the values of all boxes.
@@ -184,5 +201,11 @@ mod tests {
         let found = distances(&grid([2, 1, 2]), [-3.0, 0.5, 1.25], 3);
         assert_eq!(found, [0.0, 2.0, 0.5, 4.25_f64.sqrt()]);
         assert_eq!(distances(&grid([2, 1, 1]), [-3.0, 0.5, 77.0], 2), [0.0, 2.0]);
+    }
+
+    #[test]
+    fn a_field_that_was_not_recorded_is_not_measured() {
+        let fault = Fields::default().field("front").err().unwrap();
+        assert_eq!(fault.to_string(), "there is no field \"front\" in this run");
     }
 }

@@ -1,7 +1,7 @@
 //! The picture and the charts that a run makes when it ends.
 
-use super::values::{Axis, OneOrMany, When};
 use crate::units::{Length, Speed, Time};
+use crate::values::{Axis, OneOrMany, When};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;

@@ -2,14 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::chemistry::frame_at;
-use super::recording::Recording;
+use super::declared::Declared;
+use super::finished::Finished;
 use crate::Vec3;
 use crate::contact::{closest_on_facet, winding_number};
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{GapStatistic, Gaps};
 use crate::geometry::icosphere;
-use crate::output::ResultFile;
+use crate::values::When;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Points along the side of a cube with the volume of a cell.
 const POINTS_PER_SIDE: f64 = 20.0;
@@ -22,6 +23,75 @@ const STARTS: usize = 16;
 
 /// How exactly its centre is found, over the distance between points.
 const EXACT: f64 = 1e-3;
+
+/// What is empty inside the largest aggregate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(inline)]
+pub struct Gaps {
+    /// The instant.
+    #[serde(default)]
+    pub time: When,
+    /// Which number.
+    #[serde(default)]
+    pub statistic: GapStatistic,
+}
+
+/// Which number of the gaps in an aggregate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum GapStatistic {
+    /// The radius of the largest ball that fits between the cells, µm.
+    #[default]
+    LargestBall,
+    /// The part of the inside that no cell fills.
+    EmptyShare,
+}
+
+impl Gaps {
+    pub(super) fn check(&self, at: &mut dyn Declared) {
+        if at.records_contacts() {
+            at.when("time", self.time);
+        }
+    }
+
+    /// The number that is asked for.
+    ///
+    /// # Errors
+    /// When the run has no contacts, or the largest aggregate no inside.
+    pub(super) fn evaluate(&self, run: &Finished) -> Result<f64> {
+        let recording = run.recording;
+        let Some(file) = run.file else {
+            let fault = Fault::new("there is no file that says where the cells are");
+            return Err(Error::input(fault.help("measure the result of a run")));
+        };
+        let frame = recording.frame_at(self.time);
+        let aggregate: Vec<u64> = file.cell_values("aggregate", frame)?.iter().map(|first| *first as u64).collect();
+        let size = |first: u64| aggregate.iter().filter(|other| **other == first).count();
+        let largest = aggregate.iter().copied().min_by_key(|first| (std::cmp::Reverse(size(*first)), *first));
+        let (positions, layout, cells) = (file.positions(frame)?, file.layout(), file.cells(frame));
+        let of_largest = cells.iter().zip(layout.atoms_of(&cells)).zip(&aggregate);
+        let bodies: Vec<Body> = of_largest
+            .filter(|(_, first)| Some(**first) == largest)
+            .map(|((cell, atoms), _)| {
+                let atoms = positions[atoms].iter().map(|position| Vec3::from(*position)).collect();
+                Body::new(atoms, layout.types[cell.kind as usize].facets.clone())
+            })
+            .collect();
+        let Some(empty) = find_empty(&bodies) else {
+            let time = recording.times[frame];
+            let cells = if bodies.len() == 1 { "one cell".to_owned() } else { format!("{} cells", bodies.len()) };
+            let fault = Fault::new(format!("the largest aggregate at {time} s, of {cells}, has no inside"));
+            return Err(Error::input(
+                fault.help("give a time at which four cells or more that do not lie in a plane touch"),
+            ));
+        };
+        Ok(match self.statistic {
+            GapStatistic::LargestBall => empty.largest_ball,
+            GapStatistic::EmptyShare => empty.share,
+        })
+    }
+}
 
 /// A cell: its atoms and facets, and a ball around it.
 pub(super) struct Body {
@@ -153,42 +223,6 @@ fn climb(bodies: &[Body], inside: &Inside, (mut most, mut place): (f64, Vec3), f
         }
     }
     most
-}
-
-/// The number that a measure asks for.
-///
-/// # Errors
-/// When the run has no contacts, or the largest aggregate no inside.
-pub(super) fn gaps(wanted: &Gaps, recording: &Recording, file: Option<&ResultFile>) -> Result<f64> {
-    let Some(file) = file else {
-        let fault = Fault::new("there is no file that says where the cells are");
-        return Err(Error::input(fault.help("measure the result of a run")));
-    };
-    let frame = frame_at(wanted.time, &recording.times);
-    let aggregate: Vec<u64> = file.cell_values("aggregate", frame)?.iter().map(|first| *first as u64).collect();
-    let size = |first: u64| aggregate.iter().filter(|other| **other == first).count();
-    let largest = aggregate.iter().copied().min_by_key(|first| (std::cmp::Reverse(size(*first)), *first));
-    let (positions, layout, cells) = (file.positions(frame)?, file.layout(), file.cells(frame));
-    let of_largest = cells.iter().zip(layout.atoms_of(&cells)).zip(&aggregate);
-    let bodies: Vec<Body> = of_largest
-        .filter(|(_, first)| Some(**first) == largest)
-        .map(|((cell, atoms), _)| {
-            let atoms = positions[atoms].iter().map(|position| Vec3::from(*position)).collect();
-            Body::new(atoms, layout.types[cell.kind as usize].facets.clone())
-        })
-        .collect();
-    let Some(empty) = find_empty(&bodies) else {
-        let time = recording.times[frame];
-        let cells = if bodies.len() == 1 { "one cell".to_owned() } else { format!("{} cells", bodies.len()) };
-        let fault = Fault::new(format!("the largest aggregate at {time} s, of {cells}, has no inside"));
-        return Err(Error::input(
-            fault.help("give a time at which four cells or more that do not lie in a plane touch"),
-        ));
-    };
-    Ok(match wanted.statistic {
-        GapStatistic::LargestBall => empty.largest_ball,
-        GapStatistic::EmptyShare => empty.share,
-    })
 }
 
 #[cfg(test)]
