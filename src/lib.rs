@@ -31,6 +31,7 @@ pub mod run;
 pub mod sim;
 pub mod simulation;
 pub mod units;
+pub mod values;
 pub mod xml;
 
 pub use simulation::{CancelToken, Simulation, SimulationError};

@@ -19,7 +19,7 @@ const STAIRS: usize = 3;
 impl Curve {
     /// Orders points, given in the order of time, by x. Of points at the same x the last in time counts: where a load
     /// is held, that is the end of the hold, when the cell has settled. When x is a staircase, which holds three values
-    /// or more for two frames or longer, the frames on the way from one hold to the next do not count, for there the
+    /// or more for two frames or longer, the frames from one hold to the next do not count, for there the
     /// cell lags behind its load; the first frame, before anything happened, does. Points that are not finite are left
     /// out.
     ///
@@ -38,8 +38,8 @@ impl Curve {
         let mut ends: Vec<usize> =
             holds.iter().copied().enumerate().filter(counts).map(|(_, hold)| hold[hold.len() - 1]).collect();
         ends.sort_by(|&a, &b| x[a].total_cmp(&x[b]));
-        let abscissas = ends.chunk_by(|&a, &b| same(x[a], x[b]));
-        let (x, y) = abscissas.filter_map(|abscissa| abscissa.iter().max()).map(|&last| (x[last], y[last])).unzip();
+        let groups = ends.chunk_by(|&a, &b| same(x[a], x[b]));
+        let (x, y) = groups.filter_map(|group| group.iter().max()).map(|&last| (x[last], y[last])).unzip();
         Self { x, y }
     }
 
@@ -60,10 +60,10 @@ impl Curve {
         SAME_X * self.x.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
     }
 
-    /// The curve at each measured place that is not NaN, with the number of its row.
+    /// The curve at each measured point that is not NaN, with the number of its row.
     ///
     /// # Errors
-    /// When a measured place lies outside of the curve, or none is left.
+    /// When a measured point lies outside of the curve, or none is left.
     fn at_rows(&self, abscissas: &[f64], values: &[f64]) -> Result<Vec<(usize, f64)>> {
         let rows = (0..abscissas.len()).filter(|&row| !abscissas[row].is_nan() && !values[row].is_nan());
         let found: Result<Vec<(usize, f64)>> = rows.map(|row| self.at(abscissas[row]).map(|y| (row, y))).collect();
@@ -77,7 +77,7 @@ impl Curve {
 
     fn at(&self, abscissa: f64) -> Result<f64> {
         let last = self.x.len().saturating_sub(1);
-        // Rounded time courses may end short of the last measured place by a few units in the last digit.
+        // Rounded time courses may end short of the last measured point by a few units in the last digit.
         let slack = self.slack();
         let near = match (self.x.first(), self.x.get(last)) {
             (Some(&first), Some(&end)) if first - slack <= abscissa && abscissa <= end + slack => {
@@ -110,7 +110,7 @@ impl Curve {
     /// Root mean square of (curve − measured)/measured, eq. (analysis.7).
     ///
     /// # Errors
-    /// When a measured place lies outside of the curve, a measured value is 0 or no row has numbers.
+    /// When a measured point lies outside of the curve, a measured value is 0 or no row has numbers.
     pub fn relative_rms(&self, abscissas: &[f64], values: &[f64]) -> Result<f64> {
         let squares: Vec<f64> = self.ratios(abscissas, values)?.iter().map(|ratio| (ratio - 1.0).powi(2)).collect();
         Ok(mean(&squares).sqrt())
@@ -127,7 +127,7 @@ impl Curve {
     /// Number of rows whose bar from `low` to `high` holds the curve, ends included.
     ///
     /// # Errors
-    /// When a measured place lies outside of the curve or no row has numbers.
+    /// When a measured point lies outside of the curve or no row has numbers.
     pub fn rows_within(&self, abscissas: &[f64], low: &[f64], high: &[f64]) -> Result<usize> {
         let found = self.at_rows(abscissas, low)?;
         Ok(found.iter().filter(|&&(row, y)| low[row] <= y && y <= high[row]).count())

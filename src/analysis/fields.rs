@@ -1,8 +1,9 @@
-//! The fields of a finished run, frame by frame: their values at places, means, extremes and amounts.
+//! The fields of a finished run, frame by frame: their values at points, means, extremes and amounts.
 
 use crate::error::{Error, Fault, Result};
-use crate::experiment::OverBoxes;
 use crate::output::{Along, FieldLayout, ResultFile};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The axes of a field.
 const AXES: [Along; 3] = [Along::X, Along::Y, Along::Z];
@@ -53,6 +54,22 @@ impl Field<'_> {
     }
 }
 
+/// How the values of all boxes of a field become one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum OverBoxes {
+    /// Their mean.
+    #[default]
+    Mean,
+    /// The smallest.
+    Min,
+    /// The largest.
+    Max,
+    /// The amount: the sum of value times volume (µm³) of a box, or times its area (µm²) in a flat field.
+    Amount,
+}
+
 /// Makes one of the values of all boxes.
 pub fn reduce(layout: &FieldLayout, values: &[f64], over: OverBoxes) -> f64 {
     match over {
@@ -66,7 +83,7 @@ pub fn reduce(layout: &FieldLayout, values: &[f64], over: OverBoxes) -> f64 {
     }
 }
 
-/// That a place lies outside of a field; z does not count in a flat one.
+/// That a point lies outside of a field; z does not count in a flat one.
 ///
 /// # Errors
 /// When it does.
@@ -79,14 +96,14 @@ pub fn check_inside(layout: &FieldLayout, position: [f64; 3]) -> Result<()> {
         if !(low - slack..=low + size + slack).contains(&position[number]) {
             let letter = axis.letter();
             let found = format!("the field {} does not reach {letter} = {} µm", layout.name, position[number]);
-            let help = format!("give a place with {letter} from {low} µm to {} µm", low + size);
+            let help = format!("give a point with {letter} from {low} µm to {} µm", low + size);
             return Err(Error::input(Fault::new(found).help(help)));
         }
     }
     Ok(())
 }
 
-/// The value at a place, µm: straight between the centres of boxes along each axis, eq. (analysis.10), and that of the
+/// The value at a point, µm: straight between the centres of boxes along each axis, eq. (analysis.10), and that of the
 /// box at the wall within half a box from it.
 pub fn value_at(layout: &FieldLayout, values: &[f64], position: [f64; 3]) -> f64 {
     let sides = AXES.map(|along| {
@@ -184,5 +201,11 @@ mod tests {
         let found = distances(&grid([2, 1, 2]), [-3.0, 0.5, 1.25], 3);
         assert_eq!(found, [0.0, 2.0, 0.5, 4.25_f64.sqrt()]);
         assert_eq!(distances(&grid([2, 1, 1]), [-3.0, 0.5, 77.0], 2), [0.0, 2.0]);
+    }
+
+    #[test]
+    fn a_field_that_was_not_recorded_is_not_measured() {
+        let fault = Fields::default().field("front").err().unwrap();
+        assert_eq!(fault.to_string(), "there is no field \"front\" in this run");
     }
 }

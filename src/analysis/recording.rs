@@ -1,13 +1,18 @@
-//! The series of a finished run, as plain arrays, and how values of many cells become one.
+//! The series of a finished run, as plain arrays, and the curves between them.
 
+use super::curve::Curve;
+use super::over::Over;
 use crate::error::{Error, Fault, Result};
-use crate::experiment::Over;
 use crate::output::ResultFile;
+use crate::values::When;
 use ndarray::{Array2, Array3, ArrayView1};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Series of a finished run: those that the measures at hand need, see [`super::measure::series_of`].
+/// The series that hold where cells are, along x, y and z.
+pub const POSITION: [&str; 3] = ["position_x", "position_y", "position_z"];
+
+/// Series of a finished run: those that the measures at hand need, see [`MeasureKind::series`](super::measures::MeasureKind::series).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Recording {
     /// Time of each frame, s; the series `time`.
@@ -32,20 +37,6 @@ pub struct Recording {
 
 /// What a series of chemistry may begin with, so that a reader of the document knows where it comes from.
 const CHEMISTRY: &str = "chemistry.";
-
-/// Makes one of the values of several cells; NaN if there is none.
-fn reduce(over: Over, values: &[f64]) -> f64 {
-    if values.is_empty() && over != Over::Sum {
-        return f64::NAN;
-    }
-    match over {
-        Over::Mean => super::statistics::mean(values),
-        Over::Min => values.iter().copied().fold(f64::INFINITY, f64::min),
-        Over::Max => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        Over::Sum => values.iter().sum(),
-        Over::First => values[0],
-    }
-}
 
 impl Recording {
     /// Reads the series that are asked for, and the rest, from a result file. Quantities of chemistry are called
@@ -122,9 +113,30 @@ impl Recording {
         let cells = if having.is_empty() { cells } else { having };
         let of_frame = |(frame, row): (usize, ArrayView1<f64>)| {
             let there = cells.iter().filter(|cell| self.is_there(frame, **cell));
-            reduce(over, &there.map(|&cell| row[cell]).collect::<Vec<_>>())
+            over.reduce(&there.map(|&cell| row[cell]).collect::<Vec<_>>())
         };
         Ok(series.rows().into_iter().enumerate().map(of_frame).collect())
+    }
+
+    /// The curve y(x) of two series; each a mean over the cells of a type, or over all cells.
+    ///
+    /// # Errors
+    /// When there is no such series, type or cell.
+    pub fn curve(&self, x: &str, y: &str, cells: Option<&str>) -> Result<Curve> {
+        Ok(Curve::new(&self.series(x, cells, Over::Mean)?, &self.series(y, cells, Over::Mean)?))
+    }
+
+    /// The frame that a time means.
+    pub fn frame_at(&self, time: When) -> usize {
+        let last = self.times.len().saturating_sub(1);
+        match time {
+            When::First => 0,
+            When::Last => last,
+            When::At(time) => {
+                let away = |frame: &usize| (self.times[*frame] - time.value()).abs();
+                (0..self.times.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(last)
+            }
+        }
     }
 
     /// Whether a cell is there in a frame.
@@ -143,7 +155,7 @@ impl Recording {
     /// When these were not recorded.
     pub fn positions(&self, cells: &[usize]) -> Result<Array3<f64>> {
         let mut axes = Vec::with_capacity(3);
-        for name in ["position_x", "position_y", "position_z"] {
+        for name in POSITION {
             axes.push(self.cell_series(name)?);
         }
         let shape = (self.times.len(), cells.len(), 3);

@@ -32,19 +32,19 @@ pub fn period(times: &[f64], values: &[f64]) -> std::result::Result<f64, usize> 
     }
 }
 
-/// When a wave came to places at some distances from its centre.
+/// When a wave came to points at some distances from its centre.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arrivals {
-    /// Distance of each place that it came to, µm.
+    /// Distance of each point that it came to, µm.
     pub distances: Vec<f64>,
     /// When it came there, s.
     pub times: Vec<f64>,
-    /// Number of places that were looked at.
+    /// Number of points that were looked at.
     pub points: usize,
 }
 
 impl Arrivals {
-    /// Only the places whose distances lie between two ends, which count themselves.
+    /// Only the points whose distances lie between two ends, which count themselves.
     pub fn between(mut self, from: Option<f64>, to: Option<f64>) -> Self {
         let slack = 1e-9 * self.distances.iter().fold(0.0, |most: f64, distance| most.max(*distance));
         let within = |distance: f64| {
@@ -59,16 +59,16 @@ impl Arrivals {
     /// The line through times of arrival against distances; one over its slope is the speed, eq. (analysis.13).
     ///
     /// # Errors
-    /// When the wave came to fewer than three places, to all of them at the same distance, or at once.
+    /// When the wave came to fewer than three points, to all of them at the same distance, or at once.
     pub fn line(&self) -> Result<Line> {
         if self.times.len() < 3 {
-            let found = format!("a wave came to {} of {} places; three are needed", self.times.len(), self.points);
+            let found = format!("a wave came to {} of {} points; three are needed", self.times.len(), self.points);
             let help = "give a level that the wave rises through, or a wider range of times or distances";
             return Err(Error::input(Fault::new(found).help(help)));
         }
         let line = statistics::fit_line(&self.distances, &self.times)?;
         if line.slope == 0.0 {
-            let fault = Fault::new("the wave comes to all places at once");
+            let fault = Fault::new("the wave comes to all points at once");
             return Err(Error::input(fault.help("record frames more often, or give another level")));
         }
         Ok(line)
@@ -89,7 +89,7 @@ pub enum Where {
     Ray([f64; 3]),
 }
 
-/// The first rise of a field through a level at each of its boxes or places of a ray.
+/// The first rise of a field through a level at each of its boxes or points of a ray.
 ///
 /// * `times` – of all frames, s.
 /// * `first` – the frame to begin with.
@@ -104,11 +104,11 @@ pub fn arrivals_in_field(
     first: usize,
     level: Option<f64>,
     centre: [f64; 3],
-    origin: &Where,
+    along: &Where,
     axes: usize,
 ) -> Result<Arrivals> {
     let axes = if field.layout.is_flat() { 2 } else { axes };
-    let (distances, ray) = match origin {
+    let (distances, ray) = match along {
         Where::Boxes => (fields::distances(field.layout, centre, axes), None),
         Where::Ray(direction) => {
             let points = points_of_ray(field, centre, *direction, axes)?;
@@ -170,10 +170,10 @@ fn points_of_ray(field: &Field, centre: [f64; 3], direction: [f64; 3], axes: usi
     Ok(points)
 }
 
-/// Whether a place lies between the centres of the first and the last box along an axis.
-fn between_centres(field: &Field, axis: usize, origin: f64) -> bool {
-    let boxes = (origin - field.layout.origin[axis]) / field.layout.spacing[axis];
-    // A billionth of a box forgives the round-off of a place that is meant to be a centre.
+/// Whether a point lies between the centres of the first and the last box along an axis.
+fn between_centres(field: &Field, axis: usize, position: f64) -> bool {
+    let boxes = (position - field.layout.origin[axis]) / field.layout.spacing[axis];
+    // A billionth of a box forgives the round-off of a point that is meant to be a centre.
     (0.5 - 1e-9..=field.layout.cells[axis] as f64 - 0.5 + 1e-9).contains(&boxes)
 }
 

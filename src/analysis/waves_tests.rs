@@ -38,8 +38,8 @@ fn a_line_through_arrivals_needs_three_of_them_and_time_between() {
     let line = arrivals(&[1.0, 2.0, 4.0], &[5.0, 5.5, 6.5]).unwrap();
     assert!((line.slope - 0.5).abs() < 1e-14 && (line.r_squared - 1.0).abs() < 1e-14);
     let message = |distances: &[f64], times: &[f64]| arrivals(distances, times).unwrap_err().to_string();
-    assert_eq!(message(&[1.0, 2.0], &[5.0, 5.5]), "a wave came to 2 of 9 places; three are needed");
-    assert_eq!(message(&[1.0, 2.0, 3.0], &[5.0; 3]), "the wave comes to all places at once");
+    assert_eq!(message(&[1.0, 2.0], &[5.0, 5.5]), "a wave came to 2 of 9 points; three are needed");
+    assert_eq!(message(&[1.0, 2.0, 3.0], &[5.0; 3]), "the wave comes to all points at once");
     let all = Arrivals { distances: vec![0.1 + 0.2, 1.0, 2.0], times: vec![1.0, 2.0, 3.0], points: 4 };
     let kept = all.between(Some(0.3), Some(1.0));
     assert_eq!((kept.times.as_slice(), kept.points), ([1.0, 2.0].as_slice(), 4));

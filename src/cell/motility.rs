@@ -24,6 +24,16 @@ pub enum Space {
     Volume,
 }
 
+impl Space {
+    /// Number of axes along which directions and distances have a part.
+    pub const fn axes(self) -> usize {
+        match self {
+            Self::Plane => 2,
+            Self::Volume => 3,
+        }
+    }
+}
+
 /// The walk of a kind of cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrownianMotility {

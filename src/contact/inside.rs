@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn middles_are_looked_for_among_neighbours_alone() {
         let ball = icosphere(1.0, 0);
-        let shifted = |way: Vec3| ball.positions.iter().map(|position| position + way).collect::<Vec<_>>();
+        let shifted = |offset: Vec3| ball.positions.iter().map(|position| position + offset).collect::<Vec<_>>();
         // A lattice so tight that boxes of neighbours meet: each of its 5000 balls has up to 26.
         let at = |n: u32| Vec3::new(f64::from(n % 20), f64::from(n / 20 % 25), f64::from(n / 500)) * 1.5;
         let mut bodies: Vec<_> = (0..5000).map(|n| (&ball, Sides::Outer, shifted(at(n)))).collect();

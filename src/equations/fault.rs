@@ -1,4 +1,4 @@
-//! A fault with its place in a document of equations.
+//! A fault with its location in a document of equations.
 
 use crate::error::{Fault, Location, Source};
 use std::ops::Range;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// The longest line, in bytes, that is shown with a fault: documents that a program wrote may be one line.
 const LONGEST_LINE: usize = 2000;
 
-/// A fault at bytes of a text: what was found, a few words beside the place, what to do. Where the line is too long to
+/// A fault at bytes of a text: what was found, a few words beside the location, what to do. Where the line is too long to
 /// be shown the message says its number and the column.
 pub fn at_location(source: &Arc<Source>, at: Range<usize>, message: String, label: &str, help: &str) -> Fault {
     let text = &source.text;

@@ -1,6 +1,6 @@
 //! Equations: systems of differential equations, described in EML or SBML, checked and compiled.
 //!
-//! A text becomes a [`tree::System`] (checked, with its units and places), and the tree becomes a [`program`] over lanes of
+//! A text becomes a [`tree::System`] (checked, with its units and locations), and the tree becomes a [`program`] over lanes of
 //! cells. Nothing here knows time steps: the engine advances programs for cells, fields advance them in space.
 
 pub mod eml;

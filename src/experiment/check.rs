@@ -1,10 +1,10 @@
 //! Walks a document along the schema and finds every fault: keys, types, units, ranges.
 
 use super::tree::{Node, Value};
-use super::values::{Colour, LengthUnit};
 use crate::error::Fault;
 use crate::error::words;
 use crate::units::{self, Dimension, UnitError};
+use crate::values::{Colour, LengthUnit};
 use indexmap::IndexMap;
 use serde_json::{Map, Value as Json};
 

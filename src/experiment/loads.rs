@@ -3,12 +3,12 @@
 use super::compile::{Builder, course, unit};
 use super::selection::{Linked, Selection};
 use super::semantics::Check;
-use super::values::{Axis, Course};
 use crate::geometry;
 use crate::mechanics::fibres::Fibres;
 use crate::mechanics::springs::{Spring, Springs};
 use crate::mechanics::{self, load};
 use crate::units::{Force, Length, LineStiffness};
+use crate::values::{Axis, Course};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

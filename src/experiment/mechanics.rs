@@ -40,7 +40,7 @@ pub struct Mechanics {
     pub volume: VolumeControl,
 }
 
-/// Shape memory: the force on an atom is a stiffness times its distance from the place that its neighbours give it.
+/// Shape memory: the force on an atom is a stiffness times its distance from the target that its neighbours define.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("unevaluatedProperties" = false))]
 pub struct ShapeMemory {
@@ -50,7 +50,7 @@ pub struct ShapeMemory {
     /// What the neighbours feel.
     #[serde(default)]
     pub reaction: Reaction,
-    /// How the remembered place is found.
+    /// How the remembered target is found.
     #[serde(default)]
     pub form: Form,
     /// The atoms that remember; all when absent.
@@ -88,7 +88,7 @@ pub enum Reaction {
     Spread,
 }
 
-/// How the place that the neighbours remember is found.
+/// How the target that the neighbours remember is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(inline)]

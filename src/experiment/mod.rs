@@ -37,21 +37,22 @@ mod compile;
 mod contact;
 mod document;
 mod loads;
-mod measures;
 mod mechanics;
 mod membrane;
 mod motility;
 mod pictures;
 mod placement;
 mod population;
+mod read;
 mod scene;
 mod schema;
 mod selection;
 mod semantics;
 mod tree;
-mod values;
 mod volume;
 
+pub use crate::analysis::measures::{self, Measure, MeasureKind};
+pub use crate::values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};
 pub use cells::{CellType, Mesh, Orientation};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{Compiled, Prepared, PushedApart, Schedule, compile, notices, prepare, settle_start};
@@ -60,10 +61,6 @@ pub use document::Document;
 #[cfg(feature = "cli")]
 pub(crate) use document::near_file;
 pub use loads::{Applied, Fibre, Fixed, Link, Load, Rest, Spread};
-pub use measures::{
-    ChemotacticIndex, Comparison, FieldValue, Fit, GapStatistic, Gaps, Measure, MeasureKind, Over, OverBoxes, Period,
-    Reduction, Segregation, SegregationStatistic, SphereFit, Statistic, WaveSpeed, WaveStatistic, Wavelength,
-};
 pub use mechanics::{Barrier, Form, Mechanics, Reaction, ShapeMemory, ShapeStrength, Springs};
 pub use membrane::{BendingRest, Law, Membrane};
 pub use motility::{Attraction, Brownian, Motility, Space};
@@ -73,7 +70,6 @@ pub use population::{Added, Removed};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
 pub use schema::schema;
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
-pub use values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};
 pub use volume::{VolumeControl, VolumeRule};
 
 use crate::units::Time;

@@ -1,7 +1,7 @@
 //! The picture and the charts that a run makes when it ends.
 
-use super::values::{Axis, OneOrMany, When};
 use crate::units::{Length, Speed, Time};
+use crate::values::{Axis, OneOrMany, When};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -173,7 +173,7 @@ pub struct FieldLine {
     /// The axis that the line follows.
     #[serde(default = "along_x")]
     pub along: Axis,
-    /// A place that the line goes through; when absent, the mean over the other axes is shown.
+    /// A point that the line goes through; when absent, the mean over the other axes is shown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub through: Option<[Length; 3]>,
 }

@@ -8,8 +8,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 mod set;
+mod steps;
 
-use set::{Name, steps};
+use steps::{Name, steps};
 
 /// A value and where it stands.
 #[derive(Debug, Clone)]

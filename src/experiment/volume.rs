@@ -1,7 +1,7 @@
 //! What happens to the enclosed volume of cells.
 
-use super::values::Course;
 use crate::units::{Stress, Volume};
+use crate::values::Course;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

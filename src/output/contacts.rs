@@ -1,13 +1,10 @@
-//! Who touches whom in a result: the pairs of a frame, the clusters they make, how mixed the types are, and the series
+//! Who touches whom: the pairs of a frame, the clusters they make, how mixed the types are, and the series
 //! of the scene that follow from them. The file holds the pairs alone.
 
-use super::catalogue::List;
-use super::changes::{Change, counts_of_changes};
-use super::{Cell, Layout, ResultFile};
-use crate::error::{Error, Fault, Result};
+use super::changes::Change;
+use super::{Cell, Layout};
 use crate::recorded::Touch;
-use ndarray::ArrayView1;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// A cell that touches another, or a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -18,59 +15,6 @@ pub struct Touching {
     pub other: u64,
     /// Area of contact, µm², eq. (adhesion.8).
     pub area: f64,
-}
-
-impl ResultFile {
-    /// Pairs of cells that touch in a frame, ascending.
-    ///
-    /// # Errors
-    /// A result without contacts, or a damaged file.
-    ///
-    /// # Panics
-    /// If there is no such frame.
-    pub fn pairs(&self, frame: usize) -> Result<Vec<Touching>> {
-        self.touching(List::Pairs, frame, ["/contacts/pairs/first", "/contacts/pairs/second"])
-    }
-
-    /// Cells that touch planes in a frame, ascending.
-    ///
-    /// # Errors
-    /// A result without contacts, or a damaged file.
-    ///
-    /// # Panics
-    /// If there is no such frame.
-    pub fn on_planes(&self, frame: usize) -> Result<Vec<Touching>> {
-        self.touching(List::OnPlanes, frame, ["/contacts/planes/cell", "/contacts/planes/plane"])
-    }
-
-    fn touching(&self, list: List, frame: usize, names: [&str; 2]) -> Result<Vec<Touching>> {
-        assert!(frame < self.frames(), "frame {frame} of {}", self.frames());
-        if !self.layout().contacts {
-            let fault = Fault::new(format!("{} does not say who touches whom", self.path().display()));
-            return Err(Error::input(fault.help("its cells pass through each other: add [contact] to the document")));
-        }
-        let rows = self.rows_of(list, frame..frame + 1)?;
-        let numbers = |name: &str| self.read(name, |data| data.read_slice_1d::<i64, _>(rows.clone()));
-        let (cells, numbers) = (numbers(names[0])?, numbers(names[1])?);
-        let areas = self.read(list.column(), |data| data.read_slice_1d::<f64, _>(rows.clone()))?;
-        let number = |number: &i64| u64::try_from(*number).unwrap_or(u64::MAX);
-        let ids: HashSet<u64> = self.cells(frame).iter().map(|cell| cell.id).collect();
-        let is_known = |touching: &Touching| {
-            let planes = self.layout().planes.len() as u64;
-            let other = if list == List::Pairs { ids.contains(&touching.other) } else { touching.other < planes };
-            other && ids.contains(&touching.cell)
-        };
-        let rows = cells.iter().zip(&numbers).zip(&areas).map(|((cell, other), area)| Touching {
-            cell: number(cell),
-            other: number(other),
-            area: *area,
-        });
-        let found: Vec<Touching> = rows.collect();
-        match found.iter().all(is_known) {
-            true => Ok(found),
-            false => Err(super::container::damaged(self.path(), &format!("{} names no cell", names[0]))),
-        }
-    }
 }
 
 /// The clusters that pairs join: for each cell the smallest number of those that it is joined with, its own where it
@@ -198,27 +142,14 @@ fn change_of(series: Touch) -> Option<Change> {
     }
 }
 
-/// The values of all [`series`] in all frames, by series.
-///
-/// # Errors
-/// A damaged file.
-pub(super) fn all_series(result: &ResultFile) -> Result<Vec<Vec<f64>>> {
-    let all = touches(result.layout());
-    let of_frame: Vec<Touch> = all.iter().copied().filter(|series| change_of(*series).is_none()).collect();
-    let mut found = vec![Vec::new(); of_frame.len()];
-    for frame in 0..result.frames() {
-        let surface = ArrayView1::from(&result.cell_values("area", frame)?).sum();
-        let (cells, pairs, on_planes) = (result.cells(frame), result.pairs(frame)?, result.on_planes(frame)?);
-        let touched = Touched::of(result.layout(), &cells, surface, &pairs, &on_planes);
-        found.iter_mut().zip(&of_frame).for_each(|(values, series)| values.push(touched.value(*series)));
-    }
-    let counts = counts_of_changes(result.cell_series("aggregate")?.view());
-    let mut found = found.into_iter();
-    let of = |series: &Touch| match change_of(*series) {
-        Some(change) => counts[change as usize].clone(),
-        None => found.next().unwrap_or_default(),
+/// The values of all [`series`] in all frames, by series: of those whose values follow from a frame alone, and of the changes.
+pub(super) fn all_series(layout: &Layout, of_frames: Vec<Vec<f64>>, changes: &[Vec<f64>; 4]) -> Vec<Vec<f64>> {
+    let mut of_frames = of_frames.into_iter();
+    let of = |series: Touch| match change_of(series) {
+        Some(change) => changes[change as usize].clone(),
+        None => of_frames.next().unwrap_or_default(),
     };
-    Ok(all.iter().map(of).collect())
+    touches(layout).into_iter().map(of).collect()
 }
 
 /// The values of [`series_of_frame`] in a frame in which the cells have this surface, µm².

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::column::{LARGE_PIECE, PACKED_TOGETHER, write_piece_at};
 use super::container::{set_number, set_text};
-use super::fields::FieldLayout;
+use super::field_layout::FieldLayout;
 use super::packing::{LEVEL, pack_bytes, packer};
 
 /// Where a species lies and how its frames are cut into pieces.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::ResultFile;
 use super::container::machine_error;
-use super::fields::{Along, FieldLayout};
+use super::field_layout::{Along, FieldLayout};
 use crate::error::Result;
 
 /// Writes a frame of a field as a table: a row for each box with its centre (µm; no z for a field of the substrate)

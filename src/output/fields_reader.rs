@@ -1,6 +1,6 @@
 //! Reads fields and systems of chemistry out of a result file.
 
-use super::fields::FieldLayout;
+use super::field_layout::FieldLayout;
 use super::reader::{ResultFile, listed};
 use super::systems::{SystemLayout, SystemScope};
 use crate::error::{Error, Fault, Result};

@@ -6,7 +6,7 @@ use hdf5::Group;
 use serde_json::{Map, Value, json};
 
 use super::container::text;
-use super::fields::FieldLayout;
+use super::field_layout::FieldLayout;
 use super::reader::ResultFile;
 use super::systems::{SystemLayout, SystemScope};
 use super::{Cell, Layout, Part, Population};

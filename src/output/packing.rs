@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_takes_no_more_room_than_it_has_and_zeros_hardly_any() {
+    fn noise_takes_no_more_space_than_it_has_and_zeros_hardly_any() {
         let length = |words: Vec<u64>| pack(&mut packer(), words.into_iter()).len();
         // Five bytes for each stored block of at most 65 535.
         assert!(length(noise(98_304)) < 8 * 98_304 + 256);

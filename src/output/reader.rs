@@ -27,7 +27,7 @@ pub struct ResultFile {
     ending: Ending,
     frames: usize,
     /// The series of contacts once they were asked for, by their order.
-    of_contacts: OnceLock<Vec<Vec<f64>>>,
+    pub(super) of_contacts: OnceLock<Vec<Vec<f64>>>,
     census: Census,
 }
 
@@ -235,15 +235,6 @@ impl ResultFile {
             Ok::<_, Error>(count.last().map_or(0, |count| usize::try_from(*count).unwrap_or(0)))
         };
         Ok(up_to(frames.start)?..up_to(frames.end)?)
-    }
-
-    /// All series of contacts, found when they are asked for the first time.
-    fn contact_series(&self) -> Result<&Vec<Vec<f64>>> {
-        if let Some(known) = self.of_contacts.get() {
-            return Ok(known);
-        }
-        let found = contacts::all_series(self)?;
-        Ok(self.of_contacts.get_or_init(|| found))
     }
 
     /// The measures of the experiment, by name; none before the run has finished.

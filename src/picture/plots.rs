@@ -4,12 +4,12 @@ use super::chart::{Aspect, Axis, Chart, Scale, Series, Stroke};
 use super::colour::Colour;
 use super::field_plots;
 use super::field_view::{unit_text, with_unit};
-use crate::analysis::measure::curve;
 use crate::analysis::msd::{from_the_start, furth};
+use crate::analysis::over::Over;
 use crate::analysis::recording::Recording;
 use crate::analysis::table::Table;
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Document, Over, Plot, PlotKind, PlotTable};
+use crate::experiment::{Document, Plot, PlotKind, PlotTable};
 use crate::output::ResultFile;
 
 /// Colour of measured points.
@@ -87,7 +87,7 @@ fn curves(result: &ResultFile, plot: &Plot, x: &str, series: &[String]) -> Resul
                 let values = recording.series(y, Some(kind), Over::Mean)?;
                 recording.times.iter().zip(values).map(|(t, v)| [*t, v]).collect()
             } else {
-                curve(&recording, x, y, Some(kind))?.points().collect()
+                recording.curve(x, y, Some(kind))?.points().collect()
             };
             let named = if alike { result.label(y) } else { label_of(result, y) };
             let label = match (series.len(), types.len()) {

@@ -1,8 +1,10 @@
 //! The run of an experiment into a file: a simulation that is recorded, saved, reported, stopped and resumed.
 
+mod measures;
 mod progress;
 mod recording;
 
+pub use measures::measure_result;
 pub use progress::{Quiet, Report};
 
 use std::ops::ControlFlow;
@@ -190,7 +192,7 @@ fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Rep
 fn finish(mut writer: ResultWriter, result: &Path, wall_time: f64) -> Result<()> {
     let file = writer.read()?;
     let document = document_of(file.header(), result)?;
-    let (measures, faults) = crate::analysis::measure_result(&file, &document)?;
+    let (measures, faults) = measure_result(&file, &document)?;
     drop(file);
     writer.write_summary(&measures)?;
     writer.finish(wall_time)?;

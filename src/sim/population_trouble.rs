@@ -83,7 +83,7 @@ impl std::fmt::Display for PopulationTrouble {
             Self::NoSpace { kind, found, wanted } => {
                 write!(
                     f,
-                    "there is no room for all cells that come to type `{kind}`: {found} of {wanted} found a point "
+                    "there is no space for all cells that come to type `{kind}`: {found} of {wanted} found a point "
                 )?;
                 write!(f, "where they touch no other cell and no plane; make their box larger, or them fewer")
             }

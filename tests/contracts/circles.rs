@@ -1,5 +1,5 @@
-//! Files that use each other in a circle can only be read, changed and tested together. This test finds the circles among the files of
-//! `src` and holds the list of those that are there, which may only shrink.
+//! Files that use each other in a circle can only be read, changed and tested together. This test looks for circles among the files of
+//! `src` and holds that there is none.
 
 mod imports;
 
@@ -7,16 +7,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use imports::Library;
-
-/// The circles that are there, each with its files in order. Whoever cuts one takes it off this list; none may be added.
-const ALLOWED: &[&[&str]] = &[
-    &["analysis/chemistry.rs", "analysis/gaps.rs", "analysis/measure.rs", "analysis/sorting.rs"],
-    &["equations/sbml/math.rs", "equations/sbml/operators.rs"],
-    &["experiment/document.rs", "experiment/semantics.rs"],
-    &["experiment/tree.rs", "experiment/tree/set.rs"],
-    &["output/contacts.rs", "output/reader.rs"],
-    &["output/field_column.rs", "output/fields.rs"],
-];
 
 /// The largest sets of files each of which uses every other by some course, files alone left out.
 fn circles<'a>(arrows: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> Vec<Vec<&'a str>> {
@@ -43,7 +33,7 @@ fn circles_are_found_through_several_files() {
 }
 
 #[test]
-fn no_files_use_each_other_in_a_circle_but_those_on_the_list() {
+fn no_files_use_each_other_in_a_circle() {
     let library = Library::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
     let arrows = library.arrows();
     assert!(arrows.values().map(BTreeSet::len).sum::<usize>() > 500, "the imports of the code were not found");
@@ -54,13 +44,6 @@ fn no_files_use_each_other_in_a_circle_but_those_on_the_list() {
         let lines = circle.iter().map(|file| format!("    {file} -> {}", within(file).join(", ")));
         lines.collect::<Vec<_>>().join("\n")
     };
-    let is_allowed = |circle: &&Vec<&str>| ALLOWED.contains(&&circle[..]);
-    let new: Vec<String> = found.iter().filter(|circle| !is_allowed(circle)).map(|circle| told(circle)).collect();
-    let cut: Vec<_> = ALLOWED.iter().filter(|circle| !found.iter().any(|found| found == *circle)).collect();
-    assert!(
-        new.is_empty(),
-        "move what both need into a file below, or take a circle that became smaller off the list:\n{}",
-        new.join("\n\n")
-    );
-    assert!(cut.is_empty(), "these circles are cut; take them off the list: {cut:?}");
+    let found: Vec<String> = found.iter().map(|circle| told(circle)).collect();
+    assert!(found.is_empty(), "move what both need into a file below:\n{}", found.join("\n\n"));
 }

@@ -10,6 +10,7 @@ const TABLE: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("random", &[]),
     ("recorded", &[]),
+    ("values", &[]),
     ("xml", &[]),
     ("geometry", &[]),
     ("mechanics", &["geometry"]),
@@ -19,11 +20,14 @@ const TABLE: &[(&str, &[&str])] = &[
     ("contact", &["geometry"]),
     ("cell", &["mechanics", "equations", "ode", "field", "geometry"]),
     ("sim", &["cell", "mechanics", "equations", "ode", "field", "contact", "geometry"]),
-    ("experiment", &["sim", "cell", "mechanics", "equations", "ode", "field", "contact", "geometry"]),
     // The result file knows no simulator: it is given frames.
     ("output", &[]),
-    // Numbers and plots come from a finished file; the kinds of measures are words of the document.
-    ("analysis", &["output", "experiment", "cell", "contact", "geometry"]),
+    // Numbers come from a finished file; what documents say of a measure stands beside how it is computed.
+    ("analysis", &["values", "output", "cell", "contact", "geometry"]),
+    (
+        "experiment",
+        &["values", "analysis", "sim", "cell", "mechanics", "equations", "ode", "field", "contact", "geometry"],
+    ),
     ("picture", &["xml", "output", "experiment", "analysis", "cell", "geometry", "run"]),
     // The door for programs: it records frames, and writes none.
     ("simulation", &["experiment", "sim", "output", "cell", "mechanics", "equations", "contact", "geometry"]),

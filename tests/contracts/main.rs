@@ -8,6 +8,7 @@ mod run;
 mod simulation;
 mod transaction;
 mod volume;
+mod words;
 
 #[path = "../support/everything.rs"]
 mod everything;

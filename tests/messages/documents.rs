@@ -131,7 +131,7 @@ fn every_measure_that_cannot_be_taken_says_why() {
     let result = recorded(&folder.path().join("result.h5"));
     let path = Path::new("tests/messages/measures/chemistry.toml");
     let document = Document::read(path, &[]).unwrap_or_else(|error| panic!("{}", render(&error, Paint::Plain)));
-    let (measures, faults) = pseudopod::analysis::measure_result(&result, &document).expect("a whole file");
+    let (measures, faults) = pseudopod::run::measure_result(&result, &document).expect("a whole file");
     let taken: Vec<&str> = measures.iter().map(|measure| measure.name.as_str()).collect();
     assert!(taken.is_empty(), "can be taken: {taken:?}");
     assert!(

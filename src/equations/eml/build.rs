@@ -150,7 +150,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                     (rate.map(|rate| Role::Variable { rate }), self.value(element, "initial", Use::Start, &id))
                 }
             };
-            // After a fault something stands in its place, so that all the rest can be read.
+            // After a fault something stands in its stead, so that all the rest can be read.
             quantities.push(Quantity {
                 name: element.word("name"),
                 role: role.unwrap_or(Role::Input),

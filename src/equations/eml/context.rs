@@ -1,4 +1,4 @@
-//! Collects faults with their places, so that a reader hears of all of them.
+//! Collects faults with their locations, so that a reader hears of all of them.
 
 use crate::equations::fault::at_location;
 use crate::error::words::meant;
@@ -28,12 +28,12 @@ impl Context {
         Self { source, faults: Vec::new(), lines, untold: 0 }
     }
 
-    /// A place in the source.
+    /// A location in the source.
     pub(super) fn location(&self, at: Range<usize>, label: &str) -> Location {
         Location { source: self.source.clone(), start: at.start, length: at.len(), label: label.to_owned() }
     }
 
-    /// A fault: what was found, a few words beside the place, what to do.
+    /// A fault: what was found, a few words beside the location, what to do.
     pub(super) fn fault(&mut self, at: Range<usize>, message: &str, label: &str, help: &str) {
         if self.faults.len() >= MOST_FAULTS {
             self.untold += 1;
@@ -42,7 +42,7 @@ impl Context {
         self.faults.push(at_location(&self.source, at, message.to_owned(), label, help));
     }
 
-    /// A fault without a place.
+    /// A fault without a location.
     pub(super) fn lost(&mut self, message: impl Into<String>, help: &str) {
         self.faults.push(Fault::new(message).help(help));
     }

@@ -56,7 +56,7 @@ impl<'a> Declarations<'a> {
     }
 }
 
-/// Tells a trouble of an expression at its place in the document.
+/// Tells a trouble of an expression at its location in the document.
 pub(super) fn tell(context: &mut Context, text: &Text, trouble: &Trouble) {
     context.fault(text.location(&trouble.at), &trouble.message, &trouble.label, &trouble.help);
 }

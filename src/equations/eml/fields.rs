@@ -113,11 +113,11 @@ impl Builder<'_, '_> {
                 return None;
             }
             [_, second, ..] => {
-                let message = format!("the field `{}` starts in {} ways", element.word("id"), given.len());
+                let message = format!("the field `{}` has {} starts", element.word("id"), given.len());
                 self.context.fault(
                     element.location(second),
                     &message,
-                    "a second way",
+                    "a second start",
                     "keep one of `initial`, `image`, `dataset`",
                 );
             }

@@ -1,7 +1,7 @@
 //! EML, the Equations Markup Language: an XML text that describes a system of differential equations, or fields that
 //! diffuse and react, and the links that join them to cells.
 //!
-//! [`read`] turns a text into a [`Document`] or tells every fault in it at its place. Numbers stay as the document
+//! [`read`] turns a text into a [`Document`] or tells every fault in it at its location. Numbers stay as the document
 //! writes them; where quantities have units, these are checked through every expression. The book has the language in
 //! its chapter EML, `eml/eml.xsd` has its grammar.
 

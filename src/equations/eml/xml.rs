@@ -123,7 +123,7 @@ fn broken(context: &mut Context, trouble: Trouble) {
         What::TooLong => {
             let message =
                 format!("the document has {} bytes; at most {LARGEST_DOCUMENT} are read", context.source.text.len());
-            // The place would carry the whole text into the message: there is none.
+            // The location would carry the whole text into the message: there is none.
             context.lost(message, "equations need far less: keep data in files of their own");
         }
         What::NotXml => {

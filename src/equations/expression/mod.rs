@@ -1,6 +1,6 @@
 //! Expressions as people write them, "k*x^n/(K^n + x^n)": read, checked and written.
 //!
-//! [`parse`] turns a text into a [`Node`] whose parts know their places and goes on after a fault; [`Scope::resolve`]
+//! [`parse`] turns a text into a [`Node`] whose parts know their locations and goes on after a fault; [`Scope::resolve`]
 //! looks the names up and expands the document's functions into an [`Expr`](super::tree::Expr); [`write()`] goes back
 //! to a text that is read as the same expression.
 
@@ -26,7 +26,7 @@ use std::ops::Range;
 pub struct Trouble {
     /// What was found, in one sentence.
     pub message: String,
-    /// A few words beside the place.
+    /// A few words beside the location.
     pub label: String,
     /// What was expected and what to do.
     pub help: String,
@@ -35,12 +35,12 @@ pub struct Trouble {
 }
 
 impl Trouble {
-    /// A trouble at a place.
+    /// A trouble at a location.
     pub fn new(message: impl Into<String>, at: Range<usize>) -> Self {
         Self { message: message.into(), label: String::new(), help: String::new(), at }
     }
 
-    /// Adds a few words beside the place.
+    /// Adds a few words beside the location.
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
         self

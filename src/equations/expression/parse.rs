@@ -213,7 +213,7 @@ impl Parser {
                 self.next += 1;
                 let inner = self.expression(0);
                 let end = self.close(&token.at, "the parenthesis");
-                // A number in brackets stays one; its place includes the brackets.
+                // A number in brackets stays one; its location includes the brackets.
                 Node::new(inner.kind, token.at.start..end)
             }
             Kind::Sign(_) => self.missing(),

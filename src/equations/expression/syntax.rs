@@ -1,4 +1,4 @@
-//! An expression as it is written: every part knows its place in the text.
+//! An expression as it is written: every part knows its location in the text.
 
 use super::Trouble;
 use crate::equations::tree::Binary;
@@ -26,7 +26,7 @@ pub enum NodeKind {
     Not(Box<Node>),
     /// Two operands.
     Binary(Binary, Box<Node>, Box<Node>),
-    /// A function's name, the place of the name, and the arguments.
+    /// A function's name, the location of the name, and the arguments.
     Call(String, Range<usize>, Vec<Node>),
     /// What could not be read; a trouble tells why.
     Unread,
@@ -47,7 +47,7 @@ impl Node {
         }
     }
 
-    /// Every name that is used but not called, with its place.
+    /// Every name that is used but not called, with its location.
     pub fn names(&self) -> Vec<(&str, Range<usize>)> {
         let mut found = Vec::new();
         self.visit(&mut |node| {
@@ -58,7 +58,7 @@ impl Node {
         found
     }
 
-    /// Every function that is called, with the place of its name.
+    /// Every function that is called, with the location of its name.
     pub fn calls(&self) -> Vec<(&str, Range<usize>)> {
         let mut found = Vec::new();
         self.visit(&mut |node| {

@@ -1,4 +1,4 @@
-//! What expressions promise: precedence, places of faults, writing them as text, units.
+//! What expressions promise: precedence, locations of faults, writing them as text, units.
 
 use super::*;
 use crate::equations::tree::{Binary, Expr, Unary};

@@ -1,18 +1,17 @@
 //! MathML to expressions.
 
+use super::notes::Notes;
 use super::operators;
-use super::pieces::{binary, extent, negative, number, quantity};
+use super::pieces::{extent, number, quantity};
 use super::xml::{self, MATHML, Node, Page};
-use crate::equations::tree::{Binary, Expr, QuantityId};
-use std::cell::{Cell, RefCell};
+use crate::equations::tree::{Expr, QuantityId};
+use std::cell::RefCell;
 use std::collections::HashMap;
 
 /// Avogadro's number as SBML Level 3 fixes it, 1/mol.
 const AVOGADRO: f64 = 6.022_141_79e23;
 /// Deepest nesting of an expression, functions expanded.
 const DEPTH_LIMIT: usize = 300;
-/// Most nodes of all expressions together, functions expanded.
-const SIZE_LIMIT: usize = 4_000_000;
 
 /// A function definition.
 pub struct Function<'a> {
@@ -37,10 +36,10 @@ pub struct Reader<'p, 'a> {
     pub functions: HashMap<&'a str, Function<'a>>,
     /// Number of the first quantity that holds a rate of change.
     pub first_rate: QuantityId,
-    /// Quantities whose rate of change is asked for, with the place of the first asking.
+    /// Quantities whose rate of change is asked for, with the location of the first asking.
     rates: RefCell<Vec<(QuantityId, Node<'a>)>>,
     calls: RefCell<Vec<&'a str>>,
-    size: Cell<usize>,
+    notes: Notes<'p, 'a>,
 }
 
 impl<'p, 'a> Reader<'p, 'a> {
@@ -52,7 +51,7 @@ impl<'p, 'a> Reader<'p, 'a> {
             first_rate: 0,
             rates: RefCell::default(),
             calls: RefCell::default(),
-            size: Cell::new(0),
+            notes: Notes::new(page),
         }
     }
 
@@ -72,7 +71,7 @@ impl<'p, 'a> Reader<'p, 'a> {
     }
 
     /// The expression of an element; none when a fault was noted.
-    pub(super) fn expr(&self, node: Node<'a>, scope: &Scope<'a>, level: usize) -> Option<Expr> {
+    fn expr(&self, node: Node<'a>, scope: &Scope<'a>, level: usize) -> Option<Expr> {
         if level > DEPTH_LIMIT || !self.take(1) {
             return self.too_large(node);
         }
@@ -104,20 +103,16 @@ impl<'p, 'a> Reader<'p, 'a> {
     }
 
     /// Notes a fault.
-    pub(super) fn fault<T>(&self, node: Node<'_>, found: impl Into<String>, help: impl Into<String>) -> Option<T> {
-        self.page.fault(node, found, help);
-        None
+    fn fault<T>(&self, node: Node<'_>, found: impl Into<String>, help: impl Into<String>) -> Option<T> {
+        self.notes.fault(node, found, help)
     }
 
-    pub(super) fn too_large<T>(&self, node: Node<'a>) -> Option<T> {
-        let help = "write long sums with one <plus/> for all terms, and fewer functions within functions";
-        self.fault(node, "the formulas are too large or nested too deeply when functions are expanded", help)
+    fn too_large<T>(&self, node: Node<'a>) -> Option<T> {
+        self.notes.too_large(node)
     }
 
-    /// Takes from the nodes that may be made.
-    pub(super) fn take(&self, count: usize) -> bool {
-        self.size.set(self.size.get().saturating_add(count));
-        self.size.get() <= SIZE_LIMIT
+    fn take(&self, count: usize) -> bool {
+        self.notes.take(count)
     }
 
     fn number(&self, node: Node<'a>) -> Option<Expr> {
@@ -216,7 +211,7 @@ impl<'p, 'a> Reader<'p, 'a> {
                     None => None,
                 };
                 let operands = self.exprs(&operands, scope, level)?;
-                operators::apply(self, head, operands, qualifier)
+                operators::apply(&self.notes, head, operands, qualifier)
             }
         }
     }
@@ -323,19 +318,4 @@ pub fn name(node: Node<'_>) -> &str {
 fn definition<'a>(node: Node<'a>) -> &'a str {
     let url = node.attribute("definitionURL").unwrap_or_default().trim();
     url.strip_prefix("http://www.sbml.org/sbml/symbols/").unwrap_or("")
-}
-
-/// a ∘ b and b ∘ c and … for the operands of a comparison.
-pub fn chain(function: Binary, operands: Vec<Expr>) -> Expr {
-    let pairs = operands.windows(2).map(|pair| binary(function, pair[0].clone(), pair[1].clone())).collect();
-    super::pieces::join(Binary::And, pairs, 1.0)
-}
-
-/// Minus of one operand, or the difference of two.
-pub fn minus(mut operands: Vec<Expr>) -> Expr {
-    let last = operands.pop().expect("one or two operands");
-    match operands.pop() {
-        Some(first) => binary(Binary::Sub, first, last),
-        None => negative(last),
-    }
 }

@@ -8,6 +8,7 @@ mod checks;
 mod document;
 mod events;
 mod math;
+mod notes;
 mod operators;
 mod pieces;
 mod plan;
@@ -79,7 +80,7 @@ pub fn is_sbml(text: &str) -> bool {
 /// Reads an SBML document. A caller that reads files refuses those above [`LARGEST_DOCUMENT`] bytes unread.
 ///
 /// # Errors
-/// [`crate::error::Error::Input`] with all faults found, each at its place: XML that is hostile or not well formed,
+/// [`crate::error::Error::Input`] with all faults found, each at its location: XML that is hostile or not well formed,
 /// constructs that are not supported (algebraic rules, delays, fast reactions, packages that the model needs), names
 /// that are not known, contradicting statements, definitions in a circle.
 pub fn read(source: &Arc<Source>) -> Result<Model> {

@@ -1,21 +1,16 @@
 //! The operators and elementary functions of MathML that SBML takes.
 
-use super::math::{Reader, chain, minus};
-use super::pieces::{binary, extent, join, number, quotient, unary};
+use super::notes::Notes;
+use super::pieces::{binary, extent, join, negative, number, quotient, unary};
 use super::xml::Node;
 use crate::equations::tree::{Binary, Expr, Unary};
 
 /// The value of an operator for its operands; `qualifier` is the base of a logarithm or the degree of a root.
-pub fn apply<'a>(
-    reader: &Reader<'_, 'a>,
-    head: Node<'a>,
-    operands: Vec<Expr>,
-    qualifier: Option<Expr>,
-) -> Option<Expr> {
+pub fn apply<'a>(notes: &Notes<'_, 'a>, head: Node<'a>, operands: Vec<Expr>, qualifier: Option<Expr>) -> Option<Expr> {
     let name = head.name();
     let Some((least, most)) = arity(name) else {
         let found = format!("<{name}> is not an operator of SBML");
-        return reader.fault(head, found, "the chapter on SBML lists those that are read");
+        return notes.fault(head, found, "the chapter on SBML lists those that are read");
     };
     if operands.len() < least || operands.len() > most {
         let wanted = match (least, most) {
@@ -25,15 +20,15 @@ pub fn apply<'a>(
             (least, most) => format!("{least} to {most} operands"),
         };
         let found = format!("<{name}> has {} operand{}", operands.len(), if operands.len() == 1 { "" } else { "s" });
-        return reader.fault(head, found, format!("it takes {wanted}"));
+        return notes.fault(head, found, format!("it takes {wanted}"));
     }
     if qualifier.is_some() && !matches!(name, "log" | "root") {
-        return reader.fault(head, format!("<{name}> has no base and no degree"), "only <log/> and <root/> have");
+        return notes.fault(head, format!("<{name}> has no base and no degree"), "only <log/> and <root/> have");
     }
     // These use an operand twice: nested in each other they would grow without bound.
     let twice = matches!(name, "quotient" | "root") || (arity(name) == Some((1, usize::MAX)) && operands.len() > 2);
-    if twice && !reader.take(operands.iter().map(|operand| extent(operand).1).sum()) {
-        return reader.too_large(head);
+    if twice && !notes.take(operands.iter().map(|operand| extent(operand).1).sum()) {
+        return notes.too_large(head);
     }
     Some(value(name, operands, qualifier))
 }
@@ -77,6 +72,21 @@ fn value(name: &str, mut operands: Vec<Expr>, qualifier: Option<Expr>) -> Expr {
                 None => of_one(name, last, qualifier),
             }
         }
+    }
+}
+
+/// a ∘ b and b ∘ c and … for the operands of a comparison.
+fn chain(function: Binary, operands: Vec<Expr>) -> Expr {
+    let pairs = operands.windows(2).map(|pair| binary(function, pair[0].clone(), pair[1].clone())).collect();
+    join(Binary::And, pairs, 1.0)
+}
+
+/// Minus of one operand, or the difference of two.
+fn minus(mut operands: Vec<Expr>) -> Expr {
+    let last = operands.pop().expect("one or two operands");
+    match operands.pop() {
+        Some(first) => binary(Binary::Sub, first, last),
+        None => negative(last),
     }
 }
 

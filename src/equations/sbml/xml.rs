@@ -1,4 +1,4 @@
-//! The XML under an SBML text: hostile texts are refused, and every fault gets its place.
+//! The XML under an SBML text: hostile texts are refused, and every fault gets its location.
 
 use crate::equations::fault::at_location;
 use crate::error::{Error, Fault, Result, Source};
@@ -48,7 +48,7 @@ struct Noted {
 /// Reads the XML, refusing what only a hostile text has.
 ///
 /// # Errors
-/// [`Error::Input`] with a place: too large, a document type, nested too deeply, not well formed.
+/// [`Error::Input`] with a location: too large, a document type, nested too deeply, not well formed.
 pub fn parse(source: &Arc<Source>) -> Result<Document<'_>> {
     let limits = Limits { bytes: LARGEST_DOCUMENT, depth: DEPTH_LIMIT, nodes: NODE_LIMIT, attributes: ATTRIBUTE_LIMIT };
     Document::read(&source.text, limits).map_err(|trouble| refused(source, trouble))

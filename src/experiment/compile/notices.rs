@@ -58,7 +58,7 @@ fn unusual_width(document: &Document, kind: &Kind) -> Option<String> {
     ))
 }
 
-/// Whether two cells may come to the same place; false only where that is plain to see.
+/// Whether two cells may come to the same position; false only where that is plain to see.
 fn may_meet(model: &Model, centres: &[Vec<Vec3>]) -> bool {
     let cells: usize = centres.iter().map(Vec::len).sum();
     if cells < 2 {

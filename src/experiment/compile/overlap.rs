@@ -13,7 +13,7 @@ const MOST: usize = 5;
 
 /// Two surfaces that overlap, or a cell behind a plane.
 pub struct Found {
-    /// The kind whose place is to be changed.
+    /// The kind whose position is to be changed.
     pub kind: usize,
     /// What is wrong.
     pub words: String,
@@ -32,7 +32,7 @@ pub fn refusal(document: &Document, model: &Model, head: &str, found: &[Found], 
     let extent = bounding_box(&kind.rest.positions).map_or(0.0, |(low, high)| (high - low).max());
     let fault = Fault::new(format!("{head}{}", list.join("; "))).help(format!(
         "place them apart{else_do}: cells of type `{}` are {} um wide, and a grid needs a `spacing` above that; \
-         random_from and random_to find places that do not overlap",
+         random_from and random_to find positions that do not overlap",
         kind.name,
         short(extent)
     ));
@@ -40,7 +40,7 @@ pub fn refusal(document: &Document, model: &Model, head: &str, found: &[Found], 
     Err(Error::input(location.into_iter().fold(fault, Fault::at)))
 }
 
-/// Whether one of two cells is wholly inside the other, or most of its atoms or its centre are: then none knows the way
+/// Whether one of two cells is wholly inside the other, or most of its atoms or its centre are: then none knows the direction
 /// out that was meant. A sheet has no centre in this sense.
 pub fn too_deep(scene: &Scene, positions: &[Vec3], overlap: &Overlap) -> bool {
     let [first, second] = overlap.bodies;
@@ -69,7 +69,7 @@ pub fn told(model: &Model, state: &State, overlap: &Overlap) -> Found {
     let (inner_name, outer_name) = (name_of(model, state, inner), name_of(model, state, outer));
     let words = match (overlap.nested(), inside) {
         (Some(_), _) => format!("{inner_name} is wholly inside {outer_name}"),
-        (None, 0) => format!("edges of {inner_name} pass through {outer_name} at {} places", overlap.crossings),
+        (None, 0) => format!("edges of {inner_name} pass through {outer_name} at {} points", overlap.crossings),
         (None, _) => {
             let atoms = model.kinds[state.kind_of(inner as usize).0].atoms();
             format!("{inner_name} has {inside} of its {atoms} atoms inside {outer_name}")

@@ -1,4 +1,4 @@
-//! Finds room for cells that are placed at random and must not overlap.
+//! Finds free points for cells that are placed at random and must not overlap.
 
 use super::super::{CellType, Document, Placement};
 use super::numbers::vector;
@@ -42,7 +42,7 @@ pub fn centres_apart(document: &Document, kinds: &[Kind], planes: &[Plane], gap:
     Ok(all)
 }
 
-/// Centres of the cells of a kind, drawn until each has room.
+/// Centres of the cells of a kind, drawn until each fits.
 fn seed_kind(
     document: &Document,
     kind: &Kind,
@@ -62,7 +62,7 @@ fn seed_kind(
     Ok(centres)
 }
 
-/// That there is no room for a cell.
+/// That there is no space for a cell.
 fn too_full(
     document: &Document,
     kind: &Kind,
@@ -78,11 +78,12 @@ fn too_full(
     let filled: f64 = taken.spheres().iter().filter(inside).map(|(_, radius)| ball(*radius)).sum();
     let share = 100.0 * filled / (size.x * size.y * size.z);
     let message = format!(
-        "there is no room for all cells of type `{}`: {placed} of {wanted} found a place that overlaps no other cell and no \
+        "there is no space for all cells of type `{}`: {placed} of {wanted} found a position that overlaps no other cell and no \
          plane, the next did not in {TRIES} tries; spheres around the cells fill {share:.0} % of the box",
         kind.name
     );
-    let help = "make the box larger or the cells fewer; places at random rarely fill more than 30 %, a grid fills more";
+    let help =
+        "make the box larger or the cells fewer; positions at random rarely fill more than 30 %, a grid fills more";
     let fault = Fault::new(message).help(help);
     let location = document.location(&format!("cells.{}.placement", kind.name), "too full");
     Error::input(location.into_iter().fold(fault, Fault::at))

@@ -64,7 +64,7 @@ pub fn settle_start(document: &Document, compiled: &mut Compiled) -> Result<Push
     let list =
         |overlaps: &[Overlap]| overlaps.iter().map(|overlap| told(model, state, overlap)).collect::<Vec<Found>>();
     let head = format!("cells overlap at the start, and {ROUNDS} rounds of pushing have not parted them all: ");
-    let space = if model.planes.is_empty() { "" } else { ", or give them more room between the planes" };
+    let space = if model.planes.is_empty() { "" } else { ", or give them more space between the planes" };
     refusal(document, model, &head, &list(&left), space)?;
     let far = too_far(model, state, &moves);
     let head = "cells overlap at the start, and to part them some would have to move farther than their radius: ";

@@ -64,19 +64,19 @@ impl Check<'_> {
     fn placement(&mut self, placement: &str, number: usize, given: Option<&Placement>) {
         match given {
             Some(Placement::At { at }) if at.len() != number || at.is_empty() => {
-                let points = if at.len() == 1 { "1 place".to_owned() } else { format!("{} places", at.len()) };
+                let points = if at.len() == 1 { "1 position".to_owned() } else { format!("{} positions", at.len()) };
                 let message = format!("`{placement}.at` has {points} for {number} cells");
                 self.fault(
                     &format!("{placement}.at"),
                     "not one for each cell",
                     message,
-                    "give one place for each cell, or leave `number` out",
+                    "give one position for each cell, or leave `number` out",
                 );
             }
             Some(Placement::Grid { grid, .. }) => {
                 let points = grid.iter().map(|n| *n as usize).fold(1, usize::saturating_mul);
                 if points < number {
-                    let message = format!("`{placement}.grid` has {points} places for {number} cells");
+                    let message = format!("`{placement}.grid` has {points} positions for {number} cells");
                     self.fault(
                         &format!("{placement}.grid"),
                         "too small",

@@ -2,8 +2,8 @@
 
 use super::Check;
 use crate::error::words;
+use crate::experiment::Method;
 use crate::experiment::contact::{Contact, ContactModel, Pair};
-use crate::experiment::{Gaps, Method, Segregation, When};
 
 impl Check<'_> {
     pub(super) fn contact(&mut self) {
@@ -111,47 +111,6 @@ impl Check<'_> {
                 let message = format!("`{path}` means nothing in the contact model {}", named(contact));
                 self.fault(&path, "of another model", message, format!("leave it out, or choose model = {owners}"));
             }
-        }
-    }
-
-    /// Whether who touches whom is recorded, as a measure needs it; a fault if not.
-    fn records_contacts(&mut self, path: &str) -> bool {
-        let has_contacts = self.document.experiment.contact.is_some();
-        if !has_contacts {
-            let message = format!("`{path}` needs to know who touches whom, and there are no contacts");
-            self.fault(path, "not recorded", message, "add [contact] to the document");
-        }
-        has_contacts
-    }
-
-    /// What must hold for the measure of gaps in an aggregate.
-    pub(super) fn gaps(&mut self, path: &str, wanted: &Gaps) {
-        if self.records_contacts(path)
-            && let When::At(time) = wanted.time
-        {
-            self.instant(&format!("{path}.time"), time.value());
-        }
-    }
-
-    /// What must hold for the measure of how cells are sorted.
-    pub(super) fn segregation(&mut self, path: &str, wanted: &Segregation) {
-        if !self.records_contacts(path) {
-            return;
-        }
-        let experiment = &self.document.experiment;
-        let mut types: Vec<&str> = match &wanted.cells {
-            Some(types) => types.as_slice().iter().map(String::as_str).collect(),
-            None => experiment.cells.keys().map(String::as_str).collect(),
-        };
-        types.sort_unstable();
-        types.dedup();
-        if types.len() < 2 {
-            let key = if wanted.cells.is_some() { format!("{path}.cells") } else { path.to_owned() };
-            let message = format!("`{key}`: cells of one type cannot be sorted");
-            self.fault(&key, "one type only", message, "name two types of cells or more");
-        }
-        if let When::At(time) = wanted.time {
-            self.instant(&format!("{path}.time"), time.value());
         }
     }
 

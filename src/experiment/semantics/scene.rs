@@ -1,7 +1,7 @@
-//! What must hold between planes, pictures, plots, measures and the run.
+//! What must hold between planes, pictures, plots and the run.
 
 use super::Check;
-use crate::experiment::{Fit, MeasureKind, OneOrMany, PlotKind, Reduction, When};
+use crate::experiment::{OneOrMany, PlotKind, When};
 use crate::units::{Dimension, pretty};
 
 impl Check<'_> {
@@ -71,38 +71,6 @@ impl Check<'_> {
             let (time, until) = (pretty(time, Dimension::TIME), pretty(until, Dimension::TIME));
             let message = format!("`{path}` is {time}, which the run does not reach");
             self.fault(path, "outside of the run", message, format!("give a time from 0 s to {until} (run.until)"));
-        }
-    }
-
-    pub(super) fn measures(&mut self) {
-        for (name, measure) in &self.document.experiment.measure {
-            let path = format!("measure.{name}");
-            match &measure.kind {
-                MeasureKind::Value { time: Reduction::At(time), .. } => {
-                    self.instant(&format!("{path}.time"), time.value());
-                }
-                MeasureKind::Slope(Fit { x_from: Some(from), x_to: Some(to), .. })
-                | MeasureKind::RSquared(Fit { x_from: Some(from), x_to: Some(to), .. })
-                    if from >= to =>
-                {
-                    let message = format!("`{path}.x_to` is not above `x_from`");
-                    self.fault(&format!("{path}.x_to"), "too small", message, "exchange the two");
-                }
-                MeasureKind::TableBars(table) if table.low_column.is_none() || table.high_column.is_none() => {
-                    let message = format!("`{path}` lacks the columns of the bars");
-                    self.fault(&path, "columns are missing here", message, "add `low_column` and `high_column`");
-                }
-                MeasureKind::MsdDeviation { lag_from, lag_to, .. } => {
-                    if lag_from >= lag_to {
-                        let message = format!("`{path}.lag_to` is not above `lag_from`");
-                        self.fault(&format!("{path}.lag_to"), "too small", message, "exchange the two");
-                    }
-                    self.instant(&format!("{path}.lag_to"), lag_to.value());
-                }
-                MeasureKind::Segregation(wanted) => self.segregation(&path, wanted),
-                MeasureKind::Gaps(wanted) => self.gaps(&path, wanted),
-                kind => self.measure_of_chemistry(&path, kind),
-            }
         }
     }
 }

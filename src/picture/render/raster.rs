@@ -99,7 +99,7 @@ impl Geometry {
                 let own = if per_atom { *facet } else { [number as u32; 3] };
                 self.triangles.push(Triangle {
                     corners: facet.map(|atom| first + atom),
-                    colour: own.map(|place| first_colour + place.min(last)),
+                    colour: own.map(|index| first_colour + index.min(last)),
                     edges: surface.edges,
                     opacity: surface.opacity.clamp(0.0, 1.0),
                     side: surface.is_solid.then_some(side),

@@ -15,7 +15,7 @@ pub fn help_at(trouble: &Trouble, model: &Model, state: &State) -> &'static str 
     let (Trouble::Contact { cells, .. } | Trouble::Pressed { cells, .. }) = trouble else { return trouble.help() };
     match cause_of(model, state, cells) {
         Cause::Crowded => {
-            "cells are pressed together harder than their volumes allow: give them more room or weaker loads, or \
+            "cells are pressed together harder than their volumes allow: give them more space or weaker loads, or \
              let run.integrator make shorter steps (a smaller step where you set one, else max_step or tolerance)"
         }
         Cause::Folded => {

@@ -152,7 +152,7 @@ impl<'a> Writer<'a> {
             && value.is_nan()
         {
             let id = &self.names.quantities[number as usize];
-            self.names.notices.push(format!("`{id}` has no value at the start: 0 stands in its place"));
+            self.names.notices.push(format!("`{id}` has no value at the start: 0 stands in its stead"));
             return "0".to_owned();
         }
         let outside = matches!(quantity.role, Role::Input) && uses(&quantity.initial, &|other| !self.fixed[other]);

@@ -75,7 +75,7 @@ pub(super) fn links(
     }
 }
 
-/// A place for a link of the experiment that is not written there.
+/// A location for a link of the experiment that is not written there.
 fn nowhere(document: &Document, key: &str) -> Location {
     let whole = Location { source: document.source.clone(), start: 0, length: 0, label: String::new() };
     document.location(key, "this link").unwrap_or(whole)
@@ -227,7 +227,7 @@ fn fault_of(document: &Document, key: &str, trouble: &Trouble) -> Fault {
     let fault = Fault::new(trouble.message.clone()).help(trouble.help.clone());
     let Some(mut location) = document.location(key, trouble.label.clone()) else { return fault };
     let written = &location.source.text[location.start..location.start + location.length];
-    // In a text with escapes places shift; then the whole text is marked.
+    // In a text with escapes locations shift; then the whole text is marked.
     let plain = written.len() >= 2 && written.starts_with(['"', '\'']) && !written.contains('\\');
     if plain && trouble.at.end <= written.len() - 2 {
         location.start += 1 + trouble.at.start;

@@ -92,7 +92,7 @@ fn at(document: &Document, key: &str, label: &str, fault: Fault) -> Fault {
     document.location(key, label).into_iter().fold(fault, Fault::at)
 }
 
-/// A fault in the document of equations, at a place there.
+/// A fault in the document of equations, at a location there.
 fn within(location: &Location, label: &str, message: String, help: impl Into<String>) -> Fault {
     Fault::new(message).at(Location { label: label.to_owned(), ..location.clone() }).help(help)
 }

@@ -20,7 +20,7 @@ pub(super) fn check(document: &Document, chemistry: &Chemistry, faults: &mut Vec
     }
 }
 
-/// What is wrong with the name of a series of chemistry, with a label for its place.
+/// What is wrong with the name of a series of chemistry, with a label for its location.
 fn series(chemistry: &Chemistry, path: &str, text: &str) -> Option<(String, Fault)> {
     let stored = text.strip_prefix("chemistry.").unwrap_or(text);
     let (system, quantity) = stored.split_once('.').filter(|(system, _)| *system != "load")?;

@@ -2,14 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::chemistry::frame_at;
-use super::recording::Recording;
+use super::declared::Declared;
+use super::finished::Finished;
 use crate::Vec3;
 use crate::contact::{closest_on_facet, winding_number};
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{GapStatistic, Gaps};
 use crate::geometry::icosphere;
-use crate::output::ResultFile;
+use crate::values::When;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Points along the side of a cube with the volume of a cell.
 const POINTS_PER_SIDE: f64 = 20.0;
@@ -17,11 +18,80 @@ const POINTS_PER_SIDE: f64 = 20.0;
 /// Points in all, at most: of very many cells fewer each.
 const MOST_POINTS: f64 = 400_000.0;
 
-/// Points from which the largest ball is looked for, those with most room.
+/// Points from which the largest ball is looked for, those with most clearance.
 const STARTS: usize = 16;
 
 /// How exactly its centre is found, over the distance between points.
 const EXACT: f64 = 1e-3;
+
+/// What is empty inside the largest aggregate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(inline)]
+pub struct Gaps {
+    /// The instant.
+    #[serde(default)]
+    pub time: When,
+    /// Which number.
+    #[serde(default)]
+    pub statistic: GapStatistic,
+}
+
+/// Which number of the gaps in an aggregate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum GapStatistic {
+    /// The radius of the largest ball that fits between the cells, µm.
+    #[default]
+    LargestBall,
+    /// The part of the inside that no cell fills.
+    EmptyShare,
+}
+
+impl Gaps {
+    pub(super) fn check(&self, at: &mut dyn Declared) {
+        if at.records_contacts() {
+            at.when("time", self.time);
+        }
+    }
+
+    /// The number that is asked for.
+    ///
+    /// # Errors
+    /// When the run has no contacts, or the largest aggregate no inside.
+    pub(super) fn evaluate(&self, run: &Finished) -> Result<f64> {
+        let recording = run.recording;
+        let Some(file) = run.file else {
+            let fault = Fault::new("there is no file that says where the cells are");
+            return Err(Error::input(fault.help("measure the result of a run")));
+        };
+        let frame = recording.frame_at(self.time);
+        let aggregate: Vec<u64> = file.cell_values("aggregate", frame)?.iter().map(|first| *first as u64).collect();
+        let size = |first: u64| aggregate.iter().filter(|other| **other == first).count();
+        let largest = aggregate.iter().copied().min_by_key(|first| (std::cmp::Reverse(size(*first)), *first));
+        let (positions, layout, cells) = (file.positions(frame)?, file.layout(), file.cells(frame));
+        let of_largest = cells.iter().zip(layout.atoms_of(&cells)).zip(&aggregate);
+        let bodies: Vec<Body> = of_largest
+            .filter(|(_, first)| Some(**first) == largest)
+            .map(|((cell, atoms), _)| {
+                let atoms = positions[atoms].iter().map(|position| Vec3::from(*position)).collect();
+                Body::new(atoms, layout.types[cell.kind as usize].facets.clone())
+            })
+            .collect();
+        let Some(empty) = find_empty(&bodies) else {
+            let time = recording.times[frame];
+            let cells = if bodies.len() == 1 { "one cell".to_owned() } else { format!("{} cells", bodies.len()) };
+            let fault = Fault::new(format!("the largest aggregate at {time} s, of {cells}, has no inside"));
+            return Err(Error::input(
+                fault.help("give a time at which four cells or more that do not lie in a plane touch"),
+            ));
+        };
+        Ok(match self.statistic {
+            GapStatistic::LargestBall => empty.largest_ball,
+            GapStatistic::EmptyShare => empty.share,
+        })
+    }
+}
 
 /// A cell: its atoms and facets, and a ball around it.
 pub(super) struct Body {
@@ -66,7 +136,7 @@ impl Body {
     }
 }
 
-/// The room around a place: the distance to the nearest cell, µm, 0 inside one.
+/// The clearance around a point: the distance to the nearest cell, µm, 0 inside one.
 fn clearance(bodies: &[Body], position: Vec3) -> f64 {
     if bodies.iter().any(|body| body.has_inside(position)) {
         return 0.0;
@@ -146,7 +216,7 @@ pub(super) fn find_empty(bodies: &[Body]) -> Option<Empty> {
     Some(Empty { largest_ball: largest.reduce(|| 0.0, f64::max), share })
 }
 
-/// The most room near a place: the best of the points around it, ever closer. Room has ridges, where it rises along few directions, so
+/// The most clearance near a point: the best of the points around it, ever closer. Clearance has ridges, where it rises along few directions, so
 /// that points on all sides are looked at.
 fn climb(bodies: &[Body], inside: &Inside, (mut most, mut position): (f64, Vec3), first: f64) -> f64 {
     let mut step = 0.5 * first;
@@ -161,42 +231,6 @@ fn climb(bodies: &[Body], inside: &Inside, (mut most, mut position): (f64, Vec3)
         }
     }
     most
-}
-
-/// The number that a measure asks for.
-///
-/// # Errors
-/// When the run has no contacts, or the largest aggregate no inside.
-pub(super) fn gaps(wanted: &Gaps, recording: &Recording, file: Option<&ResultFile>) -> Result<f64> {
-    let Some(file) = file else {
-        let fault = Fault::new("there is no file that says where the cells are");
-        return Err(Error::input(fault.help("measure the result of a run")));
-    };
-    let frame = frame_at(wanted.time, &recording.times);
-    let aggregate: Vec<u64> = file.cell_values("aggregate", frame)?.iter().map(|first| *first as u64).collect();
-    let size = |first: u64| aggregate.iter().filter(|other| **other == first).count();
-    let largest = aggregate.iter().copied().min_by_key(|first| (std::cmp::Reverse(size(*first)), *first));
-    let (positions, layout, cells) = (file.positions(frame)?, file.layout(), file.cells(frame));
-    let of_largest = cells.iter().zip(layout.atoms_of(&cells)).zip(&aggregate);
-    let bodies: Vec<Body> = of_largest
-        .filter(|(_, first)| Some(**first) == largest)
-        .map(|((cell, atoms), _)| {
-            let atoms = positions[atoms].iter().map(|position| Vec3::from(*position)).collect();
-            Body::new(atoms, layout.types[cell.kind as usize].facets.clone())
-        })
-        .collect();
-    let Some(empty) = find_empty(&bodies) else {
-        let time = recording.times[frame];
-        let cells = if bodies.len() == 1 { "one cell".to_owned() } else { format!("{} cells", bodies.len()) };
-        let fault = Fault::new(format!("the largest aggregate at {time} s, of {cells}, has no inside"));
-        return Err(Error::input(
-            fault.help("give a time at which four cells or more that do not lie in a plane touch"),
-        ));
-    };
-    Ok(match wanted.statistic {
-        GapStatistic::LargestBall => empty.largest_ball,
-        GapStatistic::EmptyShare => empty.share,
-    })
 }
 
 #[cfg(test)]

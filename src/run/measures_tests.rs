@@ -1,6 +1,7 @@
 //! What the way from a result file to its measures promises.
 
-use super::{check_result, claims, measure_result};
+use super::measure_result;
+use crate::analysis::{check_result, claims};
 use crate::experiment::Document;
 use crate::output::{Cell, CellRecord, CellType, Frame, Header, Layout, Measure, Overwrite, ResultFile, ResultWriter};
 use std::path::Path;

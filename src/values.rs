@@ -132,7 +132,7 @@ impl JsonSchema for When {
 }
 
 /// The schema of what is one of some words, or else a time.
-pub(super) fn words_or_time(words: &[&str]) -> Schema {
+pub(crate) fn words_or_time(words: &[&str]) -> Schema {
     json_schema!({
         "type": ["string", "integer"],
         "minimum": 0,

@@ -4,7 +4,7 @@ use super::{Body, find_empty};
 use crate::Vec3;
 use crate::geometry::{box_surface, icosphere, translate, volume};
 
-/// Bodies of one shape at these places.
+/// Bodies of one shape at these points.
 fn at(positions: &[Vec3], shape: &crate::geometry::Surface) -> Vec<Body> {
     let moved = |position: &Vec3| {
         let mut surface = shape.clone();

@@ -1,0 +1,184 @@
+//! Numbers that are computed from a finished run and stored with it.
+//!
+//! [`MeasureKind`] is the one list of them. Each has a file, which holds what documents say of it, which series it reads, what must
+//! hold between its keys, and how it is computed. What several of them share lies beside them.
+
+mod chemotactic_index;
+mod comparison;
+mod declared;
+mod field_value;
+mod finished;
+mod fit;
+mod gaps;
+mod msd_deviation;
+mod period;
+mod reduction;
+mod run_length;
+mod segregation;
+mod sphere_fit;
+mod statistic;
+#[cfg(test)]
+mod test_recordings;
+#[cfg(test)]
+mod test_results;
+mod value;
+mod wave_speed;
+mod wavelength;
+
+pub use super::fields::OverBoxes;
+pub use super::over::Over;
+pub use chemotactic_index::ChemotacticIndex;
+pub use comparison::Comparison;
+pub use declared::Declared;
+pub use field_value::FieldValue;
+pub use finished::Finished;
+pub use fit::Fit;
+pub use gaps::{GapStatistic, Gaps};
+pub use msd_deviation::MsdDeviation;
+pub use period::Period;
+pub use reduction::Reduction;
+pub use run_length::RunLength;
+pub use segregation::{Segregation, SegregationStatistic};
+pub use sphere_fit::SphereFit;
+pub use statistic::Statistic;
+pub use value::Value;
+pub use wave_speed::{WaveSpeed, WaveStatistic};
+pub use wavelength::Wavelength;
+
+use crate::error::Result;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A number computed from the finished run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("unevaluatedProperties" = false))]
+pub struct Measure {
+    /// What is computed.
+    #[serde(flatten)]
+    pub kind: MeasureKind,
+    /// The unit shown with the number.
+    #[serde(default)]
+    pub unit: String,
+    /// What the number means.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// A factor that the number is multiplied by.
+    #[serde(default = "one")]
+    pub scale: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Measure {
+    /// A measure of this kind, without a unit.
+    pub fn new(kind: MeasureKind) -> Self {
+        Self { kind, unit: String::new(), description: None, scale: 1.0 }
+    }
+}
+
+/// What a measure computes. Series are named as in the result: `size_x`, `volume`, `load.pull`,
+/// `chemistry.SYSTEM.QUANTITY`; units are µm, s, pN, and those of their documents for chemistry and fields.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum MeasureKind {
+    /// A series at one instant, or its mean or extremes in time.
+    Value(Value),
+    /// The slope of the straight line fitted to y against x.
+    Slope(Fit),
+    /// R² of the straight line fitted to y against x.
+    RSquared(Fit),
+    /// The shear modulus of a spherical membrane, read from the slope of its equatorial diameter against the force at
+    /// its poles (Hénon et al. 1999).
+    SphereShear(SphereFit),
+    /// Root mean square of the relative distance between a measured table and the curve y(x).
+    TableRms(Comparison),
+    /// The number of rows of a measured table whose bars hold the curve y(x).
+    TableBars(Comparison),
+    /// The mean ratio of the curve y(x) to a measured table.
+    TableRatio(Comparison),
+    /// The largest distance, in standard errors, between the mean squared displacement and Fürth's formula.
+    MsdDeviation(MsdDeviation),
+    /// The probability, by Kolmogorov and Smirnov, of durations of runs as unlike the exponential as these.
+    RunLengthP(RunLength),
+    /// A field at a point, or its mean, extremes or amount.
+    FieldValue(FieldValue),
+    /// How straight cells go towards a point: how much nearer they came over the length of their path, from −1 to 1.
+    ChemotacticIndex(ChemotacticIndex),
+    /// The mean time between upward crossings of the middle between the smallest and the largest value, s.
+    Period(Period),
+    /// How fast a wave leaves a point: the fit of a line to its times of arrival against distances, µm/s.
+    WaveSpeed(WaveSpeed),
+    /// The wavelength of a pattern in a flat field, from its spectrum, µm.
+    Wavelength(Wavelength),
+    /// How much cells of a type touch each other beyond chance: the segregation index, from below 0 (mixed) to 1 (apart),
+    /// or what permutations of the types say of it.
+    Segregation(Segregation),
+    /// What the cells of the largest aggregate leave empty between them: the radius of the largest ball that fits there, µm, or the
+    /// part of the inside that no cell fills.
+    Gaps(Gaps),
+}
+
+impl MeasureKind {
+    /// Names of the series that [`evaluate`](Self::evaluate) asks a recording for, besides `time`.
+    pub fn series(&self) -> Vec<&str> {
+        let names = match self {
+            Self::Value(value) => value.series(),
+            Self::Slope(fit) | Self::RSquared(fit) => fit.series(),
+            Self::SphereShear(fit) => fit.series(),
+            Self::TableRms(table) | Self::TableBars(table) | Self::TableRatio(table) => table.series(),
+            Self::MsdDeviation(msd) => msd.series(),
+            Self::ChemotacticIndex(index) => index.series(),
+            Self::Period(period) => period.series(),
+            Self::WaveSpeed(wave) => wave.series(),
+            Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) | Self::Gaps(_) => {
+                Vec::new()
+            }
+        };
+        names.into_iter().filter(|name| *name != "time").collect()
+    }
+
+    /// Tells what does not hold between the keys, and what the run of the document does not have.
+    pub fn check(&self, at: &mut dyn Declared) {
+        match self {
+            Self::Value(value) => value.check(at),
+            Self::Slope(fit) | Self::RSquared(fit) => fit.check(at),
+            Self::TableBars(table) => table.check_bars(at),
+            Self::MsdDeviation(msd) => msd.check(at),
+            Self::FieldValue(value) => value.check(at),
+            Self::ChemotacticIndex(index) => index.check(at),
+            Self::Period(period) => period.check(at),
+            Self::WaveSpeed(wave) => wave.check(at),
+            Self::Wavelength(pattern) => pattern.check(at),
+            Self::Segregation(segregation) => segregation.check(at),
+            Self::Gaps(gaps) => gaps.check(at),
+            Self::SphereShear(_) | Self::TableRms(_) | Self::TableRatio(_) | Self::RunLengthP(_) => {}
+        }
+    }
+
+    /// Computes the number, in base units: µm, s, pN.
+    ///
+    /// # Errors
+    /// When a series, type, column or table is not there, or does not reach where it is asked for.
+    pub fn evaluate(&self, run: &Finished) -> Result<f64> {
+        match self {
+            Self::Value(value) => value.evaluate(run.recording),
+            Self::Slope(fit) => fit.slope(run.recording),
+            Self::RSquared(fit) => fit.r_squared(run.recording),
+            Self::SphereShear(fit) => fit.evaluate(run.recording),
+            Self::TableRms(table) => table.rms(run),
+            Self::TableBars(table) => table.bars(run),
+            Self::TableRatio(table) => table.ratio(run),
+            Self::MsdDeviation(msd) => msd.evaluate(run.recording),
+            Self::RunLengthP(runs) => runs.evaluate(run.recording),
+            Self::FieldValue(value) => value.evaluate(run),
+            Self::ChemotacticIndex(index) => index.evaluate(run.recording),
+            Self::Period(period) => period.evaluate(run.recording),
+            Self::WaveSpeed(wave) => wave.evaluate(run),
+            Self::Wavelength(pattern) => pattern.evaluate(run),
+            Self::Segregation(segregation) => segregation.evaluate(run),
+            Self::Gaps(gaps) => gaps.evaluate(run),
+        }
+    }
+}
