@@ -99,7 +99,7 @@ fn a_seeding_without_space_names_the_type_and_how_many_fitted() {
     let crowded = DISH.replacen("number = 10\n", "number = 400\n", 1);
     let mut simulation = Simulation::from_text("dish.toml", &crowded).unwrap_or_else(|error| panic!("{error}"));
     let before = simulation.run_until(12.0).expect_err("400 cells do not fit").to_string();
-    assert!(before.contains("no room for all cells that come to type `white`"), "{before}");
+    assert!(before.contains("no space for all cells that come to type `white`"), "{before}");
     assert!((simulation.time() - 4.0).abs() < 1e-9, "the state is the one before: {}", simulation.time());
     assert_eq!(ids(&simulation)[0].len(), 6);
 }
