@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use super::cells::kept_numbers;
+use super::cells::{UNKNOWN, kept_numbers};
 use super::course::CourseBuffers;
 use super::events::{EventBuffers, EventPlan};
 use super::memory::EventMemory;
@@ -83,7 +83,7 @@ impl PopulationScratch {
         let length = if keeps { blocks * kept_numbers(program.size(), program.open.len()) } else { 0 };
         if self.kept.len() != length {
             self.kept.clear();
-            self.kept.resize(length, [f64::NAN; LANES]);
+            self.kept.resize(length, [UNKNOWN; LANES]);
         }
     }
 

@@ -37,7 +37,7 @@ pub struct Cells<'a, const L: usize> {
 /// The rates at which cells left their last window: those at which they begin the next, if they begin with the state and the open
 /// quantities that the rates were worked out from. These stand beside them, so that it does not matter whose rates they are.
 pub struct Kept<'a, const L: usize> {
-    /// Of each block the rates, the states and the open quantities; states that are no number where nothing is known.
+    /// Of each block the rates, the states and the open quantities; [`UNKNOWN`] for states where nothing is known.
     pub numbers: &'a mut [Lanes<L>],
 }
 
@@ -46,10 +46,21 @@ pub fn kept_numbers(variables: usize, open: usize) -> usize {
     2 * variables + open
 }
 
-/// Whether rates worked out from one number are those of another. What is not a number is like no other.
+/// What stands in place of a number from which nothing was worked out: a bit pattern that no arithmetic yields.
+pub const UNKNOWN: f64 = f64::from_bits(u64::MAX);
+
+/// The bits in which two numbers differ; none where rates worked out from the one are those of the other.
 #[inline(always)]
-fn is_same(one: f64, other: f64) -> bool {
-    (one == other) & (one.to_bits() == other.to_bits())
+fn differing(one: f64, other: f64) -> u64 {
+    one.to_bits() ^ other.to_bits()
+}
+
+/// Adds the bits in which the numbers of each lane differ.
+#[inline(always)]
+fn add_differing<const L: usize>(differ: &mut [u64; L], one: &Lanes<L>, other: &Lanes<L>) {
+    for l in 0..L {
+        differ[l] |= differing(one[l], other[l]);
+    }
 }
 
 impl<const L: usize> Kept<'_, L> {
@@ -120,14 +131,11 @@ impl<const L: usize> LaneCells<L> {
             for (rate, from) in s.stages[..n].iter_mut().zip(rates) {
                 rate[l] = from[lane];
             }
-            let mut known = true;
-            for (before, now) in states.iter().zip(&s.state) {
-                known &= is_same(before[lane], now[l]);
+            let mut differ = 0;
+            for (before, now) in states.iter().zip(&s.state).chain(open_values.iter().zip(&s.file[open..])) {
+                differ |= differing(before[lane], now[l]);
             }
-            for (before, now) in open_values.iter().zip(&s.file[open..]) {
-                known &= is_same(before[lane], now[l]);
-            }
-            self.fresh[l] = when(!known);
+            self.fresh[l] = when(differ != 0);
         }
         (self.step[l], self.error[l]) = (cells.steps[block][lane], cells.errors[block][lane]);
         (self.cell[l], self.active[l], self.block) = (self.next, YES, None);
@@ -149,13 +157,14 @@ impl<const L: usize> LaneCells<L> {
         if let Some(kept) = &cells.kept {
             let (rates, states, open_values) = kept.block(block, n, numbers);
             s.stages[..n].copy_from_slice(rates);
-            let mut known = [YES; L];
-            for (before, now) in states.iter().zip(&s.state).chain(open_values.iter().zip(&s.file[open..])) {
-                for l in 0..L {
-                    known[l] &= when(is_same(before[l], now[l]));
-                }
+            let mut differ = [0; L];
+            for (before, now) in states.iter().zip(&s.state) {
+                add_differing(&mut differ, before, now);
             }
-            self.fresh = known.map(|known| !known);
+            for (before, now) in open_values.iter().zip(&s.file[open..open + numbers]) {
+                add_differing(&mut differ, before, now);
+            }
+            self.fresh = differ.map(|differ| when(differ != 0));
         }
         (self.step, self.error) = (cells.steps[block], cells.errors[block]);
         self.cell = std::array::from_fn(|l| self.next + l);
@@ -178,7 +187,7 @@ impl<const L: usize> LaneCells<L> {
                 to[lane] = rate[l];
             }
             for (to, state) in states.iter_mut().zip(&s.state) {
-                to[lane] = if arrived { state[l] } else { f64::NAN };
+                to[lane] = if arrived { state[l] } else { UNKNOWN };
             }
             for (to, from) in open_values.iter_mut().zip(&cells.open_values[block * numbers..]) {
                 to[lane] = from[lane];
