@@ -53,7 +53,7 @@ const TABLE: &[(&str, &[&str])] = &[
 /// What every module may use.
 const GROUND: [&str; 4] = ["error", "units", "random", "recorded"];
 
-/// Rooms that must not touch files or clocks, and the words that would show it.
+/// Modules that must not touch files or clocks, and the words that would show it.
 const PURE: [&str; 7] = ["geometry", "mechanics", "contact", "cell", "sim", "units", "random"];
 const WORLD: [&str; 4] = ["std::fs", "std::time", "hdf5", "std::env"];
 /// The two pages of geometry that are about files.
