@@ -68,7 +68,7 @@ pub fn over_origins(positions: ArrayView3<f64>, interval: f64, lags: &[usize]) -
         .collect()
 }
 
-/// Squared distance between the points of a cell at `origin` and `lag` frames later.
+/// Squared distance between the positions of a cell at `origin` and `lag` frames later.
 fn squared_distance(positions: &ArrayView3<f64>, cell: usize, origin: usize, lag: usize) -> f64 {
     (0..positions.dim().2)
         .map(|axis| (positions[[origin + lag, cell, axis]] - positions[[origin, cell, axis]]).powi(2))

@@ -46,7 +46,7 @@ pub fn kept_numbers(variables: usize, open: usize) -> usize {
     2 * variables + open
 }
 
-/// What stands in place of a number from which nothing was worked out: a bit pattern that no arithmetic yields.
+/// What stands for the state where no rates are known: a bit pattern that no arithmetic yields, so that no state is equal to it.
 pub const UNKNOWN: f64 = f64::from_bits(u64::MAX);
 
 /// The bits in which two numbers differ; none where rates worked out from the one are those of the other.

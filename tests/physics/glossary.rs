@@ -83,7 +83,7 @@ fn a_solid_ball_resists_as_two_ninths_of_its_modulus_and_radius() {
     let found = 2.0 * per_volume * geometry::volume(&sphere) / geometry::area(&sphere);
     // Facets of edge h lie inside the ball by about h²/6R, here 0.1 % of the radius.
     assert_close("solid ball", found, 2.0 * young * RADIUS / 9.0, 2e-3);
-    // The glossary's example in numbers.
+    // The glossary's example in numbers, which it rounds to two digits.
     assert_close("100 Pa", found, 110.0, 0.02);
 }
 
@@ -94,7 +94,7 @@ fn a_tension_resists_as_eight_fifteenths_of_itself() {
         let tension = Force::Tension(Tension::new(&sphere.positions, &sphere.facets, 100.0, 0.0));
         let found = modulus(tension, &sphere, stretched);
         assert_close(&format!("tension, level {level}"), found, 8.0 * 100.0 / 15.0, FOURTH_ORDER);
-        // The glossary says about 50.
+        // The glossary says about 50, which is 53 in one digit.
         assert_close("100 pN/um", found, 50.0, 0.1);
     }
 }

@@ -60,7 +60,7 @@ pub fn run(args: &EmlArgs) -> Result<Report> {
 /// # Errors
 /// Two paths that lead to the same file, whether it is there or not.
 fn refuse_same(files: &[&Path]) -> Result<()> {
-    let directory_entry = |path: &Path| {
+    let resolved = |path: &Path| {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let whole = std::fs::canonicalize(path);
         whole.unwrap_or_else(|_| {
@@ -68,7 +68,7 @@ fn refuse_same(files: &[&Path]) -> Result<()> {
         })
     };
     for (number, path) in files.iter().enumerate() {
-        if files[..number].iter().any(|other| directory_entry(other) == directory_entry(path)) {
+        if files[..number].iter().any(|other| resolved(other) == resolved(path)) {
             let fault = Fault::new(format!("{} is named twice", path.display()));
             return Err(Error::input(fault.help("give each file that is read or written a name of its own")));
         }
