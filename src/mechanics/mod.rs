@@ -18,6 +18,7 @@ pub mod integrator;
 pub mod lanes;
 pub mod load;
 pub mod membrane;
+pub mod modes;
 pub mod ordering;
 pub mod rigid;
 pub mod shape_memory;

@@ -22,15 +22,19 @@ use super::workspace::{KindScratch, Workspace};
 use crate::mechanics::integrator::Order;
 use crate::mechanics::lanes::LANES;
 
-/// γ of the two-stage scheme: with K at or above the true stiffness 1/2 damps every mode and keeps the error small;
-/// it bears a K that is too small by a factor of two.
-const GAMMA: f64 = 0.5;
+/// γ of the two-stage scheme where K is a good stand-in for the true stiffness: damps what contacts make ring, for any K at or above a half
+/// of the true stiffness.
+const DAMPING: f64 = 1.0;
+
+/// The same where K is far too large for some shapes, which are damped by that, and relax too slowly as it is.
+const EXACT: f64 = 0.5;
 
 /// γ for an order.
-pub fn gamma(order: Order) -> f64 {
+pub fn gamma(kind: &Kind, order: Order) -> f64 {
     match order {
         Order::First => 1.0,
-        Order::Second => GAMMA,
+        Order::Second if kind.is_told() => DAMPING,
+        Order::Second => EXACT,
     }
 }
 
@@ -75,7 +79,7 @@ fn advance_stages(
     for ((kind, (now, next)), w) in model.kinds.iter().zip(cells).zip(kinds) {
         let controls = &from.chemistry.controls;
         let forces = Forces { kind, cells: now, controls, drive, contact: &contact.forces };
-        let solver = &*w.solver(kind, dt, gamma(order));
+        let solver = &*w.solver(kind, dt, gamma(kind, order));
         let targets = Targets::of(model, kind, [from.time, from.time + dt]);
         let step = Step { model, kind, forces, solver, targets, order, start: from.time, dt };
         let (length, lanes) = (kind.block_len(), kind.lanes);
@@ -156,7 +160,12 @@ impl Step<'_> {
                 carry_pressure(kind, block.x, block.pressure, y, spare);
             }
             self.solve(block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
-            error = block.go_on(stage, y, first);
+            block.go_on(stage, y, first);
+            if stage == Stage::Second {
+                first.iter_mut().zip(&*y).for_each(|(first, y)| *first = 0.5 * (*first + y));
+                self.solver.filter(kind, block.start, first, spare, spare2);
+                error = root_mean_square(kind, first);
+            }
             if let (Stage::First, Some(kept)) = (stage, &mut kept) {
                 kept.copy_from_slice(first);
             }
@@ -186,7 +195,7 @@ impl Step<'_> {
             let missing = target[lane] - volume[lane];
             wanted[lane] = if stage == Stage::First { missing } else { -missing };
         }
-        let gamma = gamma(order);
+        let gamma = gamma(kind, order);
         constrain(kind, gamma, gradient, swell, &wanted[..kind.lanes], target, y, pressure);
         let scene = planes::Scene { model, kind, solver, stage, gamma };
         planes::correct_block(&scene, start, first, gradient, swell, target, y, pressure, touch);
@@ -194,22 +203,26 @@ impl Step<'_> {
 }
 
 impl Block<'_> {
-    /// Moves atoms by the increments of a stage, and keeps those of the first. Returns the largest error estimate, µm.
-    fn go_on(&mut self, stage: Stage, y: &[f64], first: &mut [f64]) -> f64 {
+    /// Moves atoms by the increments of a stage, and keeps those of the first.
+    fn go_on(&mut self, stage: Stage, y: &[f64], first: &mut [f64]) {
+        let starts = self.x.iter_mut().zip(self.start).zip(y);
         if stage == Stage::First {
+            starts.for_each(|((x, start), y)| *x = start + y);
             first.copy_from_slice(y);
-            for ((x, start), y) in self.x.iter_mut().zip(self.start).zip(y) {
-                *x = start + y;
-            }
-            return 0.0;
+        } else {
+            starts.zip(first).for_each(|(((x, start), y2), y1)| *x = start + 1.5 * *y1 + 0.5 * y2);
         }
-        let mut largest = 0.0;
-        for (((x, start), y1), y2) in self.x.iter_mut().zip(self.start).zip(&*first).zip(y) {
-            *x = start + 1.5 * y1 + 0.5 * y2;
-            largest = larger(largest, (0.5 * (y1 + y2)).abs());
-        }
-        largest
     }
+}
+
+/// The largest root mean square over the atoms of a cell of a block, µm.
+fn root_mean_square(kind: &Kind, errors: &[f64]) -> f64 {
+    let mut squares = [0.0; LANES];
+    for errors in errors.chunks_exact(kind.lanes) {
+        squares.iter_mut().zip(errors).for_each(|(square, error)| *square += error * error);
+    }
+    let largest = squares[..kind.lanes].iter().copied().fold(0.0, larger);
+    (largest / kind.atoms() as f64).sqrt()
 }
 
 /// The larger of two numbers, or whatever is not a number.

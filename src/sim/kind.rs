@@ -1,22 +1,14 @@
 //! The cells that share a mesh and a material.
 
-use crate::Vec3;
 use crate::cell::Behaviour;
 use crate::geometry::{self, Surface, Topology};
 use crate::mechanics::Force;
 use crate::mechanics::course::Course;
 use crate::mechanics::fibres::Fibres;
-use crate::mechanics::implicit::Factor;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::load::Load;
 use crate::mechanics::stiffness::StiffnessMatrix;
-use crate::mechanics::sum::{measure_elastic, stiffness};
-
-/// Rounds of the power iteration for the largest stiffness.
-const POWER_ROUNDS: usize = 150;
-
-/// The largest ratio of the true stiffness at rest to the constant one of the implicit step.
-const LARGEST_RATIO: f64 = 0.75;
+use crate::mechanics::sum::stiffness;
 
 /// The cells that share a mesh and a material.
 #[derive(Debug, Clone)]
@@ -31,6 +23,8 @@ pub struct Kind {
     pub forces: Vec<Force>,
     /// The constant linear part of all forces, pN/µm.
     pub stiffness: StiffnessMatrix,
+    /// The least ratio of the true stiffness at rest to K, over all shapes that a cell can take; 0 where some have none.
+    pub softest_ratio: f64,
     /// Largest eigenvalue of the true stiffness at rest, pN/µm.
     pub largest_stiffness: f64,
     /// Drag of an atom, pN·s/µm.
@@ -88,6 +82,7 @@ impl Kind {
             closed,
             largest_stiffness: stiffness.largest(),
             stiffness,
+            softest_ratio: 0.0,
             forces,
             drag: 1.0,
             mass: 1.0,
@@ -109,75 +104,6 @@ impl Kind {
     /// Volume of the mesh at rest, µm³; 0 of an open surface.
     pub fn rest_volume(&self) -> f64 {
         if self.closed { geometry::volume(&self.rest) } else { 0.0 }
-    }
-
-    /// Largest eigenvalue of the true stiffness at rest, pN/µm: of elastic forces by power iteration on differences, of all others
-    /// (fibres at full activation) by the sum of a bound of each; what explicit schemes need to know.
-    pub fn measure_largest_stiffness(&self) -> f64 {
-        // Power iteration approaches from below; two percent cover what is left after the last round.
-        let elastic = 1.02 * self.power_iteration(&self.rest.positions, |_| ());
-        // Each by itself, so that what one bound is does not depend on which atoms others act on; those that are driven first.
-        let bounds = |driven: bool| -> f64 {
-            let forces = self.forces.iter().filter(|force| force.handle().is_some() == driven);
-            forces.filter_map(Force::largest_stiffness).sum()
-        };
-        elastic + bounds(true) + bounds(false)
-    }
-
-    /// Sets the stiffness K of the implicit step to the one that fits the rest shape; see [`Kind::stiffness_at`].
-    pub fn bound_stiffness(&mut self) {
-        self.stiffness = self.stiffness_at(&self.rest.positions);
-    }
-
-    /// The stiffness K of the implicit step for a cell in the shape `x` (µm): the linear part of its elastic forces there,
-    /// raised until the true stiffness J there is nowhere more than [`LARGEST_RATIO`] times as large, since the scheme
-    /// bears a K that is too small by two and cells go on deforming; then that of all other forces.
-    pub fn stiffness_at(&self, x: &[Vec3]) -> StiffnessMatrix {
-        let mut matrix = stiffness(&self.forces, &self.rest.positions, x);
-        let free = vec![false; self.atoms()];
-        // A little of the identity makes K invertible; J does not resist what K does not resist.
-        let inverse = Factor::new(&matrix, 1e-5 * matrix.largest().max(f64::MIN_POSITIVE), 1.0, &free);
-        let mut scratch = vec![0.0; 3 * self.atoms()];
-        let ratio = self.power_iteration(x, |v| inverse.solve(3, v, &mut scratch));
-        if ratio > LARGEST_RATIO {
-            matrix.scale(ratio / LARGEST_RATIO);
-        }
-        let others = self.forces.iter().filter(|force| !force.is_elastic());
-        others.for_each(|force| force.add_stiffness(&self.rest.positions, x, &mut matrix));
-        matrix
-    }
-
-    /// The largest eigenvalue of P J, J the stiffness in the shape `x` and P the change that `precondition` makes in place.
-    fn power_iteration(&self, x: &[Vec3], mut precondition: impl FnMut(&mut [f64])) -> f64 {
-        let x: Vec<f64> = x.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
-        let epsilon = 1e-6 * self.edge;
-        // Any vector will do that is not an eigenvector of a smaller value; this one has no symmetry.
-        let mut v: Vec<f64> = (0..x.len()).map(|i| ((i * 7919 + 13) % 101) as f64 / 50.5 - 1.0).collect();
-        let mut largest: f64 = 0.0;
-        for round in 0..POWER_ROUNDS {
-            crate::mechanics::volume::hold(1, &self.held, &mut v);
-            let size = v.iter().map(|a| a * a).sum::<f64>().sqrt();
-            if size == 0.0 {
-                break;
-            }
-            v.iter_mut().for_each(|a| *a /= size);
-            let force = |sign: f64| {
-                let moved: Vec<f64> = x.iter().zip(&v).map(|(x, v)| x + sign * epsilon * v).collect();
-                let mut f = vec![0.0; x.len()];
-                measure_elastic(&self.forces, 1, &moved, &mut f, &mut [0.0]);
-                f
-            };
-            let (plus, minus) = (force(1.0), force(-1.0));
-            let mut next: Vec<f64> = minus.iter().zip(&plus).map(|(m, p)| (m - p) / (2.0 * epsilon)).collect();
-            precondition(&mut next);
-            let before = largest;
-            largest = next.iter().zip(&v).map(|(a, b)| a * b).sum::<f64>();
-            v = next;
-            if round > 20 && (largest - before).abs() < 1e-4 * largest {
-                break;
-            }
-        }
-        largest
     }
 
     /// Whether its cells do something of which the speed may be set.
@@ -230,6 +156,14 @@ impl Kind {
     /// The lanes that a number of cells is best run on: single cells run alone, more fill blocks.
     pub fn best_lanes(cells: usize) -> usize {
         if cells < 3 { 1 } else { LANES }
+    }
+    /// Which atoms are held, along all axes alike; none where some are held along some axes only.
+    pub fn held_alike(&self) -> Option<Vec<bool>> {
+        let held = |atom: usize| {
+            let factors = self.held.get(3 * atom..3 * atom + 3).unwrap_or(&[1.0; 3]);
+            factors.iter().all(|factor| *factor == factors[0]).then_some(factors[0] == 0.0)
+        };
+        (0..self.atoms()).map(held).collect()
     }
     /// Whether any atom is held.
     pub fn is_held(&self) -> bool {

@@ -10,6 +10,7 @@ mod gain;
 pub mod implicit;
 pub mod inertial;
 pub mod kind;
+mod kind_stiffness;
 pub mod model;
 mod motility;
 mod motion;

@@ -11,6 +11,7 @@ use super::projection::ProjectScratch;
 use super::solver::Solver;
 use super::state::State;
 use super::thread_buffers::ThreadBuffers;
+use crate::mechanics::modes::Modes;
 use crate::mechanics::stiffness::StiffnessMatrix;
 
 /// Scratch for all kinds.
@@ -65,6 +66,8 @@ pub struct KindScratch {
     pub stiffening: f64,
     /// The stiffness K of the implicit step where it is not that of the rest shape.
     stiffness: Option<StiffnessMatrix>,
+    /// The softest modes of K, once they were asked for: none where atoms are held along some axes only.
+    modes: Option<Option<Arc<Modes>>>,
     /// Factors of the steps used last, most recent first.
     factors: Vec<((u64, u64), Arc<Solver>)>,
 }
@@ -91,6 +94,7 @@ impl KindScratch {
             stiffness_shape: Vec::new(),
             stiffening: 1.0,
             stiffness: None,
+            modes: None,
             factors: Vec::new(),
         }
     }
@@ -126,6 +130,14 @@ impl KindScratch {
         self.stiffness = stiffness;
         self.stiffness_shape = shape.to_vec();
         self.factors.clear();
+        self.modes = None;
+    }
+
+    /// The softest modes of K; none where atoms are held along some axes only.
+    pub fn modes(&mut self, kind: &Kind) -> Option<Arc<Modes>> {
+        let stiffness = self.stiffness.as_ref().unwrap_or(&kind.stiffness);
+        let make = || Some(Arc::new(Modes::new(stiffness, &kind.held_alike()?)));
+        self.modes.get_or_insert_with(make).clone()
     }
 
     /// Writes NaN over all scratch numbers: a step must not notice.

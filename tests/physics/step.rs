@@ -87,10 +87,10 @@ fn distance(a: &[Vec3], b: &[Vec3]) -> f64 {
 
 #[test]
 fn each_scheme_converges_with_its_order() {
-    let exact = shape_after(SECOND, 0.4 / 2048.0, 0.4);
+    let exact = shape_after(SECOND, 0.4 / 8192.0, 0.4);
     for (method, order) in [(FIRST, 1.0), (SECOND, 2.0), (Method::Explicit, 1.0)] {
-        let coarse = distance(&shape_after(method, 0.4 / 64.0, 0.4), &exact);
-        let fine = distance(&shape_after(method, 0.4 / 128.0, 0.4), &exact);
+        let coarse = distance(&shape_after(method, 0.4 / 256.0, 0.4), &exact);
+        let fine = distance(&shape_after(method, 0.4 / 512.0, 0.4), &exact);
         let measured = (coarse / fine).log2();
         println!("{method:?}: order {measured:.2}, error {fine:.1e}");
         // Two steps of a halving differ from the limit by the next order's term.

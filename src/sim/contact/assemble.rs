@@ -37,7 +37,18 @@ pub fn write_rows(
                    (force, stored): ([f32; 3], f32)| {
         let normal_and_gap = [x, y, z, gap as f32];
         let (least, shear) = (least as f32, shear as f32);
-        let row = Row { atoms, coordinates, normal_and_gap, least, shear, compliance: 0.0, kept: 1.0, stored, pairing };
+        let row = Row {
+            atoms,
+            coordinates,
+            normal_and_gap,
+            least,
+            shear,
+            compliance: 0.0,
+            across: 0.0,
+            kept: 1.0,
+            stored,
+            pairing,
+        };
         let force = row.bound(Vec3::from(force.map(f64::from)));
         let force = [force.x as f32, force.y as f32, force.z as f32];
         rows.push(row);

@@ -15,11 +15,16 @@ fn holding(row: &Row, force: Vec3) -> (f64, Vec3) {
     (along.min(0.0), force - along * normal)
 }
 
+/// Twice what is in a contact that carries this and yields by all of its compliance, pN·µm.
+fn all_stored(row: &Row, along: f64, across: Vec3) -> f64 {
+    f64::from(row.compliance) * along * along + f64::from(row.across) * across.norm_squared()
+}
+
 /// Sets how much of a contact's change is held where it carries this, eq. (adhesion.5). Of a spring that became softer since it
 /// was loaded, as a contact in longer steps is, more would come back than went in: not so `in_account`.
 pub fn set_compliance(row: &mut Row, pull: &Pull, in_account: bool) {
     let (along, across) = holding(row, pull.carried());
-    let full = COMPLIANCE * f64::from(row.compliance) * (along * along + across.norm_squared());
+    let full = COMPLIANCE * all_stored(row, along, across);
     let returned = 2.0 * f64::from(row.stored);
     let softness = if !in_account || full <= returned { COMPLIANCE } else { COMPLIANCE * returned / full };
     row.kept = (1.0 / (1.0 + softness)) as f32;
@@ -28,10 +33,11 @@ pub fn set_compliance(row: &mut Row, pull: &Pull, in_account: bool) {
 /// The energy that has gone into what a contact yielded and can come back, after a step, pN·µm: that of a spring at most.
 pub fn stored_after(row: &Row, pull: &Pull) -> f32 {
     let ((along, across), (along_before, across_before)) = (holding(row, pull.force()), holding(row, pull.carried()));
-    let (compliance, softness) = (f64::from(row.compliance), 1.0 / f64::from(row.kept) - 1.0);
-    let work = along * (along - along_before) + across.dot(&(across - across_before));
-    let most = 0.5 * COMPLIANCE * compliance * (along * along + across.norm_squared());
-    (f64::from(row.stored) + softness * compliance * work).clamp(0.0, most) as f32
+    let softness = 1.0 / f64::from(row.kept) - 1.0;
+    let work = f64::from(row.compliance) * along * (along - along_before)
+        + f64::from(row.across) * across.dot(&(across - across_before));
+    let most = 0.5 * COMPLIANCE * all_stored(row, along, across);
+    (f64::from(row.stored) + softness * work).clamp(0.0, most) as f32
 }
 
 /// The sum of [`stored_after`] over all contacts, pN·µm.
@@ -58,6 +64,7 @@ mod tests {
             least,
             shear,
             compliance: compliance as f32,
+            across: compliance as f32,
             kept: 1.0,
             stored,
             pairing,

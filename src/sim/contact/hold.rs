@@ -3,18 +3,21 @@
 use std::ops::Range;
 
 use super::compliance::set_compliance;
-use super::gather::{gather, scatter};
-use super::momentum::go_on;
+use super::gather::{gather, gather_positions, scatter};
+use super::mobility::{Mobility, Response};
+use super::momentum::{go_on, go_on_by_modes};
 use super::rows::{Pull, Row};
 use super::scene::ContactScene;
 use super::scratch::{ContactScratch, SweepRules};
-use super::sweep::{Change, V4, VolumeRow, sweep_contacts, sweep_depths, sweep_volumes};
+use super::sweep::{Change, VolumeRow, sweep_contacts, sweep_depths, sweep_volumes};
+use super::vectors::V4;
 use crate::Vec3;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
+use crate::sim::implicit::gamma;
 use crate::sim::kind::{Kind, VolumeRule};
 use crate::sim::model::Model;
-use crate::sim::state::{State, vector};
+use crate::sim::state::{KindState, State, vector};
 use crate::sim::thread_buffers::ThreadBuffers;
 use crate::sim::trouble::Trouble;
 use crate::sim::workspace::{KindScratch, Workspace};
@@ -45,17 +48,22 @@ pub fn hold_contacts(
         return Ok(());
     }
     prepare(model, contact, dt, from, to, s, kinds, buffers);
-    load_rows(rules, s);
+    load_rows(contact, rules, s);
     let left = sweep(model, contact, rules, s);
     if rules.mends && s.rows.iter().any(|row| row.gap() < 0.0) {
         mend(model, contact, s);
     }
     s.law.adhesives.align(&s.start, &mut s.moved);
     put_back(model, contact, s, from, to);
+    let worst = s.rows[left.worst].atoms;
+    if s.mobility.has_modes {
+        s.mobility.turns.put_back(&mut s.rows);
+        s.mobility.turns.put_back(&mut s.pulls);
+    }
     if left.largest <= contact.tolerance {
         return Ok(());
     }
-    let owners = s.rows[left.worst].atoms.map(|atom| contact.owner(atom));
+    let owners = worst.map(|atom| contact.owner(atom));
     let cells = [owners[0], owners[3]].map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
     Err(Trouble::Contact { cells, time: from.time + dt, left: left.largest, sweeps: s.sweeps })
 }
@@ -64,9 +72,15 @@ pub fn hold_contacts(
 pub(super) fn put_back(model: &Model, contact: &ContactScene, s: &ContactScratch, from: &State, to: &mut State) {
     for (number, ((kind, now), next)) in model.kinds.iter().zip(&from.kinds).zip(&mut to.kinds).enumerate() {
         let moved = &s.moved[contact.atoms_of(number)];
+        let first_body = from.kinds[..number].iter().map(KindState::cells).sum::<usize>();
         let position = |cell: usize, atom: usize| {
             let [x, y, z, _] = moved[cell * kind.atoms() + atom];
-            vector(kind, &now.positions, cell, atom) + Vec3::new(x, y, z)
+            let start = vector(kind, &now.positions, cell, atom);
+            let by_modes = match s.mobility.has_modes {
+                true => s.mobility.of_atom(first_body + cell, atom, start),
+                false => Vec3::zeros(),
+            };
+            start + (Vec3::new(x, y, z) + by_modes)
         };
         scatter(kind, now.cells(), position, &mut next.positions);
     }
@@ -87,13 +101,31 @@ fn prepare(
     s.gradient.resize(contact.scene.atoms, [0.0; 3]);
     s.volumes.clear();
     s.held.clear();
+    s.mobility.clear(contact.law.moves_as_steps() && matches!(model.integrator.method, Method::Implicit { .. }));
     let cells = from.kinds.iter().zip(&to.kinds);
+    let mut first_body = 0;
     for (number, ((kind, (now, next)), w)) in model.kinds.iter().zip(cells).zip(kinds).enumerate() {
         let range = contact.atoms_of(number);
-        let mobility = match model.integrator.method {
+        let free = match model.integrator.method {
             Method::Implicit { .. } | Method::Explicit => dt / kind.drag,
             _ => dt * dt / kind.mass,
         };
+        let modes = if s.mobility.has_modes { w.modes(kind) } else { None };
+        let response = match (&modes, model.integrator.method) {
+            (Some(modes), Method::Implicit { order }) => {
+                Response::new(modes, w.stiffening, (order, gamma(kind, order)), dt, kind.drag)
+            }
+            _ => Response::alone(free),
+        };
+        let mobility = response.rest;
+        if s.mobility.has_modes {
+            s.mobility.add_kind(modes.as_deref(), &response, kind.atoms());
+            for cell in 0..now.cells() {
+                let x = (0..kind.atoms()).map(|atom| vector(kind, &now.positions, cell, atom));
+                let turns = modes.is_some() && !kind.is_held();
+                s.mobility.add_cell(range.start + cell * kind.atoms(), &response, !turns, x);
+            }
+        }
         for (cell, moved) in s.moved[range.clone()].chunks_exact_mut(kind.atoms()).enumerate() {
             for (atom, moved) in moved.iter_mut().enumerate() {
                 let change = vector(kind, &next.positions, cell, atom) - vector(kind, &now.positions, cell, atom);
@@ -102,19 +134,35 @@ fn prepare(
         }
         hold_atoms(kind, now.cells(), range.start, s);
         if matches!(kind.volume, VolumeRule::Exact(_)) {
-            add_volumes(kind, &next.positions, range, mobility, s, w, buffers);
+            add_volumes(kind, &next.positions, range, (first_body, mobility), s, w, buffers);
         }
+        first_body += now.cells();
     }
     s.law.adhesives.begin();
+    if s.mobility.has_modes {
+        // The sweeps of an attempt before may have taken their memory.
+        gather_positions(model, contact, &from.kinds, &mut s.start);
+        s.mobility.begin();
+    }
 }
 
-/// Rows carry what they carried where the step begins; how they yield depends on the mobilities.
-fn load_rows(rules: SweepRules, s: &mut ContactScratch) {
+/// Rows carry what they carried where the step begins; how they yield depends on the mobilities. Where cells move by modes they are put
+/// in the order in which they are swept.
+fn load_rows(contact: &ContactScene, rules: SweepRules, s: &mut ContactScratch) {
+    let bodies_of = |row: &Row| [row.atoms[0], row.atoms[3]].map(|atom| contact.body_of(atom));
+    let has_modes = s.mobility.has_modes;
+    if has_modes {
+        let Mobility { turns, bodies, .. } = &mut s.mobility;
+        turns.find(s.rows.iter().map(bodies_of), bodies.len());
+        turns.arrange(&mut s.rows);
+        turns.arrange(&mut s.pulls);
+    }
     for (row, pull) in s.rows.iter_mut().zip(&mut s.pulls) {
         *pull = Pull { force: pull.carried, carried: pull.carried, ..Pull::default() };
-        let compliances =
-            row.atoms.iter().zip(row.weights()).map(|(atom, weight)| weight * weight * s.moved[*atom as usize][3]);
-        row.compliance = compliances.sum::<f64>() as f32;
+        let parts = row.atoms.iter().zip(row.weights());
+        let alone: f64 = parts.map(|(atom, weight)| weight * weight * s.moved[*atom as usize][3]).sum();
+        let by_modes = if has_modes { s.mobility.add_lever(row, bodies_of(row), &s.start) } else { [0.0; 2] };
+        [row.compliance, row.across] = by_modes.map(|by_modes| (alone + by_modes) as f32);
         set_compliance(row, pull, rules.in_account);
     }
 }
@@ -139,7 +187,7 @@ fn add_volumes(
     kind: &Kind,
     x: &[f64],
     atoms: Range<usize>,
-    mobility: f64,
+    (first_body, mobility): (usize, f64),
     s: &mut ContactScratch,
     w: &mut KindScratch,
     buffers: &ThreadBuffers,
@@ -163,7 +211,29 @@ fn add_volumes(
             squared += (0..3).map(|axis| g[axis] * g[axis]).sum::<f64>();
         }
         let offset = free_volume[cell] - target[cell] - along;
-        s.volumes.push(VolumeRow { first: start, end, offset, inverse: 1.0 / squared, mobility });
+        let mut row = VolumeRow {
+            first: start,
+            end,
+            offset,
+            inverse: 1.0 / (mobility * squared),
+            mobility,
+            swelling: mobility * mobility * squared,
+            body: first_body + cell,
+            modes: Default::default(),
+        };
+        if s.mobility.has_modes {
+            row.modes = s.mobility.project(row.body, g);
+            let response = s.mobility.response(row.body);
+            let (mut compliance, mut swelling) = (mobility * squared, mobility * mobility * squared);
+            for (response, part) in response.iter().zip(&row.modes) {
+                let squared: f64 = part.iter().map(|part| part * part).sum();
+                compliance += response * squared;
+                // What is moved by a mode is moved by its response and by what each atom moves alone.
+                swelling += response * (response + 2.0 * mobility) * squared;
+            }
+            (row.inverse, row.swelling) = (1.0 / compliance, swelling);
+        }
+        s.volumes.push(row);
     }
 }
 
@@ -173,13 +243,14 @@ struct Part<'a> {
     /// Gradients of the volumes, µm².
     gradient: &'a [[f64; 3]],
     moved: &'a mut [V4],
+    mobility: &'a mut Mobility,
 }
 
 /// Does something for each kind, in their order, with what is there of it.
 fn for_each_part(
     model: &Model,
     contact: &ContactScene,
-    (volumes, gradient, moved): (&[VolumeRow], &[[f64; 3]], &mut [V4]),
+    (volumes, gradient, moved, mobility): (&[VolumeRow], &[[f64; 3]], &mut [V4], &mut Mobility),
     mut work: impl FnMut(Part),
 ) {
     let mut next = 0;
@@ -187,7 +258,7 @@ fn for_each_part(
         let range = contact.atoms_of(number);
         let count = if matches!(kind.volume, VolumeRule::Exact(_)) { range.len() / kind.atoms() } else { 0 };
         let volumes = &volumes[next..next + count];
-        work(Part { volumes, gradient: &gradient[range.clone()], moved: &mut moved[range] });
+        work(Part { volumes, gradient: &gradient[range.clone()], moved: &mut moved[range], mobility });
         next += count;
     }
 }
@@ -205,13 +276,13 @@ fn sweep(model: &Model, contact: &ContactScene, rules: SweepRules, s: &mut Conta
     let (mut change, mut share) = (Change::default(), 0.0);
     for number in 1..=contact.most_sweeps {
         change = Change::default();
-        sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, share, &mut change);
+        sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, &mut s.mobility, share, &mut change);
         s.law.adhesives.sweep(&s.start, &mut s.moved, share, &mut change);
         for &(atom, axis) in &s.held {
             s.moved[atom as usize][axis as usize] = before[atom as usize][axis as usize];
         }
-        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |part| {
-            sweep_volumes(part.volumes, part.gradient, part.moved, &mut change);
+        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved, &mut s.mobility), |part| {
+            sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut change);
         });
         s.sweeps = number;
         // A change that is not a number is no rest either.
@@ -220,6 +291,9 @@ fn sweep(model: &Model, contact: &ContactScene, rules: SweepRules, s: &mut Conta
         }
         share = s.momentum.share(change.work);
         go_on(share, &mut s.moved, &mut before, &mut direction);
+        if s.mobility.has_modes {
+            go_on_by_modes(share, &mut s.mobility);
+        }
     }
     s.forces.carried = direction;
     *(if keeps_start { &mut s.before } else { &mut s.start }) = before;
@@ -232,10 +306,10 @@ fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
     s.deep.clear();
     s.deep.extend((0..).zip(&s.rows).filter(is_deep).map(|(number, _)| (number, 0.0)));
     for _ in 0..MENDING {
-        sweep_depths(&s.rows, &mut s.deep, &mut s.moved, MENDED * contact.reach.safe_travel());
+        sweep_depths(&s.rows, &mut s.deep, &mut s.moved, &mut s.mobility, MENDED * contact.reach.safe_travel());
         s.law.adhesives.align(&s.start, &mut s.moved);
-        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved), |part| {
-            sweep_volumes(part.volumes, part.gradient, part.moved, &mut Change::default());
+        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved, &mut s.mobility), |part| {
+            sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut Change::default());
         });
     }
 }

@@ -15,6 +15,7 @@ mod find;
 mod gather;
 mod hold;
 mod laws;
+mod mobility;
 mod model;
 mod momentum;
 mod remember;
@@ -28,6 +29,8 @@ mod state;
 mod sweep;
 #[cfg(test)]
 mod sweep_tests;
+mod turns;
+mod vectors;
 
 pub use cause::help_at;
 pub use compliance::energy_of_compliance;

@@ -1,7 +1,8 @@
 //! What makes the sweeps fast: conjugate directions (Silcowitz-Hansen, Niebe and Erleben 2010). What a sweep changes is
 //! taken for a gradient, and a share of the last direction is added to it.
 
-use super::sweep::V4;
+use super::mobility::Mobility;
+use super::vectors::V4;
 use crate::Vec3;
 
 /// After a sweep that changed this much more than the one before, the iteration starts again. Where two contacts are almost
@@ -44,6 +45,23 @@ pub fn go_on(share: f64, moved: &mut [V4], before: &mut [Vec3], direction: &mut 
             now[i] += old;
             direction[i] = old + change;
             before[i] = now[i];
+        }
+    }
+}
+
+/// The same for what the modes of cells have moved.
+pub fn go_on_by_modes(share: f64, mobility: &mut Mobility) {
+    let Mobility { moved, before, direction, .. } = mobility;
+    for ((now, before), direction) in moved.iter_mut().zip(before).zip(direction) {
+        let numbers = now.along.iter_mut().zip(&mut before.along).zip(&mut direction.along);
+        let turns = std::iter::once(((&mut now.turn, &mut before.turn), &mut direction.turn));
+        for ((now, before), direction) in numbers.chain(turns) {
+            for i in 0..4 {
+                let (change, old) = (now[i] - before[i], share * direction[i]);
+                now[i] += old;
+                direction[i] = old + change;
+                before[i] = now[i];
+            }
         }
     }
 }

@@ -17,8 +17,10 @@ pub struct Row {
     pub least: f32,
     /// Largest tangential force, pN.
     pub shear: f32,
-    /// Displacement over force, µm/pN; 0 where nothing can move.
+    /// Displacement over force along the normal, µm/pN; 0 where nothing can move.
     pub compliance: f32,
+    /// The same across it, at most, µm/pN.
+    pub across: f32,
     /// What it holds of a change of its force; the rest yields.
     pub kept: f32,
     /// What went into its compliance and has not come back where the step began, pN·µm.

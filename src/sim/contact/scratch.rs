@@ -1,10 +1,12 @@
 //! Scratch of the contacts.
 
 use super::laws::LawScratch;
+use super::mobility::Mobility;
 use super::momentum::Momentum;
 use super::rows::{Pull, Row};
 use super::scene::{ContactScene, Surfaces};
-use super::sweep::{V4, VolumeRow};
+use super::sweep::VolumeRow;
+use super::vectors::V4;
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
 use crate::sim::model::Model;
@@ -61,6 +63,8 @@ pub struct ContactScratch {
     pub pulls: Vec<Pull>,
     /// Displacement of the atoms over the step, µm, and their displacement over force, µm/pN.
     pub(super) moved: Vec<V4>,
+    /// How cells give way to contacts, and what their modes have moved.
+    pub(super) mobility: Mobility,
     /// Volumes to keep.
     pub(super) volumes: Vec<VolumeRow>,
     /// Atoms and axes that are held.
@@ -105,6 +109,7 @@ impl ContactScratch {
         self.gradient.fill([f64::NAN; 3]);
         self.moved.fill([f64::NAN; 4]);
         self.deep.clear();
+        self.mobility.clear(false);
         self.relief.fill(f64::NAN);
         self.momentum.poison();
         self.sweeps = u32::MAX;

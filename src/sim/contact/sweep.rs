@@ -5,10 +5,10 @@
 
 use pulp::{Arch, NullaryFnOnce};
 
+use super::mobility::{Body, Lever, Mobility, Motion, moved_apart, push_body, sides};
 use super::rows::{Pull, Row};
-
-/// x, y, z and one number more.
-pub type V4 = [f64; 4];
+use super::vectors::{V4, map};
+use crate::mechanics::modes::{MODES, OfModes};
 
 /// A volume that is kept while contacts move atoms.
 #[derive(Debug, Clone, Copy)]
@@ -19,10 +19,16 @@ pub struct VolumeRow {
     pub end: usize,
     /// Volume less target before the first sweep, less what the gradient makes of the displacement then, µm³.
     pub offset: f64,
-    /// One over the squared gradient, 1/µm⁴.
+    /// Pressure over change of volume, pN/µm⁵.
     pub inverse: f64,
-    /// Displacement over force of its atoms, µm/pN.
+    /// Displacement over force of its atoms by themselves, µm/pN.
     pub mobility: f64,
+    /// Squared displacement of all its atoms over squared pressure, µm⁶/pN².
+    pub swelling: f64,
+    /// Its cell.
+    pub body: usize,
+    /// What its gradient is in the modes of the cell, µm².
+    pub modes: [V4; MODES],
 }
 
 /// What a sweep changed.
@@ -34,11 +40,6 @@ pub struct Change {
     pub worst: usize,
     /// The work of all corrections, pN·µm.
     pub work: f64,
-}
-
-#[inline(always)]
-fn map(f: impl Fn(usize) -> f64) -> V4 {
-    [f(0), f(1), f(2), f(3)]
 }
 
 /// Scalar product of the first three numbers.
@@ -95,15 +96,15 @@ fn normal_force(row: &Row, free: f64, carried: f64) -> f64 {
 /// The force of a row after its turn: normal by [`normal_force`]; the tangential part keeps the sides from sliding as far
 /// as it can, eq. (adhesion.4).
 #[inline(always)]
-fn turn(row: &Row, weights: [f64; 4], force: &V4, carried: &V4, moved: &[V4]) -> V4 {
-    let (apart, normal) = (apart(row, weights, moved), normal(row));
-    let (opened, along, carried_along) = (dot(&apart, &normal), dot(force, &normal), dot(carried, &normal));
+fn turn(row: &Row, apart: &V4, force: &V4, carried: &V4) -> V4 {
+    let normal = normal(row);
+    let (opened, along, carried_along) = (dot(apart, &normal), dot(force, &normal), dot(carried, &normal));
     let free = (row.gap() + opened) - along * f64::from(row.compliance);
     let wanted = normal_force(row, free, carried_along);
     if row.shear == 0.0 {
         return map(|i| wanted * normal[i]);
     }
-    let (stiffness, kept) = (row.stiffness(), f64::from(row.kept));
+    let (stiffness, kept) = (f64::from(1.0 / row.across), f64::from(row.kept));
     let stuck = map(|i| {
         let (slid, across) = (apart[i] - opened * normal[i], force[i] - along * normal[i]);
         let carried = carried[i] - carried_along * normal[i];
@@ -115,24 +116,64 @@ fn turn(row: &Row, weights: [f64; 4], force: &V4, carried: &V4, moved: &[V4]) ->
 }
 
 /// One sweep over all contacts, each of which first goes on along its last direction by `share`, as the displacements did.
-pub fn sweep_contacts(rows: &[Row], pulls: &mut [Pull], moved: &mut [V4], share: f64, change: &mut Change) {
-    Arch::new().dispatch(Sweep { rows, pulls, moved, share, change });
+pub fn sweep_contacts(
+    rows: &[Row],
+    pulls: &mut [Pull],
+    moved: &mut [V4],
+    mobility: &mut Mobility,
+    share: f64,
+    change: &mut Change,
+) {
+    if mobility.has_modes {
+        Arch::new().dispatch(Sweep::<true> { rows, pulls, moved, mobility, share, change });
+    } else {
+        Arch::new().dispatch(Sweep::<false> { rows, pulls, moved, mobility, share, change });
+    }
 }
 
-struct Sweep<'a> {
+struct Sweep<'a, const BY_MODES: bool> {
     rows: &'a [Row],
     pulls: &'a mut [Pull],
     moved: &'a mut [V4],
+    mobility: &'a mut Mobility,
     share: f64,
     change: &'a mut Change,
 }
 
-impl NullaryFnOnce for Sweep<'_> {
+/// What the modes of both sides of a row do.
+struct BySides<'a> {
+    lever: &'a Lever,
+    sides: [OfModes; 2],
+}
+
+impl<'a> BySides<'a> {
+    #[inline(always)]
+    fn new(shapes: &[OfModes], lever: &'a Lever, row: &Row, weights: [f64; 4]) -> Self {
+        Self { lever, sides: sides(shapes, lever, row, weights) }
+    }
+
+    #[inline(always)]
+    fn apart(&self, motions: &[Motion]) -> V4 {
+        moved_apart(self.lever.bodies.map(|body| &motions[body as usize]), &self.sides, &self.lever.arms)
+    }
+
+    #[inline(always)]
+    fn push(&self, bodies: &[Body], kinds: &[(u32, OfModes)], motions: &mut [Motion], change: &V4) {
+        for (side, body) in self.lever.bodies.into_iter().enumerate() {
+            let of = &bodies[body as usize];
+            let response = (of, &kinds[of.kind()].1);
+            push_body(response, &mut motions[body as usize], &self.sides[side], &self.lever.arms[side], change);
+        }
+    }
+}
+
+impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self { rows, pulls, moved, share, change } = self;
+        let Self { rows, pulls, moved, mobility, share, change } = self;
+        let Mobility { shapes, kinds, bodies, levers, moved: motions, .. } = mobility;
         let mut largest = 0.0;
         for (number, (row, pull)) in rows.iter().zip(pulls).enumerate() {
             if row.compliance == 0.0 {
@@ -142,10 +183,19 @@ impl NullaryFnOnce for Sweep<'_> {
             // As the numbers are kept, so that force and displacement go together.
             let force = wide(pull.force);
             let force = wide(narrow(&map(|i| force[i] + share * direction[i])));
-            let new = narrow(&turn(row, weights, &force, &wide(pull.carried), moved));
+            let mut gap = apart(row, weights, moved);
+            let sides = BY_MODES.then(|| BySides::new(shapes, &levers[number], row, weights));
+            if let Some(sides) = &sides {
+                let by_modes = sides.apart(motions);
+                gap = map(|i| gap[i] + by_modes[i]);
+            }
+            let new = narrow(&turn(row, &gap, &force, &wide(pull.carried)));
             let found = wide(new);
             let step = map(|i| found[i] - force[i]);
             push(row, weights, &step, moved);
+            if let Some(sides) = &sides {
+                sides.push(bodies, kinds, motions, &step);
+            }
             pull.direction = narrow(&map(|i| share * direction[i] + last[i]));
             pull.change = narrow(&step);
             pull.force = new;
@@ -161,23 +211,35 @@ impl NullaryFnOnce for Sweep<'_> {
 }
 
 /// Puts all volumes back to first order, eq. (adhesion.6); `gradient` are those of the volumes, µm².
-pub fn sweep_volumes(volumes: &[VolumeRow], gradient: &[[f64; 3]], moved: &mut [V4], change: &mut Change) {
-    Arch::new().dispatch(SweepVolumes { volumes, gradient, moved, change });
+pub fn sweep_volumes(
+    volumes: &[VolumeRow],
+    gradient: &[[f64; 3]],
+    moved: &mut [V4],
+    mobility: &mut Mobility,
+    change: &mut Change,
+) {
+    if mobility.has_modes {
+        Arch::new().dispatch(SweepVolumes::<true> { volumes, gradient, moved, mobility, change });
+    } else {
+        Arch::new().dispatch(SweepVolumes::<false> { volumes, gradient, moved, mobility, change });
+    }
 }
 
-struct SweepVolumes<'a> {
+struct SweepVolumes<'a, const BY_MODES: bool> {
     volumes: &'a [VolumeRow],
     gradient: &'a [[f64; 3]],
     moved: &'a mut [V4],
+    mobility: &'a mut Mobility,
     change: &'a mut Change,
 }
 
-impl NullaryFnOnce for SweepVolumes<'_> {
+impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
         let change = self.change;
+        let Mobility { kinds, bodies, moved: motions, .. } = self.mobility;
         for volume in self.volumes {
             let gradient = &self.gradient[volume.first..volume.end];
             let moved = &mut self.moved[volume.first..volume.end];
@@ -186,15 +248,30 @@ impl NullaryFnOnce for SweepVolumes<'_> {
                 let g = [g[0], g[1], g[2], 0.0];
                 along = map(|i| along[i] + g[i] * d[i]);
             }
-            let back = -(volume.offset + ((along[0] + along[1]) + along[2])) * volume.inverse;
+            let mut missing = volume.offset + ((along[0] + along[1]) + along[2]);
+            if BY_MODES {
+                let mut by_modes = [0.0; 4];
+                for (along, part) in motions[volume.body].along.iter().zip(&volume.modes) {
+                    by_modes = map(|i| by_modes[i] + part[i] * along[i]);
+                }
+                missing += (by_modes[0] + by_modes[1]) + by_modes[2];
+            }
+            let pressure = -missing * volume.inverse;
+            let back = pressure * volume.mobility;
             for (d, g) in moved.iter_mut().zip(gradient) {
                 let g = [g[0], g[1], g[2], 0.0];
                 *d = map(|i| d[i] + back * g[i]);
             }
-            // As far as all atoms move along a gradient that is the same for all.
-            let squared = back * back / volume.inverse;
-            change.largest = change.largest.max((squared / moved.len() as f64).sqrt());
-            change.work += squared / volume.mobility;
+            if BY_MODES {
+                let (response, motion) = (&kinds[bodies[volume.body].kind()].1, &mut motions[volume.body]);
+                for ((along, part), response) in motion.along.iter_mut().zip(&volume.modes).zip(response) {
+                    let share = pressure * response;
+                    *along = map(|i| along[i] + share * part[i]);
+                }
+            }
+            // As far as all atoms move in the mean.
+            change.largest = change.largest.max((pressure * pressure * volume.swelling / moved.len() as f64).sqrt());
+            change.work += pressure * pressure / volume.inverse;
         }
     }
 }
@@ -202,14 +279,24 @@ impl NullaryFnOnce for SweepVolumes<'_> {
 /// Pushes out what is inside, by no more than `most` (µm), and leaves no force behind: what curved paths let slip is
 /// mended by displacement, not by force, eq. (adhesion.7). `deep` are the rows that are inside and can move, each with the force that
 /// would do it, zero at first.
-pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], most: f64) {
-    for (row, pushed) in deep {
-        let row = &rows[*row as usize];
+pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], mobility: &mut Mobility, most: f64) {
+    let Mobility { shapes, kinds, bodies, levers, moved: motions, has_modes, .. } = mobility;
+    for (number, pushed) in deep {
+        let row = &rows[*number as usize];
         let (weights, normal) = (row.weights(), normal(row));
+        let sides = has_modes.then(|| BySides::new(shapes, &levers[*number as usize], row, weights));
+        let mut opened = dot(&apart(row, weights, moved), &normal);
+        if let Some(sides) = &sides {
+            opened += dot(&sides.apart(motions), &normal);
+        }
         let wanted = (row.gap() + most).min(0.0);
-        let missing = wanted - row.gap() - dot(&apart(row, weights, moved), &normal);
+        let missing = wanted - row.gap() - opened;
         let new = (*pushed + missing * row.stiffness()).max(0.0);
-        push(row, weights, &normal.map(|n| (new - *pushed) * n), moved);
+        let change = normal.map(|n| (new - *pushed) * n);
+        push(row, weights, &change, moved);
+        if let Some(sides) = &sides {
+            sides.push(bodies, kinds, motions, &change);
+        }
         *pushed = new;
     }
 }

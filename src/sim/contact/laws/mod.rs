@@ -15,7 +15,7 @@ pub use virtual_adhesives::{AdhesiveScratch, AdhesiveTable, Zones};
 
 use super::rows::Row;
 use super::state::ContactState;
-use super::sweep::V4;
+use super::vectors::V4;
 use crate::Vec3;
 use crate::contact::{Contacts, Scene};
 use crate::recorded::Recorded;
@@ -108,6 +108,14 @@ impl Law {
         match self {
             Self::Adhesives | Self::Links(_) | Self::VirtualAdhesives(_) => true,
             Self::Penalty(_) => false,
+        }
+    }
+
+    /// Whether what the projection moves gives way as in a step, eq. (adhesion.16); else atoms move by their drag alone.
+    pub(super) fn moves_as_steps(&self) -> bool {
+        match self {
+            Self::Adhesives | Self::Links(_) => true,
+            Self::Penalty(_) | Self::VirtualAdhesives(_) => false,
         }
     }
 

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
 
 use crate::Vec3;
 use crate::sim::contact::state::AdhesiveAtom;
-use crate::sim::contact::sweep::V4;
+use crate::sim::contact::vectors::V4;
 
 /// Drag of an atom that is held over the largest of the others: it stays where it is.
 const HELD: f64 = 1e9;

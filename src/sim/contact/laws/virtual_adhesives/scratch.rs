@@ -3,7 +3,8 @@
 use super::rigid::{Rigid, vector};
 use crate::Vec3;
 use crate::sim::contact::state::AdhesiveAtom;
-use crate::sim::contact::sweep::{Change, V4};
+use crate::sim::contact::sweep::Change;
+use crate::sim::contact::vectors::V4;
 use nalgebra::Rotation3;
 
 /// No number.

@@ -1,0 +1,185 @@
+//! The softest shapes of a mesh: eigenvectors of the stiffness K of the implicit step.
+//!
+//! K is the same along x, y and z, so that a mode is one number an atom, and is shared by all cells of a mesh, however they are turned.
+//! A force on a few atoms moves them mostly by these: as a whole (the mode without stiffness), and by the shapes that give way most.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::implicit::Factor;
+use super::stiffness::StiffnessMatrix;
+
+/// Modes kept of a mesh.
+pub const MODES: usize = 16;
+
+/// A number of each mode.
+pub type OfModes = [f64; MODES];
+
+/// Meshes up to this size have all their eigenvectors found; larger ones only the softest.
+const ALL_UP_TO: usize = 200;
+
+/// Vectors that are iterated beside those kept, so that these settle.
+const GUARDS: usize = 8;
+
+/// Rounds of the iteration. What they leave only means that a little of a mode counts as what is left.
+const ROUNDS: usize = 24;
+
+/// What makes K invertible, over its largest eigenvalue.
+const SHIFT: f64 = 1e-7;
+
+/// The softest modes of a mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Modes {
+    /// Of each atom its part in each mode. Modes are orthonormal; atoms that are held have no part.
+    pub shapes: Vec<OfModes>,
+    /// Stiffness of each mode, pN/µm; those that are not there have no shape.
+    pub stiffness: OfModes,
+    /// Stiffness of the softest of what is left, pN/µm; none where nothing is left.
+    pub rest: Option<f64>,
+}
+
+impl Modes {
+    /// The softest modes of K where some atoms are held.
+    pub fn new(stiffness: &StiffnessMatrix, held: &[bool]) -> Self {
+        let free: Vec<usize> = (0..stiffness.atoms()).filter(|&atom| !held[atom]).collect();
+        let pairs = if free.len() <= ALL_UP_TO { all(stiffness, &free) } else { softest(stiffness, held, &free) };
+        let mut modes =
+            Self { shapes: vec![OfModes::default(); stiffness.atoms()], stiffness: OfModes::default(), rest: None };
+        for (number, (value, vector)) in pairs.iter().take(MODES).enumerate() {
+            modes.stiffness[number] = value.max(0.0);
+            for (&atom, part) in free.iter().zip(vector) {
+                modes.shapes[atom][number] = *part;
+            }
+        }
+        modes.rest = pairs.get(MODES).map(|(value, _)| value.max(0.0));
+        modes
+    }
+}
+
+/// Stiffness and shape of a mode over the free atoms.
+type Pair = (f64, Vec<f64>);
+
+/// All eigenvectors, the softest first.
+fn all(stiffness: &StiffnessMatrix, free: &[usize]) -> Vec<Pair> {
+    if free.is_empty() {
+        return Vec::new();
+    }
+    let mut row_of = vec![usize::MAX; stiffness.atoms()];
+    free.iter().enumerate().for_each(|(row, &atom)| row_of[atom] = row);
+    let mut matrix = DMatrix::zeros(free.len(), free.len());
+    for (row, &atom) in free.iter().enumerate() {
+        for (other, value) in stiffness.row(atom).filter(|&(other, _)| row_of[other] != usize::MAX) {
+            matrix[(row, row_of[other])] += value;
+        }
+    }
+    sorted(SymmetricEigen::new(matrix), |vector| vector.to_vec())
+}
+
+fn sorted(found: SymmetricEigen<f64, nalgebra::Dyn>, shape: impl Fn(&[f64]) -> Vec<f64>) -> Vec<Pair> {
+    let columns = found.eigenvectors.column_iter().map(|column| column.iter().copied().collect::<Vec<f64>>());
+    let mut pairs: Vec<Pair> = found.eigenvalues.iter().copied().zip(columns).collect();
+    pairs.sort_by(|one, other| one.0.total_cmp(&other.0));
+    pairs.iter().map(|(value, vector)| (*value, shape(vector))).collect()
+}
+
+/// The softest eigenvectors by iteration with the inverse (subspace iteration with Rayleigh and Ritz).
+fn softest(stiffness: &StiffnessMatrix, held: &[bool], free: &[usize]) -> Vec<Pair> {
+    let (atoms, width) = (stiffness.atoms(), MODES + GUARDS);
+    let shift = SHIFT * stiffness.largest().max(f64::MIN_POSITIVE);
+    let inverse = Factor::new(stiffness, shift, 1.0, held);
+    // The first is constant: moving as a whole is a mode of every free mesh, and is to be one exactly.
+    let start = |i: usize| if i % width == 0 { 1.0 } else { ((i * 7919 + 13) % 1009) as f64 / 504.5 - 1.0 };
+    let mut values: Vec<f64> = (0..atoms * width).map(|i| if held[i / width] { 0.0 } else { start(i) }).collect();
+    let mut scratch = values.clone();
+    orthonormalise(&mut values, width);
+    let mut pairs = Vec::new();
+    for round in 0..ROUNDS {
+        inverse.solve(width, &mut values, &mut scratch);
+        orthonormalise(&mut values, width);
+        if round + 1 == ROUNDS {
+            pairs = ritz(stiffness, free, &values, width);
+        }
+    }
+    pairs
+}
+
+/// Gram and Schmidt, twice, over rows of `width` numbers an atom.
+fn orthonormalise(values: &mut [f64], width: usize) {
+    for column in 0..width {
+        for before in (0..column).chain(0..column) {
+            let along: f64 = values.chunks_exact(width).map(|row| row[column] * row[before]).sum();
+            values.chunks_exact_mut(width).for_each(|row| row[column] -= along * row[before]);
+        }
+        let size = values.chunks_exact(width).map(|row| row[column] * row[column]).sum::<f64>().sqrt();
+        values.chunks_exact_mut(width).for_each(|row| row[column] /= size);
+    }
+}
+
+/// The best eigenvectors within the span of columns.
+fn ritz(stiffness: &StiffnessMatrix, free: &[usize], values: &[f64], width: usize) -> Vec<Pair> {
+    let mut product = vec![0.0; values.len()];
+    for atom in 0..stiffness.atoms() {
+        for (other, entry) in stiffness.row(atom) {
+            for column in 0..width {
+                product[atom * width + column] += entry * values[other * width + column];
+            }
+        }
+    }
+    let entry = |i: usize, j: usize| -> f64 {
+        values.chunks_exact(width).zip(product.chunks_exact(width)).map(|(v, p)| v[i] * p[j]).sum()
+    };
+    let small = DMatrix::from_fn(width, width, |i, j| 0.5 * (entry(i, j) + entry(j, i)));
+    sorted(SymmetricEigen::new(small), |vector| {
+        free.iter().map(|&atom| (0..width).map(|c| vector[c] * values[atom * width + c]).sum()).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::icosphere;
+
+    fn springs(level: u32, held: &[usize]) -> (StiffnessMatrix, Vec<bool>) {
+        let ball = icosphere(1.0, level);
+        let atoms = ball.positions.len();
+        let mut stiffness = StiffnessMatrix::new(atoms);
+        for &[i, j, k] in &ball.facets {
+            [(i, j), (j, k), (k, i)].into_iter().for_each(|(i, j)| stiffness.add_spring(i as usize, j as usize, 2.0));
+        }
+        (stiffness, (0..atoms).map(|atom| held.contains(&atom)).collect())
+    }
+
+    #[test]
+    fn modes_are_orthonormal_eigenvectors_and_the_first_moves_all_alike() {
+        // 42 and 162 atoms by all eigenvectors, 642 by iteration, which settles the soft ones first.
+        for (level, off) in [(1, 1e-12), (2, 1e-12), (3, 1e-3)] {
+            let (stiffness, held) = springs(level, &[]);
+            let modes = Modes::new(&stiffness, &held);
+            let column = |k: usize| -> Vec<f64> { modes.shapes.iter().map(|shape| shape[k]).collect() };
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            for k in 0..MODES {
+                let shape = column(k);
+                for other in 0..=k {
+                    let wanted = f64::from(u8::from(other == k));
+                    assert!((dot(&shape, &column(other)) - wanted).abs() < 1e-10, "{level} {k} {other}");
+                }
+                let product: Vec<f64> =
+                    (0..shape.len()).map(|i| stiffness.row(i).map(|(j, value)| value * shape[j]).sum()).collect();
+                let left = product.iter().zip(&shape).map(|(p, v)| (p - modes.stiffness[k] * v).powi(2)).sum::<f64>();
+                assert!(left.sqrt() < off * stiffness.largest(), "{level} {k}: {}", left.sqrt());
+            }
+            let even = 1.0 / (modes.shapes.len() as f64).sqrt();
+            assert!(modes.stiffness[0] < 1e-10 && column(0).iter().all(|part| (part.abs() - even).abs() < 1e-12));
+            assert!(modes.rest.is_some_and(|rest| rest >= modes.stiffness[MODES - 1]));
+        }
+    }
+
+    #[test]
+    fn atoms_that_are_held_have_no_part_and_few_atoms_have_all_modes() {
+        let (stiffness, held) = springs(0, &[4]);
+        let modes = Modes::new(&stiffness, &held);
+        assert_eq!(modes.shapes[4], [0.0; MODES]);
+        assert!(modes.rest.is_none() && modes.stiffness[0] > 0.0, "eleven free atoms, one of them held beside");
+        let nothing = Modes::new(&stiffness, &[true; 12]);
+        assert!(nothing.rest.is_none() && nothing.shapes.iter().all(|shape| *shape == [0.0; MODES]));
+    }
+}
