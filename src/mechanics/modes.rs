@@ -87,7 +87,7 @@ fn softest(stiffness: &StiffnessMatrix, held: &[bool], free: &[usize]) -> Vec<Pa
     let shift = SHIFT * stiffness.largest().max(f64::MIN_POSITIVE);
     let inverse = Factor::new(stiffness, shift, 1.0, held);
     // The first is constant: moving as a whole is a mode of every free mesh, and is to be one exactly.
-    let start = |i: usize| if i % width == 0 { 1.0 } else { ((i * 7919 + 13) % 1009) as f64 / 504.5 - 1.0 };
+    let start = |i: usize| if i.is_multiple_of(width) { 1.0 } else { ((i * 7919 + 13) % 1009) as f64 / 504.5 - 1.0 };
     let mut values: Vec<f64> = (0..atoms * width).map(|i| if held[i / width] { 0.0 } else { start(i) }).collect();
     let mut scratch = values.clone();
     orthonormalise(&mut values, width);
