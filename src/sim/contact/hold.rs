@@ -28,6 +28,10 @@ const MENDING: usize = 8;
 /// What a step mends of a depth at most, over the travel that is safe.
 const MENDED: f64 = 0.25;
 
+/// What the stiffest shape of a cell takes back of a displacement in a step, over what is left, up to which all shapes move as drag lets
+/// them: less than what K overestimates.
+const STIFF: f64 = 0.25;
+
 /// Moves the atoms from where they went freely so that contacts and volumes hold, to first order in what they are
 /// moved; the exact volumes are for the stage after this.
 ///
@@ -86,6 +90,15 @@ pub(super) fn put_back(model: &Model, contact: &ContactScene, s: &ContactScratch
     }
 }
 
+/// Whether elasticity takes back much of what a force does in an implicit step, so that drag alone does not tell what it moves.
+fn is_stiff(model: &Model, dt: f64, kinds: &[KindScratch]) -> bool {
+    let Method::Implicit { order } = model.integrator.method else { return false };
+    let taken_back = |(kind, w): (&Kind, &KindScratch)| {
+        gamma(kind, order) * w.stiffening * kind.largest_stiffness * dt / kind.drag > STIFF
+    };
+    model.kinds.iter().zip(kinds).any(taken_back)
+}
+
 /// Displacements, mobilities and volumes before the first sweep.
 fn prepare(
     model: &Model,
@@ -101,7 +114,7 @@ fn prepare(
     s.gradient.resize(contact.scene.atoms, [0.0; 3]);
     s.volumes.clear();
     s.held.clear();
-    s.mobility.clear(contact.law.moves_as_steps() && matches!(model.integrator.method, Method::Implicit { .. }));
+    s.mobility.clear(contact.law.moves_as_steps() && is_stiff(model, dt, kinds));
     let cells = from.kinds.iter().zip(&to.kinds);
     let mut first_body = 0;
     for (number, ((kind, (now, next)), w)) in model.kinds.iter().zip(cells).zip(kinds).enumerate() {
