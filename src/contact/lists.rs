@@ -203,7 +203,7 @@ impl Lists {
 
 /// Calls `found` with every facet of a body whose box meets `bounds`.
 #[inline]
-fn visit(scene: &Scene, body: u32, boxes: &Boxes, bounds: &Bounds, found: &mut impl FnMut(u32)) {
+pub(super) fn visit(scene: &Scene, body: u32, boxes: &Boxes, bounds: &Bounds, found: &mut impl FnMut(u32)) {
     let of = &scene.bodies[body as usize];
     let levels = &scene.levels[of.shape as usize];
     let packs = &boxes.packs[of.batch as usize][of.first_pack as usize..][..levels.packs()];

@@ -175,8 +175,13 @@ impl Scene {
         &positions[first..first + self.shape(body).atoms]
     }
 
+    /// Batches of bodies whose numbers follow each other, each to be worked on by one thread.
+    pub fn batches(&self) -> usize {
+        self.batches.len() - 1
+    }
+
     /// The numbers of bodies of a batch.
-    pub(super) fn bodies_of(&self, batch: usize) -> std::ops::Range<u32> {
+    pub fn bodies_of(&self, batch: usize) -> std::ops::Range<u32> {
         self.batches[batch]..self.batches[batch + 1]
     }
 

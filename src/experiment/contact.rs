@@ -13,6 +13,9 @@ pub enum ContactModel {
     /// Contacts bear any push, and a pull and a shear by `strength`.
     #[default]
     Adhesives,
+    /// Contacts bear any push and a shear, and surfaces attract each other by `strength` where they touch, which takes `energy` to part
+    /// them and reaches twice that over the strength.
+    Cohesion,
     /// Contacts bear any push, and springs hold the atoms of facets that collided, by `link`; they break beyond `range`.
     Links,
     /// Contacts push by `penalty` times their depth, and pull within the proximity, by `strength`: to compare with.
@@ -25,7 +28,7 @@ impl ContactModel {
     /// Which series it records besides those of all contacts.
     pub fn recorded(self) -> Recorded {
         match self {
-            Self::Adhesives | Self::Penalty => Recorded::Always,
+            Self::Adhesives | Self::Cohesion | Self::Penalty => Recorded::Always,
             Self::Links => Recorded::WithLinks,
             Self::VirtualAdhesives => Recorded::WithAdhesives,
         }

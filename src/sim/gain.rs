@@ -3,7 +3,7 @@
 //! In a step that is long beside the relaxation of a cell contacts push what the elastic forces answer only in the next one.
 //! Where that would leave more energy than there was, the step is made again, shorter.
 
-use super::contact::energy_of_compliance;
+use super::contact::{energy_of_compliance, energy_of_law};
 use super::forces::measure_energy;
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
@@ -25,7 +25,7 @@ const VOLUME_OFF: f64 = 1e-9;
 pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option<f64> {
     is_left_alone(model, state).then(|| {
         measure_energy(model, state.time, &state.chemistry.controls, &state.kinds, ws);
-        energy(&state.kinds, ws) + state.contact.stored()
+        energy(&state.kinds, ws) + state.contact.stored() + energy_of_law(model, &state.kinds, &mut ws.contact)
     })
 }
 
@@ -38,7 +38,8 @@ pub fn has_gained(model: &Model, dt: f64, before: Option<f64>, from: &State, to:
     measure_energy(model, from.time + dt, &from.chemistry.controls, &to.kinds, ws);
     let stiffest = model.kinds.iter().map(|kind| kind.largest_stiffness).fold(0.0, f64::max);
     let left = LEFT * stiffest * contact.tolerance * contact.tolerance;
-    energy(&to.kinds, ws) + energy_of_compliance(&ws.contact) > before * (1.0 + ROUND_OFF) + left
+    let after = energy(&to.kinds, ws) + energy_of_compliance(&ws.contact);
+    after + energy_of_law(model, &to.kinds, &mut ws.contact) > before + ROUND_OFF * before.abs() + left
 }
 
 fn is_left_alone(model: &Model, state: &State) -> bool {

@@ -5,7 +5,7 @@ use crate::Vec3;
 use crate::contact::{Contacts, Detector, Scene};
 use crate::output::{Frame, Touching, clusters};
 use crate::recorded::{ContactSeries, contact_quantities};
-use crate::sim::contact::{ContactScene, LinkScratch, Touching as Instant};
+use crate::sim::contact::{CohesionScratch, ContactScene, LinkScratch, Touching as Instant};
 use crate::sim::{Model, State, Workspace};
 
 /// How many aggregates there are, and cells of the largest.
@@ -23,6 +23,9 @@ pub struct Touch {
     /// What each atom touches: the atom, then another body, or the number of bodies and that of a plane.
     partners: Vec<(u32, u32)>,
     links: LinkScratch,
+    cohesion: CohesionScratch,
+    /// Energy of surfaces that attract each other, pN·µm.
+    energy: f64,
     /// A cell, what it touches in the same way, and an area.
     areas: Vec<(u32, u32, f64)>,
 }
@@ -49,7 +52,7 @@ impl Touch {
             // A plane stands after all bodies.
             touching[contact.scene.body_of_atom(of_atom[0].0) as usize] += u32::from((of_atom[0].1 as usize) < bodies);
         }
-        self.measure_areas(contact, frame);
+        self.measure_areas(contact, state, frame);
         let Self { found, positions, links, .. } = self;
         let now = Instant { scene: &contact.scene, controls: &state.chemistry.controls, found, positions };
         // Where links bind, cells that merely touch do not belong together.
@@ -86,7 +89,7 @@ impl Touch {
         let count = match series {
             ContactSeries::Sweeps => return sweeps,
             ContactSeries::Deepest => return (-self.found.smallest_gap()).max(0.0) / edge,
-            ContactSeries::Energy => return state.contact.stored(),
+            ContactSeries::Energy => return state.contact.stored() + self.energy,
             ContactSeries::Count => self.found.atoms.len() + self.found.edges.len() + self.found.planes.len(),
             ContactSeries::Aggregates => aggregates.number,
             ContactSeries::LargestAggregate => aggregates.largest,
@@ -108,8 +111,8 @@ impl Touch {
         self.partners.dedup();
     }
 
-    /// Adds up the areas of contact, eq. (adhesion.8), in the order of atoms.
-    fn measure_areas(&mut self, contact: &ContactScene, frame: &mut Frame) {
+    /// Adds up the areas of contact, eq. (adhesion.8), in the order of atoms. Those of surfaces under the cohesive law are of facets.
+    fn measure_areas(&mut self, contact: &ContactScene, state: &State, frame: &mut Frame) {
         let bodies = contact.scene.bodies.len() as u32;
         self.areas.clear();
         for of_atom in self.partners.chunk_by(|one, other| one.0 == other.0) {
@@ -119,6 +122,14 @@ impl Touch {
                 true => (cell.min(other), cell.max(other), 0.5 * area),
                 false => (cell, other, area),
             }));
+        }
+        self.energy = 0.0;
+        if let Some(table) = contact.law.cohesion() {
+            let Self { cohesion, positions, areas, energy, .. } = self;
+            table.find(&contact.scene, &state.chemistry.controls, positions, cohesion);
+            areas.retain(|(cell, other, _)| !table.sticks(&contact.scene, *cell, *other));
+            table.add_areas(&contact.scene, cohesion, positions, areas);
+            *energy = table.energy(&contact.scene, cohesion, positions);
         }
         // Edges have no area, and yet they join.
         let of_edges =

@@ -47,7 +47,7 @@ fn every_bad_experiment_with_chemistry_gets_the_message_beside_it() {
 
 #[test]
 fn every_bad_experiment_with_contacts_gets_the_message_beside_it() {
-    every_message_is_that_beside("contact", 7);
+    every_message_is_that_beside("contact", 8);
 }
 
 #[test]

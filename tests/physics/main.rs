@@ -1,5 +1,6 @@
 //! Cells move, stick and feel chemistry as the equations of the book say.
 
+mod cohesion;
 mod contact;
 mod contact_fuzz;
 mod contact_models;

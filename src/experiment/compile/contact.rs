@@ -4,7 +4,9 @@ use super::super::contact::{ContactModel as Text, Pair, Zones as ZonesText};
 use super::super::{Document, Experiment};
 use crate::contact::Reach;
 use crate::error::{Error, Fault, Result, short};
-use crate::sim::contact::{AdhesiveTable, ContactModel, Law, LinkTable, Penalty, Strength, Zones};
+use crate::sim::contact::{
+    AdhesiveTable, CohesionTable, Cohesive, ContactModel, Law, LinkTable, Penalty, Strength, Zones,
+};
 use crate::sim::{Kind, Plane};
 use crate::units::{LineStiffness, Stress};
 
@@ -38,6 +40,71 @@ pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
     Ok(Some(Reach { proximity, depth, margin: proximity }))
 }
 
+/// The shortest and the longest range of attraction over the mean edge of a mesh: below the one a facet hardly sees what its neighbour
+/// touches, and contacts stand where they are; beyond the other a cell is attracted through its neighbours.
+const RANGES: std::ops::RangeInclusive<f64> = 0.5..=10.0;
+
+/// Refuses ranges of attraction that do not fit the meshes of the cells that have them.
+///
+/// # Errors
+/// Every pair with such a range.
+pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
+    let Some(text) = document.experiment.contact.as_ref().filter(|text| text.model == Text::Cohesion) else {
+        return Ok(());
+    };
+    let all = (String::from("contact"), (text.strength, text.energy), (0..kinds.len()).collect::<Vec<_>>());
+    let pairs = text.between.iter().enumerate().map(|(index, between)| {
+        let kinds = match between.pair(&document.experiment) {
+            Some(Pair::Types(one, other)) => vec![one, other],
+            Some(Pair::OnPlane(kind, _)) => vec![kind],
+            None => Vec::new(),
+        };
+        (format!("contact.between[{index}]"), (between.strength, between.energy), kinds)
+    });
+    let mut faults = Vec::new();
+    for (path, (strength, energy), of) in std::iter::once(all).chain(pairs) {
+        let (Some(strength), Some(energy)) = (strength, energy) else { continue };
+        let range = Cohesive { strength: strength.value(), work: energy.value() }.range();
+        let coarse = of.iter().map(|kind| &kinds[*kind]).max_by(|one, other| one.edge.total_cmp(&other.edge));
+        let fine = of.iter().map(|kind| &kinds[*kind]).min_by(|one, other| one.edge.total_cmp(&other.edge));
+        let (Some(coarse), Some(fine)) = (coarse, fine) else { continue };
+        if range > 0.0 && range < RANGES.start() * coarse.edge {
+            faults.push(range_fault(
+                document,
+                &path,
+                range,
+                coarse,
+                "short",
+                "a lower strength, more energy or a finer mesh",
+                "at least half of that",
+            ));
+        } else if range > RANGES.end() * fine.edge {
+            faults.push(range_fault(
+                document,
+                &path,
+                range,
+                fine,
+                "long",
+                "a higher strength or less energy",
+                "at most ten of these",
+            ));
+        }
+    }
+    if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
+}
+
+/// A range of attraction that does not fit a mesh.
+fn range_fault(document: &Document, path: &str, range: f64, kind: &Kind, too: &str, advice: &str, fits: &str) -> Fault {
+    let fault = Fault::new(format!(
+        "the range of attraction, twice the energy over the strength, is {} um: too {too} for the mesh of type `{}`, whose mean edge is {} um",
+        short(range),
+        kind.name,
+        short(kind.edge)
+    ))
+    .help(format!("take {advice}: a range of one to two edges is best, and {fits} is needed"));
+    document.location(&format!("{path}.energy"), "with this and `strength`").into_iter().fold(fault, Fault::at)
+}
+
 /// How deep contacts are found where nothing but a penalty keeps cells apart, over the smallest mean edge.
 const PENALTY_DEPTH: f64 = 0.5;
 
@@ -47,6 +114,7 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
     let mut model = ContactModel::new(kinds, planes, reach);
     match text.model {
         Text::Adhesives => {}
+        Text::Cohesion => model.law = Law::Cohesion(CohesionTable::new(kinds.len(), planes.len())),
         Text::Links => {
             model.law = Law::Links(links(experiment, kinds));
             return Some(model);
@@ -63,18 +131,38 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
     if let Some(strength) = text.strength {
         let strength = strength_of(strength, text.shear_strength, text.energy);
         for kind in 0..kinds.len() {
-            (kind..kinds.len()).for_each(|other| model.stick(kind, other, strength));
+            (kind..kinds.len()).for_each(|other| stick(&mut model, Pair::Types(kind, other), strength));
         }
     }
     for between in &text.between {
         let strength = strength_of(between.strength.unwrap_or_default(), between.shear_strength, between.energy);
-        match between.pair(experiment) {
-            Some(Pair::Types(one, other)) => model.stick(one, other, strength),
-            Some(Pair::OnPlane(kind, plane)) => model.stick_to_plane(kind, plane, strength),
-            None => {}
+        if let Some(pair) = between.pair(experiment) {
+            stick(&mut model, pair, strength);
         }
     }
+    if let Law::Cohesion(table) = &mut model.law {
+        table.resolve(&kinds.iter().map(|kind| kind.edge).collect::<Vec<_>>());
+    }
     Some(model)
+}
+
+/// Writes how two surfaces stick where the law of contact has it. Under cohesion contacts carry only the shear.
+fn stick(model: &mut ContactModel, pair: Pair, strength: Strength) {
+    let strength = match &mut model.law {
+        Law::Cohesion(table) => {
+            let cohesive = Cohesive { strength: strength.tensile, work: strength.energy };
+            match pair {
+                Pair::Types(one, other) => table.stick(one, other, cohesive),
+                Pair::OnPlane(kind, plane) => table.stick_to_plane(kind, plane, cohesive),
+            }
+            Strength { tensile: 0.0, energy: 0.0, ..strength }
+        }
+        _ => strength,
+    };
+    match pair {
+        Pair::Types(one, other) => model.stick(one, other, strength),
+        Pair::OnPlane(kind, plane) => model.stick_to_plane(kind, plane, strength),
+    }
 }
 
 fn strength_of(strength: Stress, shear: Option<Stress>, energy: Option<LineStiffness>) -> Strength {

@@ -118,6 +118,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         return Err(Error::Input(faults));
     }
     let (reach, planes) = (contact::reach(document, &kinds)?, planes(experiment));
+    contact::check_ranges(document, &kinds)?;
     let centres = match reach {
         Some(reach) => spacing::centres_apart(document, &kinds, &planes, reach.proximity)?,
         None => {

@@ -20,11 +20,11 @@ impl Check<'_> {
             self.fault("chemistry.contact", "taken", message, "give the system another name");
         }
         self.contact_model(contact);
-        let adhesives = contact.model == ContactModel::Adhesives;
+        let adhesives = matches!(contact.model, ContactModel::Adhesives | ContactModel::Cohesion);
         let says_all = match contact.model {
             ContactModel::Links => true,
             ContactModel::VirtualAdhesives => contact.kappa.is_some(),
-            ContactModel::Adhesives | ContactModel::Penalty => contact.strength.is_some(),
+            ContactModel::Adhesives | ContactModel::Cohesion | ContactModel::Penalty => contact.strength.is_some(),
         };
         if adhesives && contact.shear_strength.is_some() && contact.strength.is_none() {
             let message = "`contact.shear_strength` is given without `strength`".to_owned();
@@ -36,6 +36,9 @@ impl Check<'_> {
             let help =
                 "add `strength`: where contacts spread, their rim is pulled, and without strength nothing holds it";
             self.fault("contact.energy", "`strength` is missing", message, help);
+        }
+        if contact.model == ContactModel::Cohesion {
+            self.work_of_separation(contact);
         }
         let mut named: Vec<Pair> = Vec::new();
         for (index, between) in contact.between.iter().enumerate() {
@@ -57,6 +60,26 @@ impl Check<'_> {
         }
         if !says_all && !contact.between.is_empty() {
             self.forgotten(contact, &named);
+        }
+    }
+
+    /// Strengths without an energy and energies without a strength: neither alone says how far surfaces attract each other.
+    fn work_of_separation(&mut self, contact: &Contact) {
+        let all = (String::from("contact"), contact.strength, contact.energy);
+        let pairs = contact.between.iter().enumerate();
+        let pairs = pairs.map(|(index, pair)| (format!("contact.between[{index}]"), pair.strength, pair.energy));
+        for (path, strength, energy) in std::iter::once(all).chain(pairs) {
+            let Some(strength) = strength else { continue };
+            let (pulls, works) = (strength.value() > 0.0, energy.is_some_and(|energy| energy.value() > 0.0));
+            if pulls && !works {
+                let message = format!("`{path}.strength` is given without an energy above 0");
+                let help = "add `energy`, the work that parts an area: surfaces attract each other as far as twice that over the strength";
+                self.fault(&format!("{path}.strength"), "`energy` is missing", message, help);
+            } else if works && !pulls {
+                let message = format!("`{path}.energy` is given with a strength of 0");
+                let help = "give a `strength` above 0, or leave `energy` out";
+                self.fault(&format!("{path}.energy"), "nothing to open with it", message, help);
+            }
         }
     }
 
@@ -98,9 +121,7 @@ impl Check<'_> {
             } else if contact.model == ContactModel::VirtualAdhesives && between.kappa.is_none() {
                 let message = format!("`{path}` does not say how well the two are glued");
                 self.fault(&path, "`kappa` is missing", message, "add `kappa`; \"0 um\" does not stick");
-            } else if matches!(contact.model, ContactModel::Adhesives | ContactModel::Penalty)
-                && between.strength.is_none()
-            {
+            } else if has_strength(contact.model) && between.strength.is_none() {
                 let message = format!("`{path}` does not say how strongly the two stick");
                 self.fault(&path, "`strength` is missing", message, "add `strength`; \"0 Pa\" does not stick");
             }
@@ -168,10 +189,16 @@ impl Check<'_> {
     }
 }
 
+/// Whether pairs of a model have a strength.
+fn has_strength(model: ContactModel) -> bool {
+    matches!(model, ContactModel::Adhesives | ContactModel::Cohesion | ContactModel::Penalty)
+}
+
 /// A model as documents name it.
 fn name_of(model: ContactModel) -> &'static str {
     match model {
         ContactModel::Adhesives => "\"adhesives\"",
+        ContactModel::Cohesion => "\"cohesion\"",
         ContactModel::Links => "\"links\"",
         ContactModel::Penalty => "\"penalty\"",
         ContactModel::VirtualAdhesives => "\"virtual_adhesives\"",
@@ -186,11 +213,11 @@ fn named(contact: &Contact) -> String {
 
 /// The keys of a table of contacts that some models know, as far as they are there, with these models.
 fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
-    use ContactModel::{Adhesives, Links, Penalty, VirtualAdhesives};
+    use ContactModel::{Adhesives, Cohesion, Links, Penalty, VirtualAdhesives};
     let mut keys: Vec<(String, bool, &[ContactModel])> = vec![
-        ("strength".into(), contact.strength.is_some(), &[Adhesives, Penalty]),
-        ("shear_strength".into(), contact.shear_strength.is_some(), &[Adhesives]),
-        ("energy".into(), contact.energy.is_some(), &[Adhesives]),
+        ("strength".into(), contact.strength.is_some(), &[Adhesives, Cohesion, Penalty]),
+        ("shear_strength".into(), contact.shear_strength.is_some(), &[Adhesives, Cohesion]),
+        ("energy".into(), contact.energy.is_some(), &[Adhesives, Cohesion]),
         ("link".into(), contact.link.is_some(), &[Links]),
         ("range".into(), contact.range.is_some(), &[Links]),
         ("penalty".into(), contact.penalty.is_some(), &[Penalty]),
@@ -199,9 +226,9 @@ fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
     ];
     for (index, between) in contact.between.iter().enumerate() {
         let path = |key: &str| format!("between[{index}].{key}");
-        keys.push((path("strength"), between.strength.is_some(), &[Adhesives, Penalty]));
-        keys.push((path("shear_strength"), between.shear_strength.is_some(), &[Adhesives]));
-        keys.push((path("energy"), between.energy.is_some(), &[Adhesives]));
+        keys.push((path("strength"), between.strength.is_some(), &[Adhesives, Cohesion, Penalty]));
+        keys.push((path("shear_strength"), between.shear_strength.is_some(), &[Adhesives, Cohesion]));
+        keys.push((path("energy"), between.energy.is_some(), &[Adhesives, Cohesion]));
         keys.push((path("link"), between.link.is_some(), &[Links]));
         keys.push((path("kappa"), between.kappa.is_some(), &[VirtualAdhesives]));
     }

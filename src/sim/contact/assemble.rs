@@ -16,12 +16,14 @@ pub(super) const SHARE: f64 = 0.5;
 /// unresolved, so that its side and, over ridges and in grooves, its normals are told by more than noise.
 const SKIN: f64 = 0.05;
 
-/// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them.
+/// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them. `facing` is the
+/// area of contact around each atom, µm²; where nothing is given that at rest is taken.
 pub fn write_rows(
     model: &ContactScene,
     found: &Contacts,
     before: &ContactState,
     controls: &Controls,
+    facing: &[f64],
     rows: &mut Vec<Row>,
     pulls: &mut Vec<Pull>,
 ) {
@@ -79,8 +81,14 @@ pub fn write_rows(
         let own = other == body;
         let strength = if own { Strength::default() } else { model.strength_between(body, other) };
         let kind = model.kind_of(body as u32);
-        let area = SHARE * model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
-        let area = area / contacts_on_body(scene, found, number) as f64;
+        let area = match facing.get(contact.atom as usize) {
+            Some(area) => area / contacts_of_atom(scene, found, number) as f64,
+            None => {
+                let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
+                area / contacts_on_body(scene, found, number) as f64
+            }
+        };
+        let area = SHARE * area;
         let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
         add(
             Pairing::AtomOnFacet,
@@ -124,7 +132,8 @@ pub fn write_rows(
         let same = before.planes.get(first).filter(|bond| (bond.atom, bond.plane) == key);
         let kind = model.kind_of(body as u32);
         let strength = model.strength_on(body, contact.plane);
-        let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
+        let at_rest = || model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
+        let area = facing.get(contact.atom as usize).copied().unwrap_or_else(at_rest);
         let area = area * controls.adhesion_of(body);
         add(
             Pairing::AtomOnPlane,
@@ -144,4 +153,14 @@ fn contacts_on_body(scene: &Scene, found: &Contacts, number: usize) -> usize {
     let same = |other: &&AtomContact| other.atom == this.atom && other.body(scene) == this.body(scene);
     let before = found.atoms[..number].iter().rev().take_while(same).count();
     before + found.atoms[number..].iter().take_while(same).count()
+}
+
+/// How many contacts the atom of a contact has with other bodies, which share the area of contact around it.
+fn contacts_of_atom(scene: &Scene, found: &Contacts, number: usize) -> usize {
+    let atom = found.atoms[number].atom;
+    let own = scene.body_of_atom(atom);
+    let same = |other: &&AtomContact| other.atom == atom;
+    let counts = |other: &&AtomContact| other.body(scene) != own;
+    let before = found.atoms[..number].iter().rev().take_while(same).filter(counts).count();
+    (before + found.atoms[number..].iter().take_while(same).filter(counts).count()).max(1)
 }

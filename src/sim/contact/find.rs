@@ -35,7 +35,8 @@ pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     let now =
         Touching { scene: &contact.scene, controls: &state.chemistry.controls, found: &s.found, positions: &s.start };
     contact.law.find(&model.kinds, now, &state.contact, state.time, &mut s.law);
-    write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, &mut s.rows, &mut s.pulls);
+    let facing = &s.law.cohesion.facing;
+    write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, facing, &mut s.rows, &mut s.pulls);
     if model.integrator.method.is_inertial() || !contact.law.projects() {
         s.pulls.fill(Pull::default());
     }
@@ -81,7 +82,14 @@ pub fn pull_contacts(model: &Model, controls: &Controls, cells: &[KindState], s:
     let live = &mut s.forces.live;
     live.clear();
     live.resize(contact.scene.atoms, Vec3::zeros());
-    contact.law.add_forces(&contact.scene, controls, (&s.rows, &s.law.links), (&s.start, &s.positions), live);
+    contact.law.add_forces(&contact.scene, controls, (&s.rows, &s.law), (&s.start, &s.positions), live);
+}
+
+/// The energy of the law of contact where cells stand, with what was found where the step began, pN·µm.
+pub fn energy_of_law(model: &Model, cells: &[KindState], s: &mut ContactScratch) -> f64 {
+    let Some(contact) = &s.scene(model, cells).filter(|_| has_live_forces(model)) else { return 0.0 };
+    gather_positions(model, contact, cells, &mut s.positions);
+    contact.law.energy(&contact.scene, &s.law, &s.positions)
 }
 
 /// Adds the force that contacts carried, and that of the law, to the forces of a block of a kind.

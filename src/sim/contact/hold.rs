@@ -29,8 +29,9 @@ const MENDING: usize = 8;
 const MENDED: f64 = 0.25;
 
 /// What the stiffest shape of a cell takes back of a displacement in a step, over what is left, up to which all shapes move as drag lets
-/// them: less than what K overestimates.
-const STIFF: f64 = 0.25;
+/// them. Sweeps by modes take two to three times as long and hardly save steps below a hundred; but in long steps at 15 what hangs on a
+/// cell may lose its hold without them.
+const STIFF: f64 = 8.0;
 
 /// Moves the atoms from where they went freely so that contacts and volumes hold, to first order in what they are
 /// moved; the exact volumes are for the stage after this.

@@ -36,10 +36,14 @@ pub use cause::help_at;
 pub use compliance::energy_of_compliance;
 pub use depth::{Deepened, check_added, check_depth, check_passed, look_for_depth};
 pub use find::{
-    add_contact_forces, carry_forces, find_contacts, has_live_forces, keep_contacts, locate_contacts, pull_contacts,
+    add_contact_forces, carry_forces, energy_of_law, find_contacts, has_live_forces, keep_contacts, locate_contacts,
+    pull_contacts,
 };
 pub use hold::{hold_contacts, travel};
-pub use laws::{AdhesiveScratch, AdhesiveTable, Law, LinkScratch, LinkTable, Penalty, Strength, Touching, Zones};
+pub use laws::{
+    AdhesiveScratch, AdhesiveTable, CohesionScratch, CohesionTable, Cohesive, Law, LinkScratch, LinkTable, Penalty,
+    Strength, Touching, Zones,
+};
 pub use model::ContactModel;
 pub use rows::{Pairing, Pull, Row};
 pub use scene::ContactScene;

@@ -3,12 +3,14 @@
 //! records; the step and the records ask the list.
 
 mod adhesives;
+mod cohesion;
 mod links;
 mod penalty;
 mod virtual_adhesives;
 
 pub(super) use adhesives::PROMISED;
 pub use adhesives::Strength;
+pub use cohesion::{CohesionScratch, CohesionTable, Cohesive};
 pub use links::{LinkScratch, LinkTable};
 pub use penalty::Penalty;
 pub use virtual_adhesives::{AdhesiveScratch, AdhesiveTable, Zones};
@@ -28,6 +30,8 @@ pub enum Law {
     /// Contacts bear any push, and a pull and a shear, [`Strength`].
     #[default]
     Adhesives,
+    /// Contacts bear any push and a shear; surfaces attract each other.
+    Cohesion(CohesionTable),
     /// Contacts bear any push; springs hold the atoms of facets that collided.
     Links(LinkTable),
     /// Contacts push by their depth, and pull within the proximity.
@@ -39,6 +43,8 @@ pub enum Law {
 /// What laws find of a step besides its contacts; empty under laws that find nothing.
 #[derive(Debug, Clone, Default)]
 pub struct LawScratch {
+    /// Parts of surfaces that attract each other.
+    pub cohesion: CohesionScratch,
     /// Links.
     pub links: LinkScratch,
     /// Virtual adhesives.
@@ -72,6 +78,7 @@ impl Law {
         let Touching { scene, controls, found, positions } = now;
         match self {
             Self::Adhesives | Self::Penalty(_) => scratch.clear(),
+            Self::Cohesion(table) => table.find(scene, controls, positions, &mut scratch.cohesion),
             Self::Links(table) => table.find(scene, controls, &before.links, found, positions, &mut scratch.links),
             Self::VirtualAdhesives(table) => {
                 scratch.adhesives.find(table, scene, kinds, controls, before, found, positions, time);
@@ -83,7 +90,7 @@ impl Law {
     pub fn has_forces(&self) -> bool {
         match self {
             Self::Adhesives | Self::VirtualAdhesives(_) => false,
-            Self::Links(_) | Self::Penalty(_) => true,
+            Self::Cohesion(_) | Self::Links(_) | Self::Penalty(_) => true,
         }
     }
 
@@ -92,21 +99,31 @@ impl Law {
         &self,
         scene: &Scene,
         controls: &Controls,
-        (rows, links): (&[Row], &LinkScratch),
+        (rows, found): (&[Row], &LawScratch),
         (start, now): (&[Vec3], &[Vec3]),
         force: &mut [Vec3],
     ) {
         match self {
             Self::Adhesives | Self::VirtualAdhesives(_) => 0.0,
-            Self::Links(table) => table.add_forces(scene, controls, &links.links, now, force),
+            Self::Cohesion(table) => table.add_forces(scene, &found.cohesion, now, force),
+            Self::Links(table) => table.add_forces(scene, controls, &found.links.links, now, force),
             Self::Penalty(penalty) => penalty.add_forces(rows, start, now, force),
         };
+    }
+
+    /// The energy of what the law found at the start of a step where the atoms are now, pN·µm; that of laws that are passive and have
+    /// forces.
+    pub(super) fn energy(&self, scene: &Scene, found: &LawScratch, now: &[Vec3]) -> f64 {
+        match self {
+            Self::Cohesion(table) => table.energy(scene, &found.cohesion, now),
+            Self::Adhesives | Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => 0.0,
+        }
     }
 
     /// Whether contacts keep surfaces apart by the projection.
     pub fn projects(&self) -> bool {
         match self {
-            Self::Adhesives | Self::Links(_) | Self::VirtualAdhesives(_) => true,
+            Self::Adhesives | Self::Cohesion(_) | Self::Links(_) | Self::VirtualAdhesives(_) => true,
             Self::Penalty(_) => false,
         }
     }
@@ -114,7 +131,7 @@ impl Law {
     /// Whether what the projection moves gives way as in a step, eq. (adhesion.16); else atoms move by their drag alone.
     pub(super) fn moves_as_steps(&self) -> bool {
         match self {
-            Self::Adhesives | Self::Links(_) => true,
+            Self::Adhesives | Self::Cohesion(_) | Self::Links(_) => true,
             Self::Penalty(_) | Self::VirtualAdhesives(_) => false,
         }
     }
@@ -123,7 +140,7 @@ impl Law {
     pub(super) fn needs_start(&self) -> bool {
         match self {
             Self::Adhesives => false,
-            Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => true,
+            Self::Cohesion(_) | Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => true,
         }
     }
 
@@ -131,7 +148,7 @@ impl Law {
     /// (µm), or, where nothing is promised, how deep contacts are found.
     pub(super) fn most_depth(&self, edge: f64, found_to: f64) -> f64 {
         match self {
-            Self::Adhesives => PROMISED * edge,
+            Self::Adhesives | Self::Cohesion(_) => PROMISED * edge,
             Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => found_to,
         }
     }
@@ -139,7 +156,7 @@ impl Law {
     /// Whether the law promises a depth, so that a step is looked at where it ends.
     pub(super) fn promises_depth(&self) -> bool {
         match self {
-            Self::Adhesives => true,
+            Self::Adhesives | Self::Cohesion(_) => true,
             Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => false,
         }
     }
@@ -147,7 +164,7 @@ impl Law {
     /// Whether contacts never return more energy than they took, so that cells on which nothing else acts must not gain any.
     pub fn is_passive(&self) -> bool {
         match self {
-            Self::Adhesives => true,
+            Self::Adhesives | Self::Cohesion(_) => true,
             Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => false,
         }
     }
@@ -166,7 +183,7 @@ impl Law {
         kept.released.clear();
         kept.adhesives.clear();
         match self {
-            Self::Adhesives | Self::Penalty(_) => {}
+            Self::Adhesives | Self::Cohesion(_) | Self::Penalty(_) => {}
             Self::Links(_) => kept.links.clone_from(&scratch.links.links),
             Self::VirtualAdhesives(table) => scratch.adhesives.keep(table, scene, controls, found, moved, kept),
         }
@@ -175,9 +192,17 @@ impl Law {
     /// Which series a run records besides those of all contacts.
     pub fn series(&self) -> Recorded {
         match self {
-            Self::Adhesives | Self::Penalty(_) => Recorded::Always,
+            Self::Adhesives | Self::Cohesion(_) | Self::Penalty(_) => Recorded::Always,
             Self::Links(_) => Recorded::WithLinks,
             Self::VirtualAdhesives(_) => Recorded::WithAdhesives,
+        }
+    }
+
+    /// The table of the cohesive law; none under other laws.
+    pub fn cohesion(&self) -> Option<&CohesionTable> {
+        match self {
+            Self::Cohesion(table) => Some(table),
+            Self::Adhesives | Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => None,
         }
     }
 
@@ -189,7 +214,7 @@ impl Law {
         scratch: &'a mut LinkScratch,
     ) -> Option<&'a LinkScratch> {
         match self {
-            Self::Adhesives | Self::Penalty(_) | Self::VirtualAdhesives(_) => None,
+            Self::Adhesives | Self::Cohesion(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => None,
             Self::Links(table) => {
                 table.find(now.scene, now.controls, &before.links, now.found, now.positions, scratch);
                 Some(scratch)
@@ -200,12 +225,14 @@ impl Law {
 
 impl LawScratch {
     fn clear(&mut self) {
+        self.cohesion.clear();
         self.links.clear();
         self.adhesives.clear();
     }
 
     /// Forgets everything.
     pub(super) fn poison(&mut self) {
+        self.cohesion.clear();
         self.links.clear();
         self.adhesives.poison();
     }

@@ -1,0 +1,194 @@
+//! How far open the space between two surfaces is at a point of one of them: the diameter of the ball that rests on the one there and
+//! just touches the other, eq. (contacts.13). Between parallel surfaces that is their distance. Surfaces that look away from each
+//! other have no such ball, however near they are, and where the other surface turns or ends it changes without a jump.
+
+use super::closest::Feature;
+use crate::Vec3;
+
+/// The ball that rests on a surface at a point and just touches a facet of another one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Opening {
+    /// Its diameter, µm; negative by what the point is behind the facet.
+    pub width: f64,
+    /// Barycentric weights of where it touches the facet.
+    pub weights: [f64; 3],
+    /// From the point to there, over what of this is along the normal of the surface: 1 along it, more across it.
+    pub towards: Vec3,
+}
+
+/// What a point may be behind a facet that faces it and still touch it, over the length of the facet.
+const BEHIND: f64 = 0.1;
+
+/// Cosine below which normals face each other.
+const FACING: f64 = -0.3;
+
+/// A step along the normal below which it gives no direction, over the distance.
+const LEVEL: f64 = 1e-9;
+
+/// The opening between a point x of a surface with the unit normal n to its outside and a facet with its unit normal m,
+///
+/// `l = min |y − x|² / (n · (y − x))` over the points y of the facet with `n · (y − x) > 0`,
+///
+/// and where on the facet that y is. None where there is none.
+#[inline]
+pub fn opening_to_facet(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3) -> Option<(Opening, Feature)> {
+    let height = (x - corners[0]).dot(&m);
+    let size = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).norm().sqrt();
+    // Behind a valley of two facets a point is beside both by less than it is behind them.
+    let beside = (-height / size).max(0.0);
+    let faces = height >= 0.0 || n.dot(&m) < FACING && -height <= BEHIND * size;
+    let on_face =
+        opening_to_face(x, n, corners, m).filter(|opening| faces && opening.weights.iter().all(|w| *w >= -beside));
+    match on_face {
+        Some(opening) => Some((opening, Feature::Face)),
+        None => opening_to_sides(x, n, corners),
+    }
+}
+
+/// The opening to what of a facet the ball touched before things moved a little: to the plane of its face, the line of a side or a
+/// corner, so that it goes on smoothly where another facet or side is touched by now.
+#[inline]
+pub fn opening_to_feature(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3, feature: Feature) -> Option<Opening> {
+    match feature {
+        Feature::Face => opening_to_face(x, n, corners, m),
+        Feature::Side(side) => {
+            let (side, next) = (side as usize, (side as usize + 1) % 3);
+            let (from, along) = (corners[side] - x, corners[next] - corners[side]);
+            opening_to_side(n, from, along, [side, next], share_of_side(n, from, along))
+        }
+        Feature::Corner(corner) => {
+            let corner = corner as usize;
+            opening_to_side(n, corners[corner] - x, Vec3::zeros(), [corner, (corner + 1) % 3], 0.0)
+        }
+    }
+}
+
+/// The opening between a point at a height over a plane, on a surface with the unit normal n, and the plane with the unit normal m: its
+/// width, µm, and the direction as in [`Opening`]. None where both look the same way.
+#[inline]
+pub fn opening_to_plane(n: Vec3, height: f64, m: Vec3) -> Option<(f64, Vec3)> {
+    let apart = 1.0 - n.dot(&m);
+    (apart > LEVEL).then(|| (2.0 * height / apart, (n - m) / apart))
+}
+
+/// The opening to the plane of a facet; weights may be negative, and none is there where the facet has no area.
+#[inline]
+fn opening_to_face(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3) -> Option<Opening> {
+    let (one, other) = (corners[1] - corners[0], corners[2] - corners[0]);
+    let (width, towards) = opening_to_plane(n, (x - corners[0]).dot(&m), m)?;
+    let foot = x + 0.5 * width * (n - m) - corners[0];
+    let (a, b, c) = (one.norm_squared(), one.dot(&other), other.norm_squared());
+    let (d, e) = (foot.dot(&one), foot.dot(&other));
+    let det = a * c - b * b;
+    let [v, w] = [(c * d - b * e) / det, (a * e - b * d) / det];
+    (det > 0.0).then_some(Opening { width, weights: [1.0 - v - w, v, w], towards })
+}
+
+/// The least opening to the sides of a facet.
+fn opening_to_sides(x: Vec3, n: Vec3, corners: &[Vec3; 3]) -> Option<(Opening, Feature)> {
+    let mut best: Option<(Opening, Feature)> = None;
+    for side in 0..3 {
+        let next = (side + 1) % 3;
+        let (from, along) = (corners[side] - x, corners[next] - corners[side]);
+        let share = share_of_side(n, from, along).clamp(0.0, 1.0);
+        let Some(opening) = opening_to_side(n, from, along, [side, next], share) else { continue };
+        if best.is_none_or(|(best, _)| opening.width < best.width) {
+            let feature = match share {
+                0.0 => Feature::Corner(side as u8),
+                1.0 => Feature::Corner(next as u8),
+                _ => Feature::Side(side as u8),
+            };
+            best = Some((opening, feature));
+        }
+    }
+    best
+}
+
+/// The opening to a point of a side between two corners. A point on the side has no direction to it but its own normal.
+#[inline]
+fn opening_to_side(n: Vec3, from: Vec3, along: Vec3, [one, other]: [usize; 2], share: f64) -> Option<Opening> {
+    let to = from + share * along;
+    let (rise, squared) = (n.dot(&to), to.norm_squared());
+    let (width, towards) = match squared <= LEVEL * LEVEL * along.norm_squared() {
+        true => (0.0, n),
+        false if rise > LEVEL * squared.sqrt() => (squared / rise, to / rise),
+        false => return None,
+    };
+    let mut weights = [0.0; 3];
+    (weights[one], weights[other]) = (1.0 - share, share);
+    Some(Opening { width, weights, towards })
+}
+
+/// Where on the line of a side, `from + s along`, `|y|²/(n·y)` is least: a root of a quadratic, the one with n·y > 0. Where all lies in the
+/// plane of the point's surface only the nearest point may touch it.
+#[inline]
+fn share_of_side(n: Vec3, from: Vec3, along: Vec3) -> f64 {
+    let (a, b, c) = (from.norm_squared(), from.dot(&along), along.norm_squared());
+    let (d, e) = (n.dot(&from), n.dot(&along));
+    let root = (c * (c * d * d - 2.0 * b * d * e + a * e * e)).max(0.0).sqrt();
+    let share = if d > 0.0 { (a * e - 2.0 * b * d) / (root + c * d) } else { (root - c * d) / (c * e) };
+    let share = if share.is_finite() { share } else { -b / c };
+    if share.is_finite() { share } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Purpose, Stream};
+
+    const FACET: [Vec3; 3] = [Vec3::new(0.0, 0.0, 0.0), Vec3::new(4.0, 0.0, 0.0), Vec3::new(0.0, 4.0, 0.0)];
+
+    #[test]
+    fn between_parallel_surfaces_it_is_their_distance_and_behind_them_less_than_nothing() {
+        for height in [2.0, 1e-6, 0.0, -0.1] {
+            let found = opening_to_facet(Vec3::new(1.0, 1.0, height), -Vec3::z(), &FACET, Vec3::z());
+            let (opening, feature) = found.expect("faces");
+            assert_eq!(feature, Feature::Face);
+            assert!((opening.width - height).abs() < 1e-15, "{opening:?}");
+            assert!((opening.towards + Vec3::z()).norm() < 1e-12, "{opening:?}");
+            let [_, v, w] = opening.weights;
+            assert!((v - 0.25).abs() < 1e-12 && (w - 0.25).abs() < 1e-12);
+        }
+        let away = opening_to_facet(Vec3::new(1.0, 1.0, 1.0), Vec3::z(), &FACET, Vec3::z());
+        assert_eq!(away, None);
+    }
+
+    #[test]
+    fn a_wall_over_a_plane_is_twice_its_height_open() {
+        let (width, towards) = opening_to_plane(Vec3::x(), 0.3, Vec3::z()).expect("a ball");
+        assert!((width - 0.6).abs() < 1e-15 && (towards - (Vec3::x() - Vec3::z())).norm() < 1e-15);
+    }
+
+    #[test]
+    fn it_is_the_least_of_all_points_of_the_facet() {
+        let mut stream = Stream::new(7, Purpose::Placement, 0, 0);
+        let mut seen = [0; 2];
+        for _ in 0..2000 {
+            let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
+            let n = Vec3::new(number(), number(), number()).normalize();
+            let x = Vec3::new(2.0 + 3.0 * number(), 2.0 + 3.0 * number(), 1.5 + 1.4 * number());
+            let mut least = f64::INFINITY;
+            for i in 0..=200 {
+                for j in 0..=200 - i {
+                    let y = (FACET[1] * f64::from(i) + FACET[2] * f64::from(j)) / 200.0 - x;
+                    if n.dot(&y) > 1e-3 {
+                        least = least.min(y.norm_squared() / n.dot(&y));
+                    }
+                }
+            }
+            let found = opening_to_facet(x, n, &FACET, Vec3::z()).map_or(f64::INFINITY, |found| found.0.width);
+            // Far balls are as wide as their touching point is near the plane of x: no one asks for those.
+            if least < 20.0 {
+                assert!(found <= least * (1.0 + 1e-12) && found > 0.97 * least, "{found} {least} {n} {x}");
+                let (opening, feature) = opening_to_facet(x, n, &FACET, Vec3::z()).expect("found");
+                let again = opening_to_feature(x, n, &FACET, Vec3::z(), feature).expect("the same");
+                assert!((again.width - found).abs() < 1e-9 * found && (again.towards - opening.towards).norm() < 1e-9);
+                let y = (0..3).map(|i| opening.weights[i] * FACET[i]).sum::<Vec3>() - x;
+                assert!((y.norm_squared() / n.dot(&y) - found).abs() < 1e-9 * found);
+                assert!((y / n.dot(&y) - opening.towards).norm() < 1e-6 * opening.towards.norm());
+                seen[usize::from(opening.weights.iter().all(|weight| *weight > 0.0))] += 1;
+            }
+        }
+        assert!(seen.iter().all(|count| *count > 100), "{seen:?}");
+    }
+}

@@ -1,0 +1,104 @@
+//! The cohesive law of surfaces: what an area of contact bears and what it costs to open, whatever the meshes. Each point of a surface
+//! is drawn to the other by a traction against how far open the space between them is there, eq. (adhesion.17), at most the strength σ and
+//! nothing from the range 2W/σ on, so that opening an area takes the work of separation W.
+
+mod patch;
+mod search;
+mod table;
+#[cfg(test)]
+mod tests;
+
+use rayon::prelude::*;
+
+use self::patch::{Partner, Patch};
+use self::search::{Facet, Seen};
+pub use self::table::{CohesionTable, Cohesive};
+use super::super::vectors::gather_corners;
+use crate::Vec3;
+use crate::contact::{NearFacets, Scene};
+use crate::sim::controls::Controls;
+
+/// What the law finds where a step begins.
+#[derive(Debug, Clone, Default)]
+pub struct CohesionScratch {
+    near: NearFacets,
+    /// All facets.
+    facets: Vec<Facet>,
+    /// Those of each batch of bodies.
+    patches: Vec<Vec<Patch>>,
+    /// Area of contact around each atom, µm².
+    pub(in crate::sim::contact) facing: Vec<f64>,
+}
+
+impl CohesionScratch {
+    /// Forgets everything.
+    pub(super) fn clear(&mut self) {
+        self.near.forget();
+        self.patches.clear();
+        self.facing.clear();
+    }
+}
+
+impl CohesionTable {
+    /// Finds which parts of surfaces attract each other at these positions.
+    pub fn find(&self, scene: &Scene, controls: &Controls, positions: &[Vec3], to: &mut CohesionScratch) {
+        to.near.follow(scene, positions, self.range());
+        let CohesionScratch { near, facets, patches, facing } = to;
+        facets.clear();
+        facets.extend((0..scene.bodies.len() as u32).flat_map(|body| {
+            let first = scene.bodies[body as usize].first_atom;
+            let corners = move |facet: &[u32; 3]| gather_corners(positions, facet.map(|atom| first + atom));
+            scene.shape(body).facets.iter().map(move |facet| Facet::of(&corners(facet)))
+        }));
+        let seen = Seen { table: self, scene, controls, positions, facets };
+        patches.resize_with(scene.batches(), Vec::new);
+        patches.par_iter_mut().enumerate().for_each(|(batch, patches)| {
+            patches.clear();
+            scene.bodies_of(batch).for_each(|body| seen.find(body, near.of_body(scene, body), patches));
+        });
+        facing.clear();
+        facing.resize(scene.atoms, 0.0);
+        for patch in patches.iter().flatten() {
+            let area = patch.area_in_contact(scene, positions);
+            patch.own.iter().zip(patch.weights).for_each(|(atom, w)| facing[*atom as usize] += w * area);
+        }
+    }
+
+    /// Adds the forces of what attracts each other where the atoms are now, and returns the energy, pN·µm.
+    pub(super) fn add_forces(&self, scene: &Scene, found: &CohesionScratch, now: &[Vec3], force: &mut [Vec3]) -> f64 {
+        let mut energy = 0.0;
+        for patch in found.patches.iter().flatten() {
+            let Some(pull) = patch.pull(scene, now) else { continue };
+            energy += pull.energy;
+            let mut add = |atoms: [u32; 3], forces: [Vec3; 3]| {
+                atoms.iter().zip(forces).for_each(|(atom, pull)| force[*atom as usize] += pull);
+            };
+            add(patch.own, pull.on_own);
+            if let Partner::Facet(atoms, _) = patch.other {
+                add(atoms, pull.on_other);
+            }
+        }
+        energy
+    }
+
+    /// Adds the areas of contact of what was found: a body, then another one, or the number of bodies and that of a plane, the first less
+    /// than the second, and the area that the first has of it, µm².
+    pub fn add_areas(&self, scene: &Scene, found: &CohesionScratch, now: &[Vec3], to: &mut Vec<(u32, u32, f64)>) {
+        let bodies = scene.bodies.len() as u32;
+        for patch in found.patches.iter().flatten() {
+            let (own, area) = (scene.body_of_atom(patch.own[0]), patch.area_in_contact(scene, now));
+            match patch.other {
+                Partner::Facet([atom, ..], _) => {
+                    let other = scene.body_of_atom(atom);
+                    to.push((own.min(other), own.max(other), 0.5 * area));
+                }
+                Partner::Plane(plane) => to.push((own, bodies + plane, area)),
+            }
+        }
+    }
+
+    /// The energy of what was found, where the atoms are now, pN·µm.
+    pub fn energy(&self, scene: &Scene, found: &CohesionScratch, now: &[Vec3]) -> f64 {
+        found.patches.iter().flatten().filter_map(|patch| patch.pull(scene, now)).map(|pull| pull.energy).sum()
+    }
+}

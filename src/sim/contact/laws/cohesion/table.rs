@@ -1,0 +1,85 @@
+//! Which surfaces stick, how strongly and how far.
+
+use crate::contact::Scene;
+
+/// How two surfaces stick.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Cohesive {
+    /// Traction where they touch, pN/µm².
+    pub strength: f64,
+    /// Work of separation, pN/µm.
+    pub work: f64,
+}
+
+impl Cohesive {
+    /// How far open they still attract each other, µm; 0 where they do not stick.
+    pub fn range(&self) -> f64 {
+        if self.strength > 0.0 { 2.0 * self.work / self.strength } else { 0.0 }
+    }
+}
+
+/// Which kinds stick, and how finely their surfaces are looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CohesionTable {
+    /// Of two kinds: `between[kind * kinds + other]`, symmetric.
+    pub between: Vec<Cohesive>,
+    /// Of a kind and a plane: `on_planes[kind * planes + plane]`.
+    pub on_planes: Vec<Cohesive>,
+    /// Points along a side of the facets of each kind, eq. (adhesion.18).
+    pub points: Vec<u32>,
+}
+
+/// The most points along a side of a facet.
+const MOST_POINTS: u32 = 4;
+
+/// Points of a facet within a range, at least.
+const POINTS_IN_RANGE: f64 = 2.0;
+
+impl CohesionTable {
+    /// A table in which nothing sticks.
+    pub fn new(kinds: usize, planes: usize) -> Self {
+        let none = Cohesive::default();
+        Self { between: vec![none; kinds * kinds], on_planes: vec![none; kinds * planes], points: vec![1; kinds] }
+    }
+
+    /// Sets how two kinds stick to each other.
+    pub fn stick(&mut self, kind: usize, other: usize, cohesive: Cohesive) {
+        let kinds = self.points.len();
+        self.between[kind * kinds + other] = cohesive;
+        self.between[other * kinds + kind] = cohesive;
+    }
+
+    /// Sets how a kind sticks to a plane.
+    pub fn stick_to_plane(&mut self, kind: usize, plane: usize, cohesive: Cohesive) {
+        let planes = self.on_planes.len() / self.points.len();
+        self.on_planes[kind * planes + plane] = cohesive;
+    }
+
+    /// Looks as finely at the facets of each kind, with these mean edges (µm), as its least range needs.
+    pub fn resolve(&mut self, edges: &[f64]) {
+        let (kinds, planes) = (edges.len(), self.on_planes.len() / edges.len().max(1));
+        for (kind, edge) in edges.iter().enumerate() {
+            let between = &self.between[kind * kinds..(kind + 1) * kinds];
+            let ranges = between.iter().chain(&self.on_planes[kind * planes..(kind + 1) * planes]).map(Cohesive::range);
+            let least = ranges.filter(|range| *range > 0.0).fold(f64::INFINITY, f64::min);
+            self.points[kind] = ((POINTS_IN_RANGE * edge / least).ceil() as u32).clamp(1, MOST_POINTS);
+        }
+    }
+
+    /// The farthest that anything attracts, µm.
+    pub(super) fn range(&self) -> f64 {
+        self.between.iter().chain(&self.on_planes).map(Cohesive::range).fold(0.0, f64::max)
+    }
+
+    /// Whether two bodies, or a body and a plane after all bodies, stick to each other.
+    pub fn sticks(&self, scene: &Scene, body: u32, other: u32) -> bool {
+        let shape = |body: u32| scene.bodies.get(body as usize).map(|body| body.shape as usize);
+        let (kinds, planes) = (self.points.len(), scene.planes.len());
+        let Some(kind) = shape(body) else { return false };
+        let cohesive = match shape(other) {
+            Some(other) => self.between[kind * kinds + other],
+            None => self.on_planes[kind * planes + other as usize - scene.bodies.len()],
+        };
+        cohesive.range() > 0.0
+    }
+}

@@ -1,0 +1,141 @@
+//! Forces of the cohesive law against its energy, and energies of scenes whose openings are known.
+
+use super::*;
+use crate::contact::Sides;
+use crate::contact::{Plane, Reach, Shape};
+use crate::geometry::{Surface, facet_areas, icosphere, sheet};
+use crate::random::{Purpose, Stream};
+
+const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+
+/// Bodies of one kind each, all of which stick to each other and to planes alike.
+fn scene(surfaces: &[(Surface, Sides)], planes: Vec<Plane>, cohesive: Cohesive) -> (CohesionTable, Scene, Vec<Vec3>) {
+    let shapes: Vec<Shape> = surfaces.iter().map(|(rest, sides)| Shape::new(rest, *sides, 0.15)).collect();
+    let mut table = CohesionTable::new(shapes.len(), planes.len());
+    table.between.fill(cohesive);
+    table.on_planes.fill(cohesive);
+    table.points.fill(2);
+    let positions = surfaces.iter().flat_map(|(rest, _)| rest.positions.iter().copied()).collect();
+    (table, Scene::new(shapes, &(0..surfaces.len()).collect::<Vec<_>>(), planes, REACH), positions)
+}
+
+fn moved(mut surface: Surface, by: Vec3) -> Surface {
+    surface.positions.iter_mut().for_each(|x| *x += by);
+    surface
+}
+
+fn found(table: &CohesionTable, scene: &Scene, positions: &[Vec3]) -> CohesionScratch {
+    let mut found = CohesionScratch::default();
+    table.find(scene, &Controls::default(), positions, &mut found);
+    found
+}
+
+fn floor() -> Plane {
+    Plane { point: Vec3::zeros(), normal: Vec3::z() }
+}
+
+const GLUE: Cohesive = Cohesive { strength: 3.0, work: 1.2 };
+
+#[test]
+fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
+    let mut surfaces = vec![
+        (icosphere(3.0, 1), Sides::Outer),
+        (moved(icosphere(2.0, 2), Vec3::new(0.7, 0.4, 5.2)), Sides::Outer),
+        (moved(sheet(4.0, 4.0, 5, 5), Vec3::new(0.1, 0.0, 7.5)), Sides::Both),
+    ];
+    let mut stream = Stream::new(1, Purpose::Placement, 0, 0);
+    for (surface, _) in &mut surfaces {
+        for x in &mut surface.positions {
+            let [[a, b], [c, _]] = [stream.uniform_pair(), stream.uniform_pair()];
+            *x += 0.2 * Vec3::new(a - 0.5, b - 0.5, c - 0.5);
+        }
+    }
+    for planes in [vec![], vec![Plane { point: Vec3::new(0.0, 0.0, -3.1), normal: Vec3::z() }]] {
+        let on_plane = !planes.is_empty();
+        let (table, scene, positions) = scene(&surfaces, planes, GLUE);
+        let found = found(&table, &scene, &positions);
+        let mut force = vec![Vec3::zeros(); positions.len()];
+        let energy = table.add_forces(&scene, &found, &positions, &mut force);
+        assert!(energy < -0.5, "{energy}");
+        let acted = force.iter().filter(|force| force.norm() > 0.0).count();
+        assert!(acted > 30, "{acted}");
+        for (atom, axis) in (0..positions.len()).flat_map(|atom| [(atom, 0), (atom, 1), (atom, 2)]) {
+            let at = |by: f64| {
+                let mut positions = positions.clone();
+                positions[atom][axis] += by;
+                table.energy(&scene, &found, &positions)
+            };
+            let (slope, step) = ((at(1e-5) - at(-1e-5)) / 2e-5, 1e-5);
+            // Parts at the end of the range or between two sides of a facet have a kink in their force within the step.
+            let off = (slope + force[atom][axis]).abs();
+            assert!(
+                off < 1e-6 * (1.0 + force[atom].norm()) + 4.0 * step,
+                "{atom} {axis}: {slope} {}",
+                force[atom][axis]
+            );
+        }
+        if !on_plane {
+            let torque: Vec3 = positions.iter().zip(&force).map(|(x, force)| x.cross(force)).sum();
+            let sum: Vec3 = force.iter().sum();
+            assert!(sum.norm() < 1e-11 && torque.norm() < 1e-10, "{sum} {torque}");
+        }
+    }
+}
+
+#[test]
+fn flat_surfaces_that_touch_have_the_work_of_separation_an_area_and_pull_with_the_strength_whatever_their_meshes() {
+    for (parts, other) in [(3, 3), (4, 7), (1, 10)] {
+        for gap in [1e-6, 0.1, 0.4, 0.79] {
+            let (one, lid) = (sheet(4.0, 4.0, parts, parts), sheet(8.0, 8.0, other, other));
+            let surfaces = [(one, Sides::Both), (moved(lid, gap * Vec3::z()), Sides::Both)];
+            let (table, scene, positions) = scene(&surfaces, vec![], GLUE);
+            let found = found(&table, &scene, &positions);
+            let first = scene.bodies[1].first_atom as usize;
+            // The small sheet has its half exactly; the large one has the other, and what is beside as far as it is seen askew.
+            let of_small = found.patches.iter().flatten().filter(|patch| (patch.own[0] as usize) < first);
+            let pulls: Vec<_> = of_small.filter_map(|patch| patch.pull(&scene, &positions)).collect();
+            let energy: f64 = pulls.iter().map(|pull| pull.energy).sum();
+            let t: f64 = gap / GLUE.range();
+            let left = if t < 0.5 { 1.0 - 2.0 * t * t } else { 2.0 * (1.0 - t) * (1.0 - t) };
+            assert!((energy + 0.5 * 16.0 * GLUE.work * left).abs() < 1e-9, "{parts} {gap}: {energy}");
+            let pull: f64 = pulls.iter().flat_map(|pull| pull.on_own).map(|force| force.z).sum();
+            let traction = GLUE.strength * if t < 0.5 { 2.0 * t } else { 2.0 - 2.0 * t };
+            assert!((pull - 0.5 * 16.0 * traction).abs() < 1e-9, "{parts} {gap}: {pull}");
+        }
+    }
+}
+
+#[test]
+fn a_box_on_a_floor_is_in_contact_with_its_floor_alone() {
+    // A box of 4 x 4 x 4 µm: a sheet for each side would do; an icosphere cannot have corners.
+    let side = |parts: u32| {
+        let mut all = Surface { positions: Vec::new(), facets: Vec::new() };
+        let flat = sheet(4.0, 4.0, parts, parts);
+        for face in 0..6 {
+            let first = all.positions.len() as u32;
+            let turned = |x: &Vec3| {
+                let (u, v, w) = (x.x, x.y, 2.0);
+                let at = match face {
+                    0 => Vec3::new(u, v, w),
+                    1 => Vec3::new(v, u, -w),
+                    2 => Vec3::new(w, u, v),
+                    3 => Vec3::new(-w, v, u),
+                    4 => Vec3::new(v, w, u),
+                    _ => Vec3::new(u, -w, v),
+                };
+                at + 2.0 * Vec3::z()
+            };
+            all.positions.extend(flat.positions.iter().map(turned));
+            all.facets.extend(flat.facets.iter().map(|facet| facet.map(|atom| first + atom)));
+        }
+        all
+    };
+    for parts in [4, 8] {
+        let (table, scene, positions) = scene(&[(side(parts), Sides::Outer)], vec![floor()], GLUE);
+        let found = found(&table, &scene, &positions);
+        let area: f64 = found.facing.iter().sum();
+        assert!((area - 16.0).abs() < 1e-9, "{parts}: {area}");
+        let total: f64 = facet_areas(&side(parts)).iter().sum();
+        assert!((total - 96.0).abs() < 1e-9);
+    }
+}
