@@ -101,14 +101,14 @@ fn measure(cells: usize, threads: usize, pack: f64) {
             step(&model, &mut state, &mut ws).expect("a step");
         }
         let (mut tries, mut sweeps, mut contacts) = (0, 0, 0);
-        let began = now();
+        let (began, start) = (now(), state.time);
         for _ in 0..STEPS {
             let done = step(&model, &mut state, &mut ws).expect("a step");
             tries += 1 + done.refused;
             sweeps += ws.contact.sweeps;
             contacts += ws.contact.rows.len();
         }
-        let seconds = now() - began;
+        let (seconds, simulated) = (now() - began, state.time - start);
         let bytes = (HELD.load(Ordering::Relaxed) - before) as f64 / state.atoms(&model) as f64;
         // The same cells as if they passed through each other: the rest of the step.
         let (alone, mut trial) = (Model { contact: None, ..model.clone() }, state.clone());
@@ -139,7 +139,8 @@ fn measure(cells: usize, threads: usize, pack: f64) {
         }
         let each = |seconds: f64, count: u32| 1e3 * seconds / f64::from(count);
         println!(
-            "{cells:6} {threads:8} {:10.2} {:10.2} {:10.3} {:8.1} {:12.1} {:10.2} {:10.2} {:10.3} {:10.0}",
+            "{cells:6} {threads:8} {:10.3} {:10.2} {:10.2} {:10.3} {:8.1} {:12.1} {:10.2} {:10.2} {:10.3} {:10.0}",
+            seconds / simulated,
             each(seconds, STEPS),
             each(seconds, tries),
             1e-6 * state.atoms(&model) as f64 * f64::from(tries) / seconds,
@@ -155,9 +156,10 @@ fn measure(cells: usize, threads: usize, pack: f64) {
 
 fn main() {
     println!(
-        "{:>6} {:>8} {:>10} {:>10} {:>10} {:>8} {:>12} {:>10} {:>10} {:>10} {:>10}",
+        "{:>6} {:>8} {:>10} {:>10} {:>10} {:>10} {:>8} {:>12} {:>10} {:>10} {:>10} {:>10}",
         "cells",
         "threads",
+        "s a second",
         "ms a step",
         "ms a try",
         "Matom/s",

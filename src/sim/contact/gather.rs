@@ -1,5 +1,7 @@
 //! Between the blocks of lanes of the kinds and one list of all atoms.
 
+use rayon::prelude::*;
+
 use super::scene::ContactScene;
 use crate::Vec3;
 use crate::sim::kind::Kind;
@@ -34,14 +36,15 @@ pub fn gather_positions(model: &Model, contact: &ContactScene, cells: &[KindStat
 }
 
 /// Puts the vectors of a kind back, `from` the numbers of a cell and an atom of it; lanes beyond the last cell repeat it.
-pub fn scatter(kind: &Kind, cells: usize, from: impl Fn(usize, usize) -> Vec3, values: &mut [f64]) {
-    for slot in 0..cells.next_multiple_of(kind.lanes) {
-        let cell = slot.min(cells - 1);
-        let first = index(kind, slot, 0, 0);
-        for atom in 0..kind.atoms() {
-            let x = from(cell, atom);
-            let at = first + 3 * atom * kind.lanes;
-            (values[at], values[at + kind.lanes], values[at + 2 * kind.lanes]) = (x.x, x.y, x.z);
+pub fn scatter(kind: &Kind, cells: usize, from: impl Fn(usize, usize) -> Vec3 + Sync, values: &mut [f64]) {
+    values.par_chunks_exact_mut(kind.block_len()).enumerate().for_each(|(block, values)| {
+        for lane in 0..kind.lanes {
+            let cell = (block * kind.lanes + lane).min(cells - 1);
+            for atom in 0..kind.atoms() {
+                let x = from(cell, atom);
+                let at = 3 * atom * kind.lanes + lane;
+                (values[at], values[at + kind.lanes], values[at + 2 * kind.lanes]) = (x.x, x.y, x.z);
+            }
         }
-    }
+    });
 }

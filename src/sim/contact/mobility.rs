@@ -5,6 +5,7 @@
 
 use nalgebra::Matrix3;
 
+use super::change::Change;
 use super::rows::{Pairing, Row};
 use super::turns::Turns;
 use super::vectors::{V4, map};
@@ -90,6 +91,10 @@ pub struct Mobility {
     pub levers: Vec<Lever>,
     /// The order in which rows are swept.
     pub turns: Turns,
+    /// Whether rows stand in that order.
+    pub is_arranged: bool,
+    /// What each job of a sweep changed.
+    pub changes: Vec<Change>,
     pub moved: Vec<Motion>,
     pub before: Vec<Motion>,
     pub direction: Vec<Motion>,
@@ -153,8 +158,8 @@ impl Mobility {
         }
     }
 
-    /// Adds the lever of a row, and tells its compliance along the normal and at most across it, µm/pN, beside that of atoms alone.
-    pub fn add_lever(&mut self, row: &Row, bodies: [u32; 2], positions: &[Vec3]) -> [f64; 2] {
+    /// The lever of a row, and its compliance along the normal and at most across it, µm/pN, beside that of atoms alone.
+    pub fn lever(&self, row: &Row, bodies: [u32; 2], positions: &[Vec3]) -> (Lever, [f64; 2]) {
         let owner = |corner: usize| match row.pairing {
             Pairing::AtomOnFacet => bodies[usize::from(corner > 0)],
             Pairing::Edges => bodies[corner / 2],
@@ -198,8 +203,7 @@ impl Mobility {
             along += turned(a, arms[0], &normal) + turned(b, arms[1], &normal);
             across += a.turning.norm() * arms[0].norm_squared() + b.turning.norm() * arms[1].norm_squared();
         }
-        self.levers.push(lever);
-        [along, across]
+        (lever, [along, across])
     }
 
     /// What the modes and the rotation of a body move an atom of it, µm.

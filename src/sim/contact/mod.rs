@@ -9,6 +9,7 @@
 
 mod assemble;
 mod cause;
+mod change;
 mod compliance;
 mod depth;
 mod find;
@@ -18,6 +19,7 @@ mod laws;
 mod mobility;
 mod model;
 mod momentum;
+mod prepare;
 mod remember;
 mod renumber;
 mod rows;
@@ -29,8 +31,10 @@ mod state;
 mod sweep;
 #[cfg(test)]
 mod sweep_tests;
+mod together;
 mod turns;
 mod vectors;
+mod volumes;
 
 pub use cause::help_at;
 pub use compliance::energy_of_compliance;

@@ -1,7 +1,9 @@
 //! What makes the sweeps fast: conjugate directions (Silcowitz-Hansen, Niebe and Erleben 2010). What a sweep changes is
 //! taken for a gradient, and a share of the last direction is added to it.
 
-use super::mobility::Mobility;
+use rayon::prelude::*;
+
+use super::mobility::{Mobility, Motion};
 use super::vectors::V4;
 use crate::Vec3;
 
@@ -9,6 +11,10 @@ use crate::Vec3;
 /// the same, as edges that meet where another crosses them, one hands its load to the other in many sweeps that change the
 /// same, give or take a percent: starting again at each of these would leave plain sweeps.
 const RESTART: f64 = 1.15;
+
+/// Atoms and cells that a thread takes at once, at least.
+const ATOMS_PER_JOB: usize = 4096;
+const CELLS_PER_JOB: usize = 128;
 
 /// How much of the last direction is taken; those of forces stand in the rows.
 #[derive(Debug, Clone, Default)]
@@ -39,29 +45,33 @@ impl Momentum {
 /// Goes on from displacements after a sweep along a share of the last direction: `before` are those before the sweep, and
 /// become those before the next.
 pub fn go_on(share: f64, moved: &mut [V4], before: &mut [Vec3], direction: &mut [Vec3]) {
-    for ((now, before), direction) in moved.iter_mut().zip(before).zip(direction) {
+    let lists = moved.par_iter_mut().zip(before).zip(direction).with_min_len(ATOMS_PER_JOB);
+    lists.for_each(|((now, before), direction)| {
         for i in 0..3 {
             let (change, old) = (now[i] - before[i], share * direction[i]);
             now[i] += old;
             direction[i] = old + change;
             before[i] = now[i];
         }
-    }
+    });
 }
 
 /// The same for what the modes of cells have moved.
 pub fn go_on_by_modes(share: f64, mobility: &mut Mobility) {
     let Mobility { moved, before, direction, .. } = mobility;
-    for ((now, before), direction) in moved.iter_mut().zip(before).zip(direction) {
-        let numbers = now.along.iter_mut().zip(&mut before.along).zip(&mut direction.along);
-        let turns = std::iter::once(((&mut now.turn, &mut before.turn), &mut direction.turn));
-        for ((now, before), direction) in numbers.chain(turns) {
-            for i in 0..4 {
-                let (change, old) = (now[i] - before[i], share * direction[i]);
-                now[i] += old;
-                direction[i] = old + change;
-                before[i] = now[i];
-            }
+    let lists = moved.par_iter_mut().zip(before).zip(direction).with_min_len(CELLS_PER_JOB);
+    lists.for_each(|((now, before), direction)| go_on_one(share, now, before, direction));
+}
+
+fn go_on_one(share: f64, now: &mut Motion, before: &mut Motion, direction: &mut Motion) {
+    let numbers = now.along.iter_mut().zip(&mut before.along).zip(&mut direction.along);
+    let turns = std::iter::once(((&mut now.turn, &mut before.turn), &mut direction.turn));
+    for ((now, before), direction) in numbers.chain(turns) {
+        for i in 0..4 {
+            let (change, old) = (now[i] - before[i], share * direction[i]);
+            now[i] += old;
+            direction[i] = old + change;
+            before[i] = now[i];
         }
     }
 }

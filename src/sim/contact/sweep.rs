@@ -1,46 +1,17 @@
-//! Projected Gauss–Seidel over contacts and volumes, in a fixed order.
+//! Projected Gauss–Seidel over contacts, in a fixed order.
 //!
 //! Vectors have four numbers, so that they fill a register; the fourth of a displacement is the mobility of its atom. The
 //! sweeps are compiled for wide registers and give the same bits in narrow ones.
 
 use pulp::{Arch, NullaryFnOnce};
+use rayon::prelude::*;
 
+use super::change::Change;
 use super::mobility::{Body, Lever, Mobility, Motion, moved_apart, push_body, sides};
 use super::rows::{Pull, Row};
+use super::together::Together;
 use super::vectors::{V4, map};
-use crate::mechanics::modes::{MODES, OfModes};
-
-/// A volume that is kept while contacts move atoms.
-#[derive(Debug, Clone, Copy)]
-pub struct VolumeRow {
-    /// Its first atom, counted from the first of its kind.
-    pub first: usize,
-    /// One behind its last atom.
-    pub end: usize,
-    /// Volume less target before the first sweep, less what the gradient makes of the displacement then, µm³.
-    pub offset: f64,
-    /// Pressure over change of volume, pN/µm⁵.
-    pub inverse: f64,
-    /// Displacement over force of its atoms by themselves, µm/pN.
-    pub mobility: f64,
-    /// Squared displacement of all its atoms over squared pressure, µm⁶/pN².
-    pub swelling: f64,
-    /// Its cell.
-    pub body: usize,
-    /// What its gradient is in the modes of the cell, µm².
-    pub modes: [V4; MODES],
-}
-
-/// What a sweep changed.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Change {
-    /// The largest correction, µm.
-    pub largest: f64,
-    /// The row with the largest correction of a contact.
-    pub worst: usize,
-    /// The work of all corrections, pN·µm.
-    pub work: f64,
-}
+use crate::mechanics::modes::OfModes;
 
 /// Scalar product of the first three numbers.
 #[inline(always)]
@@ -66,16 +37,18 @@ fn normal(row: &Row) -> V4 {
 
 /// How much farther apart displacements bring the two sides of a row, µm. The fourth number means nothing.
 #[inline(always)]
-fn apart(row: &Row, [p, q, r, s]: [f64; 4], moved: &[V4]) -> V4 {
-    let [a, b, c, d] = row.atoms.map(|atom| &moved[atom as usize]);
+fn apart(row: &Row, [p, q, r, s]: [f64; 4], moved: &Together<V4>) -> V4 {
+    // SAFETY: the caller alone moves the cells of its rows.
+    let [a, b, c, d] = row.atoms.map(|atom| unsafe { *moved.item(atom as usize) });
     map(|i| (a[i] * p + b[i] * q) + (c[i] * r + d[i] * s))
 }
 
 /// Moves the atoms of a row as a change of its force does; the fourth number of that is 0.
 #[inline(always)]
-fn push(row: &Row, weights: [f64; 4], change: &V4, moved: &mut [V4]) {
+fn push(row: &Row, weights: [f64; 4], change: &V4, moved: &Together<V4>) {
     for (atom, weight) in row.atoms.iter().zip(weights) {
-        let slot = &mut moved[*atom as usize];
+        // SAFETY: the caller alone moves the cells of its rows.
+        let slot = unsafe { moved.item(*atom as usize) };
         let share = slot[3] * weight;
         *slot = map(|i| slot[i] + share * change[i]);
     }
@@ -115,7 +88,8 @@ fn turn(row: &Row, apart: &V4, force: &V4, carried: &V4) -> V4 {
     map(|i| wanted * normal[i] + part * stuck[i])
 }
 
-/// One sweep over all contacts, each of which first goes on along its last direction by `share`, as the displacements did.
+/// One sweep over all contacts, each of which first goes on along its last direction by `share`, as the displacements did. Jobs of a
+/// colour move different cells, so that threads share them; what they change is added up in the order of jobs.
 pub fn sweep_contacts(
     rows: &[Row],
     pulls: &mut [Pull],
@@ -124,18 +98,51 @@ pub fn sweep_contacts(
     share: f64,
     change: &mut Change,
 ) {
-    if mobility.has_modes {
-        Arch::new().dispatch(Sweep::<true> { rows, pulls, moved, mobility, share, change });
-    } else {
-        Arch::new().dispatch(Sweep::<false> { rows, pulls, moved, mobility, share, change });
+    let Mobility { has_modes, shapes, kinds, bodies, levers, moved: motions, turns, changes, .. } = mobility;
+    let (moved, motions, pulls) = (Together::new(moved), Together::new(motions), Together::new(pulls));
+    let sweep = |job: usize, change: &mut Change| {
+        let turns = turns.of_job(job);
+        // SAFETY: jobs have turns of their own, and those of a colour move different cells.
+        let pulls = unsafe { pulls.part(turns.clone()) };
+        let (first, rows) = (turns.start, &rows[turns]);
+        let cells = Cells { shapes, kinds, bodies, moved: &moved, motions: &motions };
+        *change = Change::default();
+        if *has_modes {
+            Arch::new().dispatch(Sweep::<true> { first, rows, pulls, levers, cells, share, change });
+        } else {
+            Arch::new().dispatch(Sweep::<false> { first, rows, pulls, levers, cells, share, change });
+        }
+    };
+    changes.clear();
+    changes.resize(turns.jobs(), Change::default());
+    for colour in turns.colours() {
+        let changes = &mut changes[colour.clone()];
+        if changes.len() == 1 || rayon::current_num_threads() == 1 {
+            changes.iter_mut().zip(colour).for_each(|(change, job)| sweep(job, change));
+        } else {
+            changes.par_iter_mut().zip(colour).for_each(|(change, job)| sweep(job, change));
+        }
     }
+    changes.iter().for_each(|of_job| change.add(of_job));
+}
+
+/// What contacts move.
+#[derive(Clone, Copy)]
+struct Cells<'a> {
+    shapes: &'a [OfModes],
+    kinds: &'a [(u32, OfModes)],
+    bodies: &'a [Body],
+    moved: &'a Together<'a, V4>,
+    motions: &'a Together<'a, Motion>,
 }
 
 struct Sweep<'a, const BY_MODES: bool> {
+    /// The number of the first row.
+    first: usize,
     rows: &'a [Row],
     pulls: &'a mut [Pull],
-    moved: &'a mut [V4],
-    mobility: &'a mut Mobility,
+    levers: &'a [Lever],
+    cells: Cells<'a>,
     share: f64,
     change: &'a mut Change,
 }
@@ -153,16 +160,20 @@ impl<'a> BySides<'a> {
     }
 
     #[inline(always)]
-    fn apart(&self, motions: &[Motion]) -> V4 {
-        moved_apart(self.lever.bodies.map(|body| &motions[body as usize]), &self.sides, &self.lever.arms)
+    fn apart(&self, motions: &Together<Motion>) -> V4 {
+        // SAFETY: the caller alone moves the cells of its rows.
+        let motions = self.lever.bodies.map(|body| unsafe { &*motions.item(body as usize) });
+        moved_apart(motions, &self.sides, &self.lever.arms)
     }
 
     #[inline(always)]
-    fn push(&self, bodies: &[Body], kinds: &[(u32, OfModes)], motions: &mut [Motion], change: &V4) {
+    fn push(&self, Cells { bodies, kinds, motions, .. }: Cells, change: &V4) {
         for (side, body) in self.lever.bodies.into_iter().enumerate() {
             let of = &bodies[body as usize];
             let response = (of, &kinds[of.kind()].1);
-            push_body(response, &mut motions[body as usize], &self.sides[side], &self.lever.arms[side], change);
+            // SAFETY: the caller alone moves the cells of its rows.
+            let motion = unsafe { motions.item(body as usize) };
+            push_body(response, motion, &self.sides[side], &self.lever.arms[side], change);
         }
     }
 }
@@ -172,10 +183,10 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { rows, pulls, moved, mobility, share, change } = self;
-        let Mobility { shapes, kinds, bodies, levers, moved: motions, .. } = mobility;
+        let Self { first, rows, pulls, levers, cells, share, change } = self;
+        let Cells { shapes, moved, motions, .. } = cells;
         let mut largest = 0.0;
-        for (number, (row, pull)) in rows.iter().zip(pulls).enumerate() {
+        for (number, (row, pull)) in (first..).zip(rows.iter().zip(pulls)) {
             if row.compliance == 0.0 {
                 continue;
             }
@@ -194,7 +205,7 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
             let step = map(|i| found[i] - force[i]);
             push(row, weights, &step, moved);
             if let Some(sides) = &sides {
-                sides.push(bodies, kinds, motions, &step);
+                sides.push(cells, &step);
             }
             pull.direction = narrow(&map(|i| share * direction[i] + last[i]));
             pull.change = narrow(&step);
@@ -210,77 +221,13 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
     }
 }
 
-/// Puts all volumes back to first order, eq. (adhesion.6); `gradient` are those of the volumes, µm².
-pub fn sweep_volumes(
-    volumes: &[VolumeRow],
-    gradient: &[[f64; 3]],
-    moved: &mut [V4],
-    mobility: &mut Mobility,
-    change: &mut Change,
-) {
-    if mobility.has_modes {
-        Arch::new().dispatch(SweepVolumes::<true> { volumes, gradient, moved, mobility, change });
-    } else {
-        Arch::new().dispatch(SweepVolumes::<false> { volumes, gradient, moved, mobility, change });
-    }
-}
-
-struct SweepVolumes<'a, const BY_MODES: bool> {
-    volumes: &'a [VolumeRow],
-    gradient: &'a [[f64; 3]],
-    moved: &'a mut [V4],
-    mobility: &'a mut Mobility,
-    change: &'a mut Change,
-}
-
-impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let change = self.change;
-        let Mobility { kinds, bodies, moved: motions, .. } = self.mobility;
-        for volume in self.volumes {
-            let gradient = &self.gradient[volume.first..volume.end];
-            let moved = &mut self.moved[volume.first..volume.end];
-            let mut along = [0.0; 4];
-            for (g, d) in gradient.iter().zip(&*moved) {
-                let g = [g[0], g[1], g[2], 0.0];
-                along = map(|i| along[i] + g[i] * d[i]);
-            }
-            let mut missing = volume.offset + ((along[0] + along[1]) + along[2]);
-            if BY_MODES {
-                let mut by_modes = [0.0; 4];
-                for (along, part) in motions[volume.body].along.iter().zip(&volume.modes) {
-                    by_modes = map(|i| by_modes[i] + part[i] * along[i]);
-                }
-                missing += (by_modes[0] + by_modes[1]) + by_modes[2];
-            }
-            let pressure = -missing * volume.inverse;
-            let back = pressure * volume.mobility;
-            for (d, g) in moved.iter_mut().zip(gradient) {
-                let g = [g[0], g[1], g[2], 0.0];
-                *d = map(|i| d[i] + back * g[i]);
-            }
-            if BY_MODES {
-                let (response, motion) = (&kinds[bodies[volume.body].kind()].1, &mut motions[volume.body]);
-                for ((along, part), response) in motion.along.iter_mut().zip(&volume.modes).zip(response) {
-                    let share = pressure * response;
-                    *along = map(|i| along[i] + share * part[i]);
-                }
-            }
-            // As far as all atoms move in the mean.
-            change.largest = change.largest.max((pressure * pressure * volume.swelling / moved.len() as f64).sqrt());
-            change.work += pressure * pressure / volume.inverse;
-        }
-    }
-}
-
 /// Pushes out what is inside, by no more than `most` (µm), and leaves no force behind: what curved paths let slip is
 /// mended by displacement, not by force, eq. (adhesion.7). `deep` are the rows that are inside and can move, each with the force that
 /// would do it, zero at first.
 pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], mobility: &mut Mobility, most: f64) {
     let Mobility { shapes, kinds, bodies, levers, moved: motions, has_modes, .. } = mobility;
+    let (moved, motions) = (&Together::new(moved), &Together::new(motions));
+    let cells = Cells { shapes, kinds, bodies, moved, motions };
     for (number, pushed) in deep {
         let row = &rows[*number as usize];
         let (weights, normal) = (row.weights(), normal(row));
@@ -295,7 +242,7 @@ pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], mob
         let change = normal.map(|n| (new - *pushed) * n);
         push(row, weights, &change, moved);
         if let Some(sides) = &sides {
-            sides.push(bodies, kinds, motions, &change);
+            sides.push(cells, &change);
         }
         *pushed = new;
     }

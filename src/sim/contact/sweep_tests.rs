@@ -1,9 +1,11 @@
 //! The sweeps in wide registers against the same equations written plainly.
 
+use super::change::Change;
 use super::mobility::{Mobility, Response};
 use super::rows::{Pairing, Pull, Row};
-use super::sweep::{Change, VolumeRow, sweep_contacts, sweep_volumes};
+use super::sweep::sweep_contacts;
 use super::vectors::V4;
+use super::volumes::{VolumeRow, sweep_volumes};
 use crate::Vec3;
 use crate::geometry::icosphere;
 use crate::mechanics::integrator::Order;
@@ -96,8 +98,9 @@ fn a_sweep_in_wide_registers_is_that_of_the_book() {
             work += change.norm_squared() * f64::from(row.compliance);
             largest = largest.max(change.norm() * f64::from(row.compliance));
         }
-        let mut change = Change::default();
-        sweep_contacts(&rows, &mut pulls, &mut moved, &mut Mobility::default(), 0.0, &mut change);
+        let (mut change, mut mobility) = (Change::default(), Mobility::default());
+        mobility.turns.leave(rows.len());
+        sweep_contacts(&rows, &mut pulls, &mut moved, &mut mobility, 0.0, &mut change);
         for (fast, plain) in moved.iter().zip(&plain) {
             // Forces are kept to seven digits.
             assert!((Vec3::new(fast[0], fast[1], fast[2]) - plain).norm() < 1e-6, "{seed}: {fast:?} and {plain:?}");
@@ -179,7 +182,9 @@ fn a_force_of_a_contact_moves_and_turns_a_cell_as_free_drag_lets_it_and_dents_it
     let mut mobility = mobility_of(&positions, &modes, &response);
     // Without friction, so that one turn is all that it takes.
     let mut row = Row { shear: 0.0, ..row(50, Vec3::x()) };
-    let [along, across] = mobility.add_lever(&row, [1, 0], &positions);
+    let (lever, [along, across]) = mobility.lever(&row, [1, 0], &positions);
+    mobility.levers.push(lever);
+    mobility.turns.leave(1);
     let alone: f64 = row.weights().iter().map(|weight| weight * weight * response.rest).sum();
     [row.compliance, row.across] = [(along + alone) as f32, (across + alone) as f32];
     // The second ball is pulled from where it is by what brings its atom back to the facet.

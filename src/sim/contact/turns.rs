@@ -4,11 +4,19 @@
 //! in a colour, and the contacts of a few pairs of a colour take turns: the processor works at several at once. The order depends on
 //! who touches whom alone. Sweeps read all rows many times, so that rows are put in this order for them and back again.
 
+use rayon::prelude::*;
+
 /// Pairs that take turns.
 const SIDE_BY_SIDE: usize = 8;
 
 /// Colours; a pair for which none is left has the last, whoever else has it.
 const COLOURS: u32 = 64;
+
+/// Rows from which on several threads share a sweep; fewer are swept sooner by one.
+const SHARED_FROM: usize = 4096;
+
+/// Rows that a thread takes at once, at least.
+const ROWS_PER_JOB: u32 = 256;
 
 /// The order of the sweeps, and what is needed to find it.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +31,10 @@ pub struct Turns {
     taken: Vec<u64>,
     /// What has been put where it belongs.
     done: Vec<bool>,
+    /// One behind the last turn of each job; jobs of a colour move different cells.
+    jobs: Vec<u32>,
+    /// One behind the last job of each colour.
+    colours: Vec<u32>,
 }
 
 impl Turns {
@@ -31,7 +43,7 @@ impl Turns {
         let key = |[a, b]: [u32; 2]| u64::from(a.min(b)) << 32 | u64::from(a.max(b));
         self.rows.clear();
         self.rows.extend(between.zip(0..).map(|(bodies, row)| (key(bodies), row)));
-        self.rows.sort_unstable();
+        self.rows.par_sort_unstable();
         self.taken.clear();
         self.taken.resize(bodies, 0);
         self.pairs.clear();
@@ -48,6 +60,9 @@ impl Turns {
         // Pairs with as many rows stay side by side longest.
         self.pairs.sort_unstable_by_key(|&(colour, first, end)| (colour, end - first, first));
         self.order.clear();
+        self.jobs.clear();
+        self.colours.clear();
+        let is_shared = self.rows.len() >= SHARED_FROM;
         for colour in self.pairs.chunk_by(|one, other| one.0 == other.0) {
             for group in colour.chunks(SIDE_BY_SIDE) {
                 let longest = group.iter().map(|&(_, first, end)| end - first).max().unwrap_or(0);
@@ -55,8 +70,50 @@ impl Turns {
                     let there = group.iter().filter(|&&(_, first, end)| first + turn < end);
                     self.order.extend(there.map(|&(_, first, _)| self.rows[(first + turn) as usize].1));
                 }
+                let begun = self.jobs.last().copied().unwrap_or(0);
+                if is_shared && colour[0].0 + 1 < COLOURS && self.order.len() as u32 - begun >= ROWS_PER_JOB {
+                    self.jobs.push(self.order.len() as u32);
+                }
+            }
+            if is_shared {
+                end_job(&mut self.jobs, self.order.len());
+                self.colours.push(self.jobs.len() as u32);
             }
         }
+        end_job(&mut self.jobs, self.order.len());
+        if !is_shared {
+            self.colours.push(self.jobs.len() as u32);
+        }
+    }
+
+    /// One job that sweeps so many rows as they stand.
+    pub fn leave(&mut self, rows: usize) {
+        self.jobs.clear();
+        self.jobs.push(rows as u32);
+        self.colours.clear();
+        self.colours.push(1);
+    }
+
+    /// Whether so many rows are shared among threads.
+    pub fn are_many(rows: usize) -> bool {
+        rows >= SHARED_FROM
+    }
+
+    /// How many jobs there are.
+    pub fn jobs(&self) -> usize {
+        self.jobs.len()
+    }
+
+    /// The turns of a job.
+    pub fn of_job(&self, job: usize) -> std::ops::Range<usize> {
+        let start = if job == 0 { 0 } else { self.jobs[job - 1] };
+        start as usize..self.jobs[job] as usize
+    }
+
+    /// The jobs of each colour, colour by colour: those of one may be done at the same time.
+    pub fn colours(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
+        let starts = std::iter::once(0).chain(self.colours.iter().copied());
+        starts.zip(&self.colours).map(|(start, end)| start as usize..*end as usize)
     }
 
     /// Puts what is listed row by row in the order of the sweeps.
@@ -103,6 +160,14 @@ impl Turns {
     }
 }
 
+/// Ends the last job after so many turns, if it has any.
+fn end_job(jobs: &mut Vec<u32>, turns: usize) {
+    let end = turns as u32;
+    if jobs.last().copied().unwrap_or(0) < end {
+        jobs.push(end);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,5 +200,36 @@ mod tests {
         assert_eq!(list, turns.order);
         turns.put_back(&mut list);
         assert_eq!(list, (0..60).collect::<Vec<u32>>());
+    }
+
+    #[test]
+    fn jobs_of_a_colour_move_different_cells_and_all_turns_are_in_one() {
+        // A grid of 20 x 20 cells with eight contacts between any two side by side.
+        let cell = |x: u32, y: u32| 20 * y + x;
+        let pairs = (0..20).flat_map(|y| (0..20).map(move |x| (x, y)));
+        let beside = pairs.flat_map(|(x, y)| [(x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(u, v)| (x, y, u, v)));
+        let rows: Vec<[u32; 2]> = beside
+            .filter(|&(.., u, v)| u < 20 && v < 20)
+            .flat_map(|(x, y, u, v)| std::iter::repeat_n([cell(x, y), cell(u, v)], 8))
+            .collect();
+        assert!(Turns::are_many(rows.len()), "{}", rows.len());
+        let mut turns = Turns::default();
+        turns.find(rows.iter().copied(), 400);
+        let mut next = 0;
+        for colour in turns.colours() {
+            let mut mover = vec![None; 400];
+            for job in colour {
+                let of_job = turns.of_job(job);
+                assert_eq!(of_job.start, next);
+                next = of_job.end;
+                for turn in of_job {
+                    for body in rows[turns.order[turn] as usize] {
+                        assert!(mover[body as usize].replace(job).is_none_or(|mover| mover == job), "{body}");
+                    }
+                }
+            }
+        }
+        assert_eq!(next, rows.len());
+        assert!(turns.jobs() > turns.colours().count() + 4, "colours have several jobs: {}", turns.jobs());
     }
 }

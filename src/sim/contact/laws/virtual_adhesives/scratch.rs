@@ -2,8 +2,8 @@
 
 use super::rigid::{Rigid, vector};
 use crate::Vec3;
+use crate::sim::contact::change::Change;
 use crate::sim::contact::state::AdhesiveAtom;
-use crate::sim::contact::sweep::Change;
 use crate::sim::contact::vectors::V4;
 use nalgebra::Rotation3;
 

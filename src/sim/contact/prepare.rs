@@ -1,0 +1,208 @@
+//! What the sweeps begin with: displacements, how cells give way, volumes and rows.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::compliance::set_compliance;
+use super::gather::{gather, gather_positions};
+use super::mobility::{Mobility, Response};
+use super::rows::{Pull, Row};
+use super::scene::ContactScene;
+use super::scratch::{ContactScratch, SweepRules};
+use super::turns::Turns;
+use super::volumes::VolumeRow;
+use crate::mechanics::integrator::Method;
+use crate::mechanics::volume;
+use crate::sim::implicit::gamma;
+use crate::sim::kind::{Kind, VolumeRule};
+use crate::sim::model::Model;
+use crate::sim::state::{State, vector};
+use crate::sim::thread_buffers::ThreadBuffers;
+use crate::sim::workspace::KindScratch;
+
+/// Cells and rows that a thread takes at once, at least.
+const CELLS_PER_JOB: usize = 64;
+const ROWS_PER_JOB: usize = 1024;
+
+/// What the stiffest shape of a cell takes back of a displacement in a step, over what is left, up to which all shapes move as drag lets
+/// them. Sweeps by modes take two to three times as long and hardly save steps below a hundred; but in long steps at 15 what hangs on a
+/// cell may lose its hold without them.
+const STIFF: f64 = 8.0;
+
+/// Whether elasticity takes back much of what a force does in an implicit step, so that drag alone does not tell what it moves.
+fn is_stiff(model: &Model, dt: f64, kinds: &[KindScratch]) -> bool {
+    let Method::Implicit { order } = model.integrator.method else { return false };
+    let taken_back = |(kind, w): (&Kind, &KindScratch)| {
+        gamma(kind, order) * w.stiffening * kind.largest_stiffness * dt / kind.drag > STIFF
+    };
+    model.kinds.iter().zip(kinds).any(taken_back)
+}
+
+/// Displacements, mobilities and volumes before the first sweep.
+pub fn prepare(
+    model: &Model,
+    contact: &ContactScene,
+    dt: f64,
+    from: &State,
+    to: &State,
+    s: &mut ContactScratch,
+    kinds: &mut [KindScratch],
+    buffers: &ThreadBuffers,
+) {
+    s.moved.resize(contact.scene.atoms, [0.0; 4]);
+    s.gradient.resize(contact.scene.atoms, [0.0; 3]);
+    s.volumes.clear();
+    s.held.clear();
+    s.mobility.clear(contact.law.moves_as_steps() && is_stiff(model, dt, kinds));
+    let cells = from.kinds.iter().zip(&to.kinds);
+    let mut first_body = 0;
+    for (number, ((kind, (now, next)), w)) in model.kinds.iter().zip(cells).zip(kinds).enumerate() {
+        let range = contact.atoms_of(number);
+        let free = match model.integrator.method {
+            Method::Implicit { .. } | Method::Explicit => dt / kind.drag,
+            _ => dt * dt / kind.mass,
+        };
+        let modes = if s.mobility.has_modes { w.modes(kind) } else { None };
+        let response = match (&modes, model.integrator.method) {
+            (Some(modes), Method::Implicit { order }) => {
+                Response::new(modes, w.stiffening, (order, gamma(kind, order)), dt, kind.drag)
+            }
+            _ => Response::alone(free),
+        };
+        let mobility = response.rest;
+        if s.mobility.has_modes {
+            s.mobility.add_kind(modes.as_deref(), &response, kind.atoms());
+            for cell in 0..now.cells() {
+                let x = (0..kind.atoms()).map(|atom| vector(kind, &now.positions, cell, atom));
+                let turns = modes.is_some() && !kind.is_held();
+                s.mobility.add_cell(range.start + cell * kind.atoms(), &response, !turns, x);
+            }
+        }
+        let cells = s.moved[range.clone()].par_chunks_exact_mut(kind.atoms()).enumerate();
+        cells.with_min_len(CELLS_PER_JOB).for_each(|(cell, moved)| {
+            for (atom, moved) in moved.iter_mut().enumerate() {
+                let change = vector(kind, &next.positions, cell, atom) - vector(kind, &now.positions, cell, atom);
+                *moved = [change.x, change.y, change.z, mobility];
+            }
+        });
+        hold_atoms(kind, now.cells(), range.start, s);
+        if matches!(kind.volume, VolumeRule::Exact(_)) {
+            add_volumes(kind, &next.positions, range, (first_body, mobility), s, w, buffers);
+        }
+        first_body += now.cells();
+    }
+    s.law.adhesives.begin();
+    if s.mobility.has_modes {
+        // The sweeps of an attempt before may have taken their memory.
+        gather_positions(model, contact, &from.kinds, &mut s.start);
+        s.mobility.begin();
+    }
+}
+
+/// Rows carry what they carried where the step begins; how they yield depends on the mobilities. Where cells move by modes they are put
+/// in the order in which they are swept.
+pub fn load_rows(contact: &ContactScene, rules: SweepRules, s: &mut ContactScratch) {
+    let bodies_of = |row: &Row| [row.atoms[0], row.atoms[3]].map(|atom| contact.body_of(atom));
+    let has_modes = s.mobility.has_modes;
+    let Mobility { turns, is_arranged, .. } = &mut s.mobility;
+    *is_arranged = has_modes || contact.law.moves_as_steps() && Turns::are_many(s.rows.len());
+    if *is_arranged {
+        turns.find(s.rows.iter().map(bodies_of), contact.scene.bodies.len());
+        turns.arrange(&mut s.rows);
+        turns.arrange(&mut s.pulls);
+    } else {
+        turns.leave(s.rows.len());
+    }
+    let ContactScratch { rows, pulls, moved, mobility, start, .. } = s;
+    let load = |row: &mut Row, pull: &mut Pull, by_modes: [f64; 2]| {
+        *pull = Pull { force: pull.carried, carried: pull.carried, ..Pull::default() };
+        let parts = row.atoms.iter().zip(row.weights());
+        let alone: f64 = parts.map(|(atom, weight)| weight * weight * moved[*atom as usize][3]).sum();
+        [row.compliance, row.across] = by_modes.map(|by_modes| (alone + by_modes) as f32);
+        set_compliance(row, pull, rules.in_account);
+    };
+    let both = rows.par_iter_mut().zip(pulls).with_min_len(ROWS_PER_JOB);
+    if has_modes {
+        let mut levers = std::mem::take(&mut mobility.levers);
+        let with_levers = both.map(|(row, pull)| {
+            let (lever, by_modes) = mobility.lever(row, bodies_of(row), start);
+            load(row, pull, by_modes);
+            lever
+        });
+        with_levers.collect_into_vec(&mut levers);
+        mobility.levers = levers;
+    } else {
+        both.for_each(|(row, pull)| load(row, pull, [0.0; 2]));
+    }
+}
+
+/// Lists what is held of a kind; atoms that are held along every axis get no mobility.
+fn hold_atoms(kind: &Kind, cells: usize, first: usize, s: &mut ContactScratch) {
+    for cell in 0..cells {
+        for (atom, factors) in kind.held.chunks_exact(3).enumerate() {
+            let number = first + cell * kind.atoms() + atom;
+            if factors.iter().all(|factor| *factor == 0.0) {
+                s.moved[number][3] = 0.0;
+            } else {
+                let held = (0..3).filter(|axis| factors[*axis as usize] == 0.0);
+                s.held.extend(held.map(|axis| (number as u32, axis)));
+            }
+        }
+    }
+}
+
+/// The volumes of a kind and their gradients where the atoms went freely.
+fn add_volumes(
+    kind: &Kind,
+    x: &[f64],
+    atoms: Range<usize>,
+    (first_body, mobility): (usize, f64),
+    s: &mut ContactScratch,
+    w: &mut KindScratch,
+    buffers: &ThreadBuffers,
+) {
+    let KindScratch { free_volume, target, .. } = w;
+    let (first, own) = (atoms.start, &mut s.gradient[atoms]);
+    let (length, per_block) = (kind.block_len(), kind.lanes * kind.atoms());
+    (x.par_chunks_exact(length).zip(free_volume.par_chunks_exact_mut(kind.lanes)))
+        .zip(own.par_chunks_mut(per_block))
+        .for_each(|((x, volumes), own)| {
+            buffers.enter(length, |[gradient, ..]| {
+                volume::measure_block(&kind.rest.facets, x, &kind.held, gradient, volumes);
+                gather(kind, gradient, own, <[f64; 3]>::from);
+            });
+        });
+    for (cell, g) in own.chunks_exact(kind.atoms()).enumerate() {
+        let (start, end) = (cell * kind.atoms(), (cell + 1) * kind.atoms());
+        let (mut along, mut squared) = (0.0, 0.0);
+        for (g, d) in g.iter().zip(&s.moved[first + start..first + end]) {
+            along += (0..3).map(|axis| g[axis] * d[axis]).sum::<f64>();
+            squared += (0..3).map(|axis| g[axis] * g[axis]).sum::<f64>();
+        }
+        let offset = free_volume[cell] - target[cell] - along;
+        let mut row = VolumeRow {
+            first: start,
+            end,
+            offset,
+            inverse: 1.0 / (mobility * squared),
+            mobility,
+            swelling: mobility * mobility * squared,
+            body: first_body + cell,
+            modes: Default::default(),
+        };
+        if s.mobility.has_modes {
+            row.modes = s.mobility.project(row.body, g);
+            let response = s.mobility.response(row.body);
+            let (mut compliance, mut swelling) = (mobility * squared, mobility * mobility * squared);
+            for (response, part) in response.iter().zip(&row.modes) {
+                let squared: f64 = part.iter().map(|part| part * part).sum();
+                compliance += response * squared;
+                // What is moved by a mode is moved by its response and by what each atom moves alone.
+                swelling += response * (response + 2.0 * mobility) * squared;
+            }
+            (row.inverse, row.swelling) = (1.0 / compliance, swelling);
+        }
+        s.volumes.push(row);
+    }
+}

@@ -1,0 +1,120 @@
+//! Volumes in the sweeps, to first order; exact ones come after.
+
+use pulp::{Arch, NullaryFnOnce};
+use rayon::prelude::*;
+
+use super::change::Change;
+use super::mobility::{Body, Mobility, Motion};
+use super::together::Together;
+use super::vectors::{V4, map};
+use crate::mechanics::modes::{MODES, OfModes};
+
+/// A volume that is kept while contacts move atoms.
+#[derive(Debug, Clone, Copy)]
+pub struct VolumeRow {
+    /// Its first atom, counted from the first of its kind.
+    pub first: usize,
+    /// One behind its last atom.
+    pub end: usize,
+    /// Volume less target before the first sweep, less what the gradient makes of the displacement then, µm³.
+    pub offset: f64,
+    /// Pressure over change of volume, pN/µm⁵.
+    pub inverse: f64,
+    /// Displacement over force of its atoms by themselves, µm/pN.
+    pub mobility: f64,
+    /// Squared displacement of all its atoms over squared pressure, µm⁶/pN².
+    pub swelling: f64,
+    /// Its cell.
+    pub body: usize,
+    /// What its gradient is in the modes of the cell, µm².
+    pub modes: [V4; MODES],
+}
+
+/// Volumes that a thread takes at once.
+const VOLUMES_PER_JOB: usize = 64;
+
+/// Puts all volumes back to first order, eq. (adhesion.6); `gradient` are those of the volumes, µm².
+pub fn sweep_volumes(
+    volumes: &[VolumeRow],
+    gradient: &[[f64; 3]],
+    moved: &mut [V4],
+    mobility: &mut Mobility,
+    change: &mut Change,
+) {
+    let Mobility { has_modes, kinds, bodies, moved: motions, changes, .. } = mobility;
+    let (moved, motions) = (Together::new(moved), Together::new(motions));
+    let sweep = |volumes: &[VolumeRow], change: &mut Change| {
+        let (moved, motions) = (&moved, &motions);
+        if *has_modes {
+            Arch::new().dispatch(SweepVolumes::<true> { volumes, gradient, kinds, bodies, moved, motions, change });
+        } else {
+            Arch::new().dispatch(SweepVolumes::<false> { volumes, gradient, kinds, bodies, moved, motions, change });
+        }
+    };
+    if volumes.len() <= VOLUMES_PER_JOB {
+        return sweep(volumes, change);
+    }
+    changes.clear();
+    changes.resize(volumes.len().div_ceil(VOLUMES_PER_JOB), Change::default());
+    let jobs = changes.par_iter_mut().zip(volumes.par_chunks(VOLUMES_PER_JOB));
+    jobs.for_each(|(change, volumes)| sweep(volumes, change));
+    let worst = change.worst;
+    changes.iter().for_each(|of_job| change.add(of_job));
+    change.worst = worst;
+}
+
+struct SweepVolumes<'a, const BY_MODES: bool> {
+    volumes: &'a [VolumeRow],
+    gradient: &'a [[f64; 3]],
+    kinds: &'a [(u32, OfModes)],
+    bodies: &'a [Body],
+    moved: &'a Together<'a, V4>,
+    motions: &'a Together<'a, Motion>,
+    change: &'a mut Change,
+}
+
+impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { volumes, gradient, kinds, bodies, moved, motions, change } = self;
+        for volume in volumes {
+            let gradient = &gradient[volume.first..volume.end];
+            // SAFETY: each volume has atoms of its own.
+            let moved = unsafe { moved.part(volume.first..volume.end) };
+            let mut along = [0.0; 4];
+            for (g, d) in gradient.iter().zip(&*moved) {
+                let g = [g[0], g[1], g[2], 0.0];
+                along = map(|i| along[i] + g[i] * d[i]);
+            }
+            let mut missing = volume.offset + ((along[0] + along[1]) + along[2]);
+            if BY_MODES {
+                let mut by_modes = [0.0; 4];
+                // SAFETY: each volume has a cell of its own.
+                let motion = unsafe { motions.item(volume.body) };
+                for (along, part) in motion.along.iter().zip(&volume.modes) {
+                    by_modes = map(|i| by_modes[i] + part[i] * along[i]);
+                }
+                missing += (by_modes[0] + by_modes[1]) + by_modes[2];
+            }
+            let pressure = -missing * volume.inverse;
+            let back = pressure * volume.mobility;
+            for (d, g) in moved.iter_mut().zip(gradient) {
+                let g = [g[0], g[1], g[2], 0.0];
+                *d = map(|i| d[i] + back * g[i]);
+            }
+            if BY_MODES {
+                // SAFETY: as above.
+                let (response, motion) = (&kinds[bodies[volume.body].kind()].1, unsafe { motions.item(volume.body) });
+                for ((along, part), response) in motion.along.iter_mut().zip(&volume.modes).zip(response) {
+                    let share = pressure * response;
+                    *along = map(|i| along[i] + share * part[i]);
+                }
+            }
+            // As far as all atoms move in the mean.
+            change.largest = change.largest.max((pressure * pressure * volume.swelling / moved.len() as f64).sqrt());
+            change.work += pressure * pressure / volume.inverse;
+        }
+    }
+}
