@@ -68,10 +68,8 @@ impl NearFacets {
         boxes.packs.par_iter_mut().zip(lists.par_iter_mut()).enumerate().for_each(|(batch, (packs, list))| {
             list.bounds.clear();
             let bodies = scene.bodies_of(batch).map(|body| (body, &scene.bodies[body as usize]));
-            let count = bodies
-                .clone()
-                .last()
-                .map_or(0, |(_, last)| last.first_pack as usize + scene.levels[last.shape as usize].packs());
+            let last = scene.bodies_of(batch).next_back().map(|body| &scene.bodies[body as usize]);
+            let count = last.map_or(0, |last| last.first_pack as usize + scene.levels[last.shape as usize].packs());
             packs.resize(count, Pack::EMPTY);
             for (number, body) in bodies {
                 let levels = &scene.levels[body.shape as usize];

@@ -169,3 +169,21 @@ fn a_drop_that_wets_another_engulfs_it() {
     let ball = (5.0_f64.powi(3) + 3.0_f64.powi(3)).cbrt();
     assert!(half_distance(&simulation) * 2.0 < ball - 3.0 + 1.0, "{}", 2.0 * half_distance(&simulation));
 }
+
+#[test]
+fn a_run_that_goes_on_from_a_checkpoint_or_on_two_threads_has_the_same_bits() {
+    let bits = |simulation: &Simulation| {
+        let mut positions = vec![[0.0; 3]; simulation.atom_count()];
+        simulation.positions_into(&mut positions).unwrap_or_else(|error| panic!("{error}"));
+        positions.into_iter().flatten().map(f64::to_bits).collect::<Vec<_>>()
+    };
+    let text = drops(1, 100.0).replace("\"200 pN/um^2\"", "\"100 pN/um^2\"");
+    let mut whole = run(&text, Some(0.2));
+    let checkpoint = whole.checkpoint();
+    whole.run_until(0.4).unwrap_or_else(|error| panic!("{error}"));
+    let mut again = Simulation::from_text("cohesion.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+    again.set_threads(2).unwrap_or_else(|error| panic!("{error}"));
+    again.restore(&checkpoint).unwrap_or_else(|error| panic!("{error}"));
+    again.run_until(0.4).unwrap_or_else(|error| panic!("{error}"));
+    assert!(bits(&whole) == bits(&again));
+}
