@@ -187,3 +187,43 @@ fn a_run_that_goes_on_from_a_checkpoint_or_on_two_threads_has_the_same_bits() {
     again.run_until(0.4).unwrap_or_else(|error| panic!("{error}"));
     assert!(bits(&whole) == bits(&again));
 }
+
+/// A sheet of 16 x 4 µm on a floor, held at one end, whose other end was pulled off and is then held up by a force an edge (pN/µm);
+/// the work of separation is 0.5 pN/µm.
+fn peeled([along, across]: [u32; 2], strength: f64, more: &str, force: f64) -> String {
+    let (end, force) = (across + 1, 4.0 * force);
+    format!(
+        "title = \"A sheet is peeled off a floor\"\n[run]\nuntil = \"40 s\"\nintegrator = {{ max_step = \"0.4 s\" }}\n[[planes]]\nname = \"floor\"\n\
+         point = [\"0 um\", \"0 um\", \"0 um\"]\nnormal = [0, 0, 1]\n[cells.sheet]\n\
+         mesh = {{ shape = \"sheet\", size = [\"16 um\", \"4 um\"], divisions = [{along}, {across}] }}\n\
+         placement = {{ at = [[\"0 um\", \"0 um\", \"0.01 um\"]] }}\nfixed = [{{ cap = {{ direction = [-1, 0, 0], number = {} }} }}]\n\
+         [cells.sheet.mechanics]\ndrag = \"20 pN s/um\"\n\
+         membrane = {{ law = \"skalak\", shear = \"20 pN/um\", area = \"40 pN/um\", bending = \"1 pN um\" }}\n[[cells.sheet.loads]]\n\
+         name = \"pull\"\ncap = {{ direction = [1, 0, 0], number = {end} }}\ndirection = [0, 0, 1]\n\
+         force = [[\"0 s\", \"12 pN\"], [\"4 s\", \"12 pN\"], [\"4.2 s\", \"{force} pN\"], [\"40 s\", \"{force} pN\"]]\n\
+         [contact]\nmodel = \"cohesion\"\nstrength = \"0 Pa\"\n{more}\n[[contact.between]]\ntypes = [\"sheet\", \"floor\"]\n\
+         strength = \"{strength} pN/um^2\"\nshear_strength = \"0 Pa\"\nenergy = \"0.5 pN/um\"\n",
+        2 * end
+    )
+}
+
+#[test]
+fn a_sheet_peels_above_the_work_of_separation_and_zips_below_whatever_its_mesh_proximity_and_strength() {
+    for (mesh, strength, more) in [
+        ([20, 5], 0.5, ""),
+        ([24, 6], 0.5, ""),
+        ([32, 8], 0.5, ""),
+        ([24, 6], 0.5, "proximity = \"0.03 um\""),
+        ([32, 8], 0.667, ""),
+    ] {
+        for (share, peels) in [(0.9, false), (1.1, true)] {
+            let mut simulation = run(&peeled(mesh, strength, more, share * 0.5), Some(20.0));
+            let before = series(&simulation, "contact.energy")[0];
+            simulation.run_until(40.0).unwrap_or_else(|error| panic!("{error}"));
+            let gone = series(&simulation, "contact.energy")[0] - before;
+            // Far less than the 32 pN µm that the whole sheet has, and far more than a front that is pinned.
+            assert_eq!(gone > 0.0, peels, "{mesh:?}, {strength} pN/um^2, {more}: {gone} pN um at {share} of the work");
+            assert!(gone.abs() > 0.02, "{mesh:?}, {strength} pN/um^2, {more}: {gone} pN um at {share} of the work");
+        }
+    }
+}
