@@ -37,6 +37,12 @@ impl Course {
         self.points.iter().map(|point| point.0).filter(|_| self.points.len() > 1)
     }
 
+    /// Whether it is 0 from this instant to where it bends next, s.
+    pub fn is_zero_from(&self, t: f64) -> bool {
+        let next = self.points.iter().find(|point| point.0 > t);
+        self.at(t) == 0.0 && next.is_none_or(|next| next.1 == 0.0)
+    }
+
     /// The points.
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
@@ -52,5 +58,8 @@ mod tests {
         let course = Course::through(vec![(1.0, 0.0), (3.0, 8.0)]).unwrap();
         assert_eq!([0.0, 1.0, 1.5, 2.0, 3.0, 9.0].map(|t| course.at(t)), [0.0, 0.0, 2.0, 4.0, 8.0, 8.0]);
         assert!(Course::through(vec![(1.0, 0.0), (1.0, 8.0)]).is_none());
+        let pulse = Course::through(vec![(1.0, 0.0), (2.0, 8.0), (3.0, 0.0), (4.0, 0.0), (5.0, 1.0)]).unwrap();
+        let zero = [0.0, 0.9, 1.0, 1.5, 2.5, 3.0, 3.9, 4.0, 9.0].map(|t| pulse.is_zero_from(t));
+        assert_eq!(zero, [true, true, false, false, false, true, true, false, false]);
     }
 }

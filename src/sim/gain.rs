@@ -9,6 +9,7 @@ use super::kind::{Kind, VolumeRule};
 use super::model::Model;
 use super::state::{KindState, State};
 use super::workspace::Workspace;
+use crate::mechanics::Force;
 use crate::mechanics::integrator::Method;
 
 /// What a step may gain by round-off, over the energy there is.
@@ -20,7 +21,7 @@ const LEFT: f64 = 1e-5;
 /// What a volume may be off its target without pressure doing work to put that right, over the target.
 const VOLUME_OFF: f64 = 1e-9;
 
-/// The energy where a step begins, pN·µm; none where something may do work on the cells: loads, gravity, motility, chemistry, the
+/// The energy where a step begins, pN·µm; none where something may do work on the cells: loads that are not zero, gravity, motility, chemistry, the
 /// energy that contacts release, volumes that change, elastic forces without an energy.
 pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option<f64> {
     is_left_alone(model, state).then(|| {
@@ -47,9 +48,15 @@ fn is_left_alone(model: &Model, state: &State) -> bool {
         let strengths = contact.between.iter().chain(&contact.on_planes);
         contact.law.is_passive() && strengths.into_iter().all(|strength| strength.energy == 0.0)
     };
+    // A step never runs over a bend of a course. What a program sets of loads may be anything.
+    let is_idle = |force: &Force| match force {
+        Force::Load(load) => state.chemistry.controls.forces.is_empty() && load.force.is_zero_from(state.time),
+        _ => false,
+    };
     let is_alone = |(kind, now): (&Kind, &KindState)| {
         let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
-        steady && !now.is_driven(kind) && kind.forces.iter().all(|force| force.is_elastic() && force.is_conservative())
+        let is_quiet = |force: &Force| force.is_elastic() && force.is_conservative() || is_idle(force);
+        steady && !now.is_driven(kind) && kind.forces.iter().all(is_quiet)
     };
     matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)
         && model.contact.as_ref().is_some_and(sticks_only)
