@@ -13,8 +13,8 @@ pub enum ContactModel {
     /// Contacts bear any push, and a pull and a shear by `strength`.
     #[default]
     Adhesives,
-    /// Contacts bear any push and a shear, and surfaces attract each other by `strength` where they touch, which takes `energy` to part
-    /// them and reaches twice that over the strength.
+    /// Contacts bear any push and a shear, and surfaces attract each other: with `strength` at most, and over twice the `energy` that
+    /// parts them over the strength.
     Cohesion,
     /// Contacts bear any push, and springs hold the atoms of facets that collided, by `link`; they break beyond `range`.
     Links,

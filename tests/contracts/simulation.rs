@@ -484,3 +484,31 @@ fn a_state_of_another_model_is_refused() {
     forked.run_until(4.0).unwrap();
     assert!(forked.series("size_x").unwrap()[0] < long, "the stiffer cell is shorter");
 }
+
+#[test]
+fn threads_that_share_the_sweeps_of_a_large_population_give_the_same_bits() {
+    let places = (0..343).map(|cell| {
+        let at = [cell % 7, cell / 7 % 7, cell / 49].map(|index| 10.1 * (f64::from(index) - 3.0));
+        format!("[\"{} um\", \"{} um\", \"{} um\"]", at[0], at[1], at[2])
+    });
+    let text = format!(
+        "title = \"A crowd is pressed together\"\n[run]\nuntil = \"6 s\"\n[cells.cell]\nnumber = 343\n\
+         mesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 1 }}\nplacement = {{ at = [{}] }}\n\
+         mechanics = {{ drag = \"20 pN s/um\", shape_memory = {{ shape_modulus = \"5 pN/um\" }} }}\n\
+         motility = {{ attraction = {{ to = [\"0 um\", \"0 um\", \"0 um\"], stiffness = \"0.012 pN/um\" }} }}\n\
+         [contact]\nstrength = \"0.2 pN/um^2\"\n",
+        places.collect::<Vec<_>>().join(", ")
+    );
+    let on = |threads: usize| {
+        let mut simulation = Simulation::builder().threads(threads).text("crowd.toml", &text).unwrap();
+        simulation.run_until(6.0).unwrap();
+        let mut positions = vec![[0.0; 3]; simulation.atom_count()];
+        simulation.positions_into(&mut positions).unwrap();
+        let bits: Vec<u64> = positions.into_iter().flatten().map(f64::to_bits).collect();
+        (simulation.series("contact.count").unwrap()[0], bits)
+    };
+    let (one, two) = (on(1), on(2));
+    // From 4096 contacts on sweeps are shared.
+    assert!(one.0 >= 4096.0, "{} contacts", one.0);
+    assert!(one == two, "the bits differ");
+}

@@ -227,3 +227,22 @@ fn a_sheet_peels_above_the_work_of_separation_and_zips_below_whatever_its_mesh_p
         }
     }
 }
+
+#[test]
+fn a_pair_with_shear_and_no_strength_slides_at_its_shear_strength_though_others_attract_each_other() {
+    // A lid that the box never meets is what sticks; the floor resists sliding alone, under a weight.
+    let held = |force: f64| {
+        let text = pushed_box(force)
+            .replace("[[planes]]", "[environment]\ngravity = [\"0 m/s^2\", \"0 m/s^2\", \"-1 m/s^2\"]\n[[planes]]");
+        let text =
+            text.replace("strength = \"1 pN/um^2\"\n", "strength = \"0 Pa\"\n").replace("energy = \"0.5 pN/um\"\n", "");
+        let text = text.replace("drag = \"20 pN s/um\"", "drag = \"20 pN s/um\"\nmass = \"40 ng\"");
+        let lid =
+            "[[planes]]\nname = \"lid\"\npoint = [\"0 um\", \"0 um\", \"20 um\"]\nnormal = [0, 0, -1]\n[cells.box]";
+        let text = text.replacen("[cells.box]", lid, 1);
+        text + "[[contact.between]]\ntypes = [\"box\", \"lid\"]\nstrength = \"1 pN/um^2\"\nenergy = \"0.5 pN/um\"\n"
+    };
+    let simulation = run(&held(10.0), Some(30.0));
+    let x = series(&simulation, "position_x")[0];
+    assert!(x.abs() < 0.1, "10 pN against at least 20: {x} um");
+}

@@ -76,7 +76,7 @@ pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
                 coarse,
                 "short",
                 "a lower strength, more energy or a finer mesh",
-                "at least half of that",
+                "at least half an edge",
             ));
         } else if range > RANGES.end() * fine.edge {
             faults.push(range_fault(
@@ -86,7 +86,7 @@ pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
                 fine,
                 "long",
                 "a higher strength or less energy",
-                "at most ten of these",
+                "at most ten edges",
             ));
         }
     }
@@ -101,7 +101,7 @@ fn range_fault(document: &Document, path: &str, range: f64, kind: &Kind, too: &s
         kind.name,
         short(kind.edge)
     ))
-    .help(format!("take {advice}: a range of one to two edges is best, and {fits} is needed"));
+    .help(format!("take {advice}: one to two edges are best, and the range must be {fits}"));
     document.location(&format!("{path}.energy"), "with this and `strength`").into_iter().fold(fault, Fault::at)
 }
 

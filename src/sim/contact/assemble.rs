@@ -17,7 +17,7 @@ pub(super) const SHARE: f64 = 0.5;
 const SKIN: f64 = 0.05;
 
 /// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them. `facing` is the
-/// area of contact around each atom, µm²; where nothing is given that at rest is taken.
+/// area of contact around each atom, µm²; where nothing is given, or surfaces do not attract each other, that at rest is taken.
 pub fn write_rows(
     model: &ContactScene,
     found: &Contacts,
@@ -81,7 +81,8 @@ pub fn write_rows(
         let own = other == body;
         let strength = if own { Strength::default() } else { model.strength_between(body, other) };
         let kind = model.kind_of(body as u32);
-        let area = match facing.get(contact.atom as usize) {
+        let facing = facing.get(contact.atom as usize).filter(|_| model.sticks_by_area(body as u32, on));
+        let area = match facing {
             Some(area) => area / contacts_of_atom(scene, found, number) as f64,
             None => {
                 let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
@@ -133,7 +134,9 @@ pub fn write_rows(
         let kind = model.kind_of(body as u32);
         let strength = model.strength_on(body, contact.plane);
         let at_rest = || model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
-        let area = facing.get(contact.atom as usize).copied().unwrap_or_else(at_rest);
+        let plane = scene.bodies.len() as u32 + contact.plane;
+        let facing = facing.get(contact.atom as usize).filter(|_| model.sticks_by_area(body as u32, plane));
+        let area = facing.copied().unwrap_or_else(at_rest);
         let area = area * controls.adhesion_of(body);
         add(
             Pairing::AtomOnPlane,

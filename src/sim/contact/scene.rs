@@ -80,6 +80,11 @@ impl ContactScene<'_> {
         self.on_planes[self.kind_of(body as u32) * self.planes.len() + plane as usize]
     }
 
+    /// Whether the cohesive law draws two bodies, or a body and a plane after all bodies, to each other.
+    pub(super) fn sticks_by_area(&self, body: u32, other: u32) -> bool {
+        self.law.cohesion().is_some_and(|table| table.sticks(&self.scene, body, other))
+    }
+
     /// The numbers of the atoms of a kind.
     pub(super) fn atoms_of(&self, kind: usize) -> Range<usize> {
         self.first_atom[kind]..self.first_atom[kind + 1]

@@ -117,44 +117,28 @@ impl Turns {
     }
 
     /// Puts what is listed row by row in the order of the sweeps.
-    pub fn arrange<T: Copy>(&mut self, list: &mut [T]) {
-        self.done.clear();
-        self.done.resize(list.len(), false);
-        for start in 0..list.len() {
-            if self.done[start] {
-                continue;
-            }
-            let (first, mut to) = (list[start], start);
-            loop {
-                self.done[to] = true;
-                let from = self.order[to] as usize;
-                if from == start {
-                    list[to] = first;
-                    break;
-                }
-                list[to] = list[from];
-                to = from;
-            }
-        }
+    pub fn arrange<T>(&mut self, list: &mut [T]) {
+        self.for_each_step(list.len(), |_, to, from| list.swap(to, from));
     }
 
     /// Puts what is in the order of the sweeps back row by row.
-    pub fn put_back<T: Copy>(&mut self, list: &mut [T]) {
+    pub fn put_back<T>(&mut self, list: &mut [T]) {
+        self.for_each_step(list.len(), |start, _, to| list.swap(start, to));
+    }
+
+    /// Walks along the circles of the order: where one starts, a turn, and the row that has it, but for the last of each.
+    fn for_each_step(&mut self, rows: usize, mut step: impl FnMut(usize, usize, usize)) {
         self.done.clear();
-        self.done.resize(list.len(), false);
-        for start in 0..list.len() {
-            if self.done[start] {
-                continue;
-            }
-            let (mut carried, mut from) = (list[start], start);
-            loop {
-                let to = self.order[from] as usize;
-                self.done[from] = true;
-                std::mem::swap(&mut list[to], &mut carried);
-                if to == start {
-                    break;
+        self.done.resize(rows, false);
+        for start in 0..rows {
+            let mut turn = start;
+            while !self.done[turn] {
+                self.done[turn] = true;
+                let row = self.order[turn] as usize;
+                if row != start {
+                    step(start, turn, row);
                 }
-                from = to;
+                turn = row;
             }
         }
     }

@@ -42,7 +42,11 @@ impl CohesionScratch {
 impl CohesionTable {
     /// Finds which parts of surfaces attract each other at these positions.
     pub fn find(&self, scene: &Scene, controls: &Controls, positions: &[Vec3], to: &mut CohesionScratch) {
-        to.near.follow(scene, positions, self.range());
+        let range = self.range();
+        if range == 0.0 {
+            return to.clear();
+        }
+        to.near.follow(scene, positions, range);
         let CohesionScratch { near, facets, patches, facing } = to;
         facets.clear();
         facets.extend((0..scene.bodies.len() as u32).flat_map(|body| {
@@ -50,7 +54,7 @@ impl CohesionTable {
             let corners = move |facet: &[u32; 3]| gather_corners(positions, facet.map(|atom| first + atom));
             scene.shape(body).facets.iter().map(move |facet| Facet::of(&corners(facet)))
         }));
-        let seen = Seen { table: self, scene, controls, positions, facets };
+        let seen = Seen { table: self, scene, controls, positions, facets, range };
         patches.resize_with(scene.batches(), Vec::new);
         patches.par_iter_mut().enumerate().for_each(|(batch, patches)| {
             patches.clear();

@@ -15,7 +15,7 @@ pub struct Patch {
     pub weights: &'static [f64; 3],
     /// What it is of the facet.
     pub share: f64,
-    /// Traction where they touch, of one side and of its part of the facet, pN/µm².
+    /// The largest traction, of one side and of its part of the facet, pN/µm².
     pub strength: f64,
     /// Opening beyond which there is none, µm.
     pub range: f64,

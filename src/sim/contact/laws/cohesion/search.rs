@@ -4,7 +4,7 @@ use super::super::super::vectors::gather_corners;
 use super::patch::{Partner, Patch, depth_of_well, width_of_well};
 use super::table::CohesionTable;
 use crate::Vec3;
-use crate::contact::{Scene, Sides, opening_to_facet, opening_to_plane};
+use crate::contact::{Plane, Scene, Sides, opening_to_facet, opening_to_plane};
 use crate::sim::controls::Controls;
 
 /// All surfaces at an instant.
@@ -14,6 +14,8 @@ pub struct Seen<'a> {
     pub controls: &'a Controls,
     pub positions: &'a [Vec3],
     pub facets: &'a [Facet],
+    /// The farthest that anything attracts, µm.
+    pub range: f64,
 }
 
 /// A facet at an instant.
@@ -53,10 +55,12 @@ impl Seen<'_> {
         let points = points_of_facet(self.table.points[of.shape as usize]);
         let share = 1.0 / points.len() as f64;
         for (facet, near) in (of.first_facet..).zip(near) {
-            if near.is_empty() && scene.planes.is_empty() {
+            let Facet { normal, middle, radius } = self.facets[facet as usize];
+            let is_near = |plane: &Plane| (middle - plane.point).dot(&plane.normal) < self.range + radius;
+            if near.is_empty() && !scene.planes.iter().any(is_near) {
                 continue;
             }
-            let (own, normal) = (scene.facet_atoms(body, facet), self.facets[facet as usize].normal);
+            let own = scene.facet_atoms(body, facet);
             let corners = gather_corners(self.positions, own);
             let mut first = 0;
             for weights in points {

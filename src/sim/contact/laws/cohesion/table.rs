@@ -5,7 +5,7 @@ use crate::contact::Scene;
 /// How two surfaces stick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cohesive {
-    /// Traction where they touch, pN/µm².
+    /// The largest traction, at half of the range, pN/µm².
     pub strength: f64,
     /// Work of separation, pN/µm.
     pub work: f64,

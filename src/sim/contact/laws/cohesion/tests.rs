@@ -139,3 +139,8 @@ fn a_box_on_a_floor_is_in_contact_with_its_floor_alone() {
         assert!((total - 96.0).abs() < 1e-9);
     }
 }
+
+#[test]
+fn a_patch_takes_as_much_memory_as_its_decision_says() {
+    assert_eq!((size_of::<Patch>(), size_of::<Facet>()), (64, 56));
+}
