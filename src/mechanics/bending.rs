@@ -10,6 +10,7 @@
 use super::hinge::{Hinge, HingeAtoms, hinge_atoms, rest_hinge};
 use super::lanes::{Real, Vectors, VectorsMut};
 use super::stiffness::StiffnessMatrix;
+use super::tangent::matrix::Blocks;
 use crate::Vec3;
 use crate::geometry::Flap;
 
@@ -80,6 +81,17 @@ impl Bending {
             fold.add_forces(f, hinge.atoms, sine * hinge.rigidity);
         }
         energy
+    }
+
+    /// Adds the tangent stiffness of each hinge against a change of its angle, eq. (step.10).
+    #[inline(always)]
+    pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
+        for hinge in &self.hinges {
+            let fold = Hinge::measure(x, hinge.atoms).fold(x.token, TINY);
+            let cosine = fold.cosine * hinge.cosine + fold.sine * hinge.sine;
+            let weight = cosine.max(T::constant(x.token, 0.0)) * hinge.rigidity;
+            blocks.add_square(hinge.atoms, fold.lifts(), weight);
+        }
     }
 
     /// Adds an isotropic bound of the stiffness at rest: equal to it for a flat mesh.

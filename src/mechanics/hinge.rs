@@ -77,6 +77,13 @@ impl<T: Real> Hinge<T> {
 }
 
 impl<T: Real> Fold<T> {
+    /// −∂θ/∂a, −∂θ/∂b, −∂θ/∂c and −∂θ/∂d, 1/µm.
+    #[inline(always)]
+    pub fn lifts(&self) -> [V3<T>; 4] {
+        let on_b = self.lift_c.times(self.foot_c) + self.lift_d.times(self.foot_d);
+        [on_b - (self.lift_c + self.lift_d), -on_b, self.lift_c, self.lift_d]
+    }
+
     /// Adds the forces of an energy whose derivative by θ is `slope` (pN·µm).
     #[inline(always)]
     pub fn add_forces(&self, f: &mut VectorsMut<T>, atoms: HingeAtoms, slope: T) {

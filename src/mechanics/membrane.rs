@@ -8,6 +8,8 @@
 
 use super::lanes::{Real, Vectors, VectorsMut};
 use super::stiffness::StiffnessMatrix;
+use super::tangent::facet::{Curvatures, Stretched};
+use super::tangent::matrix::Blocks;
 use crate::Vec3;
 
 /// How the energy of a membrane depends on its two principal stretches; moduli in pN/µm (= µN/m).
@@ -66,6 +68,47 @@ impl MembraneLaw {
         let mixed = (both / (4.0 * twice)).abs();
         let across = (along[0].1 / long).max(along[1].1 / short);
         (along[0].0.abs().max(along[1].0.abs()) + mixed).max(across)
+    }
+
+    /// The second derivatives of W by I twice, by I and D, and by D twice, pN/µm.
+    #[inline(always)]
+    fn second_derivatives<T: Real>(&self, token: T::Token, i: T, d: T) -> [T; 3] {
+        match *self {
+            Self::Skalak { shear, area } => [0.5 * shear, 0.0, 0.25 * (area - shear)].map(|c| T::constant(token, c)),
+            Self::NeoHookean { shear, area, hardening } => {
+                let per_j = T::constant(token, 1.0) / d.sqrt();
+                let (s, per_d) = (i * per_j + -2.0, per_j * per_j);
+                let slope = s * s * (3.0 * hardening * shear) + 0.5 * shear;
+                let bend = s * (6.0 * hardening * shear);
+                let half = i * per_d * 0.5;
+                [
+                    bend * per_d,
+                    -((slope * per_j * 0.5 + bend * half) * per_d),
+                    (bend * half * half + slope * half * per_j * 1.5 + per_j * (0.25 * area)) * per_d,
+                ]
+            }
+        }
+    }
+
+    /// How W bends with the principal stretches and with turns of their directions.
+    #[inline(always)]
+    fn curvatures<T: Real>(&self, token: T::Token, [a, b]: [T; 2]) -> Curvatures<T> {
+        let (aa, bb, j) = (a * a, b * b, a * b);
+        let (i, d) = (aa + bb, j * j);
+        let (_, by_i, by_d) = self.energy_density(token, i, d);
+        let [ii, id, dd] = self.second_derivatives(token, i, d);
+        // ∂I/∂a = 2a and ∂D/∂a = 2a b².
+        let twice = |a: T, bb: T| {
+            let (on_i, on_d) = (a * 2.0, a * bb * 2.0);
+            by_i * 2.0 + by_d * bb * 2.0 + (ii * on_i + id * on_d * 2.0) * on_i + dd * on_d * on_d
+        };
+        let mixed = (by_d + ii + id * (aa + bb) + dd * d) * j * 4.0;
+        Curvatures {
+            stretch: [twice(a, bb), mixed, twice(b, aa)],
+            twist: (by_i + by_d * j) * 2.0,
+            flip: (by_i - by_d * j) * 2.0,
+            out: [(by_i + by_d * bb) * 2.0, (by_i + by_d * aa) * 2.0],
+        }
     }
 
     /// W and its derivatives by I and by D, pN/µm.
@@ -169,6 +212,22 @@ impl Membrane {
         energy
     }
 
+    /// Adds the tangent stiffness of each facet, without what is negative of it, eq. (step.10).
+    #[inline(always)]
+    pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
+        for facet in &self.facets {
+            let corner = facet.atoms.map(|atom| x.get(atom as usize));
+            let sides = [corner[1] - corner[0], corner[2] - corner[0]];
+            let stretched = Stretched::measure(x.token, sides, facet.frame());
+            let bent = self.law.curvatures(x.token, stretched.stretches).positive(x.token);
+            for i in 0..3 {
+                for j in 0..=i {
+                    blocks.add(facet.atoms[i], facet.atoms[j], stretched.block(i, j, &bent, facet.area));
+                }
+            }
+        }
+    }
+
     /// Adds (µ + K) times the cotangent Laplacian of the rest shape: the stiffness against a longitudinal wave in the
     /// plane, and at least half of any facet's own small-strain stiffness. A facet that is stretched in the shape
     /// `x` counts as many times more as its law is stiffer there.
@@ -184,6 +243,15 @@ impl Membrane {
 }
 
 impl RestFacet {
+    /// The matrix [[p, q], [0, r]] that takes its edges at rest to a frame of unit vectors, 1/µm.
+    #[inline(always)]
+    fn frame(&self) -> [f64; 3] {
+        let [g11, g12, g22] = self.inverse;
+        let r = g22.sqrt();
+        let q = g12 / r;
+        [(g11 - q * q).max(0.0).sqrt(), q, r]
+    }
+
     /// Principal stretches of the facet in the shape `x`.
     fn stretches(&self, x: &[Vec3]) -> [f64; 2] {
         let [a, b, c] = self.atoms.map(|atom| x[atom as usize]);

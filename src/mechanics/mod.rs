@@ -27,6 +27,7 @@ pub mod springs;
 pub mod stability;
 pub mod stiffness;
 pub mod sum;
+pub mod tangent;
 pub mod tension;
 pub mod volume;
 
@@ -35,6 +36,7 @@ use control::{Context, Handle};
 use course::Course;
 use lanes::{LANES, Real, Vectors, VectorsMut};
 use stiffness::StiffnessMatrix;
+use tangent::matrix::Blocks;
 
 /// A force on the atoms of every cell of a kind. Drag is none: it is what the schemes divide by.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,6 +128,27 @@ impl Force {
             Self::Fibres(force) => force.add_stiffness(matrix),
             Self::Attraction(force) => force.add_stiffness(matrix),
             Self::Load(_) | Self::Gravity(_) => {}
+        }
+    }
+
+    /// Whether it has a tangent stiffness of its own, eq. (step.10).
+    pub fn has_tangent(&self) -> bool {
+        match self {
+            Self::Membrane(_) | Self::Bending(_) | Self::Springs(_) => true,
+            Self::Tension(force) => force.has_tangent(),
+            _ => false,
+        }
+    }
+
+    /// Adds its tangent stiffness for the cells at `x`, pN/µm, if it has one.
+    #[inline(always)]
+    fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
+        match self {
+            Self::Membrane(force) => force.add_tangent(x, blocks),
+            Self::Bending(force) => force.add_tangent(x, blocks),
+            Self::Springs(force) => force.add_tangent(x, blocks),
+            Self::Tension(force) if force.has_tangent() => force.add_tangent(x, blocks),
+            _ => {}
         }
     }
 

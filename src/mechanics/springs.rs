@@ -4,6 +4,7 @@
 
 use super::lanes::{Real, Vectors, VectorsMut};
 use super::stiffness::StiffnessMatrix;
+use super::tangent::matrix::Blocks;
 use crate::Vec3;
 
 /// A spring between two atoms.
@@ -61,6 +62,23 @@ impl Springs {
             f.sub(to, force);
         }
         energy
+    }
+
+    /// Adds the tangent stiffness of every spring: along itself, and across where it is drawn out, eq. (step.10).
+    #[inline(always)]
+    pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
+        let (zero, one) = (T::constant(x.token, 0.0), T::constant(x.token, 1.0));
+        for spring in &self.springs {
+            let along = x.get(spring.to as usize) - x.get(spring.from as usize);
+            let per_length = one / along.squared().max(T::constant(x.token, NO_LENGTH)).sqrt();
+            let across = ((one - per_length * spring.rest_length) * spring.stiffness).max(zero);
+            let direction = along.times(per_length);
+            let ends = [spring.from, spring.to];
+            blocks.add_square(ends, [-direction, direction], -across + spring.stiffness);
+            for (i, j, sign) in [(0, 0, 1.0), (1, 1, 1.0), (1, 0, -1.0)] {
+                blocks.add_isotropic(ends[i], ends[j], across * sign);
+            }
+        }
     }
 
     /// Adds the stiffness of every spring along itself, in all directions.

@@ -7,6 +7,7 @@
 use super::lanes::{Real, V3, Vectors, VectorsMut};
 use super::membrane::{add_cotangents, half_cotangents};
 use super::stiffness::StiffnessMatrix;
+use super::tangent::matrix::Blocks;
 use crate::Vec3;
 
 /// The tension of a closed or open surface, ready for all cells that share its mesh.
@@ -67,6 +68,30 @@ impl Tension {
             f.sub(facet[0] as usize, on_b + on_c);
         }
         area * self.tension + relative * excess * 0.5
+    }
+
+    /// Whether it has a tangent stiffness: the modulus of the total area has none that is sparse.
+    pub fn has_tangent(&self) -> bool {
+        self.total_area == 0.0
+    }
+
+    /// Adds the tangent stiffness of a positive tension against motion along the normals, eq. (step.10): along a flat surface it has none.
+    #[inline(always)]
+    pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
+        let tiny = T::constant(x.token, NO_AREA);
+        for &facet in &self.facets {
+            let (u, v, normal) = area_vector(x, facet);
+            let doubled = normal.squared().sqrt().max(tiny);
+            let n = normal.times(T::constant(x.token, 1.0) / doubled);
+            let sides = [v - u, -v, u];
+            let weight = T::constant(x.token, 0.5 * self.tension.max(0.0)) / doubled;
+            for i in 0..3 {
+                for j in 0..=i {
+                    let across = n.times(sides[i].dot(sides[j]) * weight);
+                    blocks.add(facet[i], facet[j], [across.times(n.x), across.times(n.y), across.times(n.z)]);
+                }
+            }
+        }
     }
 
     /// Adds (γ + 5k/4) times the cotangent Laplacian of the rest shape: exact for a tension on a nearly flat surface. When every

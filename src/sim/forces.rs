@@ -33,6 +33,16 @@ pub struct Forces<'a> {
 }
 
 impl Forces<'_> {
+    /// The factor of elastic forces in each lane of a block.
+    pub fn elastic_factors(&self, block: usize) -> [f64; LANES] {
+        let numbers = self.cells.numbers_of_block(self.kind, block);
+        let mut factors = [1.0; LANES];
+        if let Some(set) = self.controls.stiffness.get(numbers) {
+            factors.iter_mut().zip(set).for_each(|(slot, factor)| *slot = *factor);
+        }
+        factors
+    }
+
     /// Writes the sum of all forces on the atoms of a block at `x` and a time, pN, over `f`, and the energy of its cells (pN·µm) over
     /// `energy`. `rest` are the rest volumes of the cells; `spare` is scratch of the size of `x`.
     pub fn on_block(

@@ -4,7 +4,8 @@
 //! second-order step, eq. (step.3), is the two-stage W-method of Verwer et al. (1999), second order whatever K is:
 //! `A Y₁ = F(X)`, `A Y₂ = F(X + Y₁) − 2 (ζ/dt) Y₁`, `X⁺ = X + 3/2 Y₁ + 1/2 Y₂`, and `(Y₁ + Y₂)/2` estimates the error.
 //! Rigid motion is taken out of A, eq. (step.4). An incompressible cell's increments are those of the same system under
-//! the linearised constraint, eq. (step.5): one more solve gives the displacement S that a unit of pressure causes.
+//! the linearised constraint, eq. (step.5): one more solve gives the displacement S that a unit of pressure causes. Where no constant K
+//! tells how stiff the shapes of a cell are, it is the tangent stiffness of each cell, eq. (step.10).
 
 use rayon::prelude::*;
 
@@ -14,13 +15,14 @@ use super::kind::Kind;
 use super::model::Model;
 use super::planes::{self, TouchScratch};
 use super::pressure::{carry_pressure, constrain};
-use super::solver::{Solver, Stage, solve_block};
+use super::solver::{Solver, Stage, System, solve_block};
 use super::state::State;
 use super::targets::Targets;
 use super::thread_buffers::each_or_none;
 use super::workspace::{KindScratch, Workspace};
 use crate::mechanics::integrator::Order;
 use crate::mechanics::lanes::LANES;
+use crate::mechanics::tangent::Scales;
 
 /// γ of the two-stage scheme where K is a good stand-in for the true stiffness: damps what contacts make ring, for any K at or above a half
 /// of the true stiffness.
@@ -29,10 +31,14 @@ const DAMPING: f64 = 1.0;
 /// The same where K is far too large for some shapes, which are damped by that, and relax too slowly as it is.
 const EXACT: f64 = 0.5;
 
+/// The same with the tangent stiffness of each cell.
+const TANGENT: f64 = 1.0;
+
 /// γ for an order.
 pub fn gamma(kind: &Kind, order: Order) -> f64 {
     match order {
         Order::First => 1.0,
+        Order::Second if kind.tangent.is_some() => TANGENT,
         Order::Second if kind.is_told() => DAMPING,
         Order::Second => EXACT,
     }
@@ -95,7 +101,8 @@ fn advance_stages(
             .enumerate()
             .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), (kept, touch)))| {
                 let mut block = Block { number, x, rest, start, volume, target, energy, pressure, touch };
-                buffers.enter(length, |buffer| step.advance(&mut block, stages, kept, buffer))
+                buffers
+                    .enter_with_factor(length, |buffer, factor| step.advance(&mut block, stages, kept, buffer, factor))
             })
             .reduce(|| 0.0, larger);
         worst = larger(worst, error / kind.edge);
@@ -133,6 +140,26 @@ struct Block<'a> {
 }
 
 impl Step<'_> {
+    /// The linear system of the cells of a block; `factor` is scratch for one of their own.
+    fn system<'b>(&'b self, block: &Block, factor: &'b mut [f64]) -> System<'b> {
+        let (kind, dt) = (self.kind, self.dt);
+        let Some(tangent) = &kind.tangent else { return System::Shared(self.solver) };
+        let mobility = dt / kind.drag;
+        if !self.solver.own.is_empty() {
+            return System::Own { mobility, tangent, factor: &self.solver.own, lanes: (1, None) };
+        }
+        let elastic = self.forces.elastic_factors(block.number);
+        let scales = Scales {
+            diagonal: kind.drag / dt,
+            gamma: gamma(kind, self.order),
+            elastic: &elastic[..kind.lanes],
+            held: &kind.held,
+        };
+        let factor = &mut factor[..tangent.len(kind.lanes)];
+        tangent.factor(&kind.forces, kind.lanes, block.start, scales, factor);
+        System::Own { mobility, tangent, factor, lanes: (kind.lanes, None) }
+    }
+
     /// Takes a block through stages of the step. The increments of the first are `kept` where stages are made one by one. Returns the
     /// largest error estimate, µm.
     fn advance(
@@ -141,13 +168,15 @@ impl Step<'_> {
         stages: &[Stage],
         mut kept: Option<&mut [f64]>,
         [y, first, gradient, swell, spare, spare2]: [&mut [f64]; 6],
+        factor: &mut [f64],
     ) -> f64 {
         let (kind, end) = (self.kind, self.start + self.dt);
+        let system = self.system(block, factor);
         if let Some(targets) = &self.targets {
             targets.on_block(block.start, block.rest, gradient, block.volume, block.target);
             // The displacement that a unit of pressure causes, eq. (step.5).
             swell.copy_from_slice(gradient);
-            solve_block(kind, kind.lanes, self.solver, block.start, swell, spare, spare2);
+            solve_block(kind, kind.lanes, &system, block.start, swell, spare, spare2);
         }
         let mut error = 0.0;
         for &stage in stages {
@@ -159,11 +188,11 @@ impl Step<'_> {
             if stage == Stage::Second {
                 carry_pressure(kind, block.x, block.pressure, y, spare);
             }
-            self.solve(block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
+            self.solve(&system, block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
             block.go_on(stage, y, first);
             if stage == Stage::Second {
                 first.iter_mut().zip(&*y).for_each(|(first, y)| *first = 0.5 * (*first + y));
-                self.solver.filter(kind, block.start, first, spare, spare2);
+                system.filter(kind, block.start, first, spare, spare2);
                 error = root_mean_square(kind, first);
             }
             if let (Stage::First, Some(kept)) = (stage, &mut kept) {
@@ -176,6 +205,7 @@ impl Step<'_> {
     /// Turns forces into the increments of a stage, in place.
     fn solve(
         &self,
+        system: &System,
         block: &mut Block,
         stage: Stage,
         y: &mut [f64],
@@ -183,13 +213,13 @@ impl Step<'_> {
         (gradient, swell): (&[f64], &[f64]),
         [spare, spare2]: [&mut [f64]; 2],
     ) {
-        let &Self { model, kind, solver, order, .. } = self;
+        let &Self { model, kind, order, .. } = self;
         let Block { start, volume, target, pressure, touch, .. } = block;
         if stage == Stage::Second {
-            let back = 2.0 / solver.mobility;
+            let back = 2.0 / system.mobility();
             y.iter_mut().zip(first).for_each(|(y, k)| *y -= back * k);
         }
-        solve_block(kind, kind.lanes, solver, start, y, spare, spare2);
+        solve_block(kind, kind.lanes, system, start, y, spare, spare2);
         let mut wanted = [0.0; LANES];
         for lane in 0..kind.lanes {
             let missing = target[lane] - volume[lane];
@@ -197,7 +227,7 @@ impl Step<'_> {
         }
         let gamma = gamma(kind, order);
         constrain(kind, gamma, gradient, swell, &wanted[..kind.lanes], target, y, pressure);
-        let scene = planes::Scene { model, kind, solver, stage, gamma };
+        let scene = planes::Scene { model, kind, system: *system, stage, gamma };
         planes::correct_block(&scene, start, first, gradient, swell, target, y, pressure, touch);
     }
 }

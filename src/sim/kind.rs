@@ -9,6 +9,7 @@ use crate::mechanics::lanes::LANES;
 use crate::mechanics::load::Load;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::sum::stiffness;
+use crate::mechanics::tangent::Tangent;
 
 /// The cells that share a mesh and a material.
 #[derive(Debug, Clone)]
@@ -25,6 +26,8 @@ pub struct Kind {
     pub stiffness: StiffnessMatrix,
     /// The least ratio of the true stiffness at rest to K, over all shapes that a cell can take; 0 where some have none.
     pub softest_ratio: f64,
+    /// How each cell's own stiffness is made and factored, where K does not tell how stiff its shapes are.
+    pub tangent: Option<Tangent>,
     /// Largest eigenvalue of the true stiffness at rest, pN/µm.
     pub largest_stiffness: f64,
     /// Drag of an atom, pN·s/µm.
@@ -83,6 +86,7 @@ impl Kind {
             largest_stiffness: stiffness.largest(),
             stiffness,
             softest_ratio: 0.0,
+            tangent: None,
             forces,
             drag: 1.0,
             mass: 1.0,

@@ -5,6 +5,7 @@ use crate::Vec3;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::sum::{measure_elastic, stiffness};
+use crate::mechanics::tangent::Tangent;
 use crate::mechanics::{Force, rigid, volume};
 
 /// Rounds of the power iteration for the largest stiffness.
@@ -42,6 +43,15 @@ impl Kind {
     pub fn bound_stiffness(&mut self) {
         self.stiffness = self.stiffness_at(&self.rest.positions);
         self.softest_ratio = self.measure_softest_ratio();
+    }
+
+    /// Lets each cell have its own stiffness, eq. (step.10), where K overestimates the shear of a membrane too far. Not for cells that
+    /// others may touch: what contacts move is known for K, or for atoms that stand alone.
+    pub fn use_tangent(&mut self) {
+        let shears = |force: &Force| matches!(force, Force::Membrane(membrane) if membrane.law().shear() > 0.0);
+        if !self.is_told() && self.forces.iter().any(shears) {
+            self.tangent = Some(Tangent::new(&self.forces, &self.rest.positions));
+        }
     }
 
     /// The stiffness K of the implicit step for a cell in the shape `x` (µm): the linear part of its elastic forces there,

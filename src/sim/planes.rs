@@ -7,17 +7,18 @@
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
 use super::pressure::pressure;
-use super::solver::{Solver, Stage, solve_block};
+use super::solver::{Stage, System, solve_block};
 use crate::Vec3;
 
 /// What a correction needs to know.
+#[derive(Clone, Copy)]
 pub struct Scene<'a> {
     /// The model.
     pub model: &'a Model,
     /// The kind of the block.
     pub kind: &'a Kind,
-    /// Its solver.
-    pub solver: &'a Solver,
+    /// The linear system of its cells.
+    pub system: System<'a>,
     /// The stage of the step.
     pub stage: Stage,
     /// γ of the scheme.
@@ -104,7 +105,8 @@ pub fn correct_block(
             take_lane(from, lanes, lane, to);
         }
         take_lane(y, lanes, lane, &mut c.free);
-        pressure[lane] += correct_cell(scene, target[lane], scratch);
+        let of_cell = Scene { system: scene.system.of_lane(lane), ..*scene };
+        pressure[lane] += correct_cell(&of_cell, target[lane], scratch);
         for (row, value) in y.chunks_exact_mut(lanes).zip(&scratch.cell.moved) {
             row[lane] = *value;
         }
@@ -266,7 +268,7 @@ fn reach(scene: &Scene, target: f64, pair: Pair, s: &mut TouchScratch) {
     column.fill(0.0);
     column[3 * pair.0..3 * pair.0 + 3].copy_from_slice(scene.model.planes[pair.1].normal.as_slice());
     let c = &mut s.cell;
-    solve_block(kind, 1, scene.solver, &c.x, column, &mut c.spare, &mut c.spare2);
+    solve_block(kind, 1, &scene.system, &c.x, column, &mut c.spare, &mut c.spare2);
     let mut held = 0.0;
     if kind.volume != VolumeRule::Free {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

@@ -1,8 +1,10 @@
-//! The linear system of the implicit step: A = ζ/dt + γK, factored, with rigid motion taken out, eq. (step.4).
+//! The linear system of the implicit step: A = ζ/dt + γK, factored, with rigid motion taken out, eq. (step.4). K is the constant one
+//! of a kind or, where that tells nothing of some shapes, the tangent stiffness of each cell.
 
 use super::kind::Kind;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::stiffness::StiffnessMatrix;
+use crate::mechanics::tangent::{Scales, Tangent};
 use crate::mechanics::{rigid, volume};
 
 /// Which stage of a step a solve belongs to.
@@ -23,6 +25,8 @@ pub struct Solver {
     factors: Vec<Factor>,
     /// The same with the least that K may overestimate; none where it tells nothing.
     filters: Vec<Factor>,
+    /// The factor of the tangent stiffness of a cell that stands alone, and nothing of the above; else empty.
+    pub own: Vec<f64>,
 }
 
 impl Solver {
@@ -38,21 +42,74 @@ impl Solver {
             masks[..axes].iter().map(|mask| Factor::new(stiffness, kind.drag / dt, scale, mask)).collect()
         };
         let filters = if kind.is_told() { of(gamma * kind.softest_ratio) } else { Vec::new() };
-        Self { mobility: dt / kind.drag, factors: of(gamma), filters }
+        Self { mobility: dt / kind.drag, factors: of(gamma), filters, own: Vec::new() }
+    }
+
+    /// Factors ζ/dt + γJ for the cell of a kind that stands alone, with its tangent stiffness J in this shape (µm), elastic forces so
+    /// many times as strong. Without a shape each block of cells has its own system, and nothing is factored.
+    pub fn of_one(kind: &Kind, tangent: &Tangent, shape: &[f64], dt: f64, (gamma, elastic): (f64, f64)) -> Self {
+        let mut own = Vec::new();
+        if !shape.is_empty() {
+            own.resize(tangent.len(1), 0.0);
+            let scales = Scales { diagonal: kind.drag / dt, gamma, elastic: &[elastic], held: &kind.held };
+            tangent.factor(&kind.forces, 1, shape, scales, &mut own);
+        }
+        Self { mobility: dt / kind.drag, factors: Vec::new(), filters: Vec::new(), own }
+    }
+}
+
+/// The linear system of the cells of a block.
+#[derive(Debug, Clone, Copy)]
+pub enum System<'a> {
+    /// That of all cells of the kind.
+    Shared(&'a Solver),
+    /// That of each cell by itself.
+    Own {
+        /// Step over drag, µm/pN: the free mobility.
+        mobility: f64,
+        /// How it is solved.
+        tangent: &'a Tangent,
+        /// The factor of the block.
+        factor: &'a [f64],
+        /// Lanes of the block and, where one cell of them alone is meant, which.
+        lanes: (usize, Option<usize>),
+    },
+}
+
+impl System<'_> {
+    /// Step over drag, µm/pN: the free mobility.
+    pub fn mobility(&self) -> f64 {
+        match *self {
+            Self::Shared(solver) => solver.mobility,
+            Self::Own { mobility, .. } => mobility,
+        }
+    }
+
+    /// The same for one cell of the block alone.
+    pub fn of_lane(self, lane: usize) -> Self {
+        match self {
+            Self::Shared(_) => self,
+            Self::Own { mobility, tangent, factor, lanes } => {
+                Self::Own { mobility, tangent, factor, lanes: (lanes.0, Some(lane)) }
+            }
+        }
     }
 
     /// Takes out of an error what the stiff shapes of a cell have by being stiff, eq. (step.9); scratch has the same size.
     pub fn filter(&self, kind: &Kind, x: &[f64], error: &mut [f64], rigid: &mut [f64], scratch: &mut [f64]) {
-        if self.filters.is_empty() {
-            return;
+        let mobility = self.mobility();
+        match *self {
+            Self::Shared(solver) if solver.filters.is_empty() => {}
+            Self::Shared(solver) => {
+                error.iter_mut().for_each(|error| *error /= mobility);
+                let solve = |y: &mut [f64], scratch: &mut [f64]| solve_axes(&solver.filters, kind.lanes, y, scratch);
+                solve_with(solve, kind, (kind.lanes, mobility), x, error, rigid, scratch);
+            }
+            Self::Own { .. } => {
+                error.iter_mut().for_each(|error| *error /= mobility);
+                solve_block(kind, kind.lanes, self, x, error, rigid, scratch);
+            }
         }
-        error.iter_mut().for_each(|error| *error /= self.mobility);
-        solve_with(&self.filters, kind, (kind.lanes, self.mobility), x, error, rigid, scratch);
-    }
-
-    /// Solves in place for the vectors of a block of `lanes` cells; `scratch` has the same size.
-    pub fn solve(&self, lanes: usize, values: &mut [f64], scratch: &mut [f64]) {
-        solve_axes(&self.factors, lanes, values, scratch);
     }
 }
 
@@ -77,17 +134,22 @@ fn solve_axes(factors: &[Factor], lanes: usize, values: &mut [f64], scratch: &mu
 pub fn solve_block(
     kind: &Kind,
     lanes: usize,
-    solver: &Solver,
+    system: &System,
     x: &[f64],
     y: &mut [f64],
     spare: &mut [f64],
     spare2: &mut [f64],
 ) {
-    solve_with(&solver.factors, kind, (lanes, solver.mobility), x, y, spare, spare2);
+    let solve = |y: &mut [f64], scratch: &mut [f64]| match *system {
+        System::Shared(solver) => solve_axes(&solver.factors, lanes, y, scratch),
+        System::Own { tangent, factor, lanes: (all, Some(lane)), .. } => tangent.solve_lane((all, lane), factor, y),
+        System::Own { tangent, factor, lanes: (all, None), .. } => tangent.solve(all, factor, y),
+    };
+    solve_with(solve, kind, (lanes, system.mobility()), x, y, spare, spare2);
 }
 
 fn solve_with(
-    factors: &[Factor],
+    solve: impl Fn(&mut [f64], &mut [f64]),
     kind: &Kind,
     (lanes, mobility): (usize, f64),
     x: &[f64],
@@ -97,10 +159,10 @@ fn solve_with(
 ) {
     if kind.is_held() {
         volume::hold(lanes, &kind.held, y);
-        solve_axes(factors, lanes, y, spare);
+        solve(y, spare);
     } else {
         rigid::split_block(lanes, kind.atoms(), x, y, spare, mobility);
-        solve_axes(factors, lanes, y, spare2);
+        solve(y, spare2);
         rigid::join_block(lanes, kind.atoms(), x, y, spare);
     }
 }

@@ -12,9 +12,9 @@ const ARRAYS: usize = 6;
 /// Arrays of the shape of a block's positions.
 type Buffers = [Vec<f64>; ARRAYS];
 
-/// A set of buffers for each thread.
+/// A set of buffers for each thread, and one for the factor of the tangent stiffness of a block.
 #[derive(Debug, Default)]
-pub struct ThreadBuffers(Vec<Mutex<Buffers>>);
+pub struct ThreadBuffers(Vec<Mutex<(Buffers, Vec<f64>)>>);
 
 /// Nothing in them outlasts the work on a block.
 impl Clone for ThreadBuffers {
@@ -27,13 +27,16 @@ impl ThreadBuffers {
     /// Makes buffers for all threads, large enough for every block of a model. Nothing is allocated where they are there.
     pub fn suit(&mut self, model: &Model) {
         let longest = model.kinds.iter().map(|kind| kind.block_len()).max().unwrap_or(0);
+        let factor = model.kinds.iter().map(|kind| kind.tangent.as_ref().map_or(0, |tangent| tangent.len(kind.lanes)));
+        let factor = factor.max().unwrap_or(0);
         self.0.resize_with(rayon::current_num_threads().max(self.0.len()), Mutex::default);
         for own in &mut self.0 {
             let own = own.get_mut().unwrap_or_else(PoisonError::into_inner);
-            for array in own {
-                if array.len() < longest {
-                    array.reserve_exact(longest - array.len());
-                    array.resize(longest, 0.0);
+            let arrays = own.0.iter_mut().map(|array| (array, longest)).chain([(&mut own.1, factor)]);
+            for (array, length) in arrays {
+                if array.len() < length {
+                    array.reserve_exact(length - array.len());
+                    array.resize(length, 0.0);
                 }
             }
         }
@@ -44,16 +47,25 @@ impl ThreadBuffers {
     /// # Panics
     /// When there are none as long as this.
     pub fn enter<T>(&self, length: usize, work: impl FnOnce([&mut [f64]; ARRAYS]) -> T) -> T {
+        self.enter_with_factor(length, |arrays, _| work(arrays))
+    }
+
+    /// The same, and with the buffer of factors, as long as the longest of them.
+    ///
+    /// # Panics
+    /// When there are no buffers as long as this.
+    pub fn enter_with_factor<T>(&self, length: usize, work: impl FnOnce([&mut [f64]; ARRAYS], &mut [f64]) -> T) -> T {
         let own = &self.0[rayon::current_thread_index().unwrap_or(0) % self.0.len()];
         let mut own = own.lock().unwrap_or_else(PoisonError::into_inner);
-        work(own.each_mut().map(|array| &mut array[..length]))
+        let (arrays, factor) = &mut *own;
+        work(arrays.each_mut().map(|array| &mut array[..length]), factor)
     }
 
     /// Writes NaN over all numbers.
     pub fn poison(&mut self) {
         for own in &mut self.0 {
             let own = own.get_mut().unwrap_or_else(PoisonError::into_inner);
-            own.iter_mut().for_each(|array| array.fill(f64::NAN));
+            own.0.iter_mut().chain([&mut own.1]).for_each(|array| array.fill(f64::NAN));
         }
     }
 }

@@ -60,7 +60,7 @@ pub struct KindScratch {
     pub touch: Vec<TouchScratch>,
     /// One entry a block: the thorough projection.
     pub project: Vec<ProjectScratch>,
-    /// The shape that `stiffness` was made for, as in the state.
+    /// The shape that `stiffness`, or that of a cell that stands alone, was made for, as in the state.
     pub stiffness_shape: Vec<f64>,
     /// Factor of K that covers what chemistry makes of the stiffness of the cells.
     pub stiffening: f64,
@@ -112,13 +112,17 @@ impl KindScratch {
 
     /// The solver for a step, factored when it is new.
     pub fn solver(&mut self, kind: &Kind, dt: f64, gamma: f64) -> Arc<Solver> {
-        let gamma = gamma * self.stiffening;
-        let key = (dt.to_bits(), gamma.to_bits());
+        let raised = gamma * self.stiffening;
+        let key = (dt.to_bits(), raised.to_bits());
         if let Some(at) = self.factors.iter().position(|(known, _)| *known == key) {
             self.factors[..=at].rotate_right(1);
         } else {
             let stiffness = self.stiffness.as_ref().unwrap_or(&kind.stiffness);
-            let solver = Arc::new(Solver::new(kind, stiffness, dt, gamma));
+            let solver = match &kind.tangent {
+                Some(tangent) => Solver::of_one(kind, tangent, &self.stiffness_shape, dt, (gamma, self.stiffening)),
+                None => Solver::new(kind, stiffness, dt, raised),
+            };
+            let solver = Arc::new(solver);
             self.factors.truncate(FACTORS_KEPT - 1);
             self.factors.insert(0, (key, solver));
         }

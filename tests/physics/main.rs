@@ -13,6 +13,7 @@ mod inertial;
 mod modulus;
 mod motility;
 mod ordering;
+mod own_stiffness;
 mod population;
 mod sphere;
 mod stability_limits;

@@ -128,6 +128,9 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     };
     let integrator = steps::integrator(document, &mut kinds)?;
     let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach));
+    if contact.is_none() {
+        kinds.iter_mut().for_each(Kind::use_tangent);
+    }
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),

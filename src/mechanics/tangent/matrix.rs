@@ -1,0 +1,164 @@
+//! Blocks of a tangent stiffness of several cells side by side, to which forces add.
+
+use super::pattern::Pattern;
+use crate::mechanics::lanes::{Real, V3};
+
+/// A 3 × 3 matrix of one cell or of several side by side, by rows.
+pub type Block<T> = [V3<T>; 3];
+
+/// The blocks of a matrix with this pattern, `values[(9·block + 3·row + column)·stride + part]`.
+pub struct Blocks<'a, T: Real> {
+    /// The processor's token.
+    pub token: T::Token,
+    pattern: &'a Pattern,
+    values: &'a mut [T::Raw],
+    stride: usize,
+    part: usize,
+}
+
+impl<'a, T: Real> Blocks<'a, T> {
+    /// Sees part `part` of the `stride` registers that the lanes of a block of cells fill.
+    pub fn new(token: T::Token, pattern: &'a Pattern, values: &'a mut [T::Raw], stride: usize, part: usize) -> Self {
+        Self { token, pattern, values, stride, part }
+    }
+
+    /// Sets all to zero.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        let zero = T::constant(self.token, 0.0).raw();
+        self.values.iter_mut().skip(self.part).step_by(self.stride).for_each(|value| *value = zero);
+    }
+
+    /// A block.
+    #[inline(always)]
+    pub fn get(&self, block: usize) -> Block<T> {
+        read(self.token, self.values, self.stride, self.part, block)
+    }
+
+    /// Sets a block.
+    #[inline(always)]
+    pub fn set(&mut self, block: usize, [a, b, c]: Block<T>) {
+        let numbers = [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z];
+        if self.stride == 1 {
+            let slots = &mut self.values.as_chunks_mut::<9>().0[block];
+            for k in 0..9 {
+                slots[k] = numbers[k].raw();
+            }
+        } else {
+            let slots = &mut self.values[9 * block * self.stride..9 * (block + 1) * self.stride];
+            for k in 0..9 {
+                slots[k * self.stride + self.part] = numbers[k].raw();
+            }
+        }
+    }
+
+    /// Adds the block of the atoms i (row) and j (column), which is that of j and i transposed: each pair is added once.
+    ///
+    /// # Panics
+    /// When the pattern has no such block.
+    #[inline(always)]
+    pub fn add(&mut self, i: u32, j: u32, rows: Block<T>) {
+        let (block, is_turned) = self.pattern.block(i, j).expect("the pattern has all blocks that forces add to");
+        let rows = if is_turned { transposed(rows) } else { rows };
+        let [a, b, c] = self.get(block);
+        self.set(block, [a + rows[0], b + rows[1], c + rows[2]]);
+    }
+
+    /// Adds a number to the diagonal of a block of the atoms i and j.
+    #[inline(always)]
+    pub fn add_isotropic(&mut self, i: u32, j: u32, value: T) {
+        let zero = T::constant(self.token, 0.0);
+        let row = |x, y, z| V3 { x, y, z };
+        self.add(i, j, [row(value, zero, zero), row(zero, value, zero), row(zero, zero, value)]);
+    }
+
+    /// Adds `weight` times the square of a linear measure of the positions of some atoms, of which these are the gradients.
+    #[inline(always)]
+    pub fn add_square<const N: usize>(&mut self, atoms: [u32; N], gradient: [V3<T>; N], weight: T) {
+        for i in 0..N {
+            let g = gradient[i].times(weight);
+            for j in 0..=i {
+                let h = gradient[j];
+                self.add(atoms[i], atoms[j], [h.times(g.x), h.times(g.y), h.times(g.z)]);
+            }
+        }
+    }
+
+    /// Takes what is held out of the matrix: one factor an atom and axis, 0 where held. Rows and columns of it become those of the
+    /// identity.
+    #[inline(always)]
+    pub fn hold(&mut self, held: &[f64]) {
+        let pattern = self.pattern;
+        let of = |atom: usize| [0, 1, 2].map(|axis| held[3 * atom + axis]);
+        let kept = |row: V3<T>, [x, y, z]: [f64; 3], factor: f64| V3 {
+            x: row.x * (x * factor),
+            y: row.y * (y * factor),
+            z: row.z * (z * factor),
+        };
+        for column in pattern.columns() {
+            let across = of(column.atom);
+            let mut diagonal = self.get(column.atom);
+            for k in 0..3 {
+                diagonal[k] = kept(diagonal[k], across, across[k]);
+            }
+            diagonal[0].x += T::constant(self.token, 1.0 - across[0]);
+            diagonal[1].y += T::constant(self.token, 1.0 - across[1]);
+            diagonal[2].z += T::constant(self.token, 1.0 - across[2]);
+            self.set(column.atom, diagonal);
+            for (&row, number) in column.rows.iter().zip(column.first..) {
+                let (block, along) = (self.get(number), of(row as usize));
+                self.set(number, [0, 1, 2].map(|k| kept(block[k], across, along[k])));
+            }
+        }
+    }
+
+    /// Multiplies all blocks by a number of each lane.
+    #[inline(always)]
+    pub fn scale(&mut self, factor: T) {
+        for value in self.values.iter_mut().skip(self.part).step_by(self.stride) {
+            *value = (T::load(self.token, *value) * factor).raw();
+        }
+    }
+}
+
+/// Blocks that are only read.
+pub struct Seen<'a, T: Real> {
+    token: T::Token,
+    values: &'a [T::Raw],
+    stride: usize,
+    part: usize,
+}
+
+impl<'a, T: Real> Seen<'a, T> {
+    /// Sees part `part` of the `stride` registers that the lanes of a block of cells fill.
+    #[inline(always)]
+    pub fn new(token: T::Token, values: &'a [T::Raw], stride: usize, part: usize) -> Self {
+        Self { token, values, stride, part }
+    }
+
+    /// A block.
+    #[inline(always)]
+    pub fn get(&self, block: usize) -> Block<T> {
+        read(self.token, self.values, self.stride, self.part, block)
+    }
+}
+
+/// A block of values. Where registers hold all lanes its nine numbers stand side by side and are looked up at once.
+#[inline(always)]
+fn read<T: Real>(token: T::Token, values: &[T::Raw], stride: usize, part: usize, block: usize) -> Block<T> {
+    let v = |x: T::Raw, y: T::Raw, z: T::Raw| V3 { x: T::load(token, x), y: T::load(token, y), z: T::load(token, z) };
+    if stride == 1 {
+        let [a, b, c, d, e, f, g, h, i] = values.as_chunks::<9>().0[block];
+        [v(a, b, c), v(d, e, f), v(g, h, i)]
+    } else {
+        let slots = &values[9 * block * stride..9 * (block + 1) * stride];
+        let at = |k: usize| slots[k * stride + part];
+        [v(at(0), at(1), at(2)), v(at(3), at(4), at(5)), v(at(6), at(7), at(8))]
+    }
+}
+
+/// A block by its columns.
+#[inline(always)]
+pub fn transposed<T: Real>([a, b, c]: Block<T>) -> Block<T> {
+    [V3 { x: a.x, y: b.x, z: c.x }, V3 { x: a.y, y: b.y, z: c.y }, V3 { x: a.z, y: b.z, z: c.z }]
+}

@@ -1,0 +1,155 @@
+//! The tangent stiffness of each cell in the shape that it has: what the implicit step takes where no constant matrix tells how stiff
+//! the cells of a mesh are, eq. (step.10).
+//!
+//! It is the second derivative of the energies, without what is negative of a facet or a hinge, so that it is never less than the true
+//! stiffness and can always be factored. Forces without one of their own take their constant stiffness.
+
+pub mod facet;
+mod factor;
+pub mod matrix;
+mod pattern;
+#[cfg(test)]
+mod tests;
+
+use super::Force;
+use super::lanes::{BlockWork, LANES, Real, Vectors, VectorsMut, dispatch};
+use super::stiffness::StiffnessMatrix;
+use crate::Vec3;
+use matrix::Blocks;
+pub use pattern::Pattern;
+
+/// How the tangent stiffness of the cells of a kind is made and factored.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tangent {
+    pattern: Pattern,
+    /// Constant stiffness of the elastic forces, and of all others, that have no tangent stiffness: entries of the lower triangle.
+    constant: [Vec<(u32, u32, f64)>; 2],
+}
+
+/// What a factor is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct Scales<'a> {
+    /// Drag over step, pN/µm.
+    pub diagonal: f64,
+    /// Factor of all stiffness.
+    pub gamma: f64,
+    /// Factor of the stiffness of elastic forces in each lane.
+    pub elastic: &'a [f64],
+    /// One factor an atom and axis, 0 where held; empty when nothing is held.
+    pub held: &'a [f64],
+}
+
+impl Tangent {
+    /// Finds the pattern for the cells of a mesh with this rest shape (µm) and these forces.
+    pub fn new(forces: &[Force], rest: &[Vec3]) -> Self {
+        let mut whole = StiffnessMatrix::new(rest.len());
+        let mut constant = [StiffnessMatrix::new(rest.len()), StiffnessMatrix::new(rest.len())];
+        for force in forces {
+            force.add_stiffness(rest, rest, &mut whole);
+            if !force.has_tangent() {
+                force.add_stiffness(rest, rest, &mut constant[usize::from(!force.is_elastic())]);
+            }
+        }
+        let lower = |matrix: &StiffnessMatrix| -> Vec<(u32, u32, f64)> {
+            let rows = 0..matrix.atoms();
+            rows.flat_map(|i| matrix.row(i).filter(move |(j, _)| *j <= i).map(move |(j, v)| (i as u32, j as u32, v)))
+                .collect()
+        };
+        Self { pattern: Pattern::of(&whole), constant: [lower(&constant[0]), lower(&constant[1])] }
+    }
+
+    /// Numbers of the factor of a block of so many cells.
+    pub fn len(&self, lanes: usize) -> usize {
+        9 * self.pattern.blocks() * lanes
+    }
+
+    /// Makes and factors `diagonal + γ·stiffness` for a block of `lanes` cells at `x` (µm).
+    pub fn factor(&self, forces: &[Force], lanes: usize, x: &[f64], scales: Scales, values: &mut [f64]) {
+        dispatch(lanes, Make { tangent: self, forces, x, scales, values, is_factored: true });
+    }
+
+    /// Solves in place for a block of `lanes` cells with its factor.
+    pub fn solve(&self, lanes: usize, factor: &[f64], values: &mut [f64]) {
+        dispatch(lanes, Solve { pattern: &self.pattern, factor, values });
+    }
+
+    /// Solves in place for the cell of one lane of a block with the factor of all.
+    pub fn solve_lane(&self, (lanes, lane): (usize, usize), factor: &[f64], values: &mut [f64]) {
+        // Blocks of one lane are every so many-th number of all, as those of a part of a register's cells are.
+        solve_part::<f64>(&self.pattern, (), factor, (lanes, lane), values, (1, 0));
+    }
+}
+
+/// Solves for a part of the cells of a block; factor and values have a stride and a part each. The factor is only read.
+#[inline(always)]
+fn solve_part<T: Real>(
+    pattern: &Pattern,
+    token: T::Token,
+    factor: &[T::Raw],
+    (stride, part): (usize, usize),
+    values: &mut [T::Raw],
+    (own_stride, own_part): (usize, usize),
+) {
+    let factor = matrix::Seen::new(token, factor, stride, part);
+    factor::solve(pattern, &factor, &mut VectorsMut::<T>::new(token, values, own_stride, own_part));
+}
+
+struct Make<'a> {
+    tangent: &'a Tangent,
+    forces: &'a [Force],
+    x: &'a [f64],
+    scales: Scales<'a>,
+    values: &'a mut [f64],
+    is_factored: bool,
+}
+
+impl BlockWork for Make<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<T: Real>(self, token: T::Token, stride: usize) {
+        let Self { tangent: Tangent { pattern, constant }, forces, x, scales, values, is_factored } = self;
+        let (x, values) = (T::view(token, x), T::view_mut(token, values));
+        let mut elastic = [1.0; LANES];
+        elastic.iter_mut().zip(scales.elastic).for_each(|(slot, factor)| *slot = *factor);
+        for part in 0..stride {
+            let x = Vectors::<T>::new(token, x, stride, part);
+            let mut blocks = Blocks::<T>::new(token, pattern, &mut *values, stride, part);
+            blocks.clear();
+            forces.iter().filter(|force| force.is_elastic()).for_each(|force| force.add_tangent(&x, &mut blocks));
+            for &(i, j, value) in &constant[0] {
+                blocks.add_isotropic(i, j, T::constant(token, value));
+            }
+            blocks.scale(T::load(token, T::view(token, &elastic)[part]));
+            for &(i, j, value) in &constant[1] {
+                blocks.add_isotropic(i, j, T::constant(token, value));
+            }
+            if is_factored {
+                blocks.scale(T::constant(token, scales.gamma));
+                for atom in 0..pattern.atoms() as u32 {
+                    blocks.add_isotropic(atom, atom, T::constant(token, scales.diagonal));
+                }
+                if !scales.held.is_empty() {
+                    blocks.hold(scales.held);
+                }
+                factor::factor(pattern, &mut blocks);
+            }
+        }
+    }
+}
+
+struct Solve<'a> {
+    pattern: &'a Pattern,
+    factor: &'a [f64],
+    values: &'a mut [f64],
+}
+
+impl BlockWork for Solve<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<T: Real>(self, token: T::Token, stride: usize) {
+        let (factor, values) = (T::view(token, self.factor), T::view_mut(token, self.values));
+        for part in 0..stride {
+            solve_part::<T>(self.pattern, token, factor, (stride, part), &mut *values, (stride, part));
+        }
+    }
+}

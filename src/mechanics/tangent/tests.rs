@@ -1,0 +1,181 @@
+//! The tangent stiffness against differences of the forces, and its factor against dense matrices.
+
+use super::*;
+use crate::geometry::{Topology, icosphere};
+use crate::mechanics::bending::{Bending, RestAngle};
+use crate::mechanics::membrane::{Membrane, MembraneLaw};
+use crate::mechanics::springs::Springs;
+use crate::mechanics::sum::measure_elastic;
+use crate::mechanics::tension::Tension;
+
+/// The tangent stiffness of one cell, by columns of the whole matrix.
+fn whole(forces: &[Force], rest: &[Vec3], x: &[f64]) -> nalgebra::DMatrix<f64> {
+    let tangent = Tangent::new(forces, rest);
+    let mut values = vec![0.0; tangent.len(1)];
+    let scales = Scales { diagonal: 0.0, gamma: 1.0, elastic: &[], held: &[] };
+    dispatch(1, Make { tangent: &tangent, forces, x, scales, values: &mut values, is_factored: false });
+    let size = x.len();
+    let mut matrix = nalgebra::DMatrix::zeros(size, size);
+    for i in 0..rest.len() {
+        for j in 0..rest.len() {
+            let Some((block, is_turned)) = tangent.pattern.block(i as u32, j as u32) else { continue };
+            for (k, value) in values[9 * block..9 * block + 9].iter().enumerate() {
+                let (row, column) = if is_turned { (k % 3, k / 3) } else { (k / 3, k % 3) };
+                // Of a block on the diagonal all nine numbers are there.
+                matrix[(3 * i + row, 3 * j + column)] = *value;
+            }
+        }
+    }
+    matrix
+}
+
+/// The true stiffness by differences of the forces.
+fn by_differences(forces: &[Force], x: &[f64]) -> nalgebra::DMatrix<f64> {
+    let (size, epsilon) = (x.len(), 1e-6);
+    let force = |column: usize, shift: f64| {
+        let mut moved = x.to_vec();
+        moved[column] += shift;
+        let mut f = vec![0.0; size];
+        measure_elastic(forces, 1, &moved, &mut f, &mut [0.0]);
+        nalgebra::DVector::from_vec(f)
+    };
+    let columns: Vec<_> = (0..size).map(|c| (force(c, -epsilon) - force(c, epsilon)) / (2.0 * epsilon)).collect();
+    nalgebra::DMatrix::from_columns(&columns)
+}
+
+fn flat(x: &[Vec3]) -> Vec<f64> {
+    x.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
+}
+
+fn laws() -> [MembraneLaw; 2] {
+    [
+        MembraneLaw::Skalak { shear: 3.0, area: 50.0 },
+        MembraneLaw::NeoHookean { shear: 3.0, area: 50.0, hardening: 1.0 / 30.0 },
+    ]
+}
+
+#[test]
+fn at_rest_it_is_the_derivative_of_the_forces() {
+    let ball = icosphere(5.0, 1);
+    let (rest, flaps) = (&ball.positions, Topology::of(&ball).flaps);
+    let edges = Topology::of(&ball).edges.clone();
+    let mut forces: Vec<Force> =
+        laws().into_iter().map(|law| Force::Membrane(Membrane::new(rest, &ball.facets, law))).collect();
+    forces.push(Force::Bending(Bending::new(rest, &flaps, 0.7, RestAngle::Remembered)));
+    forces.push(Force::Springs(Springs::on_edges(rest, &edges, 2.0)));
+    for force in forces {
+        let forces = [force];
+        let (found, wanted) = (whole(&forces, rest, &flat(rest)), by_differences(&forces, &flat(rest)));
+        let off = (&found - &wanted).amax() / wanted.amax();
+        assert!(off < 1e-6, "{off}");
+    }
+}
+
+#[test]
+fn of_a_membrane_under_tension_it_is_the_derivative_in_any_shape() {
+    // All curvatures of the energy of a facet are positive where it is drawn out along both directions, but not alike.
+    let ball = icosphere(5.0, 1);
+    let drawn: Vec<Vec3> =
+        ball.positions.iter().map(|p| Vec3::new(1.25 * p.x, 1.2 * p.y + 0.03 * p.x * p.z, 1.3 * p.z)).collect();
+    for law in laws() {
+        let forces = [Force::Membrane(Membrane::new(&ball.positions, &ball.facets, law))];
+        let (found, wanted) = (whole(&forces, &ball.positions, &flat(&drawn)), by_differences(&forces, &flat(&drawn)));
+        let off = (&found - &wanted).amax() / wanted.amax();
+        assert!(off < 1e-6, "{law:?}: {off}");
+    }
+}
+
+#[test]
+fn it_is_never_negative_and_never_less_than_the_true_stiffness() {
+    let ball = icosphere(5.0, 1);
+    let bent: Vec<Vec3> = ball
+        .positions
+        .iter()
+        .map(|p| Vec3::new(1.6 * p.x, 0.7 * p.y + 0.05 * p.x * p.z, 0.6 * p.z + 0.04 * p.x * p.x))
+        .collect();
+    let mut forces: Vec<Force> =
+        laws().into_iter().map(|law| Force::Membrane(Membrane::new(&ball.positions, &ball.facets, law))).collect();
+    let edges = Topology::of(&ball).edges.clone();
+    forces.push(Force::Springs(Springs::on_edges(&ball.positions, &edges, 2.0)));
+    for force in forces {
+        let forces = [force];
+        let (found, wanted) = (whole(&forces, &ball.positions, &flat(&bent)), by_differences(&forces, &flat(&bent)));
+        let wanted = (&wanted + wanted.transpose()) * 0.5;
+        let size = found.amax();
+        let least = |matrix: nalgebra::DMatrix<f64>| nalgebra::SymmetricEigen::new(matrix).eigenvalues.min();
+        assert!(least(wanted.clone()) < -1e-3 * size, "a shape in which the true one is not positive");
+        assert!(least(found.clone()) > -1e-12 * size);
+        assert!(least(found - wanted) > -1e-6 * size);
+    }
+}
+
+#[test]
+fn tension_resists_along_normals_alone() {
+    // A flat sheet has no stiffness in its plane, and the Laplacian's across it.
+    let mut positions = Vec::new();
+    for i in 0..4 {
+        for j in 0..4 {
+            positions.push(Vec3::new(f64::from(i) + 0.1 * f64::from(j % 2), f64::from(j), 0.0));
+        }
+    }
+    let at = |i: u32, j: u32| 4 * i + j;
+    let facets: Vec<[u32; 3]> = (0..3)
+        .flat_map(|i| (0..3).map(move |j| (i, j)))
+        .flat_map(|(i, j)| [[at(i, j), at(i + 1, j), at(i, j + 1)], [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]])
+        .collect();
+    let forces = [Force::Tension(Tension::new(&positions, &facets, 4.0, 0.0))];
+    let (found, wanted) = (whole(&forces, &positions, &flat(&positions)), by_differences(&forces, &flat(&positions)));
+    for (at, value) in found.iter().enumerate() {
+        let (row, column) = (at % found.nrows(), at / found.nrows());
+        let wanted = if row % 3 == 2 && column % 3 == 2 { wanted[(row, column)] } else { 0.0 };
+        assert!((value - wanted).abs() < 1e-6, "{row} {column}: {value} {wanted}");
+    }
+}
+
+#[test]
+fn its_factor_solves_with_atoms_that_are_held_and_in_every_lane() {
+    let ball = icosphere(5.0, 2);
+    let rest = &ball.positions;
+    let forces = [Force::Membrane(Membrane::new(rest, &ball.facets, laws()[0]))];
+    let tangent = Tangent::new(&forces, rest);
+    let size = 3 * rest.len();
+    let mut held = vec![1.0; size];
+    (30..36).chain([91]).for_each(|at| held[at] = 0.0);
+    // Each lane is drawn out more, and twice as stiff as the one before.
+    let shape = |lane: usize| -> Vec<f64> {
+        flat(rest)
+            .iter()
+            .enumerate()
+            .map(|(at, x)| if at % 3 == 0 { x * (1.0 + 0.05 * lane as f64) } else { *x })
+            .collect()
+    };
+    let elastic: Vec<f64> = (0..LANES).map(|lane| 2f64.powi(lane as i32)).collect();
+    let side = |lane: usize| -> Vec<f64> { (0..size).map(|at| ((at * 7919 + lane) % 101) as f64 - 50.0).collect() };
+    let interleaved = |of: &dyn Fn(usize) -> Vec<f64>| -> Vec<f64> {
+        let lanes: Vec<Vec<f64>> = (0..LANES).map(of).collect();
+        (0..size).flat_map(|at| lanes.iter().map(move |lane| lane[at]).collect::<Vec<_>>()).collect()
+    };
+    let scales = Scales { diagonal: 2.0, gamma: 0.7, elastic: &elastic, held: &held };
+    let mut factor = vec![f64::NAN; tangent.len(LANES)];
+    tangent.factor(&forces, LANES, &interleaved(&shape), scales, &mut factor);
+    let mut y = interleaved(&side);
+    tangent.solve(LANES, &factor, &mut y);
+    for lane in 0..LANES {
+        let mut matrix = whole(&forces, rest, &shape(lane)) * (0.7 * elastic[lane]);
+        let mut right = nalgebra::DVector::from_vec(side(lane));
+        for at in 0..size {
+            matrix[(at, at)] += 2.0;
+        }
+        for at in (0..size).filter(|at| held[*at] == 0.0) {
+            matrix.row_mut(at).fill(0.0);
+            matrix.column_mut(at).fill(0.0);
+            matrix[(at, at)] = 1.0;
+        }
+        let mut alone: Vec<f64> = right.iter().copied().collect();
+        tangent.solve_lane((LANES, lane), &factor, &mut alone);
+        let found = nalgebra::DVector::from_iterator(size, y.iter().skip(lane).step_by(LANES).copied());
+        assert_eq!(alone, found.as_slice(), "one lane alone");
+        right -= &matrix * &found;
+        assert!(right.amax() < 1e-9, "{lane}: {}", right.amax());
+    }
+}
