@@ -53,4 +53,4 @@ mod fuzz_tests;
 #[cfg(test)]
 mod swept_tests;
 #[cfg(test)]
-mod test_scenes;
+pub(crate) mod test_scenes;

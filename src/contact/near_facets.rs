@@ -39,6 +39,11 @@ impl NearFacets {
         }
     }
 
+    /// Makes the lists for these positions alone.
+    pub fn find(&mut self, scene: &Scene, positions: &[Vec3], range: f64) {
+        self.collect(scene, positions, range);
+    }
+
     /// Forgets the lists, so that they are made anew.
     pub fn forget(&mut self) {
         self.positions.clear();

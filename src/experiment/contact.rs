@@ -57,6 +57,11 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub proximity: Option<Length>,
+    /// Opening below which surfaces count as area of contact in what is recorded; 0.3 um when absent, or ten of the smallest mean edge
+    /// where that is less.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub area_within: Option<Length>,
     /// Pull over area of contact at which cells of any two types part; nothing sticks when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]

@@ -5,7 +5,7 @@ use crate::Vec3;
 use crate::contact::{Contacts, Detector, Scene};
 use crate::output::{Frame, Touching, clusters};
 use crate::recorded::{ContactSeries, contact_quantities};
-use crate::sim::contact::{CohesionScratch, ContactScene, LinkScratch, Touching as Instant};
+use crate::sim::contact::{AreaScratch, CohesionScratch, ContactScene, LinkScratch, Touching as Instant};
 use crate::sim::{Model, State, Workspace};
 
 /// How many aggregates there are, and cells of the largest.
@@ -24,6 +24,7 @@ pub struct Touch {
     partners: Vec<(u32, u32)>,
     links: LinkScratch,
     cohesion: CohesionScratch,
+    area: AreaScratch,
     /// Energy of surfaces that attract each other, pN·µm.
     energy: f64,
     /// A cell, what it touches in the same way, and an area.
@@ -111,26 +112,20 @@ impl Touch {
         self.partners.dedup();
     }
 
-    /// Adds up the areas of contact, eq. (adhesion.8), in the order of atoms. Those of surfaces under the cohesive law are of facets.
+    /// Measures the areas of contact, eq. (adhesion.8). Bodies that touch with an atom or an edge belong together even without an area.
     fn measure_areas(&mut self, contact: &ContactScene, state: &State, frame: &mut Frame) {
         let bodies = contact.scene.bodies.len() as u32;
-        self.areas.clear();
-        for of_atom in self.partners.chunk_by(|one, other| one.0 == other.0) {
-            let atom = of_atom[0].0;
-            let (cell, area) = (contact.scene.body_of_atom(atom), contact.area_of(atom) / of_atom.len() as f64);
-            self.areas.extend(of_atom.iter().map(|&(_, other)| match other < bodies {
-                true => (cell.min(other), cell.max(other), 0.5 * area),
-                false => (cell, other, area),
-            }));
-        }
-        self.energy = 0.0;
-        if let Some(table) = contact.law.cohesion() {
-            let Self { cohesion, positions, areas, energy, .. } = self;
+        let Self { cohesion, area, positions, areas, partners, energy, .. } = self;
+        areas.clear();
+        areas.extend(partners.chunk_by(|one, other| one.0 == other.0).flat_map(|of_atom| {
+            let cell = contact.scene.body_of_atom(of_atom[0].0);
+            of_atom.iter().map(move |&(_, other)| (cell.min(other), cell.max(other), 0.0))
+        }));
+        contact.area.add_areas(&contact.scene, positions, area, areas);
+        *energy = contact.law.cohesion().map_or(0.0, |table| {
             table.find(&contact.scene, &state.chemistry.controls, positions, cohesion);
-            areas.retain(|(cell, other, _)| !table.sticks(&contact.scene, *cell, *other));
-            table.add_areas(&contact.scene, cohesion, positions, areas);
-            *energy = table.energy(&contact.scene, cohesion, positions);
-        }
+            table.energy(&contact.scene, cohesion, positions)
+        });
         // Edges have no area, and yet they join.
         let of_edges =
             self.found.edges.iter().map(|near| near.bodies(&contact.scene)).filter(|[one, other]| one != other);

@@ -325,23 +325,22 @@ fn sheets_that_lie_on_each_other_touch_with_all_their_area() {
     run(&document, &options, &mut Quiet).expect("a run");
     let file = ResultFile::open(&result).expect("a result");
     let area = |name: &str| file.scene_series(&format!("contact.area.{name}")).expect("a series")[0];
-    // 80 µm² each. The lowest shares them between the floor and the sheet above it, the middle one between both sheets,
-    // the highest gives all; of two sheets each counts half.
+    // 80 µm² each. A face has the nearest before it: the lower one of the lowest the floor, all others that of the next sheet.
     for (name, wanted) in [
-        ("low.floor", 40.0),
-        ("low.high", 0.5 * (40.0 + 40.0)),
-        ("high.high", 0.5 * (40.0 + 80.0)),
+        ("low.floor", 80.0),
+        ("low.high", 80.0),
+        ("high.high", 80.0),
         ("low.low", 0.0),
         ("high.floor", 0.0),
     ] {
-        // Round-off of sums over 30 atoms.
+        // Round-off of sums over parts of facets.
         assert!((area(name) - wanted).abs() < 1e-11, "{name}: {} µm² in place of {wanted}", area(name));
     }
     let pairs: Vec<[u32; 2]> =
         file.pairs(0).unwrap().iter().map(|pair| [pair.cell as u32, pair.other as u32]).collect();
     assert_eq!(pairs, [[0, 1], [1, 2]]);
     let values = |name: &str| file.summary().unwrap().into_iter().find(|measure| measure.name == name).unwrap().value;
-    assert!(values("none") == 0.0 && values("pair") > 39.9 && values("floor") > 39.9);
+    assert!(values("none") == 0.0 && values("pair") > 79.9 && values("floor") > 79.9);
     let chart = pseudopod::picture::plots::chart_of(&file, &document, &document.experiment.plot[0]).expect("a chart");
     assert_eq!((chart.series.len(), chart.y.label.as_str()), (2, "µm²"));
 }

@@ -5,7 +5,7 @@ use super::super::{Document, Experiment};
 use crate::contact::Reach;
 use crate::error::{Error, Fault, Result, short};
 use crate::sim::contact::{
-    AdhesiveTable, CohesionTable, Cohesive, ContactModel, Law, LinkTable, Penalty, Strength, Zones,
+    AREA_WITHIN, AdhesiveTable, CohesionTable, Cohesive, ContactModel, Law, LinkTable, Penalty, Strength, Zones,
 };
 use crate::sim::{Kind, Plane};
 use crate::units::{LineStiffness, Stress};
@@ -43,6 +43,27 @@ pub fn reach(document: &Document, kinds: &[Kind]) -> Result<Option<Reach>> {
 /// The shortest and the longest range of attraction over the mean edge of a mesh: below the one a facet hardly sees what its neighbour
 /// touches, and contacts stand where they are; beyond the other a cell is attracted through its neighbours.
 const RANGES: std::ops::RangeInclusive<f64> = 0.5..=10.0;
+
+/// Refuses a reach of areas beyond which all that a mesh has would be near everything.
+///
+/// # Errors
+/// A reach above ten edges of a mesh.
+pub fn check_area_within(document: &Document, kinds: &[Kind]) -> Result<()> {
+    let Some(within) = document.experiment.contact.as_ref().and_then(|text| text.area_within) else { return Ok(()) };
+    let Some(kind) = kinds.iter().min_by(|one, other| one.edge.total_cmp(&other.edge)) else { return Ok(()) };
+    if within.value() <= RANGES.end() * kind.edge {
+        return Ok(());
+    }
+    let fault = Fault::new(format!(
+        "areas of contact within {} um are too wide for the mesh of type `{}`, whose mean edge is {} um",
+        short(within.value()),
+        kind.name,
+        short(kind.edge)
+    ))
+    .help(format!("give at most ten edges, {} um, or leave it out", short(RANGES.end() * kind.edge)));
+    let location = document.location("contact.area_within", "above ten edges");
+    Err(Error::input(location.into_iter().fold(fault, Fault::at)))
+}
 
 /// Refuses ranges of attraction that do not fit the meshes of the cells that have them.
 ///
@@ -112,6 +133,10 @@ const PENALTY_DEPTH: f64 = 0.5;
 pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach: Reach) -> Option<ContactModel> {
     let text = experiment.contact.as_ref()?;
     let mut model = ContactModel::new(kinds, planes, reach);
+    let edges: Vec<f64> = kinds.iter().map(|kind| kind.edge).collect();
+    let widest = RANGES.end() * edges.iter().copied().fold(f64::INFINITY, f64::min);
+    let within = text.area_within.map_or(AREA_WITHIN.min(widest), |within| within.value());
+    model.area = CohesionTable::alike(&edges, planes.len(), within);
     match text.model {
         Text::Adhesives => {}
         Text::Cohesion => model.law = Law::Cohesion(CohesionTable::new(kinds.len(), planes.len())),
@@ -141,7 +166,7 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
         }
     }
     if let Law::Cohesion(table) = &mut model.law {
-        table.resolve(&kinds.iter().map(|kind| kind.edge).collect::<Vec<_>>());
+        table.resolve(&edges);
     }
     Some(model)
 }

@@ -119,6 +119,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     }
     let (reach, planes) = (contact::reach(document, &kinds)?, planes(experiment));
     contact::check_ranges(document, &kinds)?;
+    contact::check_area_within(document, &kinds)?;
     let centres = match reach {
         Some(reach) => spacing::centres_apart(document, &kinds, &planes, reach.proximity)?,
         None => {

@@ -45,10 +45,10 @@ pub use find::{
 };
 pub use hold::{hold_contacts, travel};
 pub use laws::{
-    AdhesiveScratch, AdhesiveTable, CohesionScratch, CohesionTable, Cohesive, Law, LinkScratch, LinkTable, Penalty,
+    AdhesiveScratch, AdhesiveTable, AreaScratch, CohesionScratch, CohesionTable, Cohesive, Law, LinkScratch, LinkTable, Penalty,
     Strength, Touching, Zones,
 };
-pub use model::ContactModel;
+pub use model::{AREA_WITHIN, ContactModel};
 pub use rows::{Pairing, Pull, Row};
 pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::laws::{Law, Strength};
+use super::laws::{CohesionTable, Law, Strength};
 use crate::contact::{self, Reach, Shape, Sides};
 use crate::geometry;
 use crate::mechanics::integrator::StepSize;
@@ -24,6 +24,8 @@ pub struct ContactModel {
     pub between: Vec<Strength>,
     /// Strength between kinds and planes: `on_planes[kind * planes + plane]`.
     pub on_planes: Vec<Strength>,
+    /// How areas of contact are measured: what is nearer than its range is in contact.
+    pub area: CohesionTable,
     /// What a sweep may still move at the end, µm.
     pub tolerance: f64,
     /// Sweeps after which a step is given up.
@@ -31,6 +33,9 @@ pub struct ContactModel {
     /// Area at rest of each atom of each kind, µm².
     pub(super) areas: Vec<Vec<f64>>,
 }
+
+/// How near surfaces are that count as area of contact, µm: what a light microscope does not tell apart.
+pub const AREA_WITHIN: f64 = 0.3;
 
 /// Sweeps over the contacts after which a step is given up; a shorter one costs less than more of them.
 const MOST_SWEEPS: u32 = 200;
@@ -50,7 +55,8 @@ impl ContactModel {
         let sides = |kind: &Kind| if kind.closed { Sides::Outer } else { Sides::Both };
         let shapes = kinds.iter().map(|kind| Shape::new(&kind.rest, sides(kind), 1.5 * reach.proximity));
         let plane = |plane: &Plane| contact::Plane { point: plane.point, normal: plane.normal };
-        let edge = kinds.iter().map(|kind| kind.edge).fold(f64::INFINITY, f64::min);
+        let edges: Vec<f64> = kinds.iter().map(|kind| kind.edge).collect();
+        let edge = edges.iter().copied().fold(f64::INFINITY, f64::min);
         Self {
             shapes: shapes.collect(),
             planes: planes.iter().map(plane).collect(),
@@ -58,6 +64,7 @@ impl ContactModel {
             law: Law::default(),
             between: vec![Strength::default(); kinds.len() * kinds.len()],
             on_planes: vec![Strength::default(); kinds.len() * planes.len()],
+            area: CohesionTable::alike(&edges, planes.len(), AREA_WITHIN),
             tolerance: TOLERANCE * edge,
             most_sweeps: MOST_SWEEPS,
             areas: kinds.iter().map(|kind| geometry::atom_areas(&kind.rest)).collect(),

@@ -90,12 +90,6 @@ impl ContactScene<'_> {
         self.first_atom[kind]..self.first_atom[kind + 1]
     }
 
-    /// The area at rest of an atom, µm².
-    pub fn area_of(&self, atom: u32) -> f64 {
-        let kind = self.owner(atom).0;
-        self.areas[kind][(atom as usize - self.first_atom[kind]) % self.areas[kind].len()]
-    }
-
     /// The kind of an atom and the number of its cell within that.
     pub(super) fn owner(&self, atom: u32) -> (usize, usize) {
         let kind = self.first_atom.partition_point(|first| *first <= atom as usize) - 1;

@@ -2,6 +2,9 @@
 //! is drawn to the other by a traction against how far open the space between them is there, eq. (adhesion.17), at most the strength σ and
 //! nothing from the range 2W/σ on, so that opening an area takes the work of separation W.
 
+mod area;
+#[cfg(test)]
+mod area_tests;
 mod patch;
 mod search;
 mod table;
@@ -10,20 +13,18 @@ mod tests;
 
 use rayon::prelude::*;
 
+pub use self::area::AreaScratch;
 use self::patch::{Partner, Patch};
-use self::search::{Facet, Seen};
+use self::search::{Seen, Surroundings};
 pub use self::table::{CohesionTable, Cohesive};
-use super::super::vectors::gather_corners;
 use crate::Vec3;
-use crate::contact::{NearFacets, Scene};
+use crate::contact::Scene;
 use crate::sim::controls::Controls;
 
 /// What the law finds where a step begins.
 #[derive(Debug, Clone, Default)]
 pub struct CohesionScratch {
-    near: NearFacets,
-    /// All facets.
-    facets: Vec<Facet>,
+    around: Surroundings,
     /// Those of each batch of bodies.
     patches: Vec<Vec<Patch>>,
     /// Area of contact around each atom, µm².
@@ -33,7 +34,7 @@ pub struct CohesionScratch {
 impl CohesionScratch {
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
-        self.near.forget();
+        self.around.near.forget();
         self.patches.clear();
         self.facing.clear();
     }
@@ -46,19 +47,15 @@ impl CohesionTable {
         if range == 0.0 {
             return to.clear();
         }
-        to.near.follow(scene, positions, range);
-        let CohesionScratch { near, facets, patches, facing } = to;
-        facets.clear();
-        facets.extend((0..scene.bodies.len() as u32).flat_map(|body| {
-            let first = scene.bodies[body as usize].first_atom;
-            let corners = move |facet: &[u32; 3]| gather_corners(positions, facet.map(|atom| first + atom));
-            scene.shape(body).facets.iter().map(move |facet| Facet::of(&corners(facet)))
-        }));
+        to.around.find(scene, positions, range, true);
+        let CohesionScratch { around: Surroundings { near, facets }, patches, facing } = to;
         let seen = Seen { table: self, scene, controls, positions, facets, range };
         patches.resize_with(scene.batches(), Vec::new);
         patches.par_iter_mut().enumerate().for_each(|(batch, patches)| {
             patches.clear();
-            scene.bodies_of(batch).for_each(|body| seen.find(body, near.of_body(scene, body), patches));
+            scene.bodies_of(batch).for_each(|body| {
+                seen.find(body, near.of_body(scene, body), |patch| patches.push(patch));
+            });
         });
         facing.clear();
         facing.resize(scene.atoms, 0.0);
@@ -83,22 +80,6 @@ impl CohesionTable {
             }
         }
         energy
-    }
-
-    /// Adds the areas of contact of what was found: a body, then another one, or the number of bodies and that of a plane, the first less
-    /// than the second, and the area that the first has of it, µm².
-    pub fn add_areas(&self, scene: &Scene, found: &CohesionScratch, now: &[Vec3], to: &mut Vec<(u32, u32, f64)>) {
-        let bodies = scene.bodies.len() as u32;
-        for patch in found.patches.iter().flatten() {
-            let (own, area) = (scene.body_of_atom(patch.own[0]), patch.area_in_contact(scene, now));
-            match patch.other {
-                Partner::Facet([atom, ..], _) => {
-                    let other = scene.body_of_atom(atom);
-                    to.push((own.min(other), own.max(other), 0.5 * area));
-                }
-                Partner::Plane(plane) => to.push((own, bodies + plane, area)),
-            }
-        }
     }
 
     /// The energy of what was found, where the atoms are now, pN·µm.

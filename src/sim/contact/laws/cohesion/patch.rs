@@ -92,11 +92,21 @@ impl Patch {
     /// The part of its area that is in contact, as seen from the other surface, µm²: all of it up to half of the range, from where on the
     /// traction falls.
     pub fn area_in_contact(&self, scene: &Scene, now: &[Vec3]) -> f64 {
-        let Some((opening, twice, ..)) = self.opening(scene, now) else { return 0.0 };
+        let held = |(opening, _): &(Opening, f64)| (2.0 - 2.0 * opening.width / self.range).min(1.0);
+        self.faced(scene, now).map_or(0.0, |faced| faced.1 * held(&faced))
+    }
+
+    /// Its area as far as the opening is less than the range, as seen from the other surface, µm².
+    pub fn area_within(&self, scene: &Scene, now: &[Vec3]) -> f64 {
+        self.faced(scene, now).map_or(0.0, |(_, area)| area)
+    }
+
+    /// Its opening, if it is less than the range, and its area as seen from the other surface, µm².
+    fn faced(&self, scene: &Scene, now: &[Vec3]) -> Option<(Opening, f64)> {
+        let (opening, twice, ..) = self.opening(scene, now)?;
         // 2/|q|² - 1 is the cosine between the normal and that of a plane across the way to it.
         let turned = (2.0 / opening.towards.norm_squared() - 1.0).max(0.0);
-        let held = (2.0 - 2.0 * opening.width / self.range).min(1.0);
-        self.share * 0.5 * twice.norm() * turned * held
+        Some((opening, self.share * 0.5 * twice.norm() * turned))
     }
 
     /// Energy E = −s A δ/2 φ(l/δ) and its forces, with s the strength, A the area of the facet, l the opening and δ the range.

@@ -4,8 +4,34 @@ use super::super::super::vectors::gather_corners;
 use super::patch::{Partner, Patch, depth_of_well, width_of_well};
 use super::table::CohesionTable;
 use crate::Vec3;
-use crate::contact::{Plane, Scene, Sides, opening_to_facet, opening_to_plane};
+use crate::contact::{NearFacets, Plane, Scene, Sides, opening_to_facet, opening_to_plane};
 use crate::sim::controls::Controls;
+
+/// The facets at an instant, and which are near which.
+#[derive(Debug, Clone, Default)]
+pub struct Surroundings {
+    pub near: NearFacets,
+    /// All facets.
+    pub facets: Vec<Facet>,
+}
+
+impl Surroundings {
+    /// Those at these positions, of facets nearer than `range` (µm) to each other. Where they are followed from instant to instant,
+    /// what is near is looked for some way farther and kept as long as it will do.
+    pub fn find(&mut self, scene: &Scene, positions: &[Vec3], range: f64, are_followed: bool) {
+        if are_followed {
+            self.near.follow(scene, positions, range);
+        } else {
+            self.near.find(scene, positions, range);
+        }
+        self.facets.clear();
+        self.facets.extend((0..scene.bodies.len() as u32).flat_map(|body| {
+            let first = scene.bodies[body as usize].first_atom;
+            let corners = move |facet: &[u32; 3]| gather_corners(positions, facet.map(|atom| first + atom));
+            scene.shape(body).facets.iter().map(move |facet| Facet::of(&corners(facet)))
+        }));
+    }
+}
 
 /// All surfaces at an instant.
 pub struct Seen<'a> {
@@ -49,8 +75,8 @@ struct Attracted {
 }
 
 impl Seen<'_> {
-    /// Adds the parts of a body that are attracted; `near` are the facets near each of its.
-    pub fn find<'a>(&self, body: u32, near: impl Iterator<Item = &'a [u32]>, to: &mut Vec<Patch>) {
+    /// Calls `found` with the parts of a body that are attracted; `near` are the facets near each of its.
+    pub fn find<'a>(&self, body: u32, near: impl Iterator<Item = &'a [u32]>, mut found: impl FnMut(Patch)) {
         let (scene, of) = (self.scene, self.scene.bodies[body as usize]);
         let points = points_of_facet(self.table.points[of.shape as usize]);
         let share = 1.0 / points.len() as f64;
@@ -66,9 +92,9 @@ impl Seen<'_> {
             for weights in points {
                 let x = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
                 let mut add = |own, n| {
-                    if let Some(found) = self.strongest(body, (x, n), near, &mut first) {
-                        let Attracted { strength, range, partner: other } = found;
-                        to.push(Patch { own, other, weights, share, strength: share * strength, range });
+                    if let Some(most) = self.strongest(body, (x, n), near, &mut first) {
+                        let Attracted { strength, range, partner: other } = most;
+                        found(Patch { own, other, weights, share, strength: share * strength, range });
                     }
                 };
                 add(own, normal);

@@ -42,6 +42,16 @@ impl CohesionTable {
         Self { between: vec![none; kinds * kinds], on_planes: vec![none; kinds * planes], points: vec![1; kinds] }
     }
 
+    /// A table in which all that is less than `range` (µm) apart is alike, of kinds with these mean edges (µm): to measure areas of contact.
+    pub fn alike(edges: &[f64], planes: usize, range: f64) -> Self {
+        let mut table = Self::new(edges.len(), planes);
+        let cohesive = Cohesive { strength: 1.0, work: 0.5 * range };
+        table.between.fill(cohesive);
+        table.on_planes.fill(cohesive);
+        table.resolve(edges);
+        table
+    }
+
     /// Sets how two kinds stick to each other.
     pub fn stick(&mut self, kind: usize, other: usize, cohesive: Cohesive) {
         let kinds = self.points.len();
