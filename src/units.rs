@@ -21,6 +21,6 @@ pub use dimension::{Dimension, label, pretty};
 pub use parse::{Measured, UnitError, parse, parse_as, parse_unit};
 pub(crate) use quantity::Written;
 pub use quantity::{
-    Acceleration, Angle, Drag, Energy, Force, Frequency, Length, LineStiffness, Mass, Quantity, Speed, Stress, Time,
-    Volume,
+    Acceleration, Angle, Drag, Energy, Force, Frequency, Length, LineStiffness, Mass, Quantity, Speed, Stress,
+    SurfaceDrag, Time, Volume,
 };

@@ -1,7 +1,7 @@
 //! Contacts between cells: how near is a contact, and how strongly which surfaces stick.
 
 use crate::recorded::Recorded;
-use crate::units::{Length, LineStiffness, Stress};
+use crate::units::{Length, LineStiffness, Stress, SurfaceDrag};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -66,10 +66,14 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub strength: Option<Stress>,
-    /// Shear over area of contact at which they slide; as `strength` when absent.
+    /// Shear over area of contact at which they slide; as `strength` when absent, or 0 where there is `friction`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub shear_strength: Option<Stress>,
+    /// Model cohesion: what resists sliding beyond `shear_strength`, over area of contact and speed; none when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub friction: Option<SurfaceDrag>,
     /// Energy that an area of contact releases, which spreads contacts against the tension of surfaces; none when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
@@ -109,10 +113,14 @@ pub struct Between {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub strength: Option<Stress>,
-    /// Shear over area of contact at which they slide; as `strength` when absent.
+    /// Shear over area of contact at which they slide; as `strength` when absent, or 0 where there is `friction`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub shear_strength: Option<Stress>,
+    /// Model cohesion: what resists sliding beyond `shear_strength`, over area of contact and speed; none when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-minimum" = 0))]
+    pub friction: Option<SurfaceDrag>,
     /// Energy that an area of contact releases; none when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]

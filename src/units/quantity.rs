@@ -31,6 +31,8 @@ pub type LineStiffness = Quantity<-1, 0, 1, 0>;
 pub type Energy = Quantity<1, 0, 1, 0>;
 /// A drag, pN·s/µm.
 pub type Drag = Quantity<-1, 1, 1, 0>;
+/// A friction of surfaces, drag over area, pN·s/µm³.
+pub type SurfaceDrag = Quantity<-3, 1, 1, 0>;
 /// A mass, pN·s²/µm = mg.
 pub type Mass = Quantity<-1, 2, 1, 0>;
 /// A volume, µm³.

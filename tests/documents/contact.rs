@@ -326,13 +326,9 @@ fn sheets_that_lie_on_each_other_touch_with_all_their_area() {
     let file = ResultFile::open(&result).expect("a result");
     let area = |name: &str| file.scene_series(&format!("contact.area.{name}")).expect("a series")[0];
     // 80 µm² each. A face has the nearest before it: the lower one of the lowest the floor, all others that of the next sheet.
-    for (name, wanted) in [
-        ("low.floor", 80.0),
-        ("low.high", 80.0),
-        ("high.high", 80.0),
-        ("low.low", 0.0),
-        ("high.floor", 0.0),
-    ] {
+    for (name, wanted) in
+        [("low.floor", 80.0), ("low.high", 80.0), ("high.high", 80.0), ("low.low", 0.0), ("high.floor", 0.0)]
+    {
         // Round-off of sums over parts of facets.
         assert!((area(name) - wanted).abs() < 1e-11, "{name}: {} µm² in place of {wanted}", area(name));
     }

@@ -1,5 +1,6 @@
 //! Cells move, stick and feel chemistry as the equations of the book say.
 
+mod areas;
 mod cohesion;
 mod contact;
 mod contact_fuzz;
@@ -8,6 +9,7 @@ mod coupling;
 mod events;
 mod fibres;
 mod forces;
+mod friction;
 mod glossary;
 mod inertial;
 mod modulus;

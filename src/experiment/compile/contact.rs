@@ -8,7 +8,7 @@ use crate::sim::contact::{
     AREA_WITHIN, AdhesiveTable, CohesionTable, Cohesive, ContactModel, Law, LinkTable, Penalty, Strength, Zones,
 };
 use crate::sim::{Kind, Plane};
-use crate::units::{LineStiffness, Stress};
+use crate::units::{LineStiffness, Stress, SurfaceDrag};
 
 /// The proximity over the smallest mean edge where the user names none.
 const PROXIMITY: f64 = 0.1;
@@ -85,7 +85,7 @@ pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
     let mut faults = Vec::new();
     for (path, (strength, energy), of) in std::iter::once(all).chain(pairs) {
         let (Some(strength), Some(energy)) = (strength, energy) else { continue };
-        let range = Cohesive { strength: strength.value(), work: energy.value() }.range();
+        let range = Cohesive { strength: strength.value(), work: energy.value(), friction: 0.0 }.range();
         let coarse = of.iter().map(|kind| &kinds[*kind]).max_by(|one, other| one.edge.total_cmp(&other.edge));
         let fine = of.iter().map(|kind| &kinds[*kind]).min_by(|one, other| one.edge.total_cmp(&other.edge));
         let (Some(coarse), Some(fine)) = (coarse, fine) else { continue };
@@ -154,28 +154,31 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
         }
     }
     if let Some(strength) = text.strength {
-        let strength = strength_of(strength, text.shear_strength, text.energy);
+        let strength = strength_of(strength, (text.shear_strength, text.friction), text.energy);
         for kind in 0..kinds.len() {
-            (kind..kinds.len()).for_each(|other| stick(&mut model, Pair::Types(kind, other), strength));
+            (kind..kinds.len()).for_each(|other| stick(&mut model, Pair::Types(kind, other), strength, text.friction));
         }
     }
     for between in &text.between {
-        let strength = strength_of(between.strength.unwrap_or_default(), between.shear_strength, between.energy);
+        let shear = (between.shear_strength, between.friction);
+        let strength = strength_of(between.strength.unwrap_or_default(), shear, between.energy);
         if let Some(pair) = between.pair(experiment) {
-            stick(&mut model, pair, strength);
+            stick(&mut model, pair, strength, between.friction);
         }
     }
     if let Law::Cohesion(table) = &mut model.law {
         table.resolve(&edges);
+        table.resists = table.has_friction() || model.between.iter().chain(&model.on_planes).any(|it| it.shear > 0.0);
     }
     Some(model)
 }
 
 /// Writes how two surfaces stick where the law of contact has it. Under cohesion contacts carry only the shear.
-fn stick(model: &mut ContactModel, pair: Pair, strength: Strength) {
+fn stick(model: &mut ContactModel, pair: Pair, strength: Strength, friction: Option<SurfaceDrag>) {
     let strength = match &mut model.law {
         Law::Cohesion(table) => {
-            let cohesive = Cohesive { strength: strength.tensile, work: strength.energy };
+            let friction = friction.map_or(0.0, |friction| friction.value());
+            let cohesive = Cohesive { strength: strength.tensile, work: strength.energy, friction };
             match pair {
                 Pair::Types(one, other) => table.stick(one, other, cohesive),
                 Pair::OnPlane(kind, plane) => table.stick_to_plane(kind, plane, cohesive),
@@ -190,9 +193,15 @@ fn stick(model: &mut ContactModel, pair: Pair, strength: Strength) {
     }
 }
 
-fn strength_of(strength: Stress, shear: Option<Stress>, energy: Option<LineStiffness>) -> Strength {
+fn strength_of(
+    strength: Stress,
+    (shear, friction): (Option<Stress>, Option<SurfaceDrag>),
+    energy: Option<LineStiffness>,
+) -> Strength {
     let energy = energy.map_or(0.0, |energy| energy.value());
-    Strength { tensile: strength.value(), shear: shear.unwrap_or(strength).value(), energy }
+    // What rubs is not stuck as well, unless the document says so.
+    let else_shear = if friction.is_some() { Stress::ZERO } else { strength };
+    Strength { tensile: strength.value(), shear: shear.unwrap_or(else_shear).value(), energy }
 }
 
 /// Which types are glued to each other and to planes, and how well. As with strengths, cells stick to planes that are named only.

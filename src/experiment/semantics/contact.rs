@@ -39,6 +39,7 @@ impl Check<'_> {
         }
         if contact.model == ContactModel::Cohesion {
             self.work_of_separation(contact);
+            self.friction(contact);
         }
         let mut named: Vec<Pair> = Vec::new();
         for (index, between) in contact.between.iter().enumerate() {
@@ -79,6 +80,21 @@ impl Check<'_> {
                 let message = format!("`{path}.energy` is given with a strength of 0");
                 let help = "give a `strength` above 0, or leave `energy` out";
                 self.fault(&format!("{path}.energy"), "nothing to open with it", message, help);
+            }
+        }
+    }
+
+    /// Friction of surfaces that do not attract each other: nothing says over which area it acts.
+    fn friction(&mut self, contact: &Contact) {
+        let all = (String::from("contact"), contact.strength, contact.friction);
+        let pairs = contact.between.iter().enumerate();
+        let pairs = pairs.map(|(index, pair)| (format!("contact.between[{index}]"), pair.strength, pair.friction));
+        for (path, strength, friction) in std::iter::once(all).chain(pairs) {
+            let rubs = friction.is_some_and(|friction| friction.value() > 0.0);
+            if rubs && strength.is_none_or(|strength| strength.value() == 0.0) {
+                let message = format!("`{path}.friction` is given without a `strength` above 0");
+                let help = "give a `strength` and an `energy`, however small: surfaces rub where they are nearer than the energy over the strength";
+                self.fault(&format!("{path}.friction"), "over which area?", message, help);
             }
         }
     }
@@ -217,6 +233,7 @@ fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
     let mut keys: Vec<(String, bool, &[ContactModel])> = vec![
         ("strength".into(), contact.strength.is_some(), &[Adhesives, Cohesion, Penalty]),
         ("shear_strength".into(), contact.shear_strength.is_some(), &[Adhesives, Cohesion]),
+        ("friction".into(), contact.friction.is_some(), &[Cohesion]),
         ("energy".into(), contact.energy.is_some(), &[Adhesives, Cohesion]),
         ("link".into(), contact.link.is_some(), &[Links]),
         ("range".into(), contact.range.is_some(), &[Links]),
@@ -228,6 +245,7 @@ fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
         let path = |key: &str| format!("between[{index}].{key}");
         keys.push((path("strength"), between.strength.is_some(), &[Adhesives, Cohesion, Penalty]));
         keys.push((path("shear_strength"), between.shear_strength.is_some(), &[Adhesives, Cohesion]));
+        keys.push((path("friction"), between.friction.is_some(), &[Cohesion]));
         keys.push((path("energy"), between.energy.is_some(), &[Adhesives, Cohesion]));
         keys.push((path("link"), between.link.is_some(), &[Links]));
         keys.push((path("kappa"), between.kappa.is_some(), &[VirtualAdhesives]));

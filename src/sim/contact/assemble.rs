@@ -1,6 +1,6 @@
 //! Writes the rows of the system that the sweeps solve.
 
-use super::laws::Strength;
+use super::laws::{Faced, Facing, Strength, area_between};
 use super::rows::{Pairing, Pull, Row};
 use super::scene::ContactScene;
 use super::scratch::empty_for;
@@ -16,14 +16,14 @@ pub(super) const SHARE: f64 = 0.5;
 /// unresolved, so that its side and, over ridges and in grooves, its normals are told by more than noise.
 const SKIN: f64 = 0.05;
 
-/// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them. `facing` is the
-/// area of contact around each atom, µm²; where nothing is given, or surfaces do not attract each other, that at rest is taken.
+/// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them. `facing` has the
+/// areas of contact around atoms; where surfaces do not attract each other that at rest is taken.
 pub fn write_rows(
     model: &ContactScene,
     found: &Contacts,
     before: &ContactState,
     controls: &Controls,
-    facing: &[f64],
+    facing: &[Facing],
     rows: &mut Vec<Row>,
     pulls: &mut Vec<Pull>,
 ) {
@@ -35,7 +35,7 @@ pub fn write_rows(
                    coordinates,
                    Normal([x, y, z]),
                    gap: f64,
-                   [least, shear]: [f64; 2],
+                   [least, shear, friction]: [f64; 3],
                    (force, stored): ([f32; 3], f32)| {
         let normal_and_gap = [x, y, z, gap as f32];
         let (least, shear) = (least as f32, shear as f32);
@@ -45,6 +45,7 @@ pub fn write_rows(
             normal_and_gap,
             least,
             shear,
+            friction: friction as f32,
             compliance: 0.0,
             across: 0.0,
             kept: 1.0,
@@ -81,14 +82,12 @@ pub fn write_rows(
         let own = other == body;
         let strength = if own { Strength::default() } else { model.strength_between(body, other) };
         let kind = model.kind_of(body as u32);
-        let facing = facing.get(contact.atom as usize).filter(|_| model.sticks_by_area(body as u32, on));
-        let area = match facing {
-            Some(area) => area / contacts_of_atom(scene, found, number) as f64,
-            None => {
-                let area = model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
-                area / contacts_on_body(scene, found, number) as f64
-            }
+        let cohesive = if own { None } else { model.cohesion_of(body as u32, Faced::Body(on)) };
+        let area = match cohesive {
+            Some(_) => area_between(facing, contact.atom, Faced::Body(on)),
+            None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
         };
+        let area = area / contacts_on_body(scene, found, number) as f64;
         let area = SHARE * area;
         let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
         add(
@@ -97,7 +96,7 @@ pub fn write_rows(
             contact.second_weights,
             contact.normal,
             contact.gap - if own || model.is_thin(on) { skin } else { 0.0 },
-            [-strength.tensile * area, strength.shear * area],
+            [-strength.tensile * area, strength.shear * area, cohesive.map_or(0.0, |it| it.friction * area)],
             carried,
         );
     }
@@ -117,7 +116,7 @@ pub fn write_rows(
             contact.along,
             contact.normal,
             contact.gap - if is_thin { skin } else { 0.0 },
-            [0.0, 0.0],
+            [0.0; 3],
             (same.map_or([0.0; 3], |bond| bond.force), 0.0),
         );
     }
@@ -133,10 +132,11 @@ pub fn write_rows(
         let same = before.planes.get(first).filter(|bond| (bond.atom, bond.plane) == key);
         let kind = model.kind_of(body as u32);
         let strength = model.strength_on(body, contact.plane);
-        let at_rest = || model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize];
-        let plane = scene.bodies.len() as u32 + contact.plane;
-        let facing = facing.get(contact.atom as usize).filter(|_| model.sticks_by_area(body as u32, plane));
-        let area = facing.copied().unwrap_or_else(at_rest);
+        let cohesive = model.cohesion_of(body as u32, Faced::Plane(contact.plane));
+        let area = match cohesive {
+            Some(_) => area_between(facing, contact.atom, Faced::Plane(contact.plane)),
+            None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
+        };
         let area = area * controls.adhesion_of(body);
         add(
             Pairing::AtomOnPlane,
@@ -144,7 +144,7 @@ pub fn write_rows(
             [0.0; 2],
             scene.planes[contact.plane as usize].normal.into(),
             contact.gap,
-            [-strength.tensile * area, strength.shear * area],
+            [-strength.tensile * area, strength.shear * area, cohesive.map_or(0.0, |it| it.friction * area)],
             same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.stored)),
         );
     }
@@ -156,14 +156,4 @@ fn contacts_on_body(scene: &Scene, found: &Contacts, number: usize) -> usize {
     let same = |other: &&AtomContact| other.atom == this.atom && other.body(scene) == this.body(scene);
     let before = found.atoms[..number].iter().rev().take_while(same).count();
     before + found.atoms[number..].iter().take_while(same).count()
-}
-
-/// How many contacts the atom of a contact has with other bodies, which share the area of contact around it.
-fn contacts_of_atom(scene: &Scene, found: &Contacts, number: usize) -> usize {
-    let atom = found.atoms[number].atom;
-    let own = scene.body_of_atom(atom);
-    let same = |other: &&AtomContact| other.atom == atom;
-    let counts = |other: &&AtomContact| other.body(scene) != own;
-    let before = found.atoms[..number].iter().rev().take_while(same).filter(counts).count();
-    (before + found.atoms[number..].iter().take_while(same).filter(counts).count()).max(1)
 }

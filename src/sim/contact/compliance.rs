@@ -23,6 +23,11 @@ fn all_stored(row: &Row, along: f64, across: Vec3) -> f64 {
 /// Sets how much of a contact's change is held where it carries this, eq. (adhesion.5). Of a spring that became softer since it
 /// was loaded, as a contact in longer steps is, more would come back than went in: not so `in_account`.
 pub fn set_compliance(row: &mut Row, pull: &Pull, in_account: bool) {
+    if row.friction > 0.0 {
+        // What rubs gives way by that, and its forces are determined.
+        row.kept = 1.0;
+        return;
+    }
     let (along, across) = holding(row, pull.carried());
     let full = COMPLIANCE * all_stored(row, along, across);
     let returned = 2.0 * f64::from(row.stored);
@@ -63,6 +68,7 @@ mod tests {
             normal_and_gap,
             least,
             shear,
+            friction: 0.0,
             compliance: compliance as f32,
             across: compliance as f32,
             kept: 1.0,

@@ -6,6 +6,7 @@ use super::gather::gather_positions;
 use super::laws::Touching;
 use super::remember::find_at;
 use super::rows::{Pull, Row};
+use super::rub::write_rubbing;
 use super::scene::ContactScene;
 use super::scratch::{ContactForces, ContactScratch, empty_for};
 use super::spread::{add_spreading, releases_energy};
@@ -36,7 +37,9 @@ pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
         Touching { scene: &contact.scene, controls: &state.chemistry.controls, found: &s.found, positions: &s.start };
     contact.law.find(&model.kinds, now, &state.contact, state.time, &mut s.law);
     let facing = &s.law.cohesion.facing;
-    write_rows(contact, &s.found, &state.contact, &state.chemistry.controls, facing, &mut s.rows, &mut s.pulls);
+    let controls = &state.chemistry.controls;
+    write_rows(contact, &s.found, &state.contact, controls, facing, &mut s.rows, &mut s.pulls);
+    write_rubbing(contact, &s.found, controls, facing, &s.start, &mut s.rows, &mut s.pulls);
     if model.integrator.method.is_inertial() || !contact.law.projects() {
         s.pulls.fill(Pull::default());
     }
@@ -132,7 +135,9 @@ pub(super) fn write_contacts(
 fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds: &mut ContactState) {
     let ContactState { atoms, edges, planes, .. } = bonds;
     let (of_atoms, others) = pulls.split_at(found.atoms.len());
-    let (of_edges, of_planes) = others.split_at(found.edges.len());
+    let (of_edges, others) = others.split_at(found.edges.len());
+    // What rubs without touching is found anew in each step.
+    let of_planes = &others[..found.planes.len()];
     empty_for(atoms, found.atoms.len());
     for ((pull, row), contact) in of_atoms.iter().zip(rows).zip(&found.atoms) {
         let &AtomContact { atom, facet, facing, .. } = contact;
@@ -145,7 +150,7 @@ fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds: &mut Conta
         edges.push(EdgeBond { edges: contact.edges, normal: contact.normal.0, force: pull.force });
     }
     empty_for(planes, found.planes.len());
-    let rows = &rows[rows.len() - of_planes.len()..];
+    let rows = &rows[found.atoms.len() + found.edges.len()..];
     for ((pull, row), contact) in of_planes.iter().zip(rows).zip(&found.planes) {
         let &PlaneContact { atom, plane, .. } = contact;
         planes.push(PlaneBond { atom, plane, force: pull.force, stored: stored_after(row, pull) });

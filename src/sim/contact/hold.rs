@@ -45,7 +45,7 @@ pub fn hold_contacts(
     }
     prepare(model, contact, dt, from, to, s, kinds, buffers);
     load_rows(contact, rules, s);
-    let left = sweep(model, contact, rules, s);
+    let left = sweep(model, contact, dt, rules, s);
     if rules.mends && s.rows.iter().any(|row| row.gap() < 0.0) {
         mend(model, contact, s);
     }
@@ -109,7 +109,7 @@ fn for_each_part(
 }
 
 /// Sweeps until nothing moves any more; returns what the last sweep changed.
-fn sweep(model: &Model, contact: &ContactScene, rules: SweepRules, s: &mut ContactScratch) -> Change {
+fn sweep(model: &Model, contact: &ContactScene, dt: f64, rules: SweepRules, s: &mut ContactScratch) -> Change {
     let keeps_start = contact.law.needs_start();
     let mut before = std::mem::take(if keeps_start { &mut s.before } else { &mut s.start });
     let mut direction = std::mem::take(&mut s.forces.carried);
@@ -121,7 +121,7 @@ fn sweep(model: &Model, contact: &ContactScene, rules: SweepRules, s: &mut Conta
     let (mut change, mut share) = (Change::default(), 0.0);
     for number in 1..=contact.most_sweeps {
         change = Change::default();
-        sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, &mut s.mobility, share, &mut change);
+        sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, &mut s.mobility, (dt, share), &mut change);
         s.law.adhesives.sweep(&s.start, &mut s.moved, share, &mut change);
         for &(atom, axis) in &s.held {
             s.moved[atom as usize][axis as usize] = before[atom as usize][axis as usize];

@@ -23,6 +23,7 @@ mod prepare;
 mod remember;
 mod renumber;
 mod rows;
+mod rub;
 mod scene;
 mod scratch;
 mod settle;
@@ -45,8 +46,8 @@ pub use find::{
 };
 pub use hold::{hold_contacts, travel};
 pub use laws::{
-    AdhesiveScratch, AdhesiveTable, AreaScratch, CohesionScratch, CohesionTable, Cohesive, Law, LinkScratch, LinkTable, Penalty,
-    Strength, Touching, Zones,
+    AdhesiveScratch, AdhesiveTable, AreaScratch, CohesionScratch, CohesionTable, Cohesive, Law, LinkScratch, LinkTable,
+    Penalty, Strength, Touching, Zones,
 };
 pub use model::{AREA_WITHIN, ContactModel};
 pub use rows::{Pairing, Pull, Row};

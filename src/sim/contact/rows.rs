@@ -17,6 +17,8 @@ pub struct Row {
     pub least: f32,
     /// Largest tangential force, pN.
     pub shear: f32,
+    /// Tangential force over the speed at which its sides slide beyond what `shear` holds, pN·s/µm.
+    pub friction: f32,
     /// Displacement over force along the normal, µm/pN; 0 where nothing can move.
     pub compliance: f32,
     /// The same across it, at most, µm/pN.
@@ -85,13 +87,13 @@ impl Row {
         f64::from(self.normal_and_gap[3])
     }
 
-    /// Cuts a force to what the contact bears along its present normal.
+    /// Cuts a force to what the contact bears along its present normal; friction has no bound.
     pub(super) fn bound(&self, force: Vec3) -> Vec3 {
         let (normal, shear) = (self.normal(), f64::from(self.shear));
         let along = force.dot(&normal);
         let across = force - along * normal;
         let size = across.norm();
-        let kept = if size > shear { shear / size } else { 1.0 };
+        let kept = if size > shear && self.friction == 0.0 { shear / size } else { 1.0 };
         along.max(f64::from(self.least)) * normal + kept * across
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::{Deref, Range};
 use std::sync::Arc;
 
-use super::laws::Strength;
+use super::laws::{Cohesive, Faced, Strength};
 use super::model::ContactModel;
 use crate::contact::{Scene, Sides};
 use crate::sim::state::KindState;
@@ -80,9 +80,10 @@ impl ContactScene<'_> {
         self.on_planes[self.kind_of(body as u32) * self.planes.len() + plane as usize]
     }
 
-    /// Whether the cohesive law draws two bodies, or a body and a plane after all bodies, to each other.
-    pub(super) fn sticks_by_area(&self, body: u32, other: u32) -> bool {
-        self.law.cohesion().is_some_and(|table| table.sticks(&self.scene, body, other))
+    /// How a body and what it faces stick to each other where the cohesive law draws them to each other; none where it does not.
+    pub(super) fn cohesion_of(&self, body: u32, other: Faced) -> Option<Cohesive> {
+        let cohesive = self.law.cohesion()?.of(&self.scene, body, other);
+        (cohesive.range() > 0.0).then_some(cohesive)
     }
 
     /// The numbers of the atoms of a kind.

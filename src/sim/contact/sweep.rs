@@ -67,14 +67,14 @@ fn normal_force(row: &Row, free: f64, carried: f64) -> f64 {
 }
 
 /// The force of a row after its turn: normal by [`normal_force`]; the tangential part keeps the sides from sliding as far
-/// as it can, eq. (adhesion.4).
+/// as it can, eq. (adhesion.4); beyond that it rubs, eq. (adhesion.20), by where a step of `dt` (s) takes the sides.
 #[inline(always)]
-fn turn(row: &Row, apart: &V4, force: &V4, carried: &V4) -> V4 {
+fn turn(row: &Row, apart: &V4, force: &V4, carried: &V4, dt: f64) -> V4 {
     let normal = normal(row);
     let (opened, along, carried_along) = (dot(apart, &normal), dot(force, &normal), dot(carried, &normal));
     let free = (row.gap() + opened) - along * f64::from(row.compliance);
     let wanted = normal_force(row, free, carried_along);
-    if row.shear == 0.0 {
+    if row.shear == 0.0 && row.friction == 0.0 {
         return map(|i| wanted * normal[i]);
     }
     let (stiffness, kept) = (f64::from(1.0 / row.across), f64::from(row.kept));
@@ -84,18 +84,25 @@ fn turn(row: &Row, apart: &V4, force: &V4, carried: &V4) -> V4 {
         (across - stiffness * slid) * kept + carried * (1.0 - kept)
     });
     let (squared, shear) = (dot(&stuck, &stuck), f64::from(row.shear));
-    let part = if squared > shear * shear { shear / squared.sqrt() } else { 1.0 };
+    let part = match squared > shear * shear {
+        true if row.friction > 0.0 => {
+            let (size, held) = (squared.sqrt(), f64::from(row.friction) * f64::from(row.across) / dt);
+            (shear + held / (1.0 + held) * (size - shear)) / size
+        }
+        true => shear / squared.sqrt(),
+        false => 1.0,
+    };
     map(|i| wanted * normal[i] + part * stuck[i])
 }
 
-/// One sweep over all contacts, each of which first goes on along its last direction by `share`, as the displacements did. Jobs of a
+/// One sweep over all contacts of a step of `dt` (s), each of which first goes on along its last direction by `share`, as the displacements did. Jobs of a
 /// colour move different cells, so that threads share them; what they change is added up in the order of jobs.
 pub fn sweep_contacts(
     rows: &[Row],
     pulls: &mut [Pull],
     moved: &mut [V4],
     mobility: &mut Mobility,
-    share: f64,
+    (dt, share): (f64, f64),
     change: &mut Change,
 ) {
     let Mobility { has_modes, shapes, kinds, bodies, levers, moved: motions, turns, changes, .. } = mobility;
@@ -108,9 +115,9 @@ pub fn sweep_contacts(
         let cells = Cells { shapes, kinds, bodies, moved: &moved, motions: &motions };
         *change = Change::default();
         if *has_modes {
-            Arch::new().dispatch(Sweep::<true> { first, rows, pulls, levers, cells, share, change });
+            Arch::new().dispatch(Sweep::<true> { first, rows, pulls, levers, cells, dt, share, change });
         } else {
-            Arch::new().dispatch(Sweep::<false> { first, rows, pulls, levers, cells, share, change });
+            Arch::new().dispatch(Sweep::<false> { first, rows, pulls, levers, cells, dt, share, change });
         }
     };
     changes.clear();
@@ -143,6 +150,7 @@ struct Sweep<'a, const BY_MODES: bool> {
     pulls: &'a mut [Pull],
     levers: &'a [Lever],
     cells: Cells<'a>,
+    dt: f64,
     share: f64,
     change: &'a mut Change,
 }
@@ -183,7 +191,7 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { first, rows, pulls, levers, cells, share, change } = self;
+        let Self { first, rows, pulls, levers, cells, dt, share, change } = self;
         let Cells { shapes, moved, motions, .. } = cells;
         let mut largest = 0.0;
         for (number, (row, pull)) in (first..).zip(rows.iter().zip(pulls)) {
@@ -200,7 +208,7 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
                 let by_modes = sides.apart(motions);
                 gap = map(|i| gap[i] + by_modes[i]);
             }
-            let new = narrow(&turn(row, &gap, &force, &wide(pull.carried)));
+            let new = narrow(&turn(row, &gap, &force, &wide(pull.carried), dt));
             let found = wide(new);
             let step = map(|i| found[i] - force[i]);
             push(row, weights, &step, moved);

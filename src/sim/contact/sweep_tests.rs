@@ -49,6 +49,7 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
             normal_and_gap: [normal.x as f32, normal.y as f32, normal.z as f32, (0.05 * number(&mut dice)) as f32],
             least: if sticks { -0.3 } else { 0.0 },
             shear: if count % 4 > 1 { 0.2 } else { 0.0 },
+            friction: if count % 7 == 0 { 0.3 } else { 0.0 },
             compliance: compliance as f32,
             across: compliance as f32,
             kept: 1.0 / (1.0 + 0.05 * (count % 5) as f32),
@@ -63,7 +64,7 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
     (moved, rows, pulls)
 }
 
-/// Eqs. (adhesion.3) to (adhesion.5) for one contact: what it should carry.
+/// Eqs. (adhesion.3) to (adhesion.5) and (adhesion.19) for one contact: what it should carry.
 fn plain_turn(row: &Row, force: Vec3, carried: Vec3, moved: &[Vec3]) -> Vec3 {
     let (n, gap, compliance, softness) =
         (row.normal(), row.gap(), f64::from(row.compliance), 1.0 / f64::from(row.kept) - 1.0);
@@ -77,8 +78,22 @@ fn plain_turn(row: &Row, force: Vec3, carried: Vec3, moved: &[Vec3]) -> Vec3 {
     };
     let across = |v: Vec3| v - n.dot(&v) * n;
     let stuck = (across(force) - across(apart) / compliance + softness * across(carried)) / (1.0 + softness);
-    along * n + stuck.cap_magnitude(f64::from(row.shear))
+    let shear = f64::from(row.shear);
+    if row.friction == 0.0 || stuck.norm() <= shear {
+        return along * n + stuck.cap_magnitude(shear);
+    }
+    // Eq. (adhesion.19), by halving: what is held and the friction of how far it slides in a step, when it bears so much.
+    let (mut low, mut high) = (shear, stuck.norm());
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        let slid = (stuck.norm() - middle) * compliance;
+        if shear + f64::from(row.friction) * slid / DT > middle { low = middle } else { high = middle }
+    }
+    along * n + low * stuck.normalize()
 }
+
+/// The step in which contacts rub, s.
+const DT: f64 = 0.1;
 
 #[test]
 fn a_sweep_in_wide_registers_is_that_of_the_book() {
@@ -100,7 +115,7 @@ fn a_sweep_in_wide_registers_is_that_of_the_book() {
         }
         let (mut change, mut mobility) = (Change::default(), Mobility::default());
         mobility.turns.leave(rows.len());
-        sweep_contacts(&rows, &mut pulls, &mut moved, &mut mobility, 0.0, &mut change);
+        sweep_contacts(&rows, &mut pulls, &mut moved, &mut mobility, (DT, 0.0), &mut change);
         for (fast, plain) in moved.iter().zip(&plain) {
             // Forces are kept to seven digits.
             assert!((Vec3::new(fast[0], fast[1], fast[2]) - plain).norm() < 1e-6, "{seed}: {fast:?} and {plain:?}");
@@ -168,6 +183,7 @@ fn row(atom: u32, normal: Vec3) -> Row {
         normal_and_gap: [normal.x as f32, normal.y as f32, normal.z as f32, 0.0],
         least: -1e9,
         shear: 1e9,
+        friction: 0.0,
         compliance: 0.0,
         across: 0.0,
         kept: 1.0,
@@ -191,7 +207,7 @@ fn a_force_of_a_contact_moves_and_turns_a_cell_as_free_drag_lets_it_and_dents_it
     let mut moved = vec![[0.0, 0.0, 0.0, response.rest]; 84];
     moved[50] = [0.3, 0.1, -0.2, response.rest];
     let (mut pulls, mut change) = (vec![Pull::default()], Change::default());
-    sweep_contacts(&[row], &mut pulls, &mut moved, &mut mobility, 0.0, &mut change);
+    sweep_contacts(&[row], &mut pulls, &mut moved, &mut mobility, (DT, 0.0), &mut change);
     moved[50] = [moved[50][0] - 0.3, moved[50][1] - 0.1, moved[50][2] + 0.2, response.rest];
     let force = pulls[0].force();
     let displaced = |atom: usize| {

@@ -10,7 +10,7 @@ mod virtual_adhesives;
 
 pub(super) use adhesives::PROMISED;
 pub use adhesives::Strength;
-pub use cohesion::{AreaScratch, CohesionScratch, CohesionTable, Cohesive};
+pub use cohesion::{AreaScratch, CohesionScratch, CohesionTable, Cohesive, Faced, Facing, area_between};
 pub use links::{LinkScratch, LinkTable};
 pub use penalty::Penalty;
 pub use virtual_adhesives::{AdhesiveScratch, AdhesiveTable, Zones};

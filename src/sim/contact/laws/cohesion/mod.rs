@@ -5,6 +5,7 @@
 mod area;
 #[cfg(test)]
 mod area_tests;
+mod facing;
 mod patch;
 mod search;
 mod table;
@@ -14,6 +15,7 @@ mod tests;
 use rayon::prelude::*;
 
 pub use self::area::AreaScratch;
+pub use self::facing::{Faced, Facing, area_between};
 use self::patch::{Partner, Patch};
 use self::search::{Seen, Surroundings};
 pub use self::table::{CohesionTable, Cohesive};
@@ -27,8 +29,10 @@ pub struct CohesionScratch {
     around: Surroundings,
     /// Those of each batch of bodies.
     patches: Vec<Vec<Patch>>,
-    /// Area of contact around each atom, µm².
-    pub(in crate::sim::contact) facing: Vec<f64>,
+    /// Areas in contact around the atoms of each batch.
+    of_batches: Vec<Vec<Facing>>,
+    /// Those of all, in the order of atoms.
+    pub(in crate::sim::contact) facing: Vec<Facing>,
 }
 
 impl CohesionScratch {
@@ -48,21 +52,23 @@ impl CohesionTable {
             return to.clear();
         }
         to.around.find(scene, positions, range, true);
-        let CohesionScratch { around: Surroundings { near, facets }, patches, facing } = to;
+        let CohesionScratch { around: Surroundings { near, facets }, patches, of_batches, facing } = to;
         let seen = Seen { table: self, scene, controls, positions, facets, range };
         patches.resize_with(scene.batches(), Vec::new);
-        patches.par_iter_mut().enumerate().for_each(|(batch, patches)| {
+        of_batches.resize_with(scene.batches(), Vec::new);
+        let batches = patches.par_iter_mut().zip(of_batches.par_iter_mut()).enumerate();
+        batches.for_each(|(batch, (patches, facing))| {
             patches.clear();
             scene.bodies_of(batch).for_each(|body| {
                 seen.find(body, near.of_body(scene, body), |patch| patches.push(patch));
             });
+            facing.clear();
+            if self.resists {
+                Facing::add(patches, scene, positions, facing);
+            }
         });
         facing.clear();
-        facing.resize(scene.atoms, 0.0);
-        for patch in patches.iter().flatten() {
-            let area = patch.area_in_contact(scene, positions);
-            patch.own.iter().zip(patch.weights).for_each(|(atom, w)| facing[*atom as usize] += w * area);
-        }
+        of_batches.iter().for_each(|of_batch| facing.extend_from_slice(of_batch));
     }
 
     /// Adds the forces of what attracts each other where the atoms are now, and returns the energy, pN·µm.

@@ -55,6 +55,17 @@ pub fn width_of_well(depth: f64) -> f64 {
     if depth > 0.5 { (0.5 - 0.5 * depth).sqrt() } else { 1.0 - (0.5 * depth).sqrt() }
 }
 
+/// The cosine between the surface at a point and one across the way to where the other is touched: 1 where they are parallel, 0 where the
+/// one stands on the other.
+fn cosine_to(opening: &Opening) -> f64 {
+    2.0 / opening.towards.norm_squared() - 1.0
+}
+
+/// The part of an area of a surface that faces the other: all of it up to 60°, nothing from 90° on.
+pub fn part_that_faces(opening: &Opening) -> f64 {
+    (2.0 * cosine_to(opening)).clamp(0.0, 1.0)
+}
+
 /// What a patch and its partner do to each other.
 pub struct PatchPull {
     /// pN·µm.
@@ -92,21 +103,16 @@ impl Patch {
     /// The part of its area that is in contact, as seen from the other surface, µm²: all of it up to half of the range, from where on the
     /// traction falls.
     pub fn area_in_contact(&self, scene: &Scene, now: &[Vec3]) -> f64 {
-        let held = |(opening, _): &(Opening, f64)| (2.0 - 2.0 * opening.width / self.range).min(1.0);
-        self.faced(scene, now).map_or(0.0, |faced| faced.1 * held(&faced))
+        let Some((opening, twice, ..)) = self.opening(scene, now) else { return 0.0 };
+        let held = (2.0 - 2.0 * opening.width / self.range).min(1.0);
+        self.share * 0.5 * twice.norm() * cosine_to(&opening).max(0.0) * held
     }
 
-    /// Its area as far as the opening is less than the range, as seen from the other surface, µm².
+    /// Its area where the opening is less than the range, µm²: less of it where the two turn away from each other by more than 60°, and
+    /// nothing of a wall at a right angle.
     pub fn area_within(&self, scene: &Scene, now: &[Vec3]) -> f64 {
-        self.faced(scene, now).map_or(0.0, |(_, area)| area)
-    }
-
-    /// Its opening, if it is less than the range, and its area as seen from the other surface, µm².
-    fn faced(&self, scene: &Scene, now: &[Vec3]) -> Option<(Opening, f64)> {
-        let (opening, twice, ..) = self.opening(scene, now)?;
-        // 2/|q|² - 1 is the cosine between the normal and that of a plane across the way to it.
-        let turned = (2.0 / opening.towards.norm_squared() - 1.0).max(0.0);
-        Some((opening, self.share * 0.5 * twice.norm() * turned))
+        let Some((opening, twice, ..)) = self.opening(scene, now) else { return 0.0 };
+        self.share * 0.5 * twice.norm() * part_that_faces(&opening)
     }
 
     /// Energy E = −s A δ/2 φ(l/δ) and its forces, with s the strength, A the area of the facet, l the opening and δ the range.

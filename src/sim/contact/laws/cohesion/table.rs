@@ -1,5 +1,6 @@
 //! Which surfaces stick, how strongly and how far.
 
+use super::facing::Faced;
 use crate::contact::Scene;
 
 /// How two surfaces stick.
@@ -9,6 +10,8 @@ pub struct Cohesive {
     pub strength: f64,
     /// Work of separation, pN/µm.
     pub work: f64,
+    /// Traction over the speed at which they slide along each other, pN·s/µm³, eq. (adhesion.19).
+    pub friction: f64,
 }
 
 impl Cohesive {
@@ -27,6 +30,8 @@ pub struct CohesionTable {
     pub on_planes: Vec<Cohesive>,
     /// Points along a side of the facets of each kind, eq. (adhesion.18).
     pub points: Vec<u32>,
+    /// Whether anything that sticks resists sliding, so that areas around atoms are needed.
+    pub resists: bool,
 }
 
 /// The most points along a side of a facet.
@@ -39,13 +44,18 @@ impl CohesionTable {
     /// A table in which nothing sticks.
     pub fn new(kinds: usize, planes: usize) -> Self {
         let none = Cohesive::default();
-        Self { between: vec![none; kinds * kinds], on_planes: vec![none; kinds * planes], points: vec![1; kinds] }
+        Self {
+            between: vec![none; kinds * kinds],
+            on_planes: vec![none; kinds * planes],
+            points: vec![1; kinds],
+            resists: true,
+        }
     }
 
     /// A table in which all that is less than `range` (µm) apart is alike, of kinds with these mean edges (µm): to measure areas of contact.
     pub fn alike(edges: &[f64], planes: usize, range: f64) -> Self {
         let mut table = Self::new(edges.len(), planes);
-        let cohesive = Cohesive { strength: 1.0, work: 0.5 * range };
+        let cohesive = Cohesive { strength: 1.0, work: 0.5 * range, friction: 0.0 };
         table.between.fill(cohesive);
         table.on_planes.fill(cohesive);
         table.resolve(edges);
@@ -81,15 +91,17 @@ impl CohesionTable {
         self.between.iter().chain(&self.on_planes).map(Cohesive::range).fold(0.0, f64::max)
     }
 
-    /// Whether two bodies, or a body and a plane after all bodies, stick to each other.
-    pub fn sticks(&self, scene: &Scene, body: u32, other: u32) -> bool {
-        let shape = |body: u32| scene.bodies.get(body as usize).map(|body| body.shape as usize);
-        let (kinds, planes) = (self.points.len(), scene.planes.len());
-        let Some(kind) = shape(body) else { return false };
-        let cohesive = match shape(other) {
-            Some(other) => self.between[kind * kinds + other],
-            None => self.on_planes[kind * planes + other as usize - scene.bodies.len()],
-        };
-        cohesive.range() > 0.0
+    /// How a body and what it faces stick to each other.
+    pub fn of(&self, scene: &Scene, body: u32, other: Faced) -> Cohesive {
+        let kind = |body: u32| scene.bodies[body as usize].shape as usize;
+        match other {
+            Faced::Body(other) => self.between[kind(body) * self.points.len() + kind(other)],
+            Faced::Plane(plane) => self.on_planes[kind(body) * scene.planes.len() + plane as usize],
+        }
+    }
+
+    /// Whether anything slides with friction.
+    pub fn has_friction(&self) -> bool {
+        self.between.iter().chain(&self.on_planes).any(|cohesive| cohesive.friction > 0.0)
     }
 }

@@ -34,7 +34,7 @@ fn floor() -> Plane {
     Plane { point: Vec3::zeros(), normal: Vec3::z() }
 }
 
-const GLUE: Cohesive = Cohesive { strength: 3.0, work: 1.2 };
+const GLUE: Cohesive = Cohesive { strength: 3.0, work: 1.2, friction: 0.0 };
 
 #[test]
 fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
@@ -133,7 +133,7 @@ fn a_box_on_a_floor_is_in_contact_with_its_floor_alone() {
     for parts in [4, 8] {
         let (table, scene, positions) = scene(&[(side(parts), Sides::Outer)], vec![floor()], GLUE);
         let found = found(&table, &scene, &positions);
-        let area: f64 = found.facing.iter().sum();
+        let area: f64 = found.facing.iter().map(|facing| facing.area).sum();
         assert!((area - 16.0).abs() < 1e-9, "{parts}: {area}");
         let total: f64 = facet_areas(&side(parts)).iter().sum();
         assert!((total - 96.0).abs() < 1e-9);
@@ -142,5 +142,5 @@ fn a_box_on_a_floor_is_in_contact_with_its_floor_alone() {
 
 #[test]
 fn a_patch_takes_as_much_memory_as_its_decision_says() {
-    assert_eq!((size_of::<Patch>(), size_of::<Facet>()), (64, 56));
+    assert_eq!((size_of::<Patch>(), size_of::<search::Facet>()), (64, 56));
 }
