@@ -1,14 +1,14 @@
 //! `pseudopod check`: finds all faults of experiment documents without running them.
 
+use super::progress::Progress;
 use super::report::{Report, path_text};
-use crate::error::{Error, Result, say};
-use crate::experiment::{Document, Prepared, PushedApart, notices, prepare, settle_start};
+use crate::error::{Error, Result};
+use crate::experiment::{Document, Prepared, PushedApart, notices, prepare, settle_start_told};
+use crate::run::Report as _;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
-
-/// So many cells take some seconds to be looked over.
-const MANY: usize = 20_000;
+use std::sync::{Mutex, PoisonError};
 
 /// Checks experiment documents and reports all their faults.
 #[derive(Debug, Clone, clap::Args)]
@@ -77,11 +77,11 @@ fn settled(document: &Document, prepared: Prepared) -> Result<PushedApart> {
     if prepared.model.contact.is_none() {
         return Ok(PushedApart::default());
     }
-    let cells: usize = prepared.centres.iter().map(Vec::len).sum();
-    if cells >= MANY {
-        say(&format!("looking whether any of {cells} cells overlap, which takes a while"));
-    }
-    settle_start(document, &mut prepared.build())
+    let progress = Mutex::new(Progress::default());
+    let tell = |share: f64| progress.lock().unwrap_or_else(PoisonError::into_inner).look(share);
+    let settled = settle_start_told(document, &mut prepared.build(), &tell);
+    progress.into_inner().unwrap_or_else(PoisonError::into_inner).end();
+    settled
 }
 
 /// "1 cell", "12 cells of 2 types".

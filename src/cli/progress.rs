@@ -38,9 +38,34 @@ impl Default for Progress {
     }
 }
 
+impl Progress {
+    /// Whether it is time to tell something again; then that is noted.
+    fn is_due(&mut self) -> bool {
+        let interval = if self.bar.is_some() { BAR_INTERVAL } else { LINE_INTERVAL };
+        let is_due = self.told.elapsed() >= interval;
+        if is_due {
+            self.told = Instant::now();
+        }
+        is_due
+    }
+}
+
 impl Report for Progress {
     fn notice(&mut self, words: &str) {
         say(words);
+    }
+
+    fn look(&mut self, share: f64) {
+        if !self.is_due() {
+            return;
+        }
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position((share * BAR_PARTS as f64) as u64);
+                bar.set_message("looking whether cells overlap");
+            }
+            None => say(&format!("looking whether cells overlap: {:.0} %", 100.0 * share)),
+        }
     }
 
     fn begin(&mut self, time: f64, until: f64) {
@@ -48,11 +73,9 @@ impl Report for Progress {
     }
 
     fn step(&mut self, time: f64, steps: u64) {
-        let interval = if self.bar.is_some() { BAR_INTERVAL } else { LINE_INTERVAL };
-        if self.told.elapsed() < interval {
+        if !self.is_due() {
             return;
         }
-        self.told = Instant::now();
         let share = (time - self.start) / (self.until - self.start);
         match &self.bar {
             Some(bar) => {

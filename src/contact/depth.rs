@@ -6,6 +6,7 @@ use super::boxes::Bounds;
 use super::closest::closest_on_facet;
 use super::inside::{bounds_of_bodies, crossing, is_inside};
 use super::neighbours::Neighbours;
+use super::parts::Parts;
 use super::scene::Scene;
 use super::shape::Sides;
 use crate::Vec3;
@@ -53,10 +54,11 @@ fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bou
     let distance = |position: Vec3, facets: &mut dyn Iterator<Item = [Vec3; 3]>| {
         facets.map(|facet| closest_on_facet(position, facet).offset.norm()).fold(f64::INFINITY, f64::min)
     };
-    // The facets that are near tell at once that most points are not deeper.
-    let deeper = |deepest: f64, position: Vec3| match distance(position, &mut near.iter().copied()) {
-        above if above <= deepest => deepest,
-        _ => deepest.max(distance(position, &mut other.facets.iter().map(corners))),
+    // The facets that are near tell at once that most points are not deeper, on whichever side they are, which takes longer to find out.
+    let is_shallow = |deepest: f64, position: Vec3| distance(position, &mut near.iter().copied()) <= deepest;
+    let deeper = |deepest: f64, position: Vec3| match is_shallow(deepest, position) {
+        true => deepest,
+        false => deepest.max(distance(position, &mut other.facets.iter().map(corners))),
     };
     let is_inside = |position: Vec3| is_inside(scene, positions, position, outer, &around_outer);
     let (mut deepest, mut crossings) = (most, Vec::new());
@@ -76,46 +78,29 @@ fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bou
         crossings.sort_unstable_by(f64::total_cmp);
         for part in crossings.windows(2) {
             let at = |share: f64| from.lerp(&to, part[0] + share * (part[1] - part[0]));
-            if is_inside(at(0.5)) {
-                let points = (1..=SAMPLES).map(|position| at(position as f64 / (SAMPLES + 1) as f64));
+            let points = (1..=SAMPLES).map(|position| at(position as f64 / (SAMPLES + 1) as f64));
+            if !points.clone().all(|position| is_shallow(deepest, position)) && is_inside(at(0.5)) {
                 deepest = points.fold(deepest, deeper);
             }
         }
     }
-    let mut may_be_inside = vec![true; here.len()];
+    // Of each part, by its root, whether it is inside, once that is known.
+    let mut sides = vec![None; here.len()];
     for (position, atom) in here.iter().zip(0..) {
         if !Bounds::around(&[*position], 0.0).meets(&around_outer) {
-            may_be_inside[parts.root(atom) as usize] = false;
+            sides[parts.root(atom) as usize] = Some(false);
         }
     }
-    let is_root_inside: Vec<bool> = (0..here.len())
-        .map(|atom| may_be_inside[atom] && parts.root(atom as u32) as usize == atom && is_inside(here[atom]))
-        .collect();
-    let inside = (0..here.len() as u32).filter(|&atom| is_root_inside[parts.root(atom) as usize]);
-    inside.map(|atom| here[atom as usize]).fold(deepest, deeper)
-}
-
-/// Atoms joined to parts; each part is known by one of its atoms.
-struct Parts(Vec<u32>);
-
-impl Parts {
-    fn new(atoms: usize) -> Self {
-        Self((0..atoms as u32).collect())
-    }
-
-    fn root(&self, mut atom: u32) -> u32 {
-        while self.0[atom as usize] != atom {
-            atom = self.0[atom as usize];
+    for (position, atom) in here.iter().zip(0..) {
+        let root = parts.root(atom) as usize;
+        if sides[root] == Some(false) || is_shallow(deepest, *position) {
+            continue;
         }
-        atom
+        if *sides[root].get_or_insert_with(|| is_inside(here[root])) {
+            deepest = deeper(deepest, *position);
+        }
     }
-
-    /// Joins the parts of two atoms.
-    fn join(&mut self, one: u32, other: u32) {
-        let [one, other] = [one, other].map(|atom| self.root(atom));
-        let (root, below) = (one.min(other), one.max(other));
-        self.0[below as usize] = root;
-    }
+    deepest
 }
 
 #[cfg(test)]

@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::atom_facet::{Low, find_atom_contacts};
-use super::boxes::{Bounds, Pack, Steps};
+use super::collected::Collected;
 use super::edge_edge::find_edge_contacts;
 use super::found::{Contacts, PlaneContact, push};
 use super::lists::{Boxes, Lists, Moved, levels_over};
-use super::motion::{Motion, Then, larger};
+use super::motion::Motion;
 use super::neighbours::Neighbours;
 use super::scene::Scene;
 use crate::Vec3;
@@ -15,8 +15,10 @@ use crate::Vec3;
 /// What a detection did.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detection {
-    /// Whether the pairs were collected anew.
+    /// Whether pairs were collected anew.
     pub collected: bool,
+    /// Bodies whose pairs were collected anew: none, a few that have moved far, or all.
+    pub renewed: usize,
     /// The largest displacement of an atom since the pairs were collected, before this detection, µm; infinite at
     /// first.
     pub moved: f64,
@@ -28,17 +30,13 @@ pub struct Detection {
 /// depend on the positions alone.
 #[derive(Debug, Clone, Default)]
 pub struct Detector {
-    boxes: Boxes,
-    lists: Vec<Lists>,
-    /// How much farther than a contact pairs were collected from, µm.
-    margin: f64,
-    /// Detections since then.
+    pairs: Collected,
+    /// Detections since every body has had its pairs collected anew, in the mean, and bodies that have had them since.
     looks: u32,
-    /// Where the atoms were when the pairs were collected.
-    collected_at: Then,
-    /// How each body has moved since then.
+    renewed: usize,
+    /// How each body has moved since its pairs were collected.
     moved_of: Vec<Motion>,
-    /// One per batch: boxes, and what several threads find before it is put in order.
+    /// What several threads find before it is put in order.
     found: Vec<Found>,
     lows: Vec<Low>,
 }
@@ -48,7 +46,6 @@ pub struct Detector {
 struct Found {
     contacts: Contacts,
     lows: Vec<Low>,
-    bounds: Vec<Bounds>,
 }
 
 /// Detections for which pairs should last: fewer cost more in collecting, more in looking at pairs that are far apart.
@@ -66,9 +63,6 @@ const MOST_WORDS: usize = 12;
 /// Batches that each thread looks at before what is found is put in order.
 const BATCHES_PER_THREAD: usize = 8;
 
-/// Bodies whose motion one job measures: it takes less than a microsecond each.
-const BODIES_PER_JOB: usize = 16;
-
 impl Detector {
     /// Finds all contacts at these positions (µm, one per atom of the scene) and writes them over `contacts`. For a
     /// scene that is not that of the last call, [`forget`](Self::forget) the pairs first.
@@ -82,26 +76,22 @@ impl Detector {
         assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
         let mut moved_of = std::mem::take(&mut self.moved_of);
         let moved = self.moved(scene, positions, &mut moved_of);
-        let collected = moved.is_nan() || moved > 0.5 * self.margin;
-        if collected {
-            self.margin = self.next_margin(scene, moved);
-            self.looks = 0;
-            self.collect(scene, positions);
-            moved_of.clear();
-            moved_of.resize(scene.bodies.len(), Motion::NONE);
-        }
+        let collected =
+            !moved.is_finite() || moved > 0.5 * self.pairs.margin && self.pairs.are_stale(scene, positions, &moved_of);
+        let renewed = if collected { self.collect(scene, positions, moved, &mut moved_of) } else { 0 };
         self.looks += 1;
         contacts.clear();
-        let since = Moved { of_bodies: &moved_of, scale: levels_over(self.margin, scene.reach.range()) };
-        let neighbours = &self.boxes.neighbours;
+        let since = Moved { of_bodies: &moved_of, scale: levels_over(self.pairs.margin, scene.reach.range()) };
+        let Collected { boxes: Boxes { neighbours, .. }, lists: all, .. } = &self.pairs;
         if rayon::current_num_threads() == 1 {
-            for (batch, lists) in self.lists.iter().enumerate() {
+            for (batch, lists) in all.iter().enumerate() {
                 look(scene, positions, batch, lists, neighbours, &since, &mut self.lows, contacts);
             }
         } else {
             // So many at a time that threads seldom wait for each other, and few contacts are held twice.
             let together = BATCHES_PER_THREAD * rayon::current_num_threads();
-            for (first, lists) in (0..).step_by(together).zip(self.lists.chunks(together)) {
+            self.found.resize_with(together.min(all.len()).max(self.found.len()), Found::default);
+            for (first, lists) in (0..).step_by(together).zip(all.chunks(together)) {
                 self.found[..lists.len()].par_iter_mut().zip(lists).enumerate().for_each(|(number, (found, lists))| {
                     found.contacts.clear();
                     let (batch, lows, to) = (first + number, &mut found.lows, &mut found.contacts);
@@ -111,12 +101,28 @@ impl Detector {
             }
         }
         self.moved_of = moved_of;
-        Detection { collected, moved, pairs: self.words() }
+        Detection { collected, renewed, moved, pairs: self.pairs.words() }
     }
 
-    /// Words of all lists.
-    fn words(&self) -> usize {
-        self.lists.iter().map(Lists::words).sum()
+    /// Collects pairs anew: those of the bodies that have moved far, or all where these are many or another margin is better by now.
+    /// Returns how many these are.
+    fn collect(&mut self, scene: &Scene, positions: &[Vec3], moved: f64, moved_of: &mut Vec<Motion>) -> usize {
+        let few = self.pairs.few_far(moved_of).filter(|_| moved.is_finite());
+        self.renewed += few.unwrap_or(scene.bodies.len());
+        let mut margin = self.pairs.margin;
+        if self.renewed >= scene.bodies.len() {
+            margin = self.next_margin(scene, moved);
+            (self.looks, self.renewed) = (0, 0);
+        }
+        if let Some(few) = few.filter(|_| margin == self.pairs.margin) {
+            self.pairs.renew(scene, positions, moved_of);
+            return few;
+        }
+        self.pairs.margin = margin;
+        self.pairs.collect(scene, positions);
+        moved_of.clear();
+        moved_of.resize(scene.bodies.len(), Motion::NONE);
+        scene.bodies.len()
     }
 
     /// The margin to collect with: wider when the last pairs did not last, narrower when they lasted long.
@@ -125,98 +131,41 @@ impl Detector {
         if !moved.is_finite() {
             return least;
         }
-        let is_packed = self.words() > MOST_WORDS * scene.atoms;
+        let (before, is_packed) = (self.pairs.margin, self.pairs.words() > MOST_WORDS * scene.atoms);
         let margin = match self.looks {
-            looks if looks < *LASTING.start() && !is_packed => self.margin * WIDER,
-            looks if looks > *LASTING.end() => self.margin / WIDER,
-            _ => self.margin,
+            looks if looks < *LASTING.start() && !is_packed => before * WIDER,
+            looks if looks > *LASTING.end() => before / WIDER,
+            _ => before,
         };
         margin.clamp(least, WIDEST * least)
     }
 
     /// Forgets the pairs, so that the next detection collects them anew. Contacts do not depend on it.
     pub fn forget(&mut self) {
-        self.collected_at.forget();
+        self.pairs.forget();
     }
 
     /// How much farther than a contact the pairs were collected from, µm.
     pub(super) fn margin(&self) -> f64 {
-        self.margin
+        self.pairs.margin
     }
 
     /// The lists of pairs, one per batch, and the bodies that they name.
     pub(super) fn lists(&self) -> (&[Lists], &Neighbours) {
-        (&self.lists, &self.boxes.neighbours)
+        (&self.pairs.lists, &self.pairs.boxes.neighbours)
     }
 
     /// The largest displacement since the pairs were collected, rounding included, µm; infinite when there are none
     /// for this scene, NaN or infinite when a position is not finite. That of each body is written to `of_bodies`.
     pub(super) fn moved(&self, scene: &Scene, positions: &[Vec3], of_bodies: &mut Vec<Motion>) -> f64 {
-        if !self.collected_at.is_of(positions.len()) || self.lists.len() + 1 != scene.batches.len() {
-            return f64::INFINITY;
-        }
-        let boxes = &self.boxes.bounds;
-        let motion = |body: u32| self.collected_at.motion(scene, body, &boxes[body as usize], positions);
-        let bodies = 0..scene.bodies.len() as u32;
-        bodies.into_par_iter().with_min_len(BODIES_PER_JOB).map(motion).collect_into_vec(of_bodies);
-        of_bodies.iter().map(|motion| motion.farthest).fold(0.0, larger)
-    }
-
-    /// Collects the pairs of all batches.
-    fn collect(&mut self, scene: &Scene, positions: &[Vec3]) {
-        let batches = scene.batches.len() - 1;
-        self.lists.resize_with(batches, Lists::default);
-        self.found.resize_with(batches, Found::default);
-        self.boxes.packs.resize_with(batches, Vec::new);
-        self.boxes.packs.par_iter_mut().zip(&mut self.found).enumerate().for_each(|(batch, (packs, found))| {
-            found.bounds.clear();
-            let bodies = &scene.bodies[scene.batches[batch] as usize..scene.batches[batch + 1] as usize];
-            let count =
-                bodies.last().map_or(0, |last| last.first_pack as usize + scene.levels[last.shape as usize].packs());
-            packs.resize(count, Pack::EMPTY);
-            for (body, number) in bodies.iter().zip(scene.bodies_of(batch)) {
-                let levels = &scene.levels[body.shape as usize];
-                let packs = &mut packs[body.first_pack as usize..][..levels.packs()];
-                let here = scene.of_body(number, positions);
-                found.bounds.push(levels.measure(&scene.shapes[body.shape as usize], here, packs));
-            }
-        });
-        // Bodies may touch when the boxes grown by half of the reach meet.
-        let margin = self.margin;
-        let half = 0.5 * (scene.reach.range() + margin);
-        self.boxes.bounds.clear();
-        for found in &self.found {
-            self.boxes.bounds.extend(found.bounds.iter().map(|bounds| bounds.grown(half)));
-        }
-        self.boxes.neighbours.find(&self.boxes.bounds);
-        self.boxes.bounds.clear();
-        for found in &self.found {
-            self.boxes.bounds.extend_from_slice(&found.bounds);
-        }
-        self.boxes.steps.clear();
-        self.boxes.steps.extend(self.boxes.bounds.iter().map(Steps::of));
-        let boxes = &self.boxes;
-        self.lists
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(batch, lists)| lists.collect(scene, batch, positions, boxes, margin));
-        self.collected_at.take(scene, positions, &self.boxes.bounds);
+        self.pairs.moved(scene, positions, of_bodies)
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let packs: usize = self.boxes.packs.iter().map(|packs| size_of::<Pack>() * packs.capacity()).sum();
-        let lists: usize = self.lists.iter().map(Lists::bytes).sum();
-        let of_found = |found: &Found| {
-            found.contacts.bytes()
-                + size_of::<Low>() * found.lows.capacity()
-                + size_of::<Bounds>() * found.bounds.capacity()
-        };
+        let of_found = |found: &Found| found.contacts.bytes() + size_of::<Low>() * found.lows.capacity();
         let found: usize = self.found.iter().map(of_found).sum();
-        let bounds =
-            size_of::<Bounds>() * self.boxes.bounds.capacity() + size_of::<Steps>() * self.boxes.steps.capacity();
-        let then = self.collected_at.bytes() + size_of::<Motion>() * self.moved_of.capacity();
-        packs + lists + found + bounds + self.boxes.neighbours.bytes() + then
+        self.pairs.bytes() + found + size_of::<Motion>() * self.moved_of.capacity()
     }
 }
 

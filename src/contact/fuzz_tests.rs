@@ -65,6 +65,30 @@ fn kept_pairs_find_what_all_pairs_find_in_packed_cells_that_drift_and_roll() {
 }
 
 #[test]
+fn where_few_bodies_move_far_their_pairs_are_collected_anew_and_those_of_others_go_on() {
+    let reach = Reach { margin: 0.3, ..REACH };
+    let (mut few, mut edges) = (0, 0);
+    for seed in 0..2 {
+        let mut stage = packed_stage(30, reach, seed);
+        let mut dice = Dice(3_000 + seed);
+        let (mut detector, mut contacts) = (Detector::default(), Contacts::default());
+        for step in 0..14 {
+            let detection = detector.detect(&stage.scene, &stage.positions, &mut contacts);
+            assert_eq!(contacts, all_pairs(&stage), "seed {seed}, step {step}");
+            few += usize::from((1..30).contains(&detection.renewed));
+            edges += contacts.edges.len();
+            // All stir, and two change their places.
+            stage.positions.iter_mut().for_each(|x| *x += dice.vector() * 0.004);
+            for body in [5 * step % 30, (7 * step + 11) % 30] {
+                let displacement = dice.vector() * 0.3;
+                stage.positions[42 * body..][..42].iter_mut().for_each(|x| *x += displacement);
+            }
+        }
+    }
+    assert!(few > 12 && edges > 2000, "a fuzz of nothing: {few}, {edges}");
+}
+
+#[test]
 fn contacts_are_the_same_bits_for_any_number_of_threads_and_any_past() {
     let stage = packed_stage(60, REACH, 5);
     let with_threads = |threads: usize| {

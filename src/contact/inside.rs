@@ -1,11 +1,13 @@
 //! Exact answers for the start of a run: whether a point is inside a closed surface, and which surfaces overlap.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
 use super::boxes::Bounds;
 use super::neighbours::Neighbours;
+use super::parts::Parts;
 use super::scene::{Scene, centre};
 use super::shape::Sides;
 use crate::Vec3;
@@ -47,17 +49,33 @@ impl Overlap {
     }
 }
 
+/// Bodies after which it is told how many have been looked at.
+const TOLD_EVERY: usize = 256;
+
 /// All pairs of surfaces that overlap or cross, however deep, by the order of bodies. Exact and slow where boxes meet:
 /// for the start of a run.
 ///
 /// # Panics
 /// When there are not as many positions as atoms.
 pub fn find_overlaps(scene: &Scene, positions: &[Vec3]) -> Vec<Overlap> {
+    find_overlaps_told(scene, positions, &|_| ())
+}
+
+/// The same, telling from time to time which share of the bodies has been looked at.
+///
+/// # Panics
+/// As [`find_overlaps`].
+pub fn find_overlaps_told(scene: &Scene, positions: &[Vec3], tell: &(dyn Fn(f64) + Sync)) -> Vec<Overlap> {
     assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
     let bounds = bounds_of_bodies(scene, positions);
     let mut neighbours = Neighbours::default();
     neighbours.find(&bounds);
+    let looked = AtomicUsize::new(0);
     let with_later = |first: u32| {
+        let count = looked.fetch_add(1, Ordering::Relaxed);
+        if count.is_multiple_of(TOLD_EVERY) {
+            tell(count as f64 / scene.bodies.len() as f64);
+        }
         let later = neighbours.of(first).iter().filter(move |&&second| second > first);
         later.filter_map(|&second| overlap_of(scene, positions, [first, second], &bounds)).collect::<Vec<_>>()
     };
@@ -77,14 +95,38 @@ pub(super) fn bounds_of_bodies(scene: &Scene, positions: &[Vec3]) -> Vec<Bounds>
 /// How two bodies overlap, if they do.
 fn overlap_of(scene: &Scene, positions: &[Vec3], bodies: [u32; 2], bounds: &[Bounds]) -> Option<Overlap> {
     let [first, second] = bodies;
-    let inside = |inner: u32, outer: u32| {
-        let within = |position: &&Vec3| is_inside(scene, positions, **position, outer, &bounds[outer as usize]);
-        scene.of_body(inner, positions).iter().filter(within).count() as u32
+    let through = |edges: u32, facets: u32| crossings(scene, positions, [edges, facets], bounds);
+    let crossings = [through(first, second), through(second, first)];
+    let inside = |inner: u32, outer: u32, crossings: u32| match crossings {
+        0 => inside_by_parts(scene, positions, [inner, outer], bounds),
+        _ => {
+            let within = |position: &&Vec3| is_inside(scene, positions, **position, outer, &bounds[outer as usize]);
+            scene.of_body(inner, positions).iter().filter(within).count() as u32
+        }
     };
-    let through = |edges: u32, facets: u32| crossings(scene, positions, edges, facets, &bounds[facets as usize]);
-    let atoms_inside = [inside(first, second), inside(second, first)];
-    let crossings = through(first, second) + through(second, first);
+    let atoms_inside = [inside(first, second, crossings[0]), inside(second, first, crossings[1])];
+    let crossings = crossings[0] + crossings[1];
     (atoms_inside != [0, 0] || crossings > 0).then_some(Overlap { bodies, atoms_inside, crossings })
+}
+
+/// How many atoms of a body are inside another through which none of its edges passes: all atoms that edges join are on one side.
+fn inside_by_parts(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bounds: &[Bounds]) -> u32 {
+    let (shape, here, around) = (scene.shape(inner), scene.of_body(inner, positions), &bounds[outer as usize]);
+    let is_beside = |position: &Vec3| !Bounds::around(&[*position], 0.0).meets(around);
+    // Most cells are in one piece, with an atom that is not even near the other.
+    let mut parts = Parts::new(here.len());
+    shape.edges.iter().for_each(|&[a, b]| parts.join(a, b));
+    let mut sides = vec![None; here.len()];
+    for (position, atom) in here.iter().zip(0..) {
+        if is_beside(position) {
+            sides[parts.root(atom) as usize] = Some(false);
+        }
+    }
+    let mut is_in = |atom: usize| {
+        let root = parts.root(atom as u32) as usize;
+        *sides[root].get_or_insert_with(|| is_inside(scene, positions, here[root], outer, around))
+    };
+    (0..here.len()).filter(|&atom| is_in(atom)).count() as u32
 }
 
 /// Whether a point is inside a body, whose box is given; never when the body is open.
@@ -122,14 +164,23 @@ fn near_pairs(neighbours: &Neighbours, bodies: Range<u32>) -> impl Iterator<Item
 }
 
 /// How often edges of one body pass through facets of another.
-fn crossings(scene: &Scene, positions: &[Vec3], with_edges: u32, with_facets: u32, bounds: &Bounds) -> u32 {
-    let (here, there) = (scene.of_body(with_edges, positions), scene.of_body(with_facets, positions));
+fn crossings(scene: &Scene, positions: &[Vec3], [edges, facets]: [u32; 2], bounds: &[Bounds]) -> u32 {
+    let (here, there) = (scene.of_body(edges, positions), scene.of_body(facets, positions));
+    let [around_edges, around_facets] = [edges, facets].map(|body| &bounds[body as usize]);
+    let corners = |facet: &[u32; 3]| facet.map(|atom| there[atom as usize]);
+    let boxed = scene.shape(facets).facets.iter().map(corners).map(|facet| (Bounds::around(&facet, 0.0), facet));
+    let near: Vec<(Bounds, [Vec3; 3])> = boxed.filter(|(bounds, _)| bounds.meets(around_edges)).collect();
+    if near.is_empty() {
+        return 0;
+    }
     let mut count = 0;
-    for &[a, b] in &scene.shape(with_edges).edges {
+    for &[a, b] in &scene.shape(edges).edges {
         let [from, to] = [here[a as usize], here[b as usize]];
-        if Bounds::around(&[from, to], 0.0).meets(bounds) {
-            let passes = |facet: &&[u32; 3]| passes_through(from, to, facet.map(|atom| there[atom as usize]));
-            count += scene.shape(with_facets).facets.iter().filter(passes).count() as u32;
+        let own = Bounds::around(&[from, to], 0.0);
+        if own.meets(around_facets) {
+            let passes =
+                |(bounds, facet): &&(Bounds, [Vec3; 3])| bounds.meets(&own) && passes_through(from, to, *facet);
+            count += near.iter().filter(passes).count() as u32;
         }
     }
     count

@@ -7,6 +7,7 @@ use super::motion::Motion;
 use super::neighbours::Neighbours;
 use super::ridge::Ridge;
 use super::scene::Scene;
+use super::shape::Shape;
 use super::turned::turned_for;
 use super::words::{HIGHEST, Words};
 use crate::Vec3;
@@ -28,8 +29,7 @@ impl Moved<'_> {
             return HIGHEST;
         }
         let [one, other] = bodies.map(|body| &self.of_bodies[body as usize]);
-        let beside = (one.mean - other.mean).norm() + one.beside + other.beside;
-        (beside.min(one.farthest + other.farthest) * self.scale) as u32 + 1
+        (one.beside(other) * self.scale) as u32 + 1
     }
 }
 
@@ -59,14 +59,14 @@ pub(super) struct Lists {
     /// For edges, counted from the first of the batch, the edges.
     pub edges: Words,
     /// The farthest from which they were collected, and from which things touch, µm.
-    reach: f64,
+    pub(super) reach: f64,
     range: f64,
     /// Levels in a µm.
     scale: f64,
     /// Scratch: the facets near one facet: of each body its index among the neighbours, how many facets, and these.
-    near: Vec<u32>,
+    pub(super) near: Vec<u32>,
     /// Scratch: the pairs with one other body, as (number, level).
-    pairs: Vec<(u32, u32)>,
+    pub(super) pairs: Vec<(u32, u32)>,
 }
 
 impl Lists {
@@ -95,13 +95,26 @@ impl Lists {
                 let bounds = Bounds::around(&here[atom..=atom], self.reach);
                 for (&other, position) in boxes.neighbours.of(body).iter().zip(0..) {
                     if bounds.meets(&boxes.bounds[other as usize]) {
-                        self.collect_facets(scene, [body, other], atom, &bounds, positions, boxes);
+                        let there = scene.of_body(other, positions);
+                        self.collect_facets(scene, [body, other], atom, &bounds, [here, there], boxes);
                         self.facets.add(first_atom + atom as u32, position, &self.pairs);
                     }
                 }
             }
             for facet in 0..shape.facets.len() as u32 {
-                self.collect_edges(scene, [body, first_edge], facet, positions, boxes);
+                self.gather_near(scene, body, facet, here, boxes, |_| true);
+                let near = std::mem::take(&mut self.near);
+                for edge in shape.edges_of(facet) {
+                    let first = Edge::of(shape, here, edge, self.reach);
+                    let mut rest = &near[..];
+                    while let Some((position, facets)) = next_near(&mut rest) {
+                        let other = boxes.neighbours.of(body)[position as usize];
+                        let there = scene.of_body(other, positions);
+                        self.collect_edges(scene, [body, other], &first, facets, there);
+                        self.edges.add(first_edge + edge, position, &self.pairs);
+                    }
+                }
+                self.near = near;
             }
             first_atom += shape.atoms as u32;
             first_edge += shape.edges.len() as u32;
@@ -110,18 +123,17 @@ impl Lists {
         self.edges.release_spare();
     }
 
-    /// Writes the facets of one other body (or its own) that an atom may touch over `pairs`.
-    fn collect_facets(
+    /// Writes the facets of one other body (or its own) that an atom may touch over `pairs`; positions are of the atoms of both.
+    pub(super) fn collect_facets(
         &mut self,
         scene: &Scene,
         [body, other]: [u32; 2],
         atom: usize,
         bounds: &Bounds,
-        positions: &[Vec3],
+        [here, there]: [&[Vec3]; 2],
         boxes: &Boxes,
     ) {
-        let (shape, there) = (scene.shape(other), scene.of_body(other, positions));
-        let position = scene.of_body(body, positions)[atom];
+        let (shape, position) = (scene.shape(other), here[atom]);
         let farthest = self.reach.powi(2);
         self.pairs.clear();
         visit(scene, other, boxes, bounds, &mut |facet| {
@@ -136,27 +148,25 @@ impl Lists {
         self.pairs.sort_unstable();
     }
 
-    /// The edges that the edges of one facet may touch: later ones of its own body and those of bodies after it. The
-    /// second number is that of the body's first edge in the batch.
-    fn collect_edges(
+    /// Writes the facets near one of a body whose atoms are `here` over `near`, if it has edges of its own: those of its own body and
+    /// of bodies after it, as far as they are wanted by their index among the neighbours.
+    pub(super) fn gather_near(
         &mut self,
         scene: &Scene,
-        [body, first_edge]: [u32; 2],
+        body: u32,
         facet: u32,
-        positions: &[Vec3],
+        here: &[Vec3],
         boxes: &Boxes,
+        is_wanted: impl Fn(usize) -> bool,
     ) {
+        self.near.clear();
         let shape = scene.shape(body);
-        let edges = shape.edges_of(facet);
-        if edges.is_empty() {
+        if shape.edges_of(facet).is_empty() {
             return;
         }
-        let here = scene.of_body(body, positions);
-        let reach = self.reach;
-        let bounds = Bounds::around(&shape.corners(facet, here), reach);
-        self.near.clear();
+        let bounds = Bounds::around(&shape.corners(facet, here), self.reach);
         for (&other, position) in boxes.neighbours.of(body).iter().zip(0..).filter(|(other, _)| **other >= body) {
-            if bounds.meets(&boxes.bounds[other as usize]) {
+            if is_wanted(position as usize) && bounds.meets(&boxes.bounds[other as usize]) {
                 let start = self.near.len();
                 self.near.extend([position, 0]);
                 visit(scene, other, boxes, &bounds, &mut |candidate| {
@@ -168,37 +178,65 @@ impl Lists {
                 self.near[start + 1] = (self.near.len() - start - 2) as u32;
             }
         }
-        for edge in edges {
-            let (ends, ridge) = (shape.ends(edge, here), Ridge::of(shape, here, edge));
-            let (low, high) = (ends[0].inf(&ends[1]).add_scalar(-reach), ends[0].sup(&ends[1]).add_scalar(reach));
-            let mut rest = &self.near[..];
-            while let [position, count, others @ ..] = rest {
-                let facets;
-                (facets, rest) = others.split_at(*count as usize);
-                let other = boxes.neighbours.of(body)[*position as usize];
-                let (shape, there) = (scene.shape(other), scene.of_body(other, positions));
-                self.pairs.clear();
-                for candidate in facets.iter().flat_map(|&facet| shape.edges_of(facet)) {
-                    let [a, b] = shape.ends(candidate, there);
-                    let apart = |axis: usize| {
-                        let (less, more) = if a[axis] < b[axis] { (a[axis], b[axis]) } else { (b[axis], a[axis]) };
-                        (less > high[axis]) | (more < low[axis])
-                    };
-                    let apart = apart(0) | apart(1) | apart(2);
-                    if apart || other == body && (candidate <= edge || shape.are_edges_near(edge, candidate)) {
-                        continue;
-                    }
-                    let squared = closest_on_segments(ends, [a, b]).0;
-                    if squared <= reach * reach {
-                        let turned = turned_for(&ridge, &Ridge::of(shape, there, candidate), reach - self.range);
-                        let level = level_at(squared, self.range, self.scale).max((turned * self.scale) as u32);
-                        self.pairs.push((candidate, level));
-                    }
-                }
-                self.edges.add(first_edge + edge, *position, &self.pairs);
+    }
+
+    /// Writes the edges of some facets of a body (or its own), whose atoms are `there`, that an edge may touch over `pairs`.
+    pub(super) fn collect_edges(
+        &mut self,
+        scene: &Scene,
+        [body, other]: [u32; 2],
+        first: &Edge,
+        facets: &[u32],
+        there: &[Vec3],
+    ) {
+        let (shape, reach) = (scene.shape(other), self.reach);
+        let Edge { number, ends, ridge, low, high } = first;
+        self.pairs.clear();
+        for candidate in facets.iter().flat_map(|&facet| shape.edges_of(facet)) {
+            let [a, b] = shape.ends(candidate, there);
+            let apart = |axis: usize| {
+                let (less, more) = if a[axis] < b[axis] { (a[axis], b[axis]) } else { (b[axis], a[axis]) };
+                (less > high[axis]) | (more < low[axis])
+            };
+            let apart = apart(0) | apart(1) | apart(2);
+            if apart || other == body && (candidate <= *number || shape.are_edges_near(*number, candidate)) {
+                continue;
+            }
+            let squared = closest_on_segments(*ends, [a, b]).0;
+            if squared <= reach * reach {
+                let turned = turned_for(ridge, &Ridge::of(shape, there, candidate), reach - self.range);
+                let level = level_at(squared, self.range, self.scale).max((turned * self.scale) as u32);
+                self.pairs.push((candidate, level));
             }
         }
     }
+}
+
+/// An edge whose pairs are collected.
+pub(super) struct Edge<'a> {
+    number: u32,
+    ends: [Vec3; 2],
+    ridge: Ridge<'a>,
+    /// The box around it, grown by the reach.
+    low: Vec3,
+    high: Vec3,
+}
+
+impl<'a> Edge<'a> {
+    /// An edge of a body whose atoms are `here`.
+    pub fn of(shape: &'a Shape, here: &'a [Vec3], number: u32, reach: f64) -> Self {
+        let ends = shape.ends(number, here);
+        let (low, high) = (ends[0].inf(&ends[1]).add_scalar(-reach), ends[0].sup(&ends[1]).add_scalar(reach));
+        Self { number, ends, ridge: Ridge::of(shape, here, number), low, high }
+    }
+}
+
+/// The next body of a list of near facets, by its index among the neighbours, and its facets.
+pub(super) fn next_near<'a>(rest: &mut &'a [u32]) -> Option<(u32, &'a [u32])> {
+    let [position, count, others @ ..] = *rest else { return None };
+    let (facets, next) = others.split_at(*count as usize);
+    *rest = next;
+    Some((*position, facets))
 }
 
 /// Calls `found` with every facet of a body whose box meets `bounds`.

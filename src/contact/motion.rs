@@ -1,4 +1,4 @@
-//! How far bodies have moved since the pairs were collected.
+//! How far bodies have moved since their pairs were collected.
 
 use super::boxes::Bounds;
 use super::scene::Scene;
@@ -18,6 +18,12 @@ pub(super) struct Motion {
 impl Motion {
     /// None.
     pub const NONE: Self = Self { mean: Vec3::new(0.0, 0.0, 0.0), beside: 0.0, farthest: 0.0 };
+
+    /// How far atoms of two bodies have moved beside each other at most, µm, eq. (contacts.11).
+    #[inline]
+    pub fn beside(&self, other: &Self) -> f64 {
+        ((self.mean - other.mean).norm() + self.beside + other.beside).min(self.farthest + other.farthest)
+    }
 }
 
 /// Where the atoms were when the pairs were collected: along each axis in steps of the box that their body had then, of which there
@@ -70,6 +76,21 @@ impl Then {
             let grid = Grid::of(bounds);
             self.steps.extend(scene.of_body(body, positions).iter().map(|position| grid.nearest(position)));
         }
+    }
+
+    /// Takes down anew where the atoms of a body are, which has this box now.
+    pub fn take_again(&mut self, scene: &Scene, body: u32, positions: &[Vec3], bounds: &Bounds) {
+        let (grid, first) = (Grid::of(bounds), scene.bodies[body as usize].first_atom as usize);
+        let own = scene.of_body(body, positions);
+        for (steps, position) in self.steps[first..first + own.len()].iter_mut().zip(own) {
+            *steps = grid.nearest(position);
+        }
+    }
+
+    /// Adds where the atoms of a body were that had this box then, to a rounding that its motion includes.
+    pub fn positions_of(&self, scene: &Scene, body: u32, bounds: &Bounds, to: &mut Vec<Vec3>) {
+        let (grid, first) = (Grid::of(bounds), scene.bodies[body as usize].first_atom as usize);
+        to.extend(self.steps[first..first + scene.shape(body).atoms].iter().map(|steps| grid.position(steps)));
     }
 
     /// Forgets it.

@@ -48,13 +48,7 @@ impl Words {
         if pairs.is_empty() {
             return;
         }
-        if owner != self.owner {
-            self.go_on(OWNER, OWNER_BITS, 0, owner - self.owner);
-            (self.owner, self.index) = (owner, 0);
-        }
-        self.go_on(BODY, BODY_BITS, COUNT_BITS, position - self.index);
-        self.index = position;
-        let (body, mut page) = (self.words.len() - 1, 0);
+        let (body, mut page) = (self.begin(owner, position), 0);
         for &(number, level) in pairs {
             if number >> NUMBER_BITS != page {
                 self.go_on(PAGE, PAGE_BITS, 0, (number >> NUMBER_BITS) - page);
@@ -63,6 +57,35 @@ impl Words {
             let number = number & ((1 << NUMBER_BITS) - 1);
             self.push((level.min(HIGHEST) << NUMBER_BITS | number) as u16);
         }
+        self.end(body);
+    }
+
+    /// Adds what another list has of an owner and a body, in the same order.
+    pub fn add_part(&mut self, owner: u32, position: u32, part: Part) {
+        let body = self.begin(owner, position);
+        part.0.iter().for_each(|word| self.push(*word));
+        self.end(body);
+    }
+
+    /// Takes over the lists of another; what they end with is of no use any more.
+    pub fn copy(&mut self, other: &Self) {
+        self.clear();
+        self.words.reserve_exact(other.words.len());
+        self.words.extend_from_slice(&other.words);
+    }
+
+    /// Goes on to an owner and a body; returns the index of the word that tells how many words are listed of it.
+    fn begin(&mut self, owner: u32, position: u32) -> usize {
+        if owner != self.owner {
+            self.go_on(OWNER, OWNER_BITS, 0, owner - self.owner);
+            (self.owner, self.index) = (owner, 0);
+        }
+        self.go_on(BODY, BODY_BITS, COUNT_BITS, position - self.index);
+        self.index = position;
+        self.words.len() - 1
+    }
+
+    fn end(&mut self, body: usize) {
         self.words[body] |= (self.words.len() - body - 1).min(usize::from(MANY)) as u16;
     }
 

@@ -55,7 +55,9 @@ pub use crate::analysis::measures::{self, Measure, MeasureKind};
 pub use crate::values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};
 pub use cells::{CellType, Mesh, Orientation};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
-pub use compile::{Compiled, Prepared, PushedApart, Schedule, compile, notices, prepare, settle_start};
+pub use compile::{
+    Compiled, Prepared, PushedApart, Schedule, compile, notices, prepare, settle_start, settle_start_told,
+};
 pub use contact::{Between, Contact, ContactModel, Zones};
 pub use document::Document;
 #[cfg(feature = "cli")]

@@ -9,6 +9,7 @@ pub use progress::{Quiet, Report};
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use crate::error::{Error, Fault, Result};
@@ -63,7 +64,12 @@ pub struct Outcome {
 pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
     let RunOptions { result, overwrite, threads, cancel } = options;
     let document = &document.with_equations();
-    let ready = Simulation::builder().threads_or_all(*threads).cancel_token(cancel.clone()).ready(document)?;
+    let builder = Simulation::builder().threads_or_all(*threads).cancel_token(cancel.clone());
+    let ready = {
+        let told = Mutex::new(&mut *report);
+        let tell = |share: f64| told.lock().unwrap_or_else(PoisonError::into_inner).look(share);
+        builder.ready_told(document, &tell)?
+    };
     let (source, title, simulation) = (&document.source, &document.experiment.title, &ready.simulation);
     let header = Header {
         equations: document.equations.clone().into_iter().collect(),

@@ -4,6 +4,10 @@
 pub trait Report: Send {
     /// Something to know before the run begins.
     fn notice(&mut self, words: &str);
+    /// Before the run begins this share of the cells has been looked at, whether they overlap.
+    fn look(&mut self, share: f64) {
+        let _ = share;
+    }
     /// The run begins, or goes on, at `time` and will end at `until`, s.
     fn begin(&mut self, time: f64, until: f64);
     /// A step ended at `time`, s.

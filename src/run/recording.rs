@@ -125,6 +125,8 @@ impl<'a> Recording<'a> {
     }
 
     fn remember_good(&mut self, simulation: &Simulation) {
+        // The one before goes first: two of a large population take much memory.
+        self.good = None;
         self.good = simulation.model().contact.is_some().then(|| simulation.state().clone());
     }
 }

@@ -1,8 +1,13 @@
 //! Whether all positions are numbers.
 
+use rayon::prelude::*;
+
 use super::model::Model;
 use super::state::{State, index};
 use super::trouble::Trouble;
+
+/// Numbers that a thread looks at at once.
+const NUMBERS_PER_JOB: usize = 16_384;
 
 /// Finds the first position that is not finite; `time` is that of the message, s.
 ///
@@ -11,7 +16,8 @@ use super::trouble::Trouble;
 pub fn check_finite(model: &Model, time: f64, state: &State) -> Result<(), Trouble> {
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
         // A sum is not finite when a part is not, or when it overflows, which is no better.
-        if now.positions.iter().map(|x| x * 1e-30).sum::<f64>().is_finite() {
+        let is_finite = |part: &[f64]| part.iter().map(|x| x * 1e-30).sum::<f64>().is_finite();
+        if now.positions.par_chunks(NUMBERS_PER_JOB).all(is_finite) {
             continue;
         }
         for cell in 0..now.cells() {

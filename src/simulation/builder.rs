@@ -9,7 +9,7 @@ use super::error::SimulationError;
 use super::stepping::Simulation;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{
-    Compiled, Document, Experiment, PushedApart, Schedule, compile, notices, prepare, settle_start,
+    Compiled, Document, Experiment, PushedApart, Schedule, compile, notices, prepare, settle_start_told,
 };
 
 /// What a simulation is made with: settings, a seed, threads, a token, texts of equations. Its last word says what from.
@@ -201,11 +201,16 @@ impl Builder {
 
     /// Compiles a document and moves cells that overlap apart.
     pub(crate) fn ready(&self, document: &Document) -> Result<Ready> {
+        self.ready_told(document, &|_| ())
+    }
+
+    /// The same, telling from time to time which share of the cells has been looked at.
+    pub(crate) fn ready_told(&self, document: &Document, tell: &(dyn Fn(f64) + Sync)) -> Result<Ready> {
         let pool = self.threads.map(pool_of).transpose()?;
         let prepared = prepare(document)?;
         let mut notices = notices(document, &prepared);
         let mut compiled = prepared.build();
-        let pushed = settle_start(document, &mut compiled)?;
+        let pushed = settle_start_told(document, &mut compiled, tell)?;
         notices.extend(pushed.notice());
         let mut ready = self.assemble(compiled, pushed, pool);
         ready.simulation.notices = notices;

@@ -116,8 +116,16 @@ impl Recorder {
     }
 
     /// The frame of this instant; takes the ended runs from the state, since they are recorded now.
-    pub fn record(&mut self, model: &Model, state: &mut State, ws: &Workspace, dt: f64) -> Frame {
+    pub fn record(&mut self, model: &Model, state: &mut State, ws: &mut Workspace, dt: f64) -> Frame {
+        // Contacts depend on positions alone: the pairs that steps keep lead to them at once.
+        let is_there = ws.contact.suit(model, state);
+        if is_there {
+            self.touch.swap_detector(&mut ws.contact.detector);
+        }
         let frame = self.look(model, state, ws, dt);
+        if is_there {
+            self.touch.swap_detector(&mut ws.contact.detector);
+        }
         Frame { runs: std::mem::take(&mut state.ended_runs), ..frame }
     }
 

@@ -248,6 +248,6 @@ impl Simulation {
 
     /// The frame of this instant, with the runs that ended since the last one.
     pub(crate) fn record(&mut self, recorder: &mut Recorder) -> Frame {
-        recorder.record(&self.model, &mut self.state, &self.scratch, self.last_step)
+        recorder.record(&self.model, &mut self.state, &mut self.scratch, self.last_step)
     }
 }

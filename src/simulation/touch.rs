@@ -32,6 +32,11 @@ pub struct Touch {
 }
 
 impl Touch {
+    /// Looks with another detector, which may have been used for the same surfaces alone; the one there was comes back.
+    pub fn swap_detector(&mut self, detector: &mut Detector) {
+        std::mem::swap(&mut self.detector, detector);
+    }
+
     /// Fills in what the cells of a frame touch, and adds the series of contacts to those of the scene, as
     /// [`CONTACTS`](crate::recorded::CONTACTS) lists them; `dt` is the last step, s, 0 when there was none.
     pub fn look(

@@ -18,7 +18,7 @@ mod steps;
 pub(super) use builder::Builder;
 pub use notices::notices;
 pub(super) use numbers::{course, unit};
-pub use start::{PushedApart, settle_start};
+pub use start::{PushedApart, settle_start, settle_start_told};
 
 use super::{CellType, Document, Experiment, VolumeRule as Rule};
 use crate::Vec3;

@@ -4,7 +4,7 @@ use super::super::Document;
 use super::Compiled;
 use super::overlap::{Found, behind_planes, refusal, told, too_deep};
 use crate::Vec3;
-use crate::contact::{Overlap, Yielding, find_overlaps, push_apart};
+use crate::contact::{Overlap, Yielding, find_overlaps_told, push_apart};
 use crate::error::{Result, short};
 use crate::geometry::{area, bounding_box};
 use crate::sim::contact::ContactScene;
@@ -44,6 +44,18 @@ impl PushedApart {
 /// # Errors
 /// [`crate::error::Error::Input`] with the cells that cannot be parted so, and with those behind planes.
 pub fn settle_start(document: &Document, compiled: &mut Compiled) -> Result<PushedApart> {
+    settle_start_told(document, compiled, &|_| ())
+}
+
+/// The same, telling from time to time which share of the cells has been looked at.
+///
+/// # Errors
+/// As [`settle_start`].
+pub fn settle_start_told(
+    document: &Document,
+    compiled: &mut Compiled,
+    tell: &(dyn Fn(f64) + Sync),
+) -> Result<PushedApart> {
     let Compiled { model, state, .. } = compiled;
     let Some(contact) = &model.contact.as_ref().map(|contact| contact.scene_of(&state.kinds)) else {
         return Ok(PushedApart::default());
@@ -51,7 +63,7 @@ pub fn settle_start(document: &Document, compiled: &mut Compiled) -> Result<Push
     let cells = model.kinds.iter().zip(&state.kinds);
     let mut positions: Vec<Vec3> =
         cells.flat_map(|(kind, now)| (0..now.cells()).flat_map(|cell| now.cell(kind, cell))).collect();
-    let overlaps = find_overlaps(&contact.scene, &positions);
+    let overlaps = find_overlaps_told(&contact.scene, &positions, tell);
     refuse_what_cannot_move(document, model, state, contact, &positions, &overlaps)?;
     if overlaps.is_empty() {
         return Ok(PushedApart::default());

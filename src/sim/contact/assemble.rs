@@ -1,10 +1,15 @@
 //! Writes the rows of the system that the sweeps solve.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use super::laws::{Faced, Facing, Strength, area_between};
 use super::rows::{Pairing, Pull, Row};
 use super::scene::ContactScene;
-use super::scratch::empty_for;
+use super::scratch::resize_for;
 use super::state::ContactState;
+use super::together::Together;
 use crate::Vec3;
 use crate::contact::{AtomContact, Contacts, Normal, Scene};
 use crate::sim::controls::Controls;
@@ -16,137 +21,190 @@ pub(super) const SHARE: f64 = 0.5;
 /// unresolved, so that its side and, over ridges and in grooves, its normals are told by more than noise.
 const SKIN: f64 = 0.05;
 
-/// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them. `facing` has the
-/// areas of contact around atoms; where surfaces do not attract each other that at rest is taken.
-pub fn write_rows(
-    model: &ContactScene,
-    found: &Contacts,
-    before: &ContactState,
-    controls: &Controls,
-    facing: &[Facing],
-    rows: &mut Vec<Row>,
-    pulls: &mut Vec<Pull>,
-) {
-    let count = found.atoms.len() + found.edges.len() + found.planes.len();
-    empty_for(rows, count);
-    empty_for(pulls, count);
-    let mut add = |pairing,
-                   atoms,
-                   coordinates,
-                   Normal([x, y, z]),
-                   gap: f64,
-                   [least, shear, friction]: [f64; 3],
-                   (force, stored): ([f32; 3], f32)| {
-        let normal_and_gap = [x, y, z, gap as f32];
-        let (least, shear) = (least as f32, shear as f32);
-        let row = Row {
-            atoms,
-            coordinates,
-            normal_and_gap,
-            least,
-            shear,
-            friction: friction as f32,
-            compliance: 0.0,
-            across: 0.0,
-            kept: 1.0,
-            stored,
-            pairing,
-        };
+/// Contacts whose rows a thread writes at once.
+const CONTACTS_PER_JOB: usize = 512;
+
+/// What rows are written from.
+#[derive(Clone, Copy)]
+pub struct Written<'a> {
+    /// Surfaces and their strengths.
+    pub model: &'a ContactScene<'a>,
+    /// What touches.
+    pub found: &'a Contacts,
+    /// What it carried in the last step.
+    pub before: &'a ContactState,
+    /// Factors of the strengths of cells.
+    pub controls: &'a Controls,
+    /// The areas of contact around atoms; where surfaces do not attract each other that at rest is taken.
+    pub facing: &'a [Facing],
+}
+
+/// A row, and the force that it carried in the last step, pN.
+type Known = (Row, [f32; 3]);
+
+/// Writes the rows of all contacts, with the forces that they carried in the last step as far as they can bear them: atoms on facets, then
+/// edges on edges, then atoms on planes. `index` is where a row goes by its number in this order.
+pub fn write_rows(from: Written, index: impl Fn(usize) -> usize + Sync, rows: &mut Vec<Row>, pulls: &mut Vec<Pull>) {
+    let found = from.found;
+    let (of_atoms, of_edges) = (found.atoms.len(), found.edges.len());
+    let count = of_atoms + of_edges + found.planes.len();
+    resize_for(rows, count, Row::NOTHING);
+    resize_for(pulls, count, Pull::default());
+    let (rows, pulls) = (Together::new(rows), Together::new(pulls));
+    let put = |number: usize, (row, force): Known| {
         let force = row.bound(Vec3::from(force.map(f64::from)));
         let force = [force.x as f32, force.y as f32, force.z as f32];
-        rows.push(row);
-        pulls.push(Pull { force, carried: force, ..Pull::default() });
+        let at = index(number);
+        // SAFETY: each number has an index of its own, and is put once.
+        unsafe {
+            *rows.item(at) = row;
+            *pulls.item(at) = Pull { force, carried: force, ..Pull::default() };
+        }
     };
-    let scene = &model.scene;
-    let skin = SKIN * scene.reach.proximity;
-    let (mut body, mut first) = (0, 0);
-    for (number, contact) in found.atoms.iter().enumerate() {
-        while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= contact.atom) {
-            body += 1;
+    let jobs = |count: usize| (0..count.div_ceil(CONTACTS_PER_JOB)).into_par_iter();
+    let part = |job: usize, count: usize| job * CONTACTS_PER_JOB..count.min((job + 1) * CONTACTS_PER_JOB);
+    jobs(of_atoms).for_each(|job| from.atoms(part(job, of_atoms), &put));
+    jobs(of_edges).for_each(|job| from.edges(part(job, of_edges), &|edge, known| put(of_atoms + edge, known)));
+    let of_planes = found.planes.len();
+    let put = |plane: usize, known: Known| put(of_atoms + of_edges + plane, known);
+    jobs(of_planes).for_each(|job| from.planes(part(job, of_planes), &put));
+}
+
+/// A row that has not been swept.
+fn row(
+    pairing: Pairing,
+    atoms: [u32; 4],
+    coordinates: [f64; 2],
+    Normal([x, y, z]): Normal,
+    gap: f64,
+    [least, shear, friction]: [f64; 3],
+    stored: f32,
+) -> Row {
+    let normal_and_gap = [x, y, z, gap as f32];
+    let (least, shear, friction) = (least as f32, shear as f32, friction as f32);
+    Row { atoms, coordinates, normal_and_gap, least, shear, friction, stored, pairing, ..Row::NOTHING }
+}
+
+impl Written<'_> {
+    /// Tells the rows of some atoms on facets.
+    fn atoms(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
+        let &Self { model, found, before, controls, facing } = self;
+        let scene = &model.scene;
+        let skin = SKIN * scene.reach.proximity;
+        let begin = found.atoms[numbers.start].atom;
+        let mut body = scene.body_of_atom(begin) as usize;
+        let mut first = before.atoms.partition_point(|bond| bond.atom < begin);
+        for number in numbers {
+            let contact = &found.atoms[number];
+            while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= contact.atom) {
+                body += 1;
+            }
+            while before.atoms.get(first).is_some_and(|bond| bond.atom < contact.atom) {
+                first += 1;
+            }
+            // The same facet, or else another of the same body: the atom has slid.
+            let of_atom = || before.atoms[first..].iter().take_while(|bond| bond.atom == contact.atom);
+            let same = of_atom().find(|bond| bond.facet == contact.facet);
+            let is_free = |facet: u32| {
+                let near = found.atoms.partition_point(|other| (other.atom, other.facet) < (contact.atom, facet));
+                found.atoms.get(near).is_none_or(|other| (other.atom, other.facet) != (contact.atom, facet))
+            };
+            let on = contact.body(scene);
+            let slid = || of_atom().find(|bond| bond.body(scene) == on && is_free(bond.facet));
+            let (force, stored) = same.or_else(slid).map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.stored));
+            let [i, j, k] = scene.facet_atoms(on, contact.facet);
+            let other = on as usize;
+            let own = other == body;
+            let strength = if own { Strength::default() } else { model.strength_between(body, other) };
+            let kind = model.kind_of(body as u32);
+            let cohesive = if own { None } else { model.cohesion_of(body as u32, Faced::Body(on)) };
+            let area = match cohesive {
+                Some(_) => area_between(facing, contact.atom, Faced::Body(on)),
+                None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
+            };
+            let area = area / contacts_on_body(scene, found, number) as f64;
+            let area = SHARE * area;
+            let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
+            let row = row(
+                Pairing::AtomOnFacet,
+                [contact.atom, i, j, k],
+                contact.second_weights,
+                contact.normal,
+                contact.gap - if own || model.is_thin(on) { skin } else { 0.0 },
+                [-strength.tensile * area, strength.shear * area, cohesive.map_or(0.0, |it| it.friction * area)],
+                stored,
+            );
+            put(number, (row, force));
         }
-        while before.atoms.get(first).is_some_and(|bond| bond.atom < contact.atom) {
-            first += 1;
-        }
-        // The same facet, or else another of the same body: the atom has slid.
-        let of_atom = || before.atoms[first..].iter().take_while(|bond| bond.atom == contact.atom);
-        let same = of_atom().find(|bond| bond.facet == contact.facet);
-        let is_free = |facet: u32| {
-            let near = found.atoms.partition_point(|other| (other.atom, other.facet) < (contact.atom, facet));
-            found.atoms.get(near).is_none_or(|other| (other.atom, other.facet) != (contact.atom, facet))
-        };
-        let on = contact.body(scene);
-        let slid = || of_atom().find(|bond| bond.body(scene) == on && is_free(bond.facet));
-        let carried = same.or_else(slid).map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.stored));
-        let [i, j, k] = scene.facet_atoms(on, contact.facet);
-        let other = on as usize;
-        let own = other == body;
-        let strength = if own { Strength::default() } else { model.strength_between(body, other) };
-        let kind = model.kind_of(body as u32);
-        let cohesive = if own { None } else { model.cohesion_of(body as u32, Faced::Body(on)) };
-        let area = match cohesive {
-            Some(_) => area_between(facing, contact.atom, Faced::Body(on)),
-            None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
-        };
-        let area = area / contacts_on_body(scene, found, number) as f64;
-        let area = SHARE * area;
-        let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
-        add(
-            Pairing::AtomOnFacet,
-            [contact.atom, i, j, k],
-            contact.second_weights,
-            contact.normal,
-            contact.gap - if own || model.is_thin(on) { skin } else { 0.0 },
-            [-strength.tensile * area, strength.shear * area, cohesive.map_or(0.0, |it| it.friction * area)],
-            carried,
-        );
     }
-    let mut first = 0;
-    for contact in &found.edges {
-        while before.edges.get(first).is_some_and(|bond| bond.edges < contact.edges) {
-            first += 1;
+
+    /// Tells the rows of some edges on edges.
+    fn edges(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
+        let &Self { model, found, before, .. } = self;
+        let scene = &model.scene;
+        let skin = SKIN * scene.reach.proximity;
+        let begin = found.edges[numbers.start].edges;
+        let mut first = before.edges.partition_point(|bond| bond.edges < begin);
+        for number in numbers {
+            let contact = &found.edges[number];
+            while before.edges.get(first).is_some_and(|bond| bond.edges < contact.edges) {
+                first += 1;
+            }
+            let same = before.edges.get(first).filter(|bond| bond.edges == contact.edges);
+            let [one, other] = contact.bodies(scene);
+            let [a, b] = scene.edge_atoms(one, contact.edges[0]);
+            let [c, d] = scene.edge_atoms(other, contact.edges[1]);
+            let is_thin = one == other || model.is_thin(one) || model.is_thin(other);
+            let row = row(
+                Pairing::Edges,
+                [a, b, c, d],
+                contact.along,
+                contact.normal,
+                contact.gap - if is_thin { skin } else { 0.0 },
+                [0.0; 3],
+                0.0,
+            );
+            put(number, (row, same.map_or([0.0; 3], |bond| bond.force)));
         }
-        let same = before.edges.get(first).filter(|bond| bond.edges == contact.edges);
-        let [one, other] = contact.bodies(scene);
-        let [a, b] = scene.edge_atoms(one, contact.edges[0]);
-        let [c, d] = scene.edge_atoms(other, contact.edges[1]);
-        let is_thin = one == other || model.is_thin(one) || model.is_thin(other);
-        add(
-            Pairing::Edges,
-            [a, b, c, d],
-            contact.along,
-            contact.normal,
-            contact.gap - if is_thin { skin } else { 0.0 },
-            [0.0; 3],
-            (same.map_or([0.0; 3], |bond| bond.force), 0.0),
-        );
     }
-    let (mut body, mut first) = (0, 0);
-    for contact in &found.planes {
-        while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= contact.atom) {
-            body += 1;
+
+    /// Tells the rows of some atoms on planes.
+    fn planes(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
+        let &Self { model, found, before, controls, facing } = self;
+        let scene = &model.scene;
+        let key = |number: usize| (found.planes[number].atom, found.planes[number].plane);
+        let mut body = scene.body_of_atom(key(numbers.start).0) as usize;
+        let mut first = before.planes.partition_point(|bond| (bond.atom, bond.plane) < key(numbers.start));
+        for number in numbers {
+            let contact = &found.planes[number];
+            while scene.bodies.get(body + 1).is_some_and(|next| next.first_atom <= contact.atom) {
+                body += 1;
+            }
+            let key = key(number);
+            while before.planes.get(first).is_some_and(|bond| (bond.atom, bond.plane) < key) {
+                first += 1;
+            }
+            let same = before.planes.get(first).filter(|bond| (bond.atom, bond.plane) == key);
+            let kind = model.kind_of(body as u32);
+            let strength = model.strength_on(body, contact.plane);
+            let cohesive = model.cohesion_of(body as u32, Faced::Plane(contact.plane));
+            let area = match cohesive {
+                Some(_) => area_between(facing, contact.atom, Faced::Plane(contact.plane)),
+                None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
+            };
+            let area = area * controls.adhesion_of(body);
+            let (force, stored) = same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.stored));
+            let row = row(
+                Pairing::AtomOnPlane,
+                [contact.atom; 4],
+                [0.0; 2],
+                scene.planes[contact.plane as usize].normal.into(),
+                contact.gap,
+                [-strength.tensile * area, strength.shear * area, cohesive.map_or(0.0, |it| it.friction * area)],
+                stored,
+            );
+            put(number, (row, force));
         }
-        let key = (contact.atom, contact.plane);
-        while before.planes.get(first).is_some_and(|bond| (bond.atom, bond.plane) < key) {
-            first += 1;
-        }
-        let same = before.planes.get(first).filter(|bond| (bond.atom, bond.plane) == key);
-        let kind = model.kind_of(body as u32);
-        let strength = model.strength_on(body, contact.plane);
-        let cohesive = model.cohesion_of(body as u32, Faced::Plane(contact.plane));
-        let area = match cohesive {
-            Some(_) => area_between(facing, contact.atom, Faced::Plane(contact.plane)),
-            None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
-        };
-        let area = area * controls.adhesion_of(body);
-        add(
-            Pairing::AtomOnPlane,
-            [contact.atom; 4],
-            [0.0; 2],
-            scene.planes[contact.plane as usize].normal.into(),
-            contact.gap,
-            [-strength.tensile * area, strength.shear * area, cohesive.map_or(0.0, |it| it.friction * area)],
-            same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.stored)),
-        );
     }
 }
 

@@ -47,7 +47,8 @@ pub fn stored_after(row: &Row, pull: &Pull) -> f32 {
 
 /// The sum of [`stored_after`] over all contacts, pN·µm.
 pub fn energy_of_compliance(s: &ContactScratch) -> f64 {
-    s.rows.iter().zip(&s.pulls).map(|(row, pull)| f64::from(stored_after(row, pull))).sum()
+    let stored = |at: usize| f64::from(stored_after(&s.rows[at], &s.pulls[at]));
+    (0..s.rows.len()).map(|number| stored(s.row_of(number))).sum()
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Whether contacts can be mended where a step begins, and whether cells have passed each other unnoticed.
 
+use rayon::prelude::*;
+
 use super::find::write_contacts;
 use super::gather::gather_positions;
 use super::laws::PROMISED;
@@ -13,6 +15,9 @@ use crate::sim::state::State;
 use crate::sim::trouble::Trouble;
 use crate::sim::workspace::Workspace;
 
+/// Contacts that a thread looks at at once, at least.
+const CONTACTS_PER_JOB: usize = 2048;
+
 /// How deep one surface may be inside another where a step begins, over the depth to which contacts are found. Beyond
 /// it a step may lose the contact, and the two would pass each other.
 const DEEPEST: f64 = 0.5;
@@ -25,8 +30,9 @@ const DEEPEST: f64 = 0.5;
 pub fn check_depth(model: &Model, state: &State, ws: &mut Workspace) -> Result<(), Trouble> {
     let Some(contact) = &ws.contact.scene(model, &state.kinds) else { return Ok(()) };
     let found = &ws.contact.found;
-    let of_atoms = found.atoms.iter().map(|near| (near.gap, near.atom, near.body(&contact.scene)));
-    let of_edges = found.edges.iter().map(|near| {
+    let of_atoms = found.atoms.par_iter().with_min_len(CONTACTS_PER_JOB);
+    let of_atoms = of_atoms.map(|near| (near.gap, near.atom, near.body(&contact.scene)));
+    let of_edges = found.edges.par_iter().with_min_len(CONTACTS_PER_JOB).map(|near| {
         let [own, other] = near.bodies(&contact.scene);
         (near.gap, contact.scene.bodies[own as usize].first_atom, other)
     });
@@ -103,11 +109,11 @@ impl Deepest {
     /// That of all contacts; none where nothing is inside.
     fn of(model: &Model, contact: &ContactScene, found: &Contacts) -> Option<Self> {
         let edge = |body: u32| model.kinds[contact.kind_of(body)].edge;
-        let of_atoms = found.atoms.iter().filter(|near| near.gap < 0.0);
+        let of_atoms = found.atoms.par_iter().with_min_len(CONTACTS_PER_JOB).filter(|near| near.gap < 0.0);
         let of_atoms = of_atoms.map(|near| (near.gap, [contact.body_of(near.atom), near.body(&contact.scene)]));
-        let of_edges =
-            found.edges.iter().filter(|near| near.gap < 0.0).map(|near| (near.gap, near.bodies(&contact.scene)));
-        let of_planes = found.planes.iter().filter(|near| near.gap < 0.0);
+        let of_edges = found.edges.par_iter().with_min_len(CONTACTS_PER_JOB).filter(|near| near.gap < 0.0);
+        let of_edges = of_edges.map(|near| (near.gap, near.bodies(&contact.scene)));
+        let of_planes = found.planes.par_iter().with_min_len(CONTACTS_PER_JOB).filter(|near| near.gap < 0.0);
         let of_planes = of_planes.map(|near| (near.gap, [contact.body_of(near.atom); 2]));
         let all = of_atoms.chain(of_edges).chain(of_planes).map(|(gap, bodies)| {
             let [one, other] = bodies.map(edge);
@@ -131,8 +137,9 @@ fn lost_inside(contact: &ContactScene, state: &State, ws: &Workspace) -> Option<
         let there = &ws.contact.start[first..first + shape.atoms];
         closed && !own && winding_number(ws.contact.start[atom as usize], there, &shape.facets) > 0.5
     };
-    let mut touched = state.contact.atoms.iter().map(|bond| (bond.atom, bond.body(scene)));
-    touched.find(|&(atom, body)| !is_found(atom, body) && is_inside(atom, body))
+    let touched = state.contact.atoms.par_iter().with_min_len(CONTACTS_PER_JOB);
+    let touched = touched.map(|bond| (bond.atom, bond.body(scene)));
+    touched.find_first(|&(atom, body)| !is_found(atom, body) && is_inside(atom, body))
 }
 
 /// Refuses a state in which cells are deeper in each other than is promised. Contacts look at what is near; where cells are crushed

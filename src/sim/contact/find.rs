@@ -1,18 +1,21 @@
 //! What touches where a step begins, and what it carried in the step before.
 
-use super::assemble::write_rows;
+use rayon::prelude::*;
+
+use super::assemble::{Written, write_rows};
 use super::compliance::stored_after;
 use super::gather::gather_positions;
 use super::laws::Touching;
 use super::remember::find_at;
-use super::rows::{Pull, Row};
+use super::rows::Pull;
 use super::rub::write_rubbing;
 use super::scene::ContactScene;
-use super::scratch::{ContactForces, ContactScratch, empty_for};
+use super::scratch::{ContactForces, ContactScratch, empty_for, resize_for};
 use super::spread::{add_spreading, releases_energy};
 use super::state::{AtomBond, ContactState, EdgeBond, PlaneBond};
+use super::turns::Turns;
 use crate::Vec3;
-use crate::contact::{AtomContact, Contacts, PlaneContact};
+use crate::contact::{AtomContact, Contacts, Facing, PlaneContact};
 use crate::sim::controls::Controls;
 use crate::sim::kind::Kind;
 use crate::sim::model::Model;
@@ -36,14 +39,47 @@ pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
     let now =
         Touching { scene: &contact.scene, controls: &state.chemistry.controls, found: &s.found, positions: &s.start };
     contact.law.find(&model.kinds, now, &state.contact, state.time, &mut s.law);
+    order_rows(contact, s);
     let facing = &s.law.cohesion.facing;
-    let controls = &state.chemistry.controls;
-    write_rows(contact, &s.found, &state.contact, controls, facing, &mut s.rows, &mut s.pulls);
-    write_rubbing(contact, &s.found, controls, facing, &s.start, &mut s.rows, &mut s.pulls);
+    let from = Written {
+        model: contact,
+        found: &s.found,
+        before: &state.contact,
+        controls: &state.chemistry.controls,
+        facing,
+    };
+    match s.is_in_turns {
+        true => write_rows(from, |row| s.mobility.turns.of_row(row), &mut s.rows, &mut s.pulls),
+        false => {
+            write_rows(from, |row| row, &mut s.rows, &mut s.pulls);
+            write_rubbing(contact, &s.found, &state.chemistry.controls, facing, &s.start, &mut s.rows, &mut s.pulls);
+        }
+    }
     if model.integrator.method.is_inertial() || !contact.law.projects() {
         s.pulls.fill(Pull::default());
     }
     s.law.adhesives.take_over(&mut s.rows, &mut s.pulls, &s.start);
+}
+
+/// Finds the order in which the contacts are swept that were found, where they are so many that threads share them: then their rows stand
+/// in it from the begin. Those of few are put in order by the sweeps that need it.
+fn order_rows(contact: &ContactScene, s: &mut ContactScratch) {
+    let ContactScratch { found: Contacts { atoms, edges, planes }, mobility, is_in_turns, .. } = s;
+    let (of_atoms, of_edges) = (atoms.len(), atoms.len() + edges.len());
+    let count = of_edges + planes.len();
+    // What rubs without touching has rows after those of contacts.
+    let rubs = contact.law.cohesion().is_some_and(|table| table.has_friction());
+    *is_in_turns = contact.law.moves_as_steps() && Turns::are_many(count) && !rubs;
+    if !*is_in_turns {
+        return;
+    }
+    let scene = &contact.scene;
+    let between = |row: usize| match row {
+        row if row < of_atoms => [scene.body_of_atom(atoms[row].atom), atoms[row].body(scene)],
+        row if row < of_edges => edges[row - of_atoms].bodies(scene),
+        row => [scene.body_of_atom(planes[row - of_edges].atom); 2],
+    };
+    mobility.turns.find(count, between, scene.bodies.len());
 }
 
 /// Sets the forces that contacts carry where the step begins. The state must be that of which they were found.
@@ -58,18 +94,22 @@ pub fn carry_forces(model: &Model, state: &State, ws: &mut Workspace) {
         // The attempt before was looked at to its end.
         find_at(contact, &state.contact, &s.start, &mut s.detector, &mut s.found);
     }
-    let carried = &mut s.forces.carried;
+    let mut carried = std::mem::take(&mut s.forces.carried);
     carried.clear();
     carried.resize(contact.scene.atoms, Vec3::zeros());
-    add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, carried);
-    for (row, pull) in s.rows.iter().zip(&s.pulls) {
+    add_spreading(contact, &s.found, &state.chemistry.controls, &s.start, &mut s.relief, &mut carried);
+    // In the order in which contacts are found, however they are swept.
+    for number in 0..s.rows.len() {
+        let at = s.row_of(number);
+        let (row, force) = (&s.rows[at], s.pulls[at].carried());
         for (atom, weight) in row.atoms.iter().zip(row.weights()) {
-            carried[*atom as usize] += weight * pull.carried();
+            carried[*atom as usize] += weight * force;
         }
     }
     for one in &s.law.adhesives.atoms {
         carried[one.atom as usize] += Vec3::from(one.force);
     }
+    s.forces.carried = carried;
 }
 
 /// Whether contacts act with forces that change while a step is made.
@@ -127,32 +167,38 @@ pub(super) fn write_contacts(
     to: &mut ContactState,
     s: &mut ContactScratch,
 ) {
-    write_bonds(&s.found, &s.rows, &s.pulls, to);
+    write_bonds(s, to);
     contact.law.keep(&contact.scene, controls, &s.found, &s.moved, &mut s.law, to);
 }
 
+/// Bonds that a thread writes at once, at least.
+const BONDS_PER_JOB: usize = 1024;
+
 /// Writes what contacts carry. The contacts must be those of the rows.
-fn write_bonds(found: &Contacts, rows: &[Row], pulls: &[Pull], bonds: &mut ContactState) {
+fn write_bonds(s: &ContactScratch, bonds: &mut ContactState) {
     let ContactState { atoms, edges, planes, .. } = bonds;
-    let (of_atoms, others) = pulls.split_at(found.atoms.len());
-    let (of_edges, others) = others.split_at(found.edges.len());
-    // What rubs without touching is found anew in each step.
-    let of_planes = &others[..found.planes.len()];
-    empty_for(atoms, found.atoms.len());
-    for ((pull, row), contact) in of_atoms.iter().zip(rows).zip(&found.atoms) {
-        let &AtomContact { atom, facet, facing, .. } = contact;
-        atoms.push(AtomBond { atom, facet, facing, force: pull.force, stored: stored_after(row, pull) });
-    }
+    let found = &s.found;
+    let known = |number: usize| {
+        let at = s.row_of(number);
+        (&s.rows[at], &s.pulls[at])
+    };
+    let nothing = AtomBond { atom: 0, facet: 0, facing: Facing::Any, force: [0.0; 3], stored: 0.0 };
+    resize_for(atoms, found.atoms.len(), nothing);
+    let of_atoms = atoms.par_iter_mut().zip(&found.atoms).enumerate().with_min_len(BONDS_PER_JOB);
+    of_atoms.for_each(|(number, (bond, contact))| {
+        let (&AtomContact { atom, facet, facing, .. }, (row, pull)) = (contact, known(number));
+        *bond = AtomBond { atom, facet, facing, force: pull.force, stored: stored_after(row, pull) };
+    });
     // Edges are remembered for their force alone.
-    let loaded = || of_edges.iter().zip(&found.edges).filter(|(pull, _)| pull.force != [0.0; 3]);
+    let of_edges = (found.atoms.len()..).zip(&found.edges).map(|(number, contact)| (known(number).1.force, contact));
+    let loaded = || of_edges.clone().filter(|(force, _)| *force != [0.0; 3]);
     empty_for(edges, loaded().count());
-    for (pull, contact) in loaded() {
-        edges.push(EdgeBond { edges: contact.edges, normal: contact.normal.0, force: pull.force });
+    for (force, contact) in loaded() {
+        edges.push(EdgeBond { edges: contact.edges, normal: contact.normal.0, force });
     }
     empty_for(planes, found.planes.len());
-    let rows = &rows[found.atoms.len() + found.edges.len()..];
-    for ((pull, row), contact) in of_planes.iter().zip(rows).zip(&found.planes) {
-        let &PlaneContact { atom, plane, .. } = contact;
+    for (number, contact) in (found.atoms.len() + found.edges.len()..).zip(&found.planes) {
+        let (&PlaneContact { atom, plane, .. }, (row, pull)) = (contact, known(number));
         planes.push(PlaneBond { atom, plane, force: pull.force, stored: stored_after(row, pull) });
     }
 }

@@ -8,6 +8,9 @@ use crate::sim::kind::Kind;
 use crate::sim::model::Model;
 use crate::sim::state::{KindState, index, vector};
 
+/// Cells whose atoms a thread takes at once, at least.
+const CELLS_PER_JOB: usize = 64;
+
 /// Takes the vectors of a kind in the order of its cells, and what `make` makes of each.
 pub fn gather<T>(kind: &Kind, values: &[f64], to: &mut [T], make: impl Fn(Vec3) -> T) {
     for (cell, to) in to.chunks_exact_mut(kind.atoms()).enumerate() {
@@ -24,13 +27,17 @@ pub fn gather_positions(model: &Model, contact: &ContactScene, cells: &[KindStat
     let mut same = positions.len() == contact.scene.atoms;
     positions.resize(contact.scene.atoms, Vec3::zeros());
     for (number, (kind, now)) in model.kinds.iter().zip(cells).enumerate() {
-        for (cell, positions) in positions[contact.atoms_of(number)].chunks_exact_mut(kind.atoms()).enumerate() {
+        let take = |(cell, positions): (usize, &mut [Vec3])| {
+            let mut same = true;
             for (atom, position) in positions.iter_mut().enumerate() {
                 let now = vector(kind, &now.positions, cell, atom);
                 same &= *position == now;
                 *position = now;
             }
-        }
+            same
+        };
+        let of_cells = positions[contact.atoms_of(number)].par_chunks_exact_mut(kind.atoms()).enumerate();
+        same &= of_cells.with_min_len(CELLS_PER_JOB).map(take).reduce(|| true, |one, other| one & other);
     }
     same
 }

@@ -1,9 +1,11 @@
 //! The projection: atoms are moved so that contacts and volumes hold.
 
+use rayon::prelude::*;
+
 use super::change::Change;
 use super::gather::scatter;
 use super::mobility::Mobility;
-use super::momentum::{go_on, go_on_by_modes};
+use super::momentum::{begin, go_on, go_on_by_modes};
 use super::prepare::{load_rows, prepare};
 use super::rows::Row;
 use super::scene::ContactScene;
@@ -20,6 +22,9 @@ use crate::sim::workspace::Workspace;
 
 /// Sweeps that mend depths. They need not come to rest: what is left is mended in the next step.
 const MENDING: usize = 8;
+
+/// Cells that a thread looks at at once, at least.
+const CELLS_PER_JOB: usize = 64;
 
 /// What a step mends of a depth at most, over the travel that is safe.
 const MENDED: f64 = 0.25;
@@ -113,10 +118,7 @@ fn sweep(model: &Model, contact: &ContactScene, dt: f64, rules: SweepRules, s: &
     let keeps_start = contact.law.needs_start();
     let mut before = std::mem::take(if keeps_start { &mut s.before } else { &mut s.start });
     let mut direction = std::mem::take(&mut s.forces.carried);
-    before.clear();
-    before.extend(s.moved.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z)));
-    direction.clear();
-    direction.resize(contact.scene.atoms, Vec3::zeros());
+    begin(&s.moved, &mut before, &mut direction);
     s.momentum.begin();
     let (mut change, mut share) = (Change::default(), 0.0);
     for number in 1..=contact.most_sweeps {
@@ -164,13 +166,15 @@ pub fn travel(model: &Model, from: &State, to: &State) -> f64 {
     let Some(contact) = &model.contact else { return 0.0 };
     let mut farthest: f64 = 0.0;
     for ((kind, now), next) in model.kinds.iter().zip(&from.kinds).zip(&to.kinds) {
-        // Lanes beyond the last cell may go elsewhere.
-        for cell in 0..now.cells() {
+        let of_cell = |cell: usize| {
             let position = |x: &[f64], atom: usize| vector(kind, x, cell, atom);
             let travels =
                 (0..kind.atoms()).map(|atom| position(&next.positions, atom) - position(&now.positions, atom));
-            farthest = travels.map(|travel| travel.norm_squared()).fold(farthest, f64::max);
-        }
+            travels.map(|travel| travel.norm_squared()).fold(0.0, f64::max)
+        };
+        // Lanes beyond the last cell may go elsewhere.
+        let cells = (0..now.cells()).into_par_iter().with_min_len(CELLS_PER_JOB);
+        farthest = farthest.max(cells.map(of_cell).reduce(|| 0.0, f64::max));
     }
     farthest.sqrt() / contact.reach.safe_travel()
 }

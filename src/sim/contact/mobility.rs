@@ -91,10 +91,12 @@ pub struct Mobility {
     pub levers: Vec<Lever>,
     /// The order in which rows are swept.
     pub turns: Turns,
-    /// Whether rows stand in that order.
+    /// Whether rows were put in that order for the sweeps alone.
     pub is_arranged: bool,
     /// What each job of a sweep changed.
     pub changes: Vec<Change>,
+    /// One behind the last deep row of each job.
+    pub deep_ends: Vec<usize>,
     pub moved: Vec<Motion>,
     pub before: Vec<Motion>,
     pub direction: Vec<Motion>,

@@ -22,6 +22,7 @@ mod momentum;
 mod prepare;
 mod remember;
 mod renumber;
+mod rounds;
 mod rows;
 mod rub;
 mod scene;

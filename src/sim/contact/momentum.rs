@@ -42,6 +42,14 @@ impl Momentum {
     }
 }
 
+/// Begins at some displacements without a direction.
+pub fn begin(moved: &[V4], before: &mut Vec<Vec3>, direction: &mut Vec<Vec3>) {
+    before.resize(moved.len(), Vec3::zeros());
+    direction.resize(moved.len(), Vec3::zeros());
+    let lists = moved.par_iter().zip(before).zip(direction).with_min_len(ATOMS_PER_JOB);
+    lists.for_each(|((&[x, y, z, _], before), direction)| (*before, *direction) = (Vec3::new(x, y, z), Vec3::zeros()));
+}
+
 /// Goes on from displacements after a sweep along a share of the last direction: `before` are those before the sweep, and
 /// become those before the next.
 pub fn go_on(share: f64, moved: &mut [V4], before: &mut [Vec3], direction: &mut [Vec3]) {

@@ -10,7 +10,6 @@ use super::mobility::{Mobility, Response};
 use super::rows::{Pull, Row};
 use super::scene::ContactScene;
 use super::scratch::{ContactScratch, SweepRules};
-use super::turns::Turns;
 use super::volumes::VolumeRow;
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
@@ -106,12 +105,13 @@ pub fn load_rows(contact: &ContactScene, rules: SweepRules, s: &mut ContactScrat
     let bodies_of = |row: &Row| [row.atoms[0], row.atoms[3]].map(|atom| contact.body_of(atom));
     let has_modes = s.mobility.has_modes;
     let Mobility { turns, is_arranged, .. } = &mut s.mobility;
-    *is_arranged = has_modes || contact.law.moves_as_steps() && Turns::are_many(s.rows.len());
+    // Many stand in the order of sweeps from the begin of the step on.
+    *is_arranged = has_modes && !s.is_in_turns;
     if *is_arranged {
-        turns.find(s.rows.iter().map(bodies_of), contact.scene.bodies.len());
+        turns.find(s.rows.len(), |row| bodies_of(&s.rows[row]), contact.scene.bodies.len());
         turns.arrange(&mut s.rows);
         turns.arrange(&mut s.pulls);
-    } else {
+    } else if !s.is_in_turns {
         turns.leave(s.rows.len());
     }
     let ContactScratch { rows, pulls, moved, mobility, start, .. } = s;

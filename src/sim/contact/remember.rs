@@ -1,6 +1,8 @@
 //! What contacts remember from step to step beside their forces: positions alone do not tell on which side of a sheet an atom is, and
 //! contacts that come and go with every tremor move their load about.
 
+use rayon::prelude::*;
+
 use super::scene::ContactScene;
 use super::state::{AtomBond, ContactState};
 use crate::Vec3;
@@ -58,7 +60,9 @@ fn keep_edges(contact: &ContactScene, before: &ContactState, positions: &[Vec3],
             found.edges.extend(edges_still_touch(&contact.scene, positions, bond.edges, &normal));
         }
     }
-    found.edges.sort_unstable_by_key(|edge| edge.edges);
+    if found.edges.len() > count {
+        found.edges.par_sort_unstable_by_key(|edge| edge.edges);
+    }
 }
 
 #[cfg(test)]

@@ -58,6 +58,21 @@ pub struct Pull {
 }
 
 impl Row {
+    /// A row that does nothing.
+    pub(super) const NOTHING: Self = Self {
+        atoms: [0; 4],
+        coordinates: [0.0; 2],
+        normal_and_gap: [0.0; 4],
+        least: 0.0,
+        shear: 0.0,
+        friction: 0.0,
+        compliance: 0.0,
+        across: 0.0,
+        kept: 1.0,
+        stored: 0.0,
+        pairing: Pairing::Rigid,
+    };
+
     /// The weights of its atoms: positive on the first side of the contact, negative on the other; each side sums to ±1.
     #[inline(always)]
     pub fn weights(&self) -> [f64; 4] {

@@ -10,7 +10,7 @@ use super::volumes::VolumeRow;
 use crate::Vec3;
 use crate::contact::{Contacts, Detector};
 use crate::sim::model::Model;
-use crate::sim::state::KindState;
+use crate::sim::state::{KindState, State};
 
 /// Forces of contacts on all atoms while these move freely, pN, in the order of cells; empty where there are none.
 #[derive(Debug, Clone, Default)]
@@ -57,8 +57,11 @@ pub struct ContactScratch {
     pub(super) positions: Vec<Vec3>,
     /// What the surface at each atom releases an area of contact, pN/µm.
     pub(super) relief: Vec<f64>,
-    /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on planes.
+    /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on planes; where there are many, in the order in
+    /// which they are swept.
     pub rows: Vec<Row>,
+    /// Whether they stand in that order.
+    pub(super) is_in_turns: bool,
     /// What each row carries.
     pub pulls: Vec<Pull>,
     /// Displacement of the atoms over the step, µm, and their displacement over force, µm/pN.
@@ -85,6 +88,16 @@ impl ContactScratch {
             self.surfaces = Some(Surfaces::of(rules, cells));
         }
         self.surfaces.as_ref().map(|surfaces| surfaces.with(rules))
+    }
+
+    /// Makes what is kept from look to look that of the cells there are; says whether a model has contacts.
+    pub(crate) fn suit(&mut self, model: &Model, state: &State) -> bool {
+        self.scene(model, &state.kinds).is_some()
+    }
+
+    /// Where the row of a contact stands, by the number of that contact.
+    pub(super) fn row_of(&self, number: usize) -> usize {
+        if self.is_in_turns { self.mobility.turns.of_row(number) } else { number }
     }
 
     /// Forgets what was found, so that the next look finds it anew.
@@ -114,6 +127,14 @@ impl ContactScratch {
         self.momentum.poison();
         self.sweeps = u32::MAX;
     }
+}
+
+/// Makes a list so long; what it has stays as it is. It grows as [`empty_for`] lets it.
+pub(super) fn resize_for<T: Clone>(list: &mut Vec<T>, count: usize, item: T) {
+    if list.capacity() < count {
+        empty_for(list, count);
+    }
+    list.resize(count, item);
 }
 
 /// Empties a list that will have this many items. Where it must grow it takes a thirty-second more, where a `Vec` would double: rows

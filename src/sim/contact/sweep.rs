@@ -4,12 +4,13 @@
 //! sweeps are compiled for wide registers and give the same bits in narrow ones.
 
 use pulp::{Arch, NullaryFnOnce};
-use rayon::prelude::*;
 
 use super::change::Change;
 use super::mobility::{Body, Lever, Mobility, Motion, moved_apart, push_body, sides};
+use super::rounds::in_rounds;
 use super::rows::{Pull, Row};
 use super::together::Together;
+use super::turns::Turns;
 use super::vectors::{V4, map};
 use crate::mechanics::modes::OfModes;
 
@@ -122,13 +123,13 @@ pub fn sweep_contacts(
     };
     changes.clear();
     changes.resize(turns.jobs(), Change::default());
-    for colour in turns.colours() {
-        let changes = &mut changes[colour.clone()];
-        if changes.len() == 1 || rayon::current_num_threads() == 1 {
-            changes.iter_mut().zip(colour).for_each(|(change, job)| sweep(job, change));
-        } else {
-            changes.par_iter_mut().zip(colour).for_each(|(change, job)| sweep(job, change));
-        }
+    let of_jobs = Together::new(changes);
+    // SAFETY: each job has a change of its own.
+    let sweep = |job: usize| sweep(job, unsafe { of_jobs.item(job) });
+    if turns.jobs() == 1 {
+        sweep(0);
+    } else {
+        in_rounds(turns.colours(), sweep);
     }
     changes.iter().for_each(|of_job| change.add(of_job));
 }
@@ -233,13 +234,29 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
 /// mended by displacement, not by force, eq. (adhesion.7). `deep` are the rows that are inside and can move, each with the force that
 /// would do it, zero at first.
 pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], mobility: &mut Mobility, most: f64) {
-    let Mobility { shapes, kinds, bodies, levers, moved: motions, has_modes, .. } = mobility;
+    let Mobility { shapes, kinds, bodies, levers, moved: motions, has_modes, turns, deep_ends, .. } = mobility;
     let (moved, motions) = (&Together::new(moved), &Together::new(motions));
     let cells = Cells { shapes, kinds, bodies, moved, motions };
+    let levers = has_modes.then_some(&levers[..]);
+    if !Turns::are_many(deep.len()) {
+        return push_out(rows, deep, levers, cells, most);
+    }
+    deep_ends.clear();
+    let before = |turn: usize| deep.partition_point(|(row, _)| (*row as usize) < turn);
+    deep_ends.extend((0..turns.jobs()).map(|job| before(turns.of_job(job).end)));
+    let part = |job: usize| if job == 0 { 0 } else { deep_ends[job - 1] }..deep_ends[job];
+    let deep = Together::new(deep);
+    // SAFETY: jobs have rows of their own, and those of a colour move different cells.
+    in_rounds(turns.colours(), |job| push_out(rows, unsafe { deep.part(part(job)) }, levers, cells, most));
+}
+
+/// Pushes out what some rows are inside, one after the other.
+fn push_out(rows: &[Row], deep: &mut [(u32, f64)], levers: Option<&[Lever]>, cells: Cells, most: f64) {
+    let Cells { shapes, moved, motions, .. } = cells;
     for (number, pushed) in deep {
         let row = &rows[*number as usize];
         let (weights, normal) = (row.weights(), normal(row));
-        let sides = has_modes.then(|| BySides::new(shapes, &levers[*number as usize], row, weights));
+        let sides = levers.map(|levers| BySides::new(shapes, &levers[*number as usize], row, weights));
         let mut opened = dot(&apart(row, weights, moved), &normal);
         if let Some(sides) = &sides {
             opened += dot(&sides.apart(motions), &normal);

@@ -18,11 +18,14 @@ const SHARED_FROM: usize = 4096;
 /// Rows that a thread takes at once, at least.
 const ROWS_PER_JOB: u32 = 256;
 
+/// Rows whose bodies a thread looks up at once, at least.
+const KEYS_PER_JOB: usize = 2048;
+
 /// The order of the sweeps, and what is needed to find it.
 #[derive(Debug, Clone, Default)]
 pub struct Turns {
-    /// The number of the row that has each turn.
-    order: Vec<u32>,
+    /// The turn of each row.
+    turn_of: Vec<u32>,
     /// Pairs of cells with the numbers of their rows.
     rows: Vec<(u64, u32)>,
     /// Pairs: colour, first row in `rows` and one behind the last.
@@ -38,12 +41,48 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// Finds the order for rows between bodies.
-    pub fn find(&mut self, between: impl Iterator<Item = [u32; 2]>, bodies: usize) {
+    /// Finds the order of so many rows, each between two bodies.
+    pub fn find(&mut self, count: usize, between: impl Fn(usize) -> [u32; 2] + Sync, bodies: usize) {
         let key = |[a, b]: [u32; 2]| u64::from(a.min(b)) << 32 | u64::from(a.max(b));
-        self.rows.clear();
-        self.rows.extend(between.zip(0..).map(|(bodies, row)| (key(bodies), row)));
+        self.rows.resize(count, (0, 0));
+        let rows = self.rows.par_iter_mut().enumerate().with_min_len(KEYS_PER_JOB);
+        rows.for_each(|(row, known)| *known = (key(between(row)), row as u32));
         self.rows.par_sort_unstable();
+        self.colour_pairs(bodies);
+        // Pairs with as many rows stay side by side longest.
+        self.pairs.par_sort_unstable_by_key(|&(colour, first, end)| (colour, end - first, first));
+        self.turn_of.resize(count, 0);
+        self.jobs.clear();
+        self.colours.clear();
+        let is_shared = Self::are_many(count);
+        let mut next = 0;
+        for colour in self.pairs.chunk_by(|one, other| one.0 == other.0) {
+            for group in colour.chunks(SIDE_BY_SIDE) {
+                let longest = group.iter().map(|&(_, first, end)| end - first).max().unwrap_or(0);
+                for turn in 0..longest {
+                    for &(_, first, _) in group.iter().filter(|&&(_, first, end)| first + turn < end) {
+                        self.turn_of[self.rows[(first + turn) as usize].1 as usize] = next;
+                        next += 1;
+                    }
+                }
+                let begun = self.jobs.last().copied().unwrap_or(0);
+                if is_shared && colour[0].0 + 1 < COLOURS && next - begun >= ROWS_PER_JOB {
+                    self.jobs.push(next);
+                }
+            }
+            if is_shared {
+                end_job(&mut self.jobs, next);
+                self.colours.push(self.jobs.len() as u32);
+            }
+        }
+        end_job(&mut self.jobs, next);
+        if !is_shared {
+            self.colours.push(self.jobs.len() as u32);
+        }
+    }
+
+    /// Lists the pairs of bodies, no body twice in a colour.
+    fn colour_pairs(&mut self, bodies: usize) {
         self.taken.clear();
         self.taken.resize(bodies, 0);
         self.pairs.clear();
@@ -57,33 +96,11 @@ impl Turns {
             self.pairs.push((colour, first, end));
             first = end;
         }
-        // Pairs with as many rows stay side by side longest.
-        self.pairs.sort_unstable_by_key(|&(colour, first, end)| (colour, end - first, first));
-        self.order.clear();
-        self.jobs.clear();
-        self.colours.clear();
-        let is_shared = self.rows.len() >= SHARED_FROM;
-        for colour in self.pairs.chunk_by(|one, other| one.0 == other.0) {
-            for group in colour.chunks(SIDE_BY_SIDE) {
-                let longest = group.iter().map(|&(_, first, end)| end - first).max().unwrap_or(0);
-                for turn in 0..longest {
-                    let there = group.iter().filter(|&&(_, first, end)| first + turn < end);
-                    self.order.extend(there.map(|&(_, first, _)| self.rows[(first + turn) as usize].1));
-                }
-                let begun = self.jobs.last().copied().unwrap_or(0);
-                if is_shared && colour[0].0 + 1 < COLOURS && self.order.len() as u32 - begun >= ROWS_PER_JOB {
-                    self.jobs.push(self.order.len() as u32);
-                }
-            }
-            if is_shared {
-                end_job(&mut self.jobs, self.order.len());
-                self.colours.push(self.jobs.len() as u32);
-            }
-        }
-        end_job(&mut self.jobs, self.order.len());
-        if !is_shared {
-            self.colours.push(self.jobs.len() as u32);
-        }
+    }
+
+    /// The turn of a row in the order that was found last.
+    pub fn of_row(&self, row: usize) -> usize {
+        self.turn_of[row] as usize
     }
 
     /// One job that sweeps so many rows as they stand.
@@ -118,37 +135,36 @@ impl Turns {
 
     /// Puts what is listed row by row in the order of the sweeps.
     pub fn arrange<T>(&mut self, list: &mut [T]) {
-        self.for_each_step(list.len(), |_, to, from| list.swap(to, from));
+        self.for_each_step(list.len(), |start, _, to| list.swap(start, to));
     }
 
     /// Puts what is in the order of the sweeps back row by row.
     pub fn put_back<T>(&mut self, list: &mut [T]) {
-        self.for_each_step(list.len(), |start, _, to| list.swap(start, to));
+        self.for_each_step(list.len(), |_, to, from| list.swap(to, from));
     }
 
-    /// Walks along the circles of the order: where one starts, a turn, and the row that has it, but for the last of each.
+    /// Walks along the circles of the order: where one starts, a row, and its turn, but for the last of each.
     fn for_each_step(&mut self, rows: usize, mut step: impl FnMut(usize, usize, usize)) {
         self.done.clear();
         self.done.resize(rows, false);
         for start in 0..rows {
-            let mut turn = start;
-            while !self.done[turn] {
-                self.done[turn] = true;
-                let row = self.order[turn] as usize;
-                if row != start {
-                    step(start, turn, row);
+            let mut row = start;
+            while !self.done[row] {
+                self.done[row] = true;
+                let turn = self.turn_of[row] as usize;
+                if turn != start {
+                    step(start, row, turn);
                 }
-                turn = row;
+                row = turn;
             }
         }
     }
 }
 
 /// Ends the last job after so many turns, if it has any.
-fn end_job(jobs: &mut Vec<u32>, turns: usize) {
-    let end = turns as u32;
-    if jobs.last().copied().unwrap_or(0) < end {
-        jobs.push(end);
+fn end_job(jobs: &mut Vec<u32>, turns: u32) {
+    if jobs.last().copied().unwrap_or(0) < turns {
+        jobs.push(turns);
     }
 }
 
@@ -161,14 +177,22 @@ mod tests {
         (0..60).map(|i| if i % 2 == 0 { [i % 12, (i + 1) % 12] } else { [(i + 1) % 12, i % 12] }).collect()
     }
 
+    /// Finds the order of rows; the row that has each turn comes back.
+    fn found(turns: &mut Turns, rows: &[[u32; 2]], bodies: usize) -> Vec<u32> {
+        turns.find(rows.len(), |row| rows[row], bodies);
+        let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+        order.sort_by_key(|row| turns.of_row(*row as usize));
+        order
+    }
+
     #[test]
     fn each_row_has_one_turn_and_neighbours_in_the_order_move_different_cells() {
         let (ring, mut turns) = (ring(), Turns::default());
-        turns.find(ring.iter().copied(), 12);
-        let mut sorted = turns.order.clone();
+        let order = found(&mut turns, &ring, 12);
+        let mut sorted = turns.turn_of.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, (0..60).collect::<Vec<u32>>());
-        let shared = turns.order.windows(2).filter(|two| {
+        let shared = order.windows(2).filter(|two| {
             let [one, other] = [two[0], two[1]].map(|row| ring[row as usize]);
             one.iter().any(|body| other.contains(body))
         });
@@ -178,10 +202,10 @@ mod tests {
     #[test]
     fn what_is_put_in_order_comes_back() {
         let mut turns = Turns::default();
-        turns.find(ring().into_iter(), 12);
+        let order = found(&mut turns, &ring(), 12);
         let mut list: Vec<u32> = (0..60).collect();
         turns.arrange(&mut list);
-        assert_eq!(list, turns.order);
+        assert_eq!(list, order);
         turns.put_back(&mut list);
         assert_eq!(list, (0..60).collect::<Vec<u32>>());
     }
@@ -198,7 +222,7 @@ mod tests {
             .collect();
         assert!(Turns::are_many(rows.len()), "{}", rows.len());
         let mut turns = Turns::default();
-        turns.find(rows.iter().copied(), 400);
+        let order = found(&mut turns, &rows, 400);
         let mut next = 0;
         for colour in turns.colours() {
             let mut mover = vec![None; 400];
@@ -207,7 +231,7 @@ mod tests {
                 assert_eq!(of_job.start, next);
                 next = of_job.end;
                 for turn in of_job {
-                    for body in rows[turns.order[turn] as usize] {
+                    for body in rows[order[turn] as usize] {
                         assert!(mover[body as usize].replace(job).is_none_or(|mover| mover == job), "{body}");
                     }
                 }
