@@ -29,6 +29,15 @@ impl Drop for Counted<'_> {
     }
 }
 
+/// All rounds are over, also where a job of the one who leads failed: those who help go home.
+struct Over<'a>(&'a AtomicUsize);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(usize::MAX, Ordering::Release);
+    }
+}
+
 impl Rounds {
     /// Takes a job and does it, if there is one.
     fn take(&self, work: &impl Fn(usize)) -> bool {
@@ -46,6 +55,7 @@ impl Rounds {
 
     /// Does all rounds, with whoever helps.
     fn lead(&self, rounds: impl Iterator<Item = Range<usize>>, work: &impl Fn(usize)) {
+        let _over = Over(&self.end);
         for round in rounds {
             self.end.store(round.end, Ordering::Release);
             while self.take(work) {}
@@ -54,7 +64,6 @@ impl Rounds {
                 wait(&mut looks);
             }
         }
-        self.end.store(usize::MAX, Ordering::Release);
     }
 
     /// Does jobs until the last round is over.
