@@ -33,7 +33,7 @@ struct Named {
 }
 
 #[rustfmt::skip] // a table
-const NAMED: [Named; 16] = [
+const NAMED: [Named; 17] = [
     Named { dimension: Dimension::LENGTH, name: "length", unit: "um", label: "µm", example: "5 um",
         ladder: &[("nm", 1e-3), ("µm", 1.0), ("mm", 1e3), ("m", 1e6)] },
     Named { dimension: Dimension::TIME, name: "time", unit: "s", label: "s", example: "10 s",
@@ -52,6 +52,8 @@ const NAMED: [Named; 16] = [
         ladder: &[("aJ", 1.0), ("fJ", 1e3), ("pJ", 1e6)] },
     Named { dimension: Dimension::DRAG, name: "drag", unit: "pN s/um", label: "pN·s/µm", example: "20 pN s/um",
         ladder: &[("pN·s/µm", 1.0)] },
+    Named { dimension: Dimension::SURFACE_DRAG, name: "friction of surfaces", unit: "pN s/um^3", label: "pN·s/µm³",
+        example: "0.2 pN s/um^3", ladder: &[("pN·s/µm³", 1.0)] },
     Named { dimension: Dimension::MASS, name: "mass", unit: "mg", label: "mg", example: "1 mg",
         ladder: &[("pg", 1e-9), ("ng", 1e-6), ("µg", 1e-3), ("mg", 1.0), ("g", 1e3)] },
     Named { dimension: Dimension::AREA, name: "area", unit: "um^2", label: "µm²", example: "100 um^2",
@@ -89,6 +91,8 @@ impl Dimension {
     pub const ENERGY: Self = Self::of(1, 0, 1);
     /// A drag, pN·s/µm.
     pub const DRAG: Self = Self::of(-1, 1, 1);
+    /// A friction of surfaces, pN·s/µm³.
+    pub const SURFACE_DRAG: Self = Self::of(-3, 1, 1);
     /// A mass, pN·s²/µm = mg.
     pub const MASS: Self = Self::of(-1, 2, 1);
     /// An area, µm².

@@ -5,7 +5,7 @@ use super::search::points_of_facet;
 use super::*;
 use crate::contact::test_scenes::{Stage, packed_stage};
 use crate::contact::{Opening, Plane, Reach, Shape, Sides, opening_to_facet, opening_to_plane};
-use crate::geometry::{Surface, icosphere, sheet};
+use crate::geometry::{Surface, icosphere, sheet, volume};
 
 const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
 
@@ -108,8 +108,8 @@ fn they_are_those_of_a_search_of_all_facets() {
 const DISC: f64 = 3.5;
 const RIM: f64 = 2.6;
 
-/// A drop between plates at z = 0 and twice the radius of its rim: discs, and round a rim that leaves them without a kink. The atoms of a
-/// ball are spread by the length along its profile.
+/// A drop between plates at z = 0 and a little above twice the radius of its rim: discs, and round a rim that leaves them without a kink.
+/// The atoms of a ball are spread by the length along its profile; as a drop that keeps its volume the mesh has that of theory.
 fn drop_between_plates(level: u32) -> Surface {
     let mut drop = icosphere(1.0, level);
     for x in &mut drop.positions {
@@ -120,6 +120,10 @@ fn drop_between_plates(level: u32) -> Surface {
         let out = Vec3::new(x.x, x.y, 0.0).try_normalize(0.0).unwrap_or_default() * radius;
         *x = out + Vec3::z() * if x.z < 0.0 { height } else { 2.0 * RIM - height };
     }
+    let pi = std::f64::consts::PI;
+    let theory = pi * (2.0 * DISC * DISC * RIM + pi * DISC * RIM * RIM + 4.0 / 3.0 * RIM * RIM * RIM);
+    let scale = (theory / volume(&drop)).cbrt();
+    drop.positions.iter_mut().for_each(|x| *x *= scale);
     drop
 }
 
@@ -133,16 +137,17 @@ fn area_of_contact(apart: impl Fn(f64) -> f64, part: impl Fn(f64) -> f64) -> f64
 }
 
 #[test]
-fn drops_pressed_on_planes_and_each_other_have_the_area_of_theory_on_meshes_of_162_and_642_atoms() {
+fn drops_pressed_on_planes_and_each_other_have_the_area_of_theory() {
     // A plane is met at the angle of the rim, another drop at twice that.
     let on_plane =
         area_of_contact(|at| 2.0 * RIM * (1.0 - at.cos()) / (1.0 + at.cos()), |at| (2.0 * at.cos()).min(1.0));
     let between =
         area_of_contact(|at| 2.0 * RIM * (1.0 - at.cos()) / at.cos(), |at| (2.0 * (2.0 * at).cos()).clamp(0.0, 1.0));
     for (level, edge) in [(2, 1.5), (3, 0.76)] {
+        let height = drop_between_plates(level).positions.iter().map(|x| x.z).fold(0.0, f64::max);
         let planes = vec![
             Plane { point: Vec3::zeros(), normal: Vec3::z() },
-            Plane { point: Vec3::z() * (2.0 * RIM), normal: -Vec3::z() },
+            Plane { point: Vec3::z() * height, normal: -Vec3::z() },
         ];
         let found = sum(&areas(&stage(&[(drop_between_plates(level), Sides::Outer)], planes), edge));
         assert_eq!(found.len(), 2);
@@ -152,10 +157,12 @@ fn drops_pressed_on_planes_and_each_other_have_the_area_of_theory_on_meshes_of_1
         let mut other = drop_between_plates(level);
         // Turned about the axis, so that facets do not match, and below.
         let turn = nalgebra::Rotation3::from_axis_angle(&Vec3::z_axis(), 0.4);
-        other.positions.iter_mut().for_each(|x| *x = turn * *x - Vec3::z() * (2.0 * RIM + 1e-3));
+        other.positions.iter_mut().for_each(|x| *x = turn * *x - Vec3::z() * (height + 1e-3));
         let pair = stage(&[(drop_between_plates(level), Sides::Outer), (other, Sides::Outer)], vec![]);
         let [(0, 1, found)] = sum(&areas(&pair, edge))[..] else { panic!("one contact") };
-        assert!((found / between - 1.0).abs() < 0.05, "{level}: {found} of {between}");
+        // Facets of 162 atoms on a rim of 2.6 µm are 0.1 µm off it, on each side of an opening of 0.3 µm.
+        let off = if level == 2 { 0.1 } else { 0.05 };
+        assert!((found / between - 1.0).abs() < off, "{level}: {found} of {between}");
     }
 }
 
