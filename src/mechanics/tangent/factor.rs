@@ -49,7 +49,7 @@ pub fn solve<T: Real>(pattern: &Pattern, factor: &Seen<T>, values: &mut VectorsM
         for (&row, number) in column.rows.iter().zip(column.first..) {
             let [a, b, c] = factor.get(number);
             let v = values.get(row as usize);
-            y = y - (a.times(v.x) + b.times(v.y) + c.times(v.z));
+            y -= a.times(v.x) + b.times(v.y) + c.times(v.z);
         }
         values.set(column.atom, backward(&factor.get(column.atom), y));
     }
