@@ -53,14 +53,9 @@ pub fn write_rubbing(
             atoms,
             coordinates,
             normal_and_gap: [x, y, z, FAR],
-            least: 0.0,
-            shear: 0.0,
             friction: friction as f32,
-            compliance: 0.0,
-            across: 0.0,
-            kept: 1.0,
-            stored: 0.0,
             pairing,
+            ..Row::NOTHING
         });
         pulls.push(Pull::default());
     }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::patch::Partner;
-use super::search::{Seen, Surroundings};
+use super::search::{Around, Seen, Surroundings};
 use super::table::CohesionTable;
 use crate::Vec3;
 use crate::contact::Scene;
@@ -13,8 +13,8 @@ use crate::sim::controls::Controls;
 #[derive(Debug, Clone, Default)]
 pub struct AreaScratch {
     around: Surroundings,
-    /// Of each batch of bodies: a body, what it is in contact with and how much of the body.
-    of_batches: Vec<Vec<(u32, u32, f64)>>,
+    /// Of each batch of bodies: what it looks at; a body, what it is in contact with and how much of the body.
+    of_batches: Vec<(Around, Vec<(u32, u32, f64)>)>,
 }
 
 impl CohesionTable {
@@ -32,12 +32,12 @@ impl CohesionTable {
         scratch.around.find(scene, positions, range, false);
         let AreaScratch { around: Surroundings { near, facets }, of_batches } = scratch;
         let seen = Seen { table: self, scene, controls: &controls, positions, facets, range };
-        of_batches.resize_with(scene.batches(), Vec::new);
-        of_batches.par_iter_mut().enumerate().for_each(|(batch, areas)| {
+        of_batches.resize_with(scene.batches(), Default::default);
+        of_batches.par_iter_mut().enumerate().for_each(|(batch, (around, areas))| {
             areas.clear();
             for body in scene.bodies_of(batch) {
                 let first = areas.len();
-                seen.find(body, near.of_body(scene, body), |patch| {
+                seen.find(body, near.of_body(scene, body), around, |patch| {
                     let area = patch.area_within(scene, positions);
                     let (other, area) = match patch.other {
                         Partner::Facet([atom, ..], _) => (scene.body_of_atom(atom), 0.5 * area),
@@ -50,7 +50,7 @@ impl CohesionTable {
                 });
             }
         });
-        let areas = of_batches.iter().flatten().filter(|(_, _, area)| *area > 0.0);
+        let areas = of_batches.iter().flat_map(|(_, areas)| areas).filter(|(_, _, area)| *area > 0.0);
         to.extend(areas.map(|&(body, other, area)| (body.min(other), body.max(other), area)));
     }
 }

@@ -5,6 +5,7 @@
 mod area;
 #[cfg(test)]
 mod area_tests;
+mod candidates;
 mod facing;
 mod patch;
 mod search;
@@ -17,7 +18,7 @@ use rayon::prelude::*;
 pub use self::area::AreaScratch;
 pub use self::facing::{Faced, Facing, area_between};
 use self::patch::{Partner, Patch};
-use self::search::{Seen, Surroundings};
+use self::search::{Around, Seen, Surroundings};
 pub use self::table::{CohesionTable, Cohesive};
 use crate::Vec3;
 use crate::contact::Scene;
@@ -29,6 +30,8 @@ pub struct CohesionScratch {
     around: Surroundings,
     /// Those of each batch of bodies.
     patches: Vec<Vec<Patch>>,
+    /// What each batch looks at.
+    looks: Vec<Around>,
     /// Areas in contact around the atoms of each batch.
     of_batches: Vec<Vec<Facing>>,
     /// Those of all, in the order of atoms.
@@ -52,15 +55,16 @@ impl CohesionTable {
             return to.clear();
         }
         to.around.find(scene, positions, range, true);
-        let CohesionScratch { around: Surroundings { near, facets }, patches, of_batches, facing } = to;
+        let CohesionScratch { around: Surroundings { near, facets }, patches, looks, of_batches, facing } = to;
         let seen = Seen { table: self, scene, controls, positions, facets, range };
         patches.resize_with(scene.batches(), Vec::new);
+        looks.resize_with(scene.batches(), Around::default);
         of_batches.resize_with(scene.batches(), Vec::new);
-        let batches = patches.par_iter_mut().zip(of_batches.par_iter_mut()).enumerate();
-        batches.for_each(|(batch, (patches, facing))| {
+        let batches = patches.par_iter_mut().zip(looks.par_iter_mut()).zip(of_batches.par_iter_mut()).enumerate();
+        batches.for_each(|(batch, ((patches, around), facing))| {
             patches.clear();
             scene.bodies_of(batch).for_each(|body| {
-                seen.find(body, near.of_body(scene, body), |patch| patches.push(patch));
+                seen.find(body, near.of_body(scene, body), around, |patch| patches.push(patch));
             });
             facing.clear();
             if self.resists {

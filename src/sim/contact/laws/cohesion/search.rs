@@ -1,6 +1,7 @@
 //! What attracts each part of a surface most.
 
 use super::super::super::vectors::gather_corners;
+use super::candidates::Candidates;
 use super::patch::{Partner, Patch, depth_of_well, width_of_well};
 use super::table::CohesionTable;
 use crate::Vec3;
@@ -48,11 +49,11 @@ pub struct Seen<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct Facet {
     /// Its unit normal; zero where it has no area.
-    normal: Vec3,
+    pub normal: Vec3,
     /// Its middle, µm.
-    middle: Vec3,
+    pub middle: Vec3,
     /// From there to its farthest corner, µm.
-    radius: f64,
+    pub radius: f64,
 }
 
 impl Facet {
@@ -74,69 +75,122 @@ struct Attracted {
     partner: Partner,
 }
 
+/// A body whose facets may attract points of a facet.
+#[derive(Debug, Clone, Copy)]
+struct Attracting {
+    body: u32,
+    /// The end of its candidates; they begin where those of the body before it end.
+    end: usize,
+    /// Of the point's side, pN/µm².
+    strength: f64,
+    /// µm.
+    range: f64,
+}
+
+/// What may attract points of the facet that is looked at.
+#[derive(Debug, Clone, Default)]
+pub struct Around {
+    candidates: Candidates,
+    bodies: Vec<Attracting>,
+}
+
 impl Seen<'_> {
     /// Calls `found` with the parts of a body that are attracted; `near` are the facets near each of its.
-    pub fn find<'a>(&self, body: u32, near: impl Iterator<Item = &'a [u32]>, mut found: impl FnMut(Patch)) {
+    pub fn find<'a>(
+        &self,
+        body: u32,
+        near: impl Iterator<Item = &'a [u32]>,
+        around: &mut Around,
+        mut found: impl FnMut(Patch),
+    ) {
         let (scene, of) = (self.scene, self.scene.bodies[body as usize]);
         let points = points_of_facet(self.table.points[of.shape as usize]);
         let share = 1.0 / points.len() as f64;
+        let has_two = scene.shape(body).sides == Sides::Both;
         for (facet, near) in (of.first_facet..).zip(near) {
             let Facet { normal, middle, radius } = self.facets[facet as usize];
+            self.look_around(body, (facet, has_two), near, around);
             let is_near = |plane: &Plane| (middle - plane.point).dot(&plane.normal) < self.range + radius;
-            if near.is_empty() && !scene.planes.iter().any(is_near) {
+            if around.candidates.facets.is_empty() && !scene.planes.iter().any(is_near) {
                 continue;
             }
             let own = scene.facet_atoms(body, facet);
             let corners = gather_corners(self.positions, own);
-            let mut first = 0;
-            for weights in points {
-                let x = weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
-                let mut add = |own, n| {
-                    if let Some(most) = self.strongest(body, (x, n), near, &mut first) {
+            let at = |weights: &[f64; 3]| weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+            let other_side = has_two.then_some(([own[0], own[2], own[1]], -normal));
+            for (own, n) in std::iter::once((own, normal)).chain(other_side) {
+                around.candidates.bound(points.iter().map(at), n);
+                for (number, weights) in points.iter().enumerate() {
+                    if let Some(most) = self.strongest(body, (at(weights), n), around, number) {
                         let Attracted { strength, range, partner: other } = most;
                         found(Patch { own, other, weights, share, strength: share * strength, range });
                     }
-                };
-                add(own, normal);
-                if scene.shape(body).sides == Sides::Both {
-                    add([own[0], own[2], own[1]], -normal);
                 }
             }
         }
     }
 
-    /// What attracts a point of a body most, with the normal of its surface there. `first` is what to look at first: the facet found for a
-    /// point beside it.
-    fn strongest(&self, body: u32, point: (Vec3, Vec3), near: &[u32], first: &mut u32) -> Option<Attracted> {
+    /// Finds what of the facets near one of a body may attract a point of it, be it from behind where it `has_two` sides.
+    fn look_around(&self, body: u32, (facet, has_two): (u32, bool), near: &[u32], around: &mut Around) {
         let (scene, kinds) = (self.scene, self.table.points.len());
+        let Facet { normal, middle, radius } = self.facets[facet as usize];
         let kind = scene.bodies[body as usize].shape as usize;
         let factor = self.controls.adhesion_of(body as usize);
-        let (mut most, mut best) = (0.0, None);
+        let Around { candidates, bodies } = around;
+        candidates.clear();
+        bodies.clear();
         let mut rest = near;
         while let Some(&next) = rest.first() {
             let other = scene.body_of_facet(next);
             let there = scene.bodies[other as usize];
-            let count =
-                rest.partition_point(|facet| *facet < there.first_facet + scene.shape(other).facets.len() as u32);
+            let facets_end = there.first_facet + scene.shape(other).facets.len() as u32;
             let facets;
-            (facets, rest) = rest.split_at(count);
+            (facets, rest) = rest.split_at(rest.partition_point(|facet| *facet < facets_end));
             let cohesive = self.table.between[kind * kinds + there.shape as usize];
-            let (strength, range) =
-                (0.5 * factor * self.controls.adhesion_of(other as usize) * cohesive.strength, cohesive.range());
+            let strength = 0.5 * factor * self.controls.adhesion_of(other as usize) * cohesive.strength;
+            let range = cohesive.range();
+            // What touches a ball on a point of the facet that is no wider than the range lies in one around them all.
+            let half = 0.5 * range;
+            let centre = middle + half * normal;
+            let is_met = |seen: &Facet, centre: Vec3| {
+                let reach = half + radius + seen.radius;
+                (seen.middle - centre).norm_squared() <= reach * reach
+            };
+            for &facet in facets {
+                let seen = self.facets[facet as usize];
+                if is_met(&seen, centre) || has_two && is_met(&seen, middle - half * normal) {
+                    candidates.push(facet, &seen);
+                }
+            }
+            bodies.push(Attracting { body: other, end: candidates.facets.len(), strength, range });
+        }
+    }
+
+    /// What attracts a point of a body most, with the normal of its surface there; its number is that by which bounds were found.
+    fn strongest(&self, body: u32, point: (Vec3, Vec3), around: &Around, number: usize) -> Option<Attracted> {
+        let bounds = around.candidates.bounds_of(number);
+        let (mut most, mut best, mut start) = (0.0, None, 0);
+        for &Attracting { body: other, end, strength, range } in &around.bodies {
+            let candidates = start..end;
+            start = end;
             let whole = strength * range;
             if whole <= most {
                 continue;
             }
             let widest = range * width_of_well(most / whole);
-            if let Some((width, partner)) = self.nearest(other, point, facets, widest, first) {
+            if let Some((width, partner)) =
+                self.nearest(other, point, &around.candidates.facets[candidates.clone()], &bounds[candidates], widest)
+            {
                 most = whole * depth_of_well(width / range);
                 best = Some(Attracted { strength, range, partner });
             }
         }
         let (x, n) = point;
-        for (number, plane) in (0..).zip(&scene.planes) {
-            let cohesive = self.table.on_planes[kind * scene.planes.len() + number as usize];
-            let (strength, range) = (factor * cohesive.strength, cohesive.range());
+        let kind = self.scene.bodies[body as usize].shape as usize;
+        for (number, plane) in (0..).zip(&self.scene.planes) {
+            let cohesive = self.table.on_planes[kind * self.scene.planes.len() + number as usize];
+            let strength = self.controls.adhesion_of(body as usize) * cohesive.strength;
+            let range = cohesive.range();
             let height = (x - plane.point).dot(&plane.normal);
             let Some((width, _)) = opening_to_plane(n, height, plane.normal) else { continue };
             let depth = strength * range * depth_of_well(width / range);
@@ -147,43 +201,38 @@ impl Seen<'_> {
         best
     }
 
-    /// The facet of a body with the least opening to a point, and that, if it is less than `widest` (µm).
+    /// The facet of a body with the least opening to a point, and that, if it is less than `widest` (µm). What can be nearest is looked at
+    /// first, so that little else is.
     fn nearest(
         &self,
         other: u32,
         (x, n): (Vec3, Vec3),
         facets: &[u32],
+        bounds: &[f64],
         mut widest: f64,
-        first: &mut u32,
     ) -> Option<(f64, Partner)> {
+        let first = (0..bounds.len()).min_by(|one, other| bounds[*one].total_cmp(&bounds[*other]))?;
         let is_thin = self.scene.shape(other).sides == Sides::Both;
         let mut best = None;
-        let known = facets.binary_search(first).ok().map(|_| *first);
-        for facet in known.into_iter().chain(facets.iter().copied().filter(|facet| Some(*facet) != known)) {
-            let Facet { normal, middle, radius } = self.facets[facet as usize];
-            // Only what reaches into the ball of the best so far can be better.
-            let half = 0.5 * widest.max(0.0);
-            let from_centre = x + half * n - middle;
-            let reach = half + radius;
-            if from_centre.norm_squared() > reach * reach || from_centre.dot(&normal).abs() > half + BEHIND * radius {
+        for number in std::iter::once(first).chain((0..bounds.len()).filter(|number| *number != first)) {
+            if bounds[number] >= widest {
                 continue;
             }
-            let (mut atoms, mut m) = (self.scene.facet_atoms(other, facet), normal);
+            let facet = facets[number];
+            let Facet { normal: mut m, middle, .. } = self.facets[facet as usize];
+            let mut atoms = self.scene.facet_atoms(other, facet);
             if is_thin && (x - middle).dot(&m) < 0.0 {
                 (atoms, m) = ([atoms[0], atoms[2], atoms[1]], -m);
             }
             let found = opening_to_facet(x, n, &gather_corners(self.positions, atoms), m);
             if let Some((opening, feature)) = found.filter(|(opening, _)| opening.width < widest) {
-                (widest, *first) = (opening.width, facet);
+                widest = opening.width;
                 best = Some((opening.width, Partner::Facet(atoms, feature)));
             }
         }
         best
     }
 }
-
-/// What a point may be behind a facet and still be looked at, over the size of the facet.
-const BEHIND: f64 = 0.2;
 
 /// Barycentric weights of the middles of the parts of a facet whose sides are cut into so many.
 pub fn points_of_facet(parts: u32) -> &'static [[f64; 3]] {

@@ -1,0 +1,114 @@
+//! Facets that may attract the points of a facet, and how near each can at best be: what is surely farther than the best is not looked at.
+
+use super::search::Facet;
+use crate::Vec3;
+
+/// Facets that may attract points of a facet, number by number.
+#[derive(Debug, Clone, Default)]
+pub struct Candidates {
+    /// Which they are, numbered through all bodies.
+    pub facets: Vec<u32>,
+    /// Their middles, µm, and unit normals, axis by axis.
+    middles: [Vec<f64>; 3],
+    normals: [Vec<f64>; 3],
+    /// From the middle to the farthest corner, µm.
+    radii: Vec<f64>,
+    /// The least opening that each can have to each point, µm: all candidates for a point after those for the one before.
+    bounds: Vec<f64>,
+}
+
+impl Candidates {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.facets.clear();
+        self.middles.iter_mut().chain(&mut self.normals).chain([&mut self.radii]).for_each(Vec::clear);
+    }
+
+    /// Adds a facet.
+    pub fn push(&mut self, number: u32, facet: &Facet) {
+        self.facets.push(number);
+        for axis in 0..3 {
+            self.middles[axis].push(facet.middle[axis]);
+            self.normals[axis].push(facet.normal[axis]);
+        }
+        self.radii.push(facet.radius);
+    }
+
+    /// Finds how near each can be to each of some points of a surface with the unit normal n.
+    pub fn bound(&mut self, points: impl ExactSizeIterator<Item = Vec3>, n: Vec3) {
+        self.bounds.resize(points.len() * self.facets.len(), 0.0);
+        let arch = pulp::Arch::new();
+        let Self { facets, middles: [x, y, z], normals: [u, v, w], radii, bounds } = self;
+        let count = facets.len();
+        if count == 0 {
+            return;
+        }
+        for (point, bounds) in points.zip(bounds.chunks_exact_mut(count)) {
+            let (x, y, z) = (&x[..count], &y[..count], &z[..count]);
+            let (u, v, w, radii) = (&u[..count], &v[..count], &w[..count], &radii[..count]);
+            arch.dispatch(
+                #[inline(always)]
+                || {
+                    for k in 0..count {
+                        let from = [point.x - x[k], point.y - y[k], point.z - z[k]];
+                        bounds[k] = least_opening(from, [n.x, n.y, n.z], [u[k], v[k], w[k]], radii[k]);
+                    }
+                },
+            );
+        }
+    }
+
+    /// How near each can be to one of the points, µm.
+    pub fn bounds_of(&self, point: usize) -> &[f64] {
+        &self.bounds[point * self.facets.len()..][..self.facets.len()]
+    }
+}
+
+/// What a point may be behind a facet and still be looked at, over the size of the facet.
+const BEHIND: f64 = 0.2;
+
+/// A little less than 1, so that rounding makes no bound too wide.
+const SURELY: f64 = 1.0 - 1e-9;
+
+/// The least opening, µm, that a facet can have to a point with the unit normal n that is `from` its middle: that of the ball that just touches the sphere
+/// around the facet, and of the one that just touches its plane, the greater of the two.
+#[inline(always)]
+fn least_opening(from: [f64; 3], n: [f64; 3], m: [f64; 3], radius: f64) -> f64 {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (squared, rise) = (dot(from, from), radius - dot(from, n));
+    let outside = (squared - radius * radius).max(0.0);
+    let to_sphere = if rise > 0.0 { outside / rise } else { f64::INFINITY };
+    let (height, along) = (dot(from, m), dot(n, m));
+    let (height, apart) = if height > 0.0 { (height, 1.0 - along) } else { (-height - BEHIND * radius, 1.0 + along) };
+    let to_plane = 2.0 * height.max(0.0) / apart.max(f64::MIN_POSITIVE);
+    SURELY * if to_sphere > to_plane { to_sphere } else { to_plane }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::opening_to_facet;
+    use crate::random::{Purpose, Stream};
+
+    #[test]
+    fn no_facet_is_nearer_than_its_bound() {
+        let mut stream = Stream::new(11, Purpose::Placement, 0, 0);
+        let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
+        let (mut seen, mut near) = (0, 0);
+        for _ in 0..20_000 {
+            let corners = [0, 1, 2].map(|_| Vec3::new(number(), number(), number()));
+            let m = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).normalize();
+            let n = Vec3::new(number(), number(), number()).normalize();
+            let x = 2.0 * Vec3::new(number(), number(), number());
+            let mut candidates = Candidates::default();
+            candidates.push(7, &Facet::of(&corners));
+            candidates.bound([x].into_iter(), n);
+            let bound = candidates.bounds_of(0)[0];
+            let Some((opening, _)) = opening_to_facet(x, n, &corners, m) else { continue };
+            seen += 1;
+            near += usize::from(opening.width < 2.0 * bound);
+            assert!(opening.width < 0.0 && bound <= 1e-9 || bound <= opening.width, "{bound} {opening:?}");
+        }
+        assert!(seen > 5000 && near > seen / 4, "bounds of {near} of {seen} facets tell something");
+    }
+}
