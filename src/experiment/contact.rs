@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[schemars(inline)]
 pub enum ContactModel {
-    /// Contacts bear any push, and a pull and a shear by `strength`.
-    #[default]
-    Adhesives,
     /// Contacts bear any push and a shear, and surfaces attract each other: with `strength` at most, and over twice the `energy` that
     /// parts them over the strength.
+    #[default]
     Cohesion,
+    /// Contacts of atoms bear any push, and a pull and a shear by `strength`: to compare with.
+    Adhesives,
     /// Contacts bear any push, and springs hold the atoms of facets that collided, by `link`; they break beyond `range`.
     Links,
     /// Contacts push by `penalty` times their depth, and pull within the proximity, by `strength`: to compare with.
@@ -62,7 +62,8 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub area_within: Option<Length>,
-    /// Pull over area of contact at which cells of any two types part; nothing sticks when absent.
+    /// Pull over area of contact at which surfaces of any two types part, the most that they attract each other with; nothing sticks when
+    /// absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub strength: Option<Stress>,
@@ -74,7 +75,8 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub friction: Option<SurfaceDrag>,
-    /// Energy that an area of contact releases, which spreads contacts against the tension of surfaces; none when absent.
+    /// Work that parts an area of contact: half of `strength` times `range` when absent. Model adhesives: energy that an area of contact
+    /// releases, none when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
@@ -82,7 +84,8 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub link: Option<LineStiffness>,
-    /// Model links: mean length of its springs above which a link breaks; the smallest mean edge when absent.
+    /// How far open surfaces still attract each other, in place of `energy`; 1.5 um when both are absent. Model links: mean length of its
+    /// springs above which a link breaks; the smallest mean edge when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub range: Option<Length>,
@@ -103,13 +106,26 @@ pub struct Contact {
     pub between: Vec<Between>,
 }
 
+/// How far open surfaces attract each other where the document does not say, µm: about as far as folds and microvilli of a cell's surface
+/// reach.
+pub(super) const RANGE: f64 = 1.5;
+
+impl Contact {
+    /// Work of separation (pN/µm) of surfaces that part at a strength (pN/µm²), by the energy or the range that is given for them, or
+    /// the range for all.
+    pub(super) fn work(&self, strength: f64, energy: Option<LineStiffness>, range: Option<Length>) -> f64 {
+        let by_range = || 0.5 * strength * range.or(self.range).map_or(RANGE, |range| range.value());
+        energy.map_or_else(by_range, |energy| energy.value())
+    }
+}
+
 /// How strongly the cells of two types stick to each other, or those of a type to a plane.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Between {
     /// Two types of cells, or a type and a plane; the same type twice for its cells among themselves.
     pub types: [String; 2],
-    /// Pull over area of contact at which they part; needed in the models adhesives and penalty.
+    /// Pull over area of contact at which they part; needed but in the models links and virtual_adhesives.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub strength: Option<Stress>,
@@ -121,10 +137,15 @@ pub struct Between {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub friction: Option<SurfaceDrag>,
-    /// Energy that an area of contact releases; none when absent.
+    /// Work that parts an area of contact: half of `strength` times `range` when absent. Model adhesives: energy that an area of contact
+    /// releases, none when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
+    /// How far open they still attract each other, in place of `energy`; that of [contact] when both are absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub range: Option<Length>,
     /// Model links: stiffness of the springs between facets that collided; "0 pN/um" does not bind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]

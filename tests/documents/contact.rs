@@ -6,7 +6,7 @@ use pseudopod::experiment::{Compiled, Document, PushedApart, compile, settle_sta
 use pseudopod::output::{Overwrite, ResultFile};
 use pseudopod::recorded::{CONTACTS, Touch};
 use pseudopod::run::{Quiet, RunOptions, run};
-use pseudopod::sim::contact::Strength;
+use pseudopod::sim::contact::{Cohesive, Strength};
 use pseudopod::sim::{Workspace, begin_chemistry, step};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -58,11 +58,7 @@ fn centres(compiled: &Compiled) -> Vec<(Vec3, f64)> {
     kinds.flat_map(of_kind).collect()
 }
 
-#[test]
-fn the_table_gives_each_pair_its_strength_and_the_default_the_others() {
-    let compiled = compiled(
-        r#"
-[contact]
+const TABLE: &str = r#"
 strength = "10 pN/um^2"
 shear_strength = "4 Pa"
 [[contact.between]]
@@ -72,13 +68,34 @@ strength = "2 Pa"
 types = ["floor", "red"]
 strength = "50 pN/um^2"
 shear_strength = "5 pN/um^2"
-"#,
-    );
+"#;
+
+#[test]
+fn the_table_gives_each_pair_its_strength_and_the_default_the_others() {
+    let compiled = compiled(&format!("[contact]\nmodel = \"adhesives\"{TABLE}"));
     let contact = compiled.model.contact.expect("contacts");
     let (default, pair) =
         (Strength { tensile: 10.0, shear: 4.0, energy: 0.0 }, Strength { tensile: 2.0, shear: 2.0, energy: 0.0 });
     assert_eq!(contact.between, [default, pair, pair, default]);
     assert_eq!(contact.on_planes, [Strength { tensile: 50.0, shear: 5.0, energy: 0.0 }, Strength::default()]);
+}
+
+#[test]
+fn surfaces_attract_each_other_by_default_as_far_as_the_energy_or_the_range_or_the_default_says() {
+    let found = |range: &str, of_pair: &str| {
+        let table = TABLE.replace("\"2 Pa\"", &format!("\"2 Pa\"\n{of_pair}"));
+        let contact = compiled(&format!("[contact]{range}{table}")).model.contact.expect("contacts");
+        let table = contact.law.cohesion().expect("the default").clone();
+        let is_sheared_only = |strength: &Strength| (strength.tensile, strength.energy) == (0.0, 0.0);
+        assert!(contact.between.iter().chain(&contact.on_planes).all(is_sheared_only));
+        assert_eq!([contact.between[0].shear, contact.between[1].shear, contact.on_planes[0].shear], [4.0, 2.0, 5.0]);
+        assert_eq!(table.on_planes[1], Cohesive::default(), "nothing sticks to a plane that is not named");
+        [table.between[0], table.between[1], table.on_planes[0]].map(|pair| (pair.strength, pair.work))
+    };
+    assert_eq!(found("", ""), [(10.0, 7.5), (2.0, 1.5), (50.0, 37.5)]);
+    assert_eq!(found("\nrange = \"2 um\"", ""), [(10.0, 10.0), (2.0, 2.0), (50.0, 50.0)]);
+    assert_eq!(found("\nrange = \"2 um\"", "energy = \"3 pN/um\""), [(10.0, 10.0), (2.0, 3.0), (50.0, 50.0)]);
+    assert_eq!(found("\nenergy = \"9 pN/um\"", "range = \"4 um\""), [(10.0, 9.0), (2.0, 4.0), (50.0, 37.5)]);
 }
 
 #[test]
@@ -364,7 +381,9 @@ fn chemistry_feels_other_cells_the_same_with_every_scratch() {
     let eml = r#"<eml name="touch" level="cell"><input id="share" default="0"/><variable id="sum" initial="0" rate="share"/>
         <link from="cell.contact_share" to="system.share"/></eml>"#;
     let before = ROW.split_once("[output]").expect("the output").0;
-    let with_system = before.replace("mechanics =", "chemistry = [\"touch\"]\nmechanics =");
+    // Nothing moves, so that all stay on the floor.
+    let at_rest = before.replace("[contact]", "[contact]\nmodel = \"adhesives\"");
+    let with_system = at_rest.replace("mechanics =", "chemistry = [\"touch\"]\nmechanics =");
     let text = format!("{with_system}[chemistry.touch]\ndocument = \"touch.eml\"\n");
     let beside = BTreeMap::from([("touch.eml".to_owned(), eml.to_owned())]);
     let document = Document::parse_beside("row.toml", &text, Path::new("."), &[], beside).expect("a good document");
@@ -397,7 +416,9 @@ fn links_read_the_share_in_contact_that_is_recorded_and_planes_have_a_share_of_t
         <link from="cell.contact_share" to="system.share"/><link from="cell.plane_share" to="system.ground"/></eml>"#;
     let planes = "[[planes]]\nname = \"floor\"\npoint = [0, 0, \"15 um\"]\nnormal = [0, 0, 1]\n";
     let before = ROW.split_once("[output]").expect("the output").0;
-    let with_system = before.replace("mechanics =", "chemistry = [\"touch\"]\nmechanics =");
+    // Nothing moves, so that all stay on the floor.
+    let at_rest = before.replace("[contact]", "[contact]\nmodel = \"adhesives\"");
+    let with_system = at_rest.replace("mechanics =", "chemistry = [\"touch\"]\nmechanics =");
     let text = format!("{with_system}{planes}[chemistry.touch]\ndocument = \"touch.eml\"\n");
     let beside = BTreeMap::from([("touch.eml".to_owned(), eml.to_owned())]);
     let document = Document::parse_beside("row.toml", &text, Path::new("."), &[], beside).expect("a good document");
@@ -465,6 +486,7 @@ placement = { at = [["5.1 um", "0 um", "0 um"]] }
 mechanics = { drag = "2 pN s/um", shape_memory = { shape_modulus = "50 pN/um" } }
 loads = [{ name = "push_back", all = true, direction = [-1, 0, 0], force = "8 pN" }]
 [contact]
+model = "adhesives"
 strength = "1 Pa"
 [output]
 every = "1 s"

@@ -80,7 +80,9 @@ fn a_resumed_run_keeps_its_factor_and_comes_to_the_same_bits_with_any_number_of_
             let mut parts = released(cells, 40.0, "");
             parts.set_threads(threads).unwrap();
             parts.restore(bytes).unwrap();
-            [1.515, 1.53].map(|time| parts.run_until(time).unwrap());
+            for time in [1.515, 1.53] {
+                parts.run_until(time).unwrap();
+            }
             assert_eq!(parts.steps(), whole.steps(), "{cells} cells");
             assert!(positions(&parts) == positions(&whole), "{cells} cells on {threads} threads");
         }

@@ -6,6 +6,7 @@
 mod chemotactic_index;
 mod comparison;
 mod declared;
+mod distance;
 mod field_value;
 mod finished;
 mod fit;
@@ -30,6 +31,7 @@ pub use super::over::Over;
 pub use chemotactic_index::ChemotacticIndex;
 pub use comparison::Comparison;
 pub use declared::Declared;
+pub use distance::Distance;
 pub use field_value::FieldValue;
 pub use finished::Finished;
 pub use fit::Fit;
@@ -106,6 +108,8 @@ pub enum MeasureKind {
     FieldValue(FieldValue),
     /// How straight cells go towards a point: how much nearer they came over the length of their path, from −1 to 1.
     ChemotacticIndex(ChemotacticIndex),
+    /// How far the centres of the cells of two types are apart, µm.
+    Distance(Distance),
     /// The mean time between upward crossings of the middle between the smallest and the largest value, s.
     Period(Period),
     /// How fast a wave leaves a point: the fit of a line to its times of arrival against distances, µm/s.
@@ -130,6 +134,7 @@ impl MeasureKind {
             Self::TableRms(table) | Self::TableBars(table) | Self::TableRatio(table) => table.series(),
             Self::MsdDeviation(msd) => msd.series(),
             Self::ChemotacticIndex(index) => index.series(),
+            Self::Distance(distance) => distance.series(),
             Self::Period(period) => period.series(),
             Self::WaveSpeed(wave) => wave.series(),
             Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) | Self::Gaps(_) => {
@@ -148,6 +153,7 @@ impl MeasureKind {
             Self::MsdDeviation(msd) => msd.check(at),
             Self::FieldValue(value) => value.check(at),
             Self::ChemotacticIndex(index) => index.check(at),
+            Self::Distance(distance) => distance.check(at),
             Self::Period(period) => period.check(at),
             Self::WaveSpeed(wave) => wave.check(at),
             Self::Wavelength(pattern) => pattern.check(at),
@@ -174,6 +180,7 @@ impl MeasureKind {
             Self::RunLengthP(runs) => runs.evaluate(run.recording),
             Self::FieldValue(value) => value.evaluate(run),
             Self::ChemotacticIndex(index) => index.evaluate(run.recording),
+            Self::Distance(distance) => distance.evaluate(run.recording),
             Self::Period(period) => period.evaluate(run.recording),
             Self::WaveSpeed(wave) => wave.evaluate(run),
             Self::Wavelength(pattern) => pattern.evaluate(run),

@@ -73,57 +73,76 @@ pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
     let Some(text) = document.experiment.contact.as_ref().filter(|text| text.model == Text::Cohesion) else {
         return Ok(());
     };
-    let all = (String::from("contact"), (text.strength, text.energy), (0..kinds.len()).collect::<Vec<_>>());
+    let all = (String::from("contact"), (text.strength, text.energy, text.range), (0..kinds.len()).collect::<Vec<_>>());
     let pairs = text.between.iter().enumerate().map(|(index, between)| {
         let kinds = match between.pair(&document.experiment) {
             Some(Pair::Types(one, other)) => vec![one, other],
             Some(Pair::OnPlane(kind, _)) => vec![kind],
             None => Vec::new(),
         };
-        (format!("contact.between[{index}]"), (between.strength, between.energy), kinds)
+        (format!("contact.between[{index}]"), (between.strength, between.energy, between.range), kinds)
     });
     let mut faults = Vec::new();
-    for (path, (strength, energy), of) in std::iter::once(all).chain(pairs) {
-        let (Some(strength), Some(energy)) = (strength, energy) else { continue };
-        let range = Cohesive { strength: strength.value(), work: energy.value(), friction: 0.0 }.range();
+    for (path, (strength, energy, own), of) in std::iter::once(all).chain(pairs) {
+        let Some(strength) = strength.map(|strength| strength.value()) else { continue };
+        let range = Cohesive { strength, work: text.work(strength, energy, own), friction: 0.0 }.range();
+        let of_all = text.range.is_some() && path != "contact";
+        let told = match (energy, own) {
+            (Some(_), _) => Told::ByEnergy(path),
+            (None, Some(_)) => Told::Itself(path),
+            (None, None) if of_all => Told::Itself("contact".into()),
+            (None, None) => Told::ByDefault(path),
+        };
         let coarse = of.iter().map(|kind| &kinds[*kind]).max_by(|one, other| one.edge.total_cmp(&other.edge));
         let fine = of.iter().map(|kind| &kinds[*kind]).min_by(|one, other| one.edge.total_cmp(&other.edge));
         let (Some(coarse), Some(fine)) = (coarse, fine) else { continue };
         if range > 0.0 && range < RANGES.start() * coarse.edge {
-            faults.push(range_fault(
-                document,
-                &path,
-                range,
-                coarse,
-                "short",
-                "a lower strength, more energy or a finer mesh",
-                "at least half an edge",
-            ));
+            faults.push(range_fault(document, &told, (range, coarse), "short", "at least half an edge"));
         } else if range > RANGES.end() * fine.edge {
-            faults.push(range_fault(
-                document,
-                &path,
-                range,
-                fine,
-                "long",
-                "a higher strength or less energy",
-                "at most ten edges",
-            ));
+            faults.push(range_fault(document, &told, (range, fine), "long", "at most ten edges"));
         }
     }
     if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
 }
 
+/// What says how far surfaces attract each other, by the table that does.
+enum Told {
+    ByEnergy(String),
+    Itself(String),
+    ByDefault(String),
+}
+
 /// A range of attraction that does not fit a mesh.
-fn range_fault(document: &Document, path: &str, range: f64, kind: &Kind, too: &str, advice: &str, fits: &str) -> Fault {
+fn range_fault(document: &Document, told: &Told, (range, kind): (f64, &Kind), too: &str, fits: &str) -> Fault {
+    let is_short = too == "short";
+    let (range_is, advice, place, label) = match told {
+        Told::ByEnergy(path) => (
+            "the range of attraction, twice the energy over the strength, is",
+            if is_short { "a lower strength, more energy or a finer mesh" } else { "a higher strength or less energy" },
+            format!("{path}.energy"),
+            "with this and `strength`",
+        ),
+        Told::Itself(path) => (
+            "the range of attraction is",
+            if is_short { "a longer one or a finer mesh" } else { "a shorter one" },
+            format!("{path}.range"),
+            "with this",
+        ),
+        Told::ByDefault(path) => (
+            "the default range of attraction is",
+            "another `range`",
+            format!("{path}.strength"),
+            "sticks as far as the default",
+        ),
+    };
     let fault = Fault::new(format!(
-        "the range of attraction, twice the energy over the strength, is {} um: too {too} for the mesh of type `{}`, whose mean edge is {} um",
+        "{range_is} {} um: too {too} for the mesh of type `{}`, whose mean edge is {} um",
         short(range),
         kind.name,
         short(kind.edge)
     ))
     .help(format!("take {advice}: one to two edges are best, and the range must be {fits}"));
-    document.location(&format!("{path}.energy"), "with this and `strength`").into_iter().fold(fault, Fault::at)
+    document.location(&place, label).into_iter().fold(fault, Fault::at)
 }
 
 /// How deep contacts are found where nothing but a penalty keeps cells apart, over the smallest mean edge.
@@ -153,15 +172,21 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
             return Some(model);
         }
     }
+    let of_model = |strength: Stress, energy: Option<LineStiffness>, range| match text.model {
+        Text::Cohesion => text.work(strength.value(), energy, range),
+        _ => energy.map_or(0.0, |energy| energy.value()),
+    };
     if let Some(strength) = text.strength {
-        let strength = strength_of(strength, (text.shear_strength, text.friction), text.energy);
+        let energy = of_model(strength, text.energy, text.range);
+        let strength = strength_of(strength, (text.shear_strength, text.friction), energy);
         for kind in 0..kinds.len() {
             (kind..kinds.len()).for_each(|other| stick(&mut model, Pair::Types(kind, other), strength, text.friction));
         }
     }
     for between in &text.between {
         let shear = (between.shear_strength, between.friction);
-        let strength = strength_of(between.strength.unwrap_or_default(), shear, between.energy);
+        let strength = between.strength.unwrap_or_default();
+        let strength = strength_of(strength, shear, of_model(strength, between.energy, between.range));
         if let Some(pair) = between.pair(experiment) {
             stick(&mut model, pair, strength, between.friction);
         }
@@ -193,12 +218,7 @@ fn stick(model: &mut ContactModel, pair: Pair, strength: Strength, friction: Opt
     }
 }
 
-fn strength_of(
-    strength: Stress,
-    (shear, friction): (Option<Stress>, Option<SurfaceDrag>),
-    energy: Option<LineStiffness>,
-) -> Strength {
-    let energy = energy.map_or(0.0, |energy| energy.value());
+fn strength_of(strength: Stress, (shear, friction): (Option<Stress>, Option<SurfaceDrag>), energy: f64) -> Strength {
     // What rubs is not stuck as well, unless the document says so.
     let else_shear = if friction.is_some() { Stress::ZERO } else { strength };
     Strength { tensile: strength.value(), shear: shear.unwrap_or(else_shear).value(), energy }

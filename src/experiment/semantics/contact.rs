@@ -64,19 +64,28 @@ impl Check<'_> {
         }
     }
 
-    /// Strengths without an energy and energies without a strength: neither alone says how far surfaces attract each other.
+    /// Energies of nothing, strengths that nothing opens against, and energies beside ranges: what says how far surfaces attract each other
+    /// must say it once.
     fn work_of_separation(&mut self, contact: &Contact) {
-        let all = (String::from("contact"), contact.strength, contact.energy);
-        let pairs = contact.between.iter().enumerate();
-        let pairs = pairs.map(|(index, pair)| (format!("contact.between[{index}]"), pair.strength, pair.energy));
-        for (path, strength, energy) in std::iter::once(all).chain(pairs) {
-            let Some(strength) = strength else { continue };
-            let (pulls, works) = (strength.value() > 0.0, energy.is_some_and(|energy| energy.value() > 0.0));
-            if pulls && !works {
-                let message = format!("`{path}.strength` is given without an energy above 0");
-                let help = "add `energy`, the work that parts an area: surfaces attract each other as far as twice that over the strength";
-                self.fault(&format!("{path}.strength"), "`energy` is missing", message, help);
-            } else if works && !pulls {
+        let all = (String::from("contact"), contact.strength, contact.energy, contact.range);
+        let pairs = contact
+            .between
+            .iter()
+            .enumerate()
+            .map(|(index, pair)| (format!("contact.between[{index}]"), pair.strength, pair.energy, pair.range));
+        for (path, strength, energy, range) in std::iter::once(all).chain(pairs) {
+            if energy.is_some() && range.is_some() {
+                let message = format!("`{path}` has an energy and a range");
+                let help = "keep one of them: the range is twice the energy over the strength";
+                self.fault(&format!("{path}.range"), "and `energy` above", message, help);
+            }
+            let (Some(strength), Some(energy)) = (strength, energy) else { continue };
+            if strength.value() > 0.0 && energy.value() == 0.0 {
+                let message =
+                    format!("`{path}.energy` is 0, and surfaces that part at a strength take an energy to part");
+                let help = "give the work that parts an area, or leave `energy` out and give `range`";
+                self.fault(&format!("{path}.energy"), "must be above 0", message, help);
+            } else if strength.value() == 0.0 && energy.value() > 0.0 {
                 let message = format!("`{path}.energy` is given with a strength of 0");
                 let help = "give a `strength` above 0, or leave `energy` out";
                 self.fault(&format!("{path}.energy"), "nothing to open with it", message, help);
@@ -93,7 +102,8 @@ impl Check<'_> {
             let rubs = friction.is_some_and(|friction| friction.value() > 0.0);
             if rubs && strength.is_none_or(|strength| strength.value() == 0.0) {
                 let message = format!("`{path}.friction` is given without a `strength` above 0");
-                let help = "give a `strength` and an `energy`, however small: surfaces rub where they are nearer than the energy over the strength";
+                let help =
+                    "give a `strength`, however small: surfaces rub where they are nearer than half of their range";
                 self.fault(&format!("{path}.friction"), "over which area?", message, help);
             }
         }
@@ -108,7 +118,8 @@ impl Check<'_> {
                 "`contact.model` is {}, whose `kappa` is a displacement in a step, and no step is given",
                 named(contact)
             );
-            let help = "give `step` to run.integrator: \"0.1 s\", say; or take model = \"adhesives\", whose strength does not depend on it";
+            let help =
+                "give `step` to run.integrator: \"0.1 s\", say; or leave `model` out: strengths do not depend on it";
             self.fault("contact.model", "needs fixed steps", message, help);
         }
         if matches!(contact.model, ContactModel::Links | ContactModel::Penalty) && !chosen {
@@ -223,7 +234,7 @@ fn name_of(model: ContactModel) -> &'static str {
 
 /// The model of a document in its words.
 fn named(contact: &Contact) -> String {
-    let default = if contact.model == ContactModel::Adhesives { ", the default" } else { "" };
+    let default = if contact.model == ContactModel::default() { ", the default" } else { "" };
     format!("{}{default}", name_of(contact.model))
 }
 
@@ -236,7 +247,7 @@ fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
         ("friction".into(), contact.friction.is_some(), &[Cohesion]),
         ("energy".into(), contact.energy.is_some(), &[Adhesives, Cohesion]),
         ("link".into(), contact.link.is_some(), &[Links]),
-        ("range".into(), contact.range.is_some(), &[Links]),
+        ("range".into(), contact.range.is_some(), &[Cohesion, Links]),
         ("penalty".into(), contact.penalty.is_some(), &[Penalty]),
         ("kappa".into(), contact.kappa.is_some(), &[VirtualAdhesives]),
         ("zones".into(), contact.zones.is_some(), &[VirtualAdhesives]),
@@ -247,6 +258,7 @@ fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
         keys.push((path("shear_strength"), between.shear_strength.is_some(), &[Adhesives, Cohesion]));
         keys.push((path("friction"), between.friction.is_some(), &[Cohesion]));
         keys.push((path("energy"), between.energy.is_some(), &[Adhesives, Cohesion]));
+        keys.push((path("range"), between.range.is_some(), &[Cohesion]));
         keys.push((path("link"), between.link.is_some(), &[Links]));
         keys.push((path("kappa"), between.kappa.is_some(), &[VirtualAdhesives]));
     }

@@ -90,7 +90,8 @@ impl Law {
     pub fn has_forces(&self) -> bool {
         match self {
             Self::Adhesives | Self::VirtualAdhesives(_) => false,
-            Self::Cohesion(_) | Self::Links(_) | Self::Penalty(_) => true,
+            Self::Cohesion(table) => table.range() > 0.0,
+            Self::Links(_) | Self::Penalty(_) => true,
         }
     }
 
@@ -140,7 +141,8 @@ impl Law {
     pub(super) fn needs_start(&self) -> bool {
         match self {
             Self::Adhesives => false,
-            Self::Cohesion(_) | Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => true,
+            Self::Cohesion(table) => table.range() > 0.0,
+            Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => true,
         }
     }
 

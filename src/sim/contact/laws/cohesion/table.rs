@@ -37,8 +37,9 @@ pub struct CohesionTable {
 /// The most points along a side of a facet.
 const MOST_POINTS: u32 = 4;
 
-/// Points of a facet within a range, at least.
-const POINTS_IN_RANGE: f64 = 2.0;
+/// Ranges between points of a facet, at most: where surfaces attract each other, and where areas are measured.
+const APART: f64 = 1.0;
+const APART_FOR_AREAS: f64 = 0.5;
 
 impl CohesionTable {
     /// A table in which nothing sticks.
@@ -58,7 +59,7 @@ impl CohesionTable {
         let cohesive = Cohesive { strength: 1.0, work: 0.5 * range, friction: 0.0 };
         table.between.fill(cohesive);
         table.on_planes.fill(cohesive);
-        table.resolve(edges);
+        table.resolve_to(edges, APART_FOR_AREAS);
         table
     }
 
@@ -77,17 +78,22 @@ impl CohesionTable {
 
     /// Looks as finely at the facets of each kind, with these mean edges (µm), as its least range needs.
     pub fn resolve(&mut self, edges: &[f64]) {
+        self.resolve_to(edges, APART);
+    }
+
+    /// The same with points so many ranges apart at most.
+    fn resolve_to(&mut self, edges: &[f64], apart: f64) {
         let (kinds, planes) = (edges.len(), self.on_planes.len() / edges.len().max(1));
         for (kind, edge) in edges.iter().enumerate() {
             let between = &self.between[kind * kinds..(kind + 1) * kinds];
             let ranges = between.iter().chain(&self.on_planes[kind * planes..(kind + 1) * planes]).map(Cohesive::range);
             let least = ranges.filter(|range| *range > 0.0).fold(f64::INFINITY, f64::min);
-            self.points[kind] = ((POINTS_IN_RANGE * edge / least).ceil() as u32).clamp(1, MOST_POINTS);
+            self.points[kind] = ((edge / (apart * least)).ceil() as u32).clamp(1, MOST_POINTS);
         }
     }
 
     /// The farthest that anything attracts, µm.
-    pub(super) fn range(&self) -> f64 {
+    pub(in super::super) fn range(&self) -> f64 {
         self.between.iter().chain(&self.on_planes).map(Cohesive::range).fold(0.0, f64::max)
     }
 
