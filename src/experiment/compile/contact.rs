@@ -115,7 +115,7 @@ enum Told {
 /// A range of attraction that does not fit a mesh.
 fn range_fault(document: &Document, told: &Told, (range, kind): (f64, &Kind), too: &str, fits: &str) -> Fault {
     let is_short = too == "short";
-    let (range_is, advice, place, label) = match told {
+    let (range_is, advice, key, label) = match told {
         Told::ByEnergy(path) => (
             "the range of attraction, twice the energy over the strength, is",
             if is_short { "a lower strength, more energy or a finer mesh" } else { "a higher strength or less energy" },
@@ -142,7 +142,7 @@ fn range_fault(document: &Document, told: &Told, (range, kind): (f64, &Kind), to
         short(kind.edge)
     ))
     .help(format!("take {advice}: one to two edges are best, and the range must be {fits}"));
-    document.location(&place, label).into_iter().fold(fault, Fault::at)
+    document.location(&key, label).into_iter().fold(fault, Fault::at)
 }
 
 /// How deep contacts are found where nothing but a penalty keeps cells apart, over the smallest mean edge.

@@ -1,7 +1,27 @@
 //! Facets that may attract the points of a facet, and how near each can at best be: what is surely farther than the best is not looked at.
 
-use super::search::Facet;
 use crate::Vec3;
+
+/// A facet at an instant.
+#[derive(Debug, Clone, Copy)]
+pub struct Facet {
+    /// Its unit normal; zero where it has no area.
+    pub normal: Vec3,
+    /// Its middle, µm.
+    pub middle: Vec3,
+    /// From there to its farthest corner, µm.
+    pub radius: f64,
+}
+
+impl Facet {
+    /// The facet with these corners.
+    pub fn of(corners: &[Vec3; 3]) -> Self {
+        let [a, b, c] = corners;
+        let middle = (a + b + c) / 3.0;
+        let squared = corners.iter().map(|corner| (corner - middle).norm_squared()).fold(0.0, f64::max);
+        Self { normal: (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default(), middle, radius: squared.sqrt() }
+    }
+}
 
 /// Facets that may attract points of a facet, number by number.
 #[derive(Debug, Clone, Default)]

@@ -1,7 +1,7 @@
 //! What attracts each part of a surface most.
 
 use super::super::super::vectors::gather_corners;
-use super::candidates::Candidates;
+use super::candidates::{Candidates, Facet};
 use super::patch::{Partner, Patch, depth_of_well, width_of_well};
 use super::table::CohesionTable;
 use crate::Vec3;
@@ -43,27 +43,6 @@ pub struct Seen<'a> {
     pub facets: &'a [Facet],
     /// The farthest that anything attracts, µm.
     pub range: f64,
-}
-
-/// A facet at an instant.
-#[derive(Debug, Clone, Copy)]
-pub struct Facet {
-    /// Its unit normal; zero where it has no area.
-    pub normal: Vec3,
-    /// Its middle, µm.
-    pub middle: Vec3,
-    /// From there to its farthest corner, µm.
-    pub radius: f64,
-}
-
-impl Facet {
-    /// The facet with these corners.
-    pub fn of(corners: &[Vec3; 3]) -> Self {
-        let [a, b, c] = corners;
-        let middle = (a + b + c) / 3.0;
-        let squared = corners.iter().map(|corner| (corner - middle).norm_squared()).fold(0.0, f64::max);
-        Self { normal: (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default(), middle, radius: squared.sqrt() }
-    }
 }
 
 /// What attracts a point.
@@ -120,8 +99,9 @@ impl Seen<'_> {
             let other_side = has_two.then_some(([own[0], own[2], own[1]], -normal));
             for (own, n) in std::iter::once((own, normal)).chain(other_side) {
                 around.candidates.bound(points.iter().map(at), n);
+                let mut first = 0;
                 for (number, weights) in points.iter().enumerate() {
-                    if let Some(most) = self.strongest(body, (at(weights), n), around, number) {
+                    if let Some(most) = self.strongest(body, (at(weights), n), (around, number), &mut first) {
                         let Attracted { strength, range, partner: other } = most;
                         found(Patch { own, other, weights, share, strength: share * strength, range });
                     }
@@ -166,9 +146,15 @@ impl Seen<'_> {
         }
     }
 
-    /// What attracts a point of a body most, with the normal of its surface there; its number is that by which bounds were found.
-    fn strongest(&self, body: u32, point: (Vec3, Vec3), around: &Around, number: usize) -> Option<Attracted> {
-        let bounds = around.candidates.bounds_of(number);
+    /// What attracts a point of a body most, with the normal of its surface there; its number is that by which bounds were found. `first`
+    /// is what to look at first: the candidate found for a point beside it.
+    fn strongest(
+        &self,
+        body: u32,
+        point: (Vec3, Vec3),
+        (around, number): (&Around, usize),
+        first: &mut usize,
+    ) -> Option<Attracted> {
         let (mut most, mut best, mut start) = (0.0, None, 0);
         for &Attracting { body: other, end, strength, range } in &around.bodies {
             let candidates = start..end;
@@ -178,9 +164,8 @@ impl Seen<'_> {
                 continue;
             }
             let widest = range * width_of_well(most / whole);
-            if let Some((width, partner)) =
-                self.nearest(other, point, &around.candidates.facets[candidates.clone()], &bounds[candidates], widest)
-            {
+            let found = self.nearest(other, point, (&around.candidates, number, candidates), widest, first);
+            if let Some((width, partner)) = found {
                 most = whole * depth_of_well(width / range);
                 best = Some(Attracted { strength, range, partner });
             }
@@ -201,33 +186,40 @@ impl Seen<'_> {
         best
     }
 
-    /// The facet of a body with the least opening to a point, and that, if it is less than `widest` (µm). What can be nearest is looked at
-    /// first, so that little else is.
+    /// The facet of a body with the least opening to a point, and that, if it is less than `widest` (µm), of the candidates in a range of
+    /// their numbers.
     fn nearest(
         &self,
         other: u32,
         (x, n): (Vec3, Vec3),
-        facets: &[u32],
-        bounds: &[f64],
+        (candidates, point, numbers): (&Candidates, usize, std::ops::Range<usize>),
         mut widest: f64,
+        first: &mut usize,
     ) -> Option<(f64, Partner)> {
-        let first = (0..bounds.len()).min_by(|one, other| bounds[*one].total_cmp(&bounds[*other]))?;
         let is_thin = self.scene.shape(other).sides == Sides::Both;
+        let bounds = &candidates.bounds_of(point)[..numbers.end];
+        let known = numbers.contains(first).then_some(*first);
         let mut best = None;
-        for number in std::iter::once(first).chain((0..bounds.len()).filter(|number| *number != first)) {
-            if bounds[number] >= widest {
-                continue;
-            }
-            let facet = facets[number];
+        let mut look = |number: usize, widest: &mut f64| {
+            let facet = candidates.facets[number];
             let Facet { normal: mut m, middle, .. } = self.facets[facet as usize];
             let mut atoms = self.scene.facet_atoms(other, facet);
             if is_thin && (x - middle).dot(&m) < 0.0 {
                 (atoms, m) = ([atoms[0], atoms[2], atoms[1]], -m);
             }
             let found = opening_to_facet(x, n, &gather_corners(self.positions, atoms), m);
-            if let Some((opening, feature)) = found.filter(|(opening, _)| opening.width < widest) {
-                widest = opening.width;
+            if let Some((opening, feature)) = found.filter(|(opening, _)| opening.width < *widest) {
+                (*widest, *first) = (opening.width, number);
                 best = Some((opening.width, Partner::Facet(atoms, feature)));
+            }
+        };
+        // What is surely farther than the best so far is passed over.
+        if let Some(known) = known.filter(|known| bounds[*known] < widest) {
+            look(known, &mut widest);
+        }
+        for number in numbers {
+            if bounds[number] < widest && Some(number) != known {
+                look(number, &mut widest);
             }
         }
         best
