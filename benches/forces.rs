@@ -43,7 +43,7 @@ fn forces(surface: &Surface) -> Vec<(&'static str, Force)> {
         ("membrane, neo-Hookean", membrane(neo_hookean)),
         ("tension and total area", Force::Tension(Tension::new(x, facets, 10.0, 5.0))),
         ("ordering", Force::Ordering(Ordering::new(x.len(), facets, 1.0))),
-        ("bending", Force::Bending(Bending::new(x, &topology.flaps, 0.2, RestAngle::Flat))),
+        ("bending", Force::Bending(Bending::new(x, &topology, 0.2, RestAngle::Flat))),
         ("springs on edges", Force::Springs(Springs::on_edges(x, &topology.edges, 10.0))),
         ("barrier at rest", Force::Barrier(Barrier::new(x, facets, &topology.flaps, rules))),
         ("load on a tenth", Force::Load(Load::new("pull", atoms, Vec3::z(), Course::constant(3.0)))),

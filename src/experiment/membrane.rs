@@ -107,7 +107,7 @@ impl Membrane {
                 BendingRest::Shape => RestAngle::Remembered,
                 BendingRest::Flat => RestAngle::Flat,
             };
-            let bending = Bending::new(&rest.positions, &to.topology.flaps, self.bending.value(), angle);
+            let bending = Bending::new(&rest.positions, &to.topology, self.bending.value(), angle);
             to.forces.push(Force::Bending(bending));
         }
     }

@@ -56,7 +56,7 @@ impl<T: Real> Hinge<T> {
         self.left.dot(self.right)
     }
 
-    /// The fold angle and its gradient, eq. (bending.2). `tiny` keeps a collapsed facet from dividing by zero.
+    /// The fold angle and its gradient, eq. (bending.6). `tiny` keeps a collapsed facet from dividing by zero.
     #[inline(always)]
     pub fn fold(&self, token: T::Token, tiny: f64) -> Fold<T> {
         let (one, tiny) = (T::constant(token, 1.0), T::constant(token, tiny));

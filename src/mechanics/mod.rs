@@ -122,7 +122,7 @@ impl Force {
             Self::Membrane(force) => force.add_stiffness(x, matrix),
             Self::Tension(force) => force.add_stiffness(matrix),
             Self::Ordering(force) => force.add_stiffness(x, matrix),
-            Self::Bending(force) => force.add_stiffness(matrix),
+            Self::Bending(force) => force.add_stiffness(x, matrix),
             Self::Springs(force) => force.add_stiffness(matrix),
             Self::Barrier(force) => force.add_stiffness(matrix),
             Self::Fibres(force) => force.add_stiffness(matrix),

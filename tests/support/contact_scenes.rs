@@ -372,7 +372,7 @@ impl Scene {
             let law = MembraneLaw::Skalak { shear: of.stiffness, area: 3.0 * of.stiffness };
             forces.push(Force::Membrane(Membrane::new(&rest.positions, &rest.facets, law)));
             let rigidity = 0.1 * of.stiffness * geometry::mean_edge_length(&rest).powi(2);
-            let bending = Bending::new(&rest.positions, &topology.flaps, rigidity, RestAngle::Remembered);
+            let bending = Bending::new(&rest.positions, &topology, rigidity, RestAngle::Remembered);
             forces.push(Force::Bending(bending));
         }
         if is_sheet {

@@ -4,7 +4,7 @@ use super::super::{Document, Mesh};
 use super::Prepared;
 use crate::Vec3;
 use crate::cell::Behaviour;
-use crate::geometry::bounding_box;
+use crate::geometry::{area, bounding_box};
 use crate::mechanics::Force;
 use crate::sim::{Kind, Model};
 use crate::units::{Dimension, pretty};
@@ -18,10 +18,15 @@ const USUAL: f64 = 10.0;
 /// Units in which meshes come, with their µm.
 const UNITS: [(&str, f64); 5] = [("nm", 1e-3), ("um", 1.0), ("mm", 1e3), ("cm", 1e4), ("m", 1e6)];
 
+/// What shear modulus and ordering together must be of bending rigidity over squared radius for atoms to keep their order: with a tenth
+/// of it skins that are drawn out or deflated shrink facets until the barrier holds them, with three tenths they do not.
+const KEPT_IN_ORDER: f64 = 0.3;
+
 /// What there is to say about an experiment before it runs, a sentence each; empty for most.
 pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
     let Prepared { model, centres, .. } = prepared;
     let mut notices: Vec<String> = model.kinds.iter().filter_map(|kind| unusual_width(document, kind)).collect();
+    notices.extend(model.kinds.iter().filter_map(|kind| unordered_skin(document, kind)));
     if model.contact.is_none() && may_meet(model, centres) {
         let words = "nothing keeps cells apart: without [contact] they pass through each other; \
                      add that table, which may be empty, if they are to touch";
@@ -55,6 +60,31 @@ fn unusual_width(document: &Document, kind: &Kind) -> Option<String> {
         "cells of type `{}` are {} wide, where cells are between {least} and {most}: {advice}",
         kind.name,
         told(width)
+    ))
+}
+
+/// That nothing keeps the atoms of a skin with bending where they are on it: bending at atoms resists across the surface alone.
+fn unordered_skin(document: &Document, kind: &Kind) -> Option<String> {
+    let membrane = document.experiment.cells.get(&kind.name)?.mechanics.membrane.as_ref()?;
+    let remembers = |force: &Force| matches!(force, Force::ShapeMemory(_) | Force::Angles(_) | Force::Springs(_));
+    if !kind.closed || kind.forces.iter().any(remembers) {
+        return None;
+    }
+    let bending = membrane.bending.value();
+    let scale = 4.0 * std::f64::consts::PI * bending / area(&kind.rest);
+    let along = membrane.shear.value() + membrane.ordering.value();
+    if along >= KEPT_IN_ORDER * scale {
+        return None;
+    }
+    let told = |stiffness: f64| pretty(stiffness, Dimension::LINE_STIFFNESS);
+    Some(format!(
+        "nothing keeps the atoms of type `{0}` in their order on its surface: its bending ({1}) resists across the surface alone, and `shear` \
+         and `ordering` of its membrane are {2} together, where bending over the squared radius is {3}. Where the cell deforms its facets \
+         shrink and energies are no longer right: give the membrane an `ordering` of {3} or more, which leaves its shape alone, or a `shear`",
+        kind.name,
+        pretty(bending, Dimension::ENERGY),
+        told(along),
+        told(scale),
     ))
 }
 
@@ -134,6 +164,20 @@ mod tests {
     fn a_cell_of_no_size_that_cells_have_is_told() {
         for (radius, times) in [("5 um", 0), ("60 nm", 0), ("40 nm", 1), ("4 mm", 0), ("6 mm", 1)] {
             assert_eq!(said(&balls(radius, "")).len(), times, "{radius}");
+        }
+    }
+    #[test]
+    fn a_skin_whose_atoms_nothing_keeps_in_order_is_told() {
+        // κ/R² is 0.008 pN/µm.
+        let skin = |more: &str| {
+            format!(
+                "[cells.ball]\nmesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 1 }}\nmechanics = {{ drag = \"20 pN s/um\", \
+                 membrane = {{ law = \"neo_hookean\", area = \"0 pN/um\", bending = \"0.2 pN um\", {more} }} }}\n"
+            )
+        };
+        let (none, some) = ("shear = \"0 pN/um\"", "shear = \"0.005 pN/um\"");
+        for (more, times) in [(none, 1), (some, 0), (&format!("{none}, ordering = \"0.005 pN/um\""), 0)] {
+            assert_eq!(said(&skin(more)).len(), times, "{more}");
         }
     }
 }

@@ -76,12 +76,18 @@ impl<'a, T: Real> Blocks<'a, T> {
     #[inline(always)]
     pub fn add_square<const N: usize>(&mut self, atoms: [u32; N], gradient: [V3<T>; N], weight: T) {
         for i in 0..N {
-            let g = gradient[i].times(weight);
             for j in 0..=i {
-                let h = gradient[j];
-                self.add(atoms[i], atoms[j], [h.times(g.x), h.times(g.y), h.times(g.z)]);
+                self.add_product(atoms[i], atoms[j], [gradient[i], gradient[j]], weight);
             }
         }
+    }
+
+    /// Adds the block of two atoms of `weight` times the square of a linear measure of positions, whose gradients by the first and by the
+    /// second atom these are. Each pair is added once.
+    #[inline(always)]
+    pub fn add_product(&mut self, i: u32, j: u32, [on_i, on_j]: [V3<T>; 2], weight: T) {
+        let g = on_i.times(weight);
+        self.add(i, j, [on_j.times(g.x), on_j.times(g.y), on_j.times(g.z)]);
     }
 
     /// Takes what is held out of the matrix: one factor an atom and axis, 0 where held. Rows and columns of it become those of the

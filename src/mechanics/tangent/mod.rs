@@ -1,8 +1,8 @@
 //! The tangent stiffness of each cell in the shape that it has: what the implicit step takes where no constant matrix tells how stiff
 //! the cells of a mesh are, eq. (step.10).
 //!
-//! It is the second derivative of the energies, without what is negative of a facet or a hinge, so that it is never less than the true
-//! stiffness and can always be factored. Forces without one of their own take their constant stiffness.
+//! It is the second derivative of the energies, without what is negative of a facet or a hinge and without the bend of curvatures at
+//! atoms, so that it can always be factored and is never far less than the true stiffness. Forces without one of their own take their constant stiffness.
 
 pub mod facet;
 mod factor;

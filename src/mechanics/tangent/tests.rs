@@ -57,11 +57,11 @@ fn laws() -> [MembraneLaw; 2] {
 #[test]
 fn at_rest_it_is_the_derivative_of_the_forces() {
     let ball = icosphere(5.0, 1);
-    let (rest, flaps) = (&ball.positions, Topology::of(&ball).flaps);
+    let (rest, topology) = (&ball.positions, Topology::of(&ball));
     let edges = Topology::of(&ball).edges.clone();
     let mut forces: Vec<Force> =
         laws().into_iter().map(|law| Force::Membrane(Membrane::new(rest, &ball.facets, law))).collect();
-    forces.push(Force::Bending(Bending::new(rest, &flaps, 0.7, RestAngle::Remembered)));
+    forces.push(Force::Bending(Bending::new(rest, &topology, 0.7, RestAngle::Remembered)));
     forces.push(Force::Springs(Springs::on_edges(rest, &edges, 2.0)));
     for force in forces {
         let forces = [force];
@@ -106,6 +106,21 @@ fn it_is_never_negative_and_never_less_than_the_true_stiffness() {
         assert!(least(wanted.clone()) < -1e-3 * size, "a shape in which the true one is not positive");
         assert!(least(found.clone()) > -1e-12 * size);
         assert!(least(found - wanted) > -1e-6 * size);
+    }
+}
+
+#[test]
+fn of_a_bilayer_it_is_more_than_half_of_the_true_stiffness() {
+    // Below half of it a step would overshoot by more than the whole way.
+    let ball = icosphere(5.0, 1);
+    let long: Vec<Vec3> = ball.positions.iter().map(|p| Vec3::new(1.3 * p.x, 0.9 * p.y, 0.85 * p.z)).collect();
+    for shape in [&ball.positions, &long] {
+        let forces = [Force::Bending(Bending::new(&ball.positions, &Topology::of(&ball), 0.7, RestAngle::Flat))];
+        let (found, wanted) = (whole(&forces, &ball.positions, &flat(shape)), by_differences(&forces, &flat(shape)));
+        let half = (&wanted + wanted.transpose()) * 0.25;
+        let least = nalgebra::SymmetricEigen::new(&found - half).eigenvalues.min() / found.amax();
+        println!("{least}");
+        assert!(least > -0.02, "{least}");
     }
 }
 

@@ -162,7 +162,7 @@ fn elastic() -> Vec<Case> {
     let skin = |law| Force::Membrane(Membrane::new(&positions, &facets, law));
     let tension = |tension, area| Force::Tension(Tension::new(&positions, &facets, tension, area));
     let links = (0..10).map(|i| Spring { from: i, to: 41 - i, rest_length: 2.0 + 0.3 * f64::from(i), stiffness: 0.7 });
-    let bending = |angle| Force::Bending(Bending::new(&positions, &topology.flaps, 0.4, angle));
+    let bending = |angle| Force::Bending(Bending::new(&positions, &topology, 0.4, angle));
     let rules = BarrierRules { energy: 0.8, area_share: 0.7, fold_angle: 1.8 };
     let barrier = Force::Barrier(Barrier::new(&positions, &facets, &topology.flaps, rules));
     let unbalanced = |name, force| Case { rests: false, bounded: false, ..case(name, force) };
