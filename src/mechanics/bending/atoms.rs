@@ -61,13 +61,14 @@ impl Atoms {
         energy
     }
 
-    /// Adds the tangent stiffness of each atom against a change of its curvature, eq. (step.10).
+    /// Adds the tangent stiffness of each atom against a change of its curvature h, and that of a tension κ (h² − c²)/2 where that is
+    /// positive, which on a sphere is what the bend of h adds, eq. (step.10).
     #[inline(always)]
     pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
         let mut kept = Kept::new(x.token);
-        let one = T::constant(x.token, 1.0);
+        let (zero, one) = (T::constant(x.token, 0.0), T::constant(x.token, 1.0));
         let mut few = [V3::zero(x.token); KEPT];
-        for (atom, ring, _) in self.stars() {
+        for (atom, ring, rest) in self.stars() {
             let star = Star::measure(x, atom, ring, &mut kept);
             let by_bent = one / star.area;
             let by_area = -(star.bent * by_bent * by_bent);
@@ -89,6 +90,10 @@ impl Atoms {
                     blocks.add_product(row, column, [on_row, gradient(j)], weight);
                 }
             }
+            let curvature = star.bent * by_bent;
+            let tension = ((curvature * curvature + -(rest * rest)) * (0.5 * self.rigidity)).max(zero);
+            // Each facet is a third of each of its atoms'.
+            (0..ring.len()).for_each(|k| star.add_tension(k, tension * (1.0 / 3.0), blocks));
         }
     }
 

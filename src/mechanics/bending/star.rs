@@ -4,6 +4,7 @@
 //! eq. (bending.3). Nothing but roots and quotients is needed.
 
 use crate::mechanics::lanes::{Real, V3, Vectors};
+use crate::mechanics::tangent::matrix::Blocks;
 
 /// Neighbours whose facets are kept from one pass to the next; of atoms with more, those beyond are measured again.
 pub(super) const KEPT: usize = 10;
@@ -47,6 +48,7 @@ pub(super) struct Kept<T>([(Facet<T>, Fold<T>); KEPT]);
 /// A ring in the current shape.
 pub(super) struct Star<'a, T: Real> {
     x: &'a Vectors<'a, T>,
+    atom: u32,
     here: V3<T>,
     ring: &'a [u32],
     kept: &'a Kept<T>,
@@ -97,7 +99,7 @@ impl<'a, T: Real> Star<'a, T> {
         let root = one / fourth.sqrt().sqrt();
         let (limited, by_voronoi) = (t * root * RANGE + 1.0, root / fourth);
         let by_third = limited - by_voronoi * share;
-        Self { x, here, ring, kept, bent, area: third * limited, by_third, by_voronoi }
+        Self { x, atom: atom as u32, here, ring, kept, bent, area: third * limited, by_third, by_voronoi }
     }
 
     /// The derivative of `by_bent`·M + `by_area`·A by the position of neighbour k, eq. (bending.4). That by the atom's own is minus the sum of all.
@@ -116,6 +118,23 @@ impl<'a, T: Real> Star<'a, T> {
             + facet.sides[0].times(fold.bend * by_bent)
             + facet.spread(0, self.by_third, self.by_voronoi).times(by_area)
             + earlier.spread(1, self.by_third, self.by_voronoi).times(by_area)
+    }
+
+    /// Adds the stiffness across the facet from neighbour k to the next of a tension in it (pN/µm).
+    #[inline(always)]
+    pub fn add_tension(&self, k: usize, tension: T, blocks: &mut Blocks<T>) {
+        let facet = self.get(k).0;
+        let next = if k + 1 == self.ring.len() { 0 } else { k + 1 };
+        let atoms = [self.atom, self.ring[k], self.ring[next]];
+        let [u, v] = facet.sides;
+        let (n, sides) = (facet.normal.times(facet.inverse), [v - u, -v, u]);
+        let weight = tension * facet.inverse * 0.5;
+        for i in 0..3 {
+            for j in 0..=i {
+                let across = n.times(sides[i].dot(sides[j]) * weight);
+                blocks.add(atoms[i], atoms[j], [across.times(n.x), across.times(n.y), across.times(n.z)]);
+            }
+        }
     }
 
     #[inline(always)]

@@ -110,9 +110,9 @@ fn it_is_never_negative_and_never_less_than_the_true_stiffness() {
 }
 
 #[test]
-fn of_a_bilayer_it_is_more_than_half_of_the_true_stiffness() {
-    // Below half of it a step would overshoot by more than the whole way.
-    let ball = icosphere(5.0, 1);
+fn of_a_bilayer_it_is_more_than_half_of_the_true_stiffness_but_for_little() {
+    // Below half of it a step overshoots by more than the whole way; drag, membrane and smaller steps must make up for what is left.
+    let ball = icosphere(5.0, 2);
     let long: Vec<Vec3> = ball.positions.iter().map(|p| Vec3::new(1.3 * p.x, 0.9 * p.y, 0.85 * p.z)).collect();
     for shape in [&ball.positions, &long] {
         let forces = [Force::Bending(Bending::new(&ball.positions, &Topology::of(&ball), 0.7, RestAngle::Flat))];
