@@ -120,7 +120,7 @@ fn of_a_bilayer_it_is_more_than_half_of_the_true_stiffness_but_for_little() {
         let half = (&wanted + wanted.transpose()) * 0.25;
         let least = nalgebra::SymmetricEigen::new(&found - half).eigenvalues.min() / found.amax();
         println!("{least}");
-        assert!(least > -0.02, "{least}");
+        assert!(least > -0.01, "{least}");
     }
 }
 
