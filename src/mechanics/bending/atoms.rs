@@ -51,11 +51,10 @@ impl Atoms {
             let by_bent = excess * self.rigidity;
             let by_area = by_bent * (curvature + rest) * -0.5;
             let mut sum = V3::zero(x.token);
-            for (k, &neighbour) in ring.iter().enumerate() {
-                let gradient = star.gradient(k, by_bent, by_area);
-                f.sub(neighbour as usize, gradient);
+            star.gradients(by_bent, by_area, |k, gradient| {
+                f.sub(ring[k] as usize, gradient);
                 sum += gradient;
-            }
+            });
             f.add(atom, sum);
         }
         energy
@@ -73,13 +72,12 @@ impl Atoms {
             let by_bent = one / star.area;
             let by_area = -(star.bent * by_bent * by_bent);
             let mut own = V3::zero(x.token);
-            for k in 0..ring.len() {
-                let gradient = star.gradient(k, by_bent, by_area);
-                own = own - gradient;
+            star.gradients(by_bent, by_area, |k, gradient| {
+                own -= gradient;
                 if k < KEPT {
                     few[k] = gradient;
                 }
-            }
+            });
             let gradient = |k: usize| if k < KEPT { few[k] } else { star.gradient(k, by_bent, by_area) };
             let weight = star.area * self.rigidity;
             blocks.add_product(atom as u32, atom as u32, [own, own], weight);
@@ -105,8 +103,8 @@ impl Atoms {
         for (atom, ring, _) in self.stars() {
             let star = Star::measure(&all, atom, ring, &mut kept);
             let (by_bent, by_area) = (1.0 / star.area, -star.bent / star.area.powi(2));
-            let gradient = |k: usize| star.gradient(k, by_bent, by_area);
-            let gradients: Vec<Vec3> = (0..ring.len()).map(|k| vector(gradient(k))).collect();
+            let mut gradients = Vec::with_capacity(ring.len());
+            star.gradients(by_bent, by_area, |_, gradient| gradients.push(vector(gradient)));
             // In a frame with the normal, (P + Q + R)² ≤ (p + q + r)(P²/p + Q²/q + R²/r) for each of its axes.
             let axes = frame(x, atom, ring);
             let sizes = axes.map(|axis| gradients.iter().map(|g| g.dot(&axis).powi(2)).sum::<f64>().sqrt());

@@ -31,6 +31,8 @@ struct Facet<T> {
     /// Its length, and one over it.
     doubled: T,
     inverse: T,
+    /// What of it is nearer to the atom than to both neighbours, µm², where its angles are acute.
+    voronoi: T,
 }
 
 /// The fold along a side of length l.
@@ -66,8 +68,8 @@ impl<T: Real> Kept<T> {
     #[inline(always)]
     pub fn new(token: T::Token) -> Self {
         let (zero, none) = (V3::zero(token), T::constant(token, 0.0));
-        let facet =
-            Facet { sides: [zero; 2], squares: [none; 2], product: none, normal: zero, doubled: none, inverse: none };
+        let (sides, squares) = ([zero; 2], [none; 2]);
+        let facet = Facet { sides, squares, product: none, normal: zero, doubled: none, inverse: none, voronoi: none };
         Self([(facet, Fold { bend: none, turn: none }); KEPT])
     }
 }
@@ -85,7 +87,7 @@ impl<'a, T: Real> Star<'a, T> {
             let fold = Fold::between(x.token, &before, &facet);
             bent += fold.bend * facet.squares[0];
             doubled += facet.doubled;
-            voronoi += facet.voronoi();
+            voronoi += facet.voronoi;
             if k < KEPT {
                 kept.0[k] = (facet, fold);
             }
@@ -102,22 +104,39 @@ impl<'a, T: Real> Star<'a, T> {
         Self { x, atom: atom as u32, here, ring, kept, bent, area: third * limited, by_third, by_voronoi }
     }
 
-    /// The derivative of `by_bent`·M + `by_area`·A by the position of neighbour k, eq. (bending.4). That by the atom's own is minus the sum of all.
+    /// Tells `each` the derivative of `by_bent`·M + `by_area`·A by the position of each neighbour, eq. (bending.4). That by the atom's
+    /// own is minus the sum of all.
+    #[inline(always)]
+    pub fn gradients(&self, by_bent: T, by_area: T, mut each: impl FnMut(usize, V3<T>)) {
+        let weights = self.weights(by_bent, by_area);
+        let last = self.ring.len() - 1;
+        let (mut facet, mut fold) = self.get(0);
+        let mut from_before = {
+            let (facet, before) = self.get(last);
+            facet.pulls([before, fold], weights)[1]
+        };
+        for k in 0..=last {
+            let (next, after) = self.get(if k == last { 0 } else { k + 1 });
+            let [here, there] = facet.pulls([fold, after], weights);
+            each(k, from_before + here);
+            (facet, fold, from_before) = (next, after, there);
+        }
+    }
+
+    /// The one of neighbour k.
     #[inline(always)]
     pub fn gradient(&self, k: usize, by_bent: T, by_area: T) -> V3<T> {
+        let weights = self.weights(by_bent, by_area);
         let last = self.ring.len() - 1;
         let (back, next) = (if k == 0 { last } else { k - 1 }, if k == last { 0 } else { k + 1 });
-        let (facet, fold) = self.get(k);
-        let (earlier, fold_before) = self.get(back);
-        let (_, fold_after) = self.get(next);
-        // Facet k has its first side here, the one before it the second.
-        let lift = facet.product * fold.turn - facet.squares[1] * fold_after.turn;
-        let lift_before = earlier.product * fold.turn - earlier.squares[0] * fold_before.turn;
-        facet.normal.times(lift * facet.inverse * facet.inverse * by_bent)
-            + earlier.normal.times(lift_before * earlier.inverse * earlier.inverse * by_bent)
-            + facet.sides[0].times(fold.bend * by_bent)
-            + facet.spread(0, self.by_third, self.by_voronoi).times(by_area)
-            + earlier.spread(1, self.by_third, self.by_voronoi).times(by_area)
+        let ((facet, fold), (earlier, before)) = (self.get(k), self.get(back));
+        earlier.pulls([before, fold], weights)[1] + facet.pulls([fold, self.get(next).1], weights)[0]
+    }
+
+    /// The derivatives of what is asked for by M, by the doubled area of a facet and by its Voronoi area.
+    #[inline(always)]
+    fn weights(&self, by_bent: T, by_area: T) -> [T; 3] {
+        [by_bent, self.by_third * by_area * (1.0 / 6.0), self.by_voronoi * by_area]
     }
 
     /// Adds the stiffness across the facet from neighbour k to the next of a tension in it (pN/µm).
@@ -155,32 +174,29 @@ impl<T: Real> Facet<T> {
         let sides = [x.get(ring[k] as usize) - here, x.get(ring[next] as usize) - here];
         let normal = sides[0].cross(sides[1]);
         let doubled = normal.squared().sqrt().max(T::constant(x.token, TINY));
-        Self {
-            sides,
-            squares: sides.map(V3::squared),
-            product: sides[0].dot(sides[1]),
-            normal,
-            doubled,
-            inverse: T::constant(x.token, 1.0) / doubled,
-        }
+        let (inverse, product) = (T::constant(x.token, 1.0) / doubled, sides[0].dot(sides[1]));
+        let squares @ [p, q] = sides.map(V3::squared);
+        // (|e|² cot + |e'|² cot')/8 with the angles across both sides.
+        let voronoi = (p * q * 2.0 - product * (p + q)) * inverse * 0.125;
+        Self { sides, squares, product, normal, doubled, inverse, voronoi }
     }
 
-    /// What of the facet is nearer to the atom than to its neighbours: (|e|² cot + |e'|² cot')/8 with the angles across both sides.
+    /// What of the derivatives by the ends of both sides comes from this facet and the folds along them, the first of which has its own
+    /// length in M; with the derivatives by M, by the doubled area and by the Voronoi area.
     #[inline(always)]
-    fn voronoi(&self) -> T {
+    fn pulls(&self, [fold, after]: [Fold<T>; 2], [by_bent, by_doubled, by_voronoi]: [T; 3]) -> [V3<T>; 2] {
         let [p, q] = self.squares;
-        (p * q * 2.0 - self.product * (p + q)) * self.inverse * 0.125
-    }
-
-    /// The derivative of A by one side, with its derivatives by a third of the area and by the Voronoi area.
-    #[inline(always)]
-    fn spread(&self, side: usize, by_third: T, by_voronoi: T) -> V3<T> {
-        let (own, other) = (self.squares[side], self.squares[1 - side]);
+        let lift = self.normal.times(self.inverse * self.inverse * by_bent);
+        let lifted = [self.product * fold.turn - q * after.turn, self.product * after.turn - p * fold.turn];
         let eighth = by_voronoi * self.inverse * 0.125;
-        let on_area = (by_third * (1.0 / 6.0) - by_voronoi * self.voronoi() * self.inverse) * self.inverse;
-        let along = eighth * (other * 2.0 - self.product) * 2.0 + on_area * other;
-        let across = eighth * (own + other) + on_area * self.product;
-        self.sides[side].times(along) - self.sides[1 - side].times(across)
+        let on_doubled = (by_doubled - by_voronoi * self.voronoi * self.inverse) * self.inverse;
+        let across = eighth * (p + q) + on_doubled * self.product;
+        let along = |other: T| eighth * (other * 2.0 - self.product) * 2.0 + on_doubled * other;
+        let [u, v] = self.sides;
+        [
+            lift.times(lifted[0]) + u.times(along(q) + fold.bend * by_bent) - v.times(across),
+            lift.times(lifted[1]) + v.times(along(p)) - u.times(across),
+        ]
     }
 }
 
