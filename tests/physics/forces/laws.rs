@@ -130,6 +130,31 @@ fn a_sphere_has_helfrichs_bending_energy() {
 }
 
 #[test]
+fn an_ellipsoid_has_helfrichs_bending_energy() {
+    // ½ ∮ (c₁ + c₂)² of half axes a, a, c at the polar angle t of its parameter, with q = c² sin² t + a² cos² t:
+    // c₁ = a c/q^(3/2) and c₂ = c/(a √q).
+    for (a, c) in [(1.0_f64, 2.0_f64), (1.0, 0.5)] {
+        let panels = 10_000;
+        let exact: f64 = (0..panels)
+            .map(|panel| {
+                let (sine, cosine) = (PI * (f64::from(panel) + 0.5) / f64::from(panels)).sin_cos();
+                let root = (c * sine).hypot(a * cosine);
+                let sum = a * c / root.powi(3) + c / (a * root);
+                0.5 * sum * sum * 2.0 * PI * a * sine * root * PI / f64::from(panels)
+            })
+            .sum();
+        let errors = [2, 3].map(|level| {
+            let mut surface = icosphere(1.0, level);
+            surface.positions.iter_mut().for_each(|x| *x = Vec3::new(a * x.x, a * x.y, c * x.z));
+            let bending = Bending::new(&surface.positions, &Topology::of(&surface), 1.0, RestAngle::Flat);
+            on(&Force::Bending(bending), &surface.positions).0 / exact - 1.0
+        });
+        println!("half axes {a}, {a}, {c}: {exact} to {errors:.5?}");
+        assert!(errors[0].abs() < 0.016 && errors[1].abs() < 0.004, "{errors:?}");
+    }
+}
+
+#[test]
 fn bending_does_not_resist_atoms_that_shift_along_a_sphere() {
     // Twice the energy of a small shift v ∇P₂ or swelling w P₂ of a sphere that remembers its curvature, over v² or w² and ∮P₂² = 4π/5:
     // κ (λ − 2)² = 16 κ for the latter with λ = l (l + 1).
