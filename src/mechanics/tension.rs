@@ -83,14 +83,8 @@ impl Tension {
             let (u, v, normal) = area_vector(x, facet);
             let doubled = normal.squared().sqrt().max(tiny);
             let n = normal.times(T::constant(x.token, 1.0) / doubled);
-            let sides = [v - u, -v, u];
             let weight = T::constant(x.token, 0.5 * self.tension.max(0.0)) / doubled;
-            for i in 0..3 {
-                for j in 0..=i {
-                    let across = n.times(sides[i].dot(sides[j]) * weight);
-                    blocks.add(facet[i], facet[j], [across.times(n.x), across.times(n.y), across.times(n.z)]);
-                }
-            }
+            blocks.add_tension(facet, [v - u, -v, u], n, weight);
         }
     }
 

@@ -2,7 +2,8 @@
 //!
 //! On a closed mesh it is Helfrich's energy, eq. (bending.1), `E = κ/2 ∫ (c₁ + c₂ − c₀)² dA` (Helfrich 1973), with the curvature and the
 //! area of each atom in the present shape: where atoms stand on a surface makes no difference but that of the mesh, so that bending leaves
-//! shear to the membrane; a pulled sphere is as eq. (bending.7) says. An open sheet has hinges on its edges instead, eq. (bending.5), with weights of the rest shape.
+//! shear to the membrane, and a pulled sphere is as eq. (bending.7) says. An open sheet has hinges on its edges instead, eq. (bending.5),
+//! with weights of the rest shape.
 
 mod atoms;
 mod hinges;

@@ -146,14 +146,7 @@ impl<'a, T: Real> Star<'a, T> {
         let next = if k + 1 == self.ring.len() { 0 } else { k + 1 };
         let atoms = [self.atom, self.ring[k], self.ring[next]];
         let [u, v] = facet.sides;
-        let (n, sides) = (facet.normal.times(facet.inverse), [v - u, -v, u]);
-        let weight = tension * facet.inverse * 0.5;
-        for i in 0..3 {
-            for j in 0..=i {
-                let across = n.times(sides[i].dot(sides[j]) * weight);
-                blocks.add(atoms[i], atoms[j], [across.times(n.x), across.times(n.y), across.times(n.z)]);
-            }
-        }
+        blocks.add_tension(atoms, [v - u, -v, u], facet.normal.times(facet.inverse), tension * facet.inverse * 0.5);
     }
 
     #[inline(always)]

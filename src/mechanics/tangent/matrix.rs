@@ -90,6 +90,19 @@ impl<'a, T: Real> Blocks<'a, T> {
         self.add(i, j, [on_j.times(g.x), on_j.times(g.y), on_j.times(g.z)]);
     }
 
+    /// Adds what of the stiffness of a tension in a facet acts along its unit normal, where `sides` are those across from its atoms and
+    /// `weight` is the tension over four times the area (pN/µm³).
+    #[inline(always)]
+    pub fn add_tension(&mut self, facet: [u32; 3], sides: [V3<T>; 3], normal: V3<T>, weight: T) {
+        for i in 0..3 {
+            for j in 0..=i {
+                let across = normal.times(sides[i].dot(sides[j]) * weight);
+                let rows = [across.times(normal.x), across.times(normal.y), across.times(normal.z)];
+                self.add(facet[i], facet[j], rows);
+            }
+        }
+    }
+
     /// Takes what is held out of the matrix: one factor an atom and axis, 0 where held. Rows and columns of it become those of the
     /// identity.
     #[inline(always)]

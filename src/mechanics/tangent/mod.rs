@@ -2,7 +2,8 @@
 //! the cells of a mesh are, eq. (step.10).
 //!
 //! It is the second derivative of the energies, without what is negative of a facet or a hinge and without the bend of curvatures at
-//! atoms, so that it can always be factored and is never far less than the true stiffness. Forces without one of their own take their constant stiffness.
+//! atoms, so that it can always be factored and is never far less than the true stiffness. Forces without one of their own take their
+//! constant stiffness.
 
 pub mod facet;
 mod factor;
