@@ -13,9 +13,11 @@ use crate::sim::controls::Controls;
 #[derive(Debug, Clone, Default)]
 pub struct AreaScratch {
     around: Surroundings,
-    /// Of each batch of bodies: what it looks at; a body, what it is in contact with and how much of the body.
-    of_batches: Vec<(Around, Vec<(u32, u32, f64)>)>,
+    of_batches: Vec<OfBatch>,
 }
+
+/// What a batch of bodies looks at; a body, what it is in contact with and how much of the body.
+type OfBatch = (Around, Vec<(u32, u32, f64)>);
 
 impl CohesionTable {
     /// Adds the areas of contact where all surfaces look alike at these positions: a body, then another one, or the number of bodies and
@@ -32,7 +34,7 @@ impl CohesionTable {
         scratch.around.find(scene, positions, range, false);
         let AreaScratch { around: Surroundings { near, facets }, of_batches } = scratch;
         let seen = Seen { table: self, scene, controls: &controls, positions, facets, range };
-        of_batches.resize_with(scene.batches(), Default::default);
+        of_batches.resize_with(scene.batches(), OfBatch::default);
         of_batches.par_iter_mut().enumerate().for_each(|(batch, (around, areas))| {
             areas.clear();
             for body in scene.bodies_of(batch) {
