@@ -48,10 +48,15 @@ impl Kind {
     /// Lets each cell have its own stiffness, eq. (step.10), where K overestimates the shear of a membrane too far. Not for cells that
     /// others may touch: what contacts move is known for K, or for atoms that stand alone.
     pub fn use_tangent(&mut self) {
-        let shears = |force: &Force| matches!(force, Force::Membrane(membrane) if membrane.law().shear() > 0.0);
-        if !self.is_told() && self.forces.iter().any(shears) {
+        if self.has_soft_shear() {
             self.tangent = Some(Tangent::new(&self.forces, &self.rest.positions));
         }
+    }
+
+    /// Whether K overestimates the shear of a membrane so far that cells creep where they have no stiffness of their own.
+    pub fn has_soft_shear(&self) -> bool {
+        let shears = |force: &Force| matches!(force, Force::Membrane(membrane) if membrane.law().shear() > 0.0);
+        !self.is_told() && self.forces.iter().any(shears)
     }
 
     /// The stiffness K of the implicit step for a cell in the shape `x` (µm): the linear part of its elastic forces there,
