@@ -103,7 +103,7 @@ fn soft_walkers(kind: &Kind) -> Option<String> {
     let speed: f64 = kind.behaviours.iter().filter_map(Behaviour::speed).sum();
     let matrix = stiffness(&kind.forces, &kind.rest.positions, &kind.rest.positions);
     let resists = (0..kind.atoms()).map(|atom| matrix.diagonal(atom)).fold(0.0, f64::max);
-    let push = kind.drag * speed;
+    let push = kind.drag * kind.atoms() as f64 * speed;
     if push <= MOST_DENT * resists * kind.edge {
         return None;
     }
