@@ -48,7 +48,9 @@ fn beside_each_other(facets: &[[u32; 3]]) -> Vec<[usize; 2]> {
 
 fn membrane(shear: f64) -> String {
     let area = shear.max(200.0);
-    format!("membrane = {{ law = \"skalak\", shear = \"{shear} pN/um\", area = \"{area} pN/um\", bending = \"10 pN um\" }}")
+    format!(
+        "membrane = {{ law = \"skalak\", shear = \"{shear} pN/um\", area = \"{area} pN/um\", bending = \"10 pN um\" }}"
+    )
 }
 
 fn memory(stiffness: f64) -> String {
