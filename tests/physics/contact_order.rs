@@ -16,7 +16,7 @@ fn distance(contact: &str, step: f64) -> f64 {
     let turn = "orientation = { axis = [0.3, 0.7, 0.72], angle = \"37 deg\" }";
     let (left, right) = (cell("left", -5.3, 1, ""), cell("right", 5.3, -1, turn));
     let text = format!(
-        "title = \"Pressed\"\n[run]\nuntil = \"4 s\"\nintegrator = {{ step = \"{step} s\" }}\n{left}{right}[contact]\n{contact}\n"
+        "title = \"Pressed\"\n[run]\nuntil = \"4 s\"\nintegrator = {{ step = \"{step} s\" }}\n{left}{right}[contact]\n{contact}\n[output]\nevery = \"4 s\"\n"
     );
     let mut simulation = Simulation::from_text("pressed.toml", &text).unwrap_or_else(|error| panic!("{error}"));
     simulation.run_until(4.0).unwrap_or_else(|error| panic!("{error}"));
