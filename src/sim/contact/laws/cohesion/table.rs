@@ -37,9 +37,13 @@ pub struct CohesionTable {
 /// The most points along a side of a facet.
 const MOST_POINTS: u32 = 4;
 
-/// Ranges between points of a facet, at most: where surfaces attract each other, and where areas are measured.
-const APART: f64 = 1.0;
-const APART_FOR_AREAS: f64 = 0.5;
+/// Along a side of a facet as many points as are two within a range, where areas are measured; where surfaces attract each other one within
+/// a range will do from two points on, eq. (adhesion.18).
+fn points_along(edge: f64, range: f64, attracts: bool) -> u32 {
+    let (one, two) = ((edge / range).ceil(), (2.0 * edge / range).ceil());
+    let points = if attracts { two.min(one.max(2.0)) } else { two };
+    (points as u32).clamp(1, MOST_POINTS)
+}
 
 impl CohesionTable {
     /// A table in which nothing sticks.
@@ -59,7 +63,7 @@ impl CohesionTable {
         let cohesive = Cohesive { strength: 1.0, work: 0.5 * range, friction: 0.0 };
         table.between.fill(cohesive);
         table.on_planes.fill(cohesive);
-        table.resolve_to(edges, APART_FOR_AREAS);
+        table.resolve_for(edges, false);
         table
     }
 
@@ -78,17 +82,16 @@ impl CohesionTable {
 
     /// Looks as finely at the facets of each kind, with these mean edges (µm), as its least range needs.
     pub fn resolve(&mut self, edges: &[f64]) {
-        self.resolve_to(edges, APART);
+        self.resolve_for(edges, true);
     }
 
-    /// The same with points so many ranges apart at most.
-    fn resolve_to(&mut self, edges: &[f64], apart: f64) {
+    fn resolve_for(&mut self, edges: &[f64], attracts: bool) {
         let (kinds, planes) = (edges.len(), self.on_planes.len() / edges.len().max(1));
         for (kind, edge) in edges.iter().enumerate() {
             let between = &self.between[kind * kinds..(kind + 1) * kinds];
             let ranges = between.iter().chain(&self.on_planes[kind * planes..(kind + 1) * planes]).map(Cohesive::range);
             let least = ranges.filter(|range| *range > 0.0).fold(f64::INFINITY, f64::min);
-            self.points[kind] = ((edge / (apart * least)).ceil() as u32).clamp(1, MOST_POINTS);
+            self.points[kind] = points_along(*edge, least, attracts);
         }
     }
 
