@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 pub enum ContactModel {
     /// Contacts bear any push and a shear, and surfaces attract each other: with `strength` at most, and over twice the `energy` that
     /// parts them over the strength.
-    #[default]
     Cohesion,
-    /// Contacts of atoms bear any push, and a pull and a shear by `strength`: to compare with.
+    /// Contacts of atoms bear any push, and a pull and a shear by `strength`, and draw nothing near.
+    #[default]
     Adhesives,
     /// Contacts bear any push, and springs hold the atoms of facets that collided, by `link`; they break beyond `range`.
     Links,
@@ -62,8 +62,8 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub area_within: Option<Length>,
-    /// Pull over area of contact at which surfaces of any two types part, the most that they attract each other with; nothing sticks when
-    /// absent.
+    /// Pull over area of contact at which surfaces of any two types part; model cohesion: the most that they attract each other with. Nothing
+    /// sticks when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub strength: Option<Stress>,
@@ -75,8 +75,8 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub friction: Option<SurfaceDrag>,
-    /// Work that parts an area of contact: half of `strength` times `range` when absent. Model adhesives: energy that an area of contact
-    /// releases, none when absent.
+    /// Model cohesion: work that parts an area of contact, half of `strength` times `range` when absent. Model adhesives: energy that an
+    /// area of contact releases, none when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
@@ -84,7 +84,7 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub link: Option<LineStiffness>,
-    /// How far open surfaces still attract each other, in place of `energy`; 1.5 um when both are absent. Model links: mean length of its
+    /// Model cohesion: how far open surfaces still attract each other, in place of `energy`; 1.5 um when both are absent. Model links: mean length of its
     /// springs above which a link breaks; the smallest mean edge when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
@@ -137,12 +137,12 @@ pub struct Between {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub friction: Option<SurfaceDrag>,
-    /// Work that parts an area of contact: half of `strength` times `range` when absent. Model adhesives: energy that an area of contact
-    /// releases, none when absent.
+    /// Model cohesion: work that parts an area of contact, half of `strength` times `range` when absent. Model adhesives: energy that an
+    /// area of contact releases, none when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
-    /// How far open they still attract each other, in place of `energy`; that of [contact] when both are absent.
+    /// Model cohesion: how far open they still attract each other, in place of `energy`; that of [contact] when both are absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub range: Option<Length>,

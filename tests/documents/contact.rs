@@ -81,11 +81,12 @@ fn the_table_gives_each_pair_its_strength_and_the_default_the_others() {
 }
 
 #[test]
-fn surfaces_attract_each_other_by_default_as_far_as_the_energy_or_the_range_or_the_default_says() {
+fn surfaces_attract_each_other_as_far_as_the_energy_or_the_range_or_the_default_says() {
     let found = |range: &str, of_pair: &str| {
         let table = TABLE.replace("\"2 Pa\"", &format!("\"2 Pa\"\n{of_pair}"));
-        let contact = compiled(&format!("[contact]{range}{table}")).model.contact.expect("contacts");
-        let table = contact.law.cohesion().expect("the default").clone();
+        let contact =
+            compiled(&format!("[contact]\nmodel = \"cohesion\"{range}{table}")).model.contact.expect("contacts");
+        let table = contact.law.cohesion().expect("the law").clone();
         let is_sheared_only = |strength: &Strength| (strength.tensile, strength.energy) == (0.0, 0.0);
         assert!(contact.between.iter().chain(&contact.on_planes).all(is_sheared_only));
         assert_eq!([contact.between[0].shear, contact.between[1].shear, contact.on_planes[0].shear], [4.0, 2.0, 5.0]);

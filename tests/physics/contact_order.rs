@@ -27,9 +27,10 @@ fn distance(contact: &str, step: f64) -> f64 {
 
 #[test]
 fn what_steps_err_by_where_cells_touch_is_proportional_to_them() {
-    for (contact, longest) in
-        [("", 0.05), ("strength = \"1 pN/um^2\"\nshear_strength = \"0 Pa\"\nenergy = \"0.75 pN/um\"", 0.025)]
-    {
+    for (contact, longest) in [
+        ("", 0.05),
+        ("model = \"cohesion\"\nstrength = \"1 pN/um^2\"\nshear_strength = \"0 Pa\"\nenergy = \"0.75 pN/um\"", 0.025),
+    ] {
         let [long, half, quarter] = [1.0, 0.5, 0.25].map(|part| distance(contact, part * longest));
         // The differences fall by 2 to the order.
         let order = ((long - half) / (half - quarter)).log2();
