@@ -46,6 +46,24 @@ impl Bounds {
         meets(0) & meets(1) & meets(2)
     }
 
+    /// What two boxes share that meet.
+    pub fn shared_with(&self, other: &Self) -> Self {
+        let axis = [0, 1, 2];
+        Self {
+            low: axis.map(|axis| self.low[axis].max(other.low[axis])),
+            high: axis.map(|axis| self.high[axis].min(other.high[axis])),
+        }
+    }
+
+    /// Whether all points are on one side of the box, so that nothing between them is in it.
+    #[inline]
+    pub fn is_beside(&self, points: &[Vec3]) -> bool {
+        (0..3).any(|axis| {
+            let (low, high) = (f64::from(self.low[axis]), f64::from(self.high[axis]));
+            points.iter().all(|point| point[axis] < low) || points.iter().all(|point| point[axis] > high)
+        })
+    }
+
     /// The box grown by `reach` µm.
     pub fn grown(&self, reach: f64) -> Self {
         Self {
