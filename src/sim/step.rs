@@ -95,7 +95,7 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     make_exact(model, end, from, to, ws)?;
     correct_velocities(model, dt, to, ws);
     check_finite(model, end, to)?;
-    Ok(Estimate { error, travel: travel(model, from, to) })
+    Ok(Estimate { error, travel: travel(model, from, to, ws) })
 }
 
 /// Looks at where an attempt ends that its error allows.

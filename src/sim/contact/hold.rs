@@ -14,6 +14,7 @@ use super::sweep::{sweep_contacts, sweep_depths};
 use super::vectors::V4;
 use super::volumes::{VolumeRow, sweep_volumes};
 use crate::Vec3;
+use crate::contact::Stride;
 use crate::sim::kind::VolumeRule;
 use crate::sim::model::Model;
 use crate::sim::state::{KindState, State, vector};
@@ -161,20 +162,22 @@ fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
     }
 }
 
-/// The farthest that an atom moved in the step over what contacts allow; 0 without contacts.
-pub fn travel(model: &Model, from: &State, to: &State) -> f64 {
-    let Some(contact) = &model.contact else { return 0.0 };
-    let mut farthest: f64 = 0.0;
+/// How far bodies moved in the step beside those that they may meet, over what contacts allow, eq. (contacts.6); 0 without contacts.
+pub fn travel(model: &Model, from: &State, to: &State, ws: &mut Workspace) -> f64 {
+    let s = &mut ws.contact;
+    let Some(contact) = &s.scene(model, &from.kinds) else { return 0.0 };
+    let scene = &contact.scene;
+    s.strides.resize(scene.bodies.len(), Stride::NONE);
+    let mut rest = &mut s.strides[..];
     for ((kind, now), next) in model.kinds.iter().zip(&from.kinds).zip(&to.kinds) {
-        let of_cell = |cell: usize| {
+        let (own, others) = rest.split_at_mut(now.cells());
+        rest = others;
+        own.par_iter_mut().with_min_len(CELLS_PER_JOB).enumerate().for_each(|(cell, stride)| {
             let position = |x: &[f64], atom: usize| vector(kind, x, cell, atom);
-            let travels =
-                (0..kind.atoms()).map(|atom| position(&next.positions, atom) - position(&now.positions, atom));
-            travels.map(|travel| travel.norm_squared()).fold(0.0, f64::max)
-        };
-        // Lanes beyond the last cell may go elsewhere.
-        let cells = (0..now.cells()).into_par_iter().with_min_len(CELLS_PER_JOB);
-        farthest = farthest.max(cells.map(of_cell).reduce(|| 0.0, f64::max));
+            let ends = [&now.positions, &next.positions].map(|x| move |atom| position(x, atom));
+            let [start, end] = ends;
+            *stride = Stride::of(scene, kind.atoms(), start, end);
+        });
     }
-    farthest.sqrt() / contact.reach.safe_travel()
+    s.detector.share_of_safe(scene, &s.strides)
 }

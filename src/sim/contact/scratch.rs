@@ -8,7 +8,7 @@ use super::scene::{ContactScene, Surfaces};
 use super::vectors::V4;
 use super::volumes::VolumeRow;
 use crate::Vec3;
-use crate::contact::{Contacts, Detector};
+use crate::contact::{Contacts, Detector, Stride};
 use crate::sim::model::Model;
 use crate::sim::state::{KindState, State};
 
@@ -75,6 +75,8 @@ pub struct ContactScratch {
     /// Rows that are inside, and the pushes that mend them, pN.
     pub(super) deep: Vec<(u32, f64)>,
     pub(super) momentum: Momentum,
+    /// How bodies move in the step.
+    pub(super) strides: Vec<Stride>,
     /// Sweeps of the last projection.
     pub sweeps: u32,
 }
@@ -125,6 +127,7 @@ impl ContactScratch {
         self.mobility.clear(false);
         self.relief.fill(f64::NAN);
         self.momentum.poison();
+        self.strides.clear();
         self.sweeps = u32::MAX;
     }
 }
