@@ -4,7 +4,7 @@ use super::chemistry::next_exchange;
 use super::contact::SweepRules;
 use super::kind::Kind;
 use super::model::Model;
-use super::state::State;
+use super::state::{KindState, State};
 use super::trouble::Trouble;
 use crate::mechanics::integrator::StepSize;
 
@@ -20,6 +20,13 @@ const TIGHTER: f64 = 0.1;
 /// The shortest part of a fixed step that is made shorter still, over the whole: where that does not do, it was chosen badly.
 const SHORTEST: f64 = 0.01;
 
+/// How many steps are told apart between one and its double, and how many where a step costs much more than what is factored for it.
+const COARSE: f64 = 2.0;
+const FINE: f64 = 4.0;
+
+/// Cells of a kind over their atoms from which on that is so.
+const MANY: f64 = 0.1;
+
 /// What the next attempt of a step is to be.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -31,6 +38,8 @@ pub struct Plan {
     pub energy: Option<f64>,
     /// Where the step begins, s.
     time: f64,
+    /// How many steps are told apart between one and its double.
+    rungs: f64,
     /// The step planned before the first attempt, s.
     first: f64,
     /// The step wanted now, s; a bend of a course may cut it short.
@@ -87,6 +96,7 @@ impl Plan {
             tolerance_factor: 1.0,
             energy,
             time: state.time,
+            rungs: rungs(model, state),
             first,
             wanted: first,
             next: first,
@@ -110,8 +120,10 @@ impl Plan {
             Err(Trouble::Contact { .. }) => (0.0, f64::INFINITY),
             Err(_) => (f64::INFINITY, f64::INFINITY),
         };
-        let (allowed, next) = judge(model, self.dt, with_contacts);
-        self.limited |= next < judge(model, self.dt, error).1;
+        let (allowed, next) = judge(model, self.dt, with_contacts, self.rungs);
+        self.limited |= next < judge(model, self.dt, error, self.rungs).1;
+        // What made an attempt too long is still there in the next step.
+        let next = if allowed && self.refused > 0 { next.min(self.dt) } else { next };
         (self.error, self.next) = (with_contacts, next);
         if allowed { Ok(true) } else { self.retry(model, next) }
     }
@@ -135,6 +147,11 @@ impl Plan {
         self.limited |= next < self.dt;
         self.repeated += 1;
         self.retry(model, next)
+    }
+
+    /// Whether the error of free motion alone refuses an attempt, so that it need not be made to its end.
+    pub fn refuses(&self, model: &Model, error: f64) -> bool {
+        matches!(model.integrator.size, StepSize::Adaptive { tolerance, .. } if error > tolerance)
     }
 
     /// How contacts are swept. Depths are mended in the first attempt only, since to push something out by moving it takes work.
@@ -201,9 +218,15 @@ fn first_step(model: &Model, state: &State) -> f64 {
         StepSize::Adaptive { largest, .. } if state.next_step > 0.0 => state.next_step.min(largest),
         StepSize::Adaptive { largest, .. } => {
             let relax = |kind: &Kind| kind.drag / kind.largest_stiffness.max(f64::MIN_POSITIVE);
-            on_ladder(model.kinds.iter().map(relax).fold(largest, f64::min)).min(largest)
+            on_ladder(model.kinds.iter().map(relax).fold(largest, f64::min), COARSE).min(largest)
         }
     }
+}
+
+/// How many steps are told apart between one and its double.
+fn rungs(model: &Model, state: &State) -> f64 {
+    let are_many = |(kind, now): (&Kind, &KindState)| now.cells() as f64 >= MANY * kind.atoms() as f64;
+    if model.kinds.iter().zip(&state.kinds).all(are_many) { FINE } else { COARSE }
 }
 
 /// Whether what is left of a step is too short to be made shorter still.
@@ -220,19 +243,20 @@ fn end_at_kinks(model: &Model, time: f64, dt: f64) -> f64 {
 }
 
 /// Whether the error allows the step, and the step to try next, s.
-fn judge(model: &Model, dt: f64, error: f64) -> (bool, f64) {
+fn judge(model: &Model, dt: f64, error: f64, rungs: f64) -> (bool, f64) {
     let StepSize::Adaptive { tolerance, largest } = model.integrator.size else {
         return if error.is_finite() { (true, dt) } else { (false, 0.5 * dt) };
     };
     if error.is_nan() || error.is_infinite() {
-        return (false, on_ladder(0.3 * dt));
+        return (false, on_ladder(0.3 * dt, rungs));
     }
     // The estimate is of first order, so that the error grows with the square of the step.
     let ideal = dt * (0.9 * (tolerance / error.max(1e-300)).sqrt()).clamp(0.3, 4.0);
-    (error <= tolerance, on_ladder(ideal).min(largest))
+    (error <= tolerance, on_ladder(ideal, rungs).min(largest))
 }
 
-/// The largest power of √2 seconds not above a step: few different steps mean few factorisations.
-fn on_ladder(dt: f64) -> f64 {
-    (0.5 * (2.0 * dt.log2() + 1e-9).floor()).exp2()
+/// The step to which a step is rounded down, of which there are so many between one and its double: few different steps mean few
+/// factorisations.
+fn on_ladder(dt: f64, rungs: f64) -> f64 {
+    ((rungs * dt.log2() + 1e-9).floor() / rungs).exp2()
 }

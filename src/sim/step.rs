@@ -91,6 +91,9 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     advance_behaviours(model, dt, from, to, ws);
     let error = move_freely(model, dt, from, to, ws);
     check_finite(model, end, to)?;
+    if plan.refuses(model, error) {
+        return Ok(Estimate { error, travel: 0.0 });
+    }
     hold_contacts(model, dt, plan.sweep_rules(), from, to, ws)?;
     make_exact(model, end, from, to, ws)?;
     correct_velocities(model, dt, to, ws);

@@ -12,7 +12,7 @@ use super::scene::ContactScene;
 use super::scratch::{ContactScratch, SweepRules};
 use super::sweep::{sweep_contacts, sweep_depths};
 use super::vectors::V4;
-use super::volumes::{VolumeRow, sweep_volumes};
+use super::volumes::{InModes, VolumeRow, sweep_volumes};
 use crate::Vec3;
 use crate::contact::Stride;
 use crate::sim::kind::VolumeRule;
@@ -90,7 +90,7 @@ pub(super) fn put_back(model: &Model, contact: &ContactScene, s: &ContactScratch
 
 /// What the sweeps need of a kind.
 struct Part<'a> {
-    volumes: &'a [VolumeRow],
+    volumes: (&'a [VolumeRow], &'a [InModes]),
     /// Gradients of the volumes, µm².
     gradient: &'a [[f64; 3]],
     moved: &'a mut [V4],
@@ -101,14 +101,14 @@ struct Part<'a> {
 fn for_each_part(
     model: &Model,
     contact: &ContactScene,
-    (volumes, gradient, moved, mobility): (&[VolumeRow], &[[f64; 3]], &mut [V4], &mut Mobility),
+    ((volumes, modes), gradient, moved, mobility): ((&[VolumeRow], &[InModes]), &[[f64; 3]], &mut [V4], &mut Mobility),
     mut work: impl FnMut(Part),
 ) {
     let mut next = 0;
     for (number, kind) in model.kinds.iter().enumerate() {
         let range = contact.atoms_of(number);
         let count = if matches!(kind.volume, VolumeRule::Exact(_)) { range.len() / kind.atoms() } else { 0 };
-        let volumes = &volumes[next..next + count];
+        let volumes = (&volumes[next..next + count], modes.get(next..next + count).unwrap_or_default());
         work(Part { volumes, gradient: &gradient[range.clone()], moved: &mut moved[range], mobility });
         next += count;
     }
@@ -129,9 +129,14 @@ fn sweep(model: &Model, contact: &ContactScene, dt: f64, rules: SweepRules, s: &
         for &(atom, axis) in &s.held {
             s.moved[atom as usize][axis as usize] = before[atom as usize][axis as usize];
         }
-        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved, &mut s.mobility), |part| {
-            sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut change);
-        });
+        for_each_part(
+            model,
+            contact,
+            ((&s.volumes, &s.volume_modes), &s.gradient, &mut s.moved, &mut s.mobility),
+            |part| {
+                sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut change);
+            },
+        );
         s.sweeps = number;
         // A change that is not a number is no rest either.
         if change.largest <= contact.tolerance * rules.tolerance_factor || number == contact.most_sweeps {
@@ -156,9 +161,14 @@ fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
     for _ in 0..MENDING {
         sweep_depths(&s.rows, &mut s.deep, &mut s.moved, &mut s.mobility, MENDED * contact.reach.safe_travel());
         s.law.adhesives.align(&s.start, &mut s.moved);
-        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved, &mut s.mobility), |part| {
-            sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut Change::default());
-        });
+        for_each_part(
+            model,
+            contact,
+            ((&s.volumes, &s.volume_modes), &s.gradient, &mut s.moved, &mut s.mobility),
+            |part| {
+                sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut Change::default());
+            },
+        );
     }
 }
 

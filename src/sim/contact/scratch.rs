@@ -6,7 +6,7 @@ use super::momentum::Momentum;
 use super::rows::{Pull, Row};
 use super::scene::{ContactScene, Surfaces};
 use super::vectors::V4;
-use super::volumes::VolumeRow;
+use super::volumes::{InModes, VolumeRow};
 use crate::Vec3;
 use crate::contact::{Contacts, Detector, Stride};
 use crate::sim::model::Model;
@@ -70,6 +70,8 @@ pub struct ContactScratch {
     pub(super) mobility: Mobility,
     /// Volumes to keep.
     pub(super) volumes: Vec<VolumeRow>,
+    /// What their gradients are in modes, where cells move by them.
+    pub(super) volume_modes: Vec<InModes>,
     /// Atoms and axes that are held.
     pub(super) held: Vec<(u32, u32)>,
     /// Rows that are inside, and the pushes that mend them, pN.
@@ -116,6 +118,7 @@ impl ContactScratch {
         self.rows.clear();
         self.pulls.clear();
         self.volumes.clear();
+        self.volume_modes.clear();
         self.held.clear();
         self.law.poison();
         let forces = [&mut self.forces.carried, &mut self.forces.live];
