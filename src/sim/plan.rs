@@ -17,6 +17,10 @@ const REPEATS: u32 = 10;
 /// What sweeps may leave when a step is made again, over what they might before: forces that sweeps leave unfound do work.
 const TIGHTER: f64 = 0.1;
 
+/// What atoms move over what contacts allow, below which what deepened was not moved in: a depth counts as deeper from a thousandth of an edge
+/// on, and contacts allow a twentieth of one.
+const STANDS: f64 = 1e-3;
+
 /// The shortest part of a fixed step that is made shorter still, over the whole: where that does not do, it was chosen badly.
 const SHORTEST: f64 = 0.01;
 
@@ -48,6 +52,8 @@ pub struct Plan {
     next: f64,
     /// Error of the last attempt over the mean edge, with what contacts say.
     error: f64,
+    /// The farthest that an atom moved in the last attempt, over what contacts allow.
+    travel: f64,
     /// Attempts that were refused.
     refused: u32,
     /// Attempts that were refused though their error allowed them.
@@ -101,6 +107,7 @@ impl Plan {
             wanted: first,
             next: first,
             error: 0.0,
+            travel: 0.0,
             refused: 0,
             repeated: 0,
             limited: false,
@@ -112,6 +119,7 @@ impl Plan {
     /// # Errors
     /// The trouble of an attempt that no shorter one would mend.
     pub fn allows(&mut self, model: &Model, outcome: Result<Estimate, Trouble>) -> Result<bool, Trouble> {
+        self.travel = outcome.as_ref().map_or(f64::INFINITY, |estimate| estimate.travel);
         let (error, with_contacts) = match outcome.and_then(|estimate| self.with_contacts(model, estimate)) {
             Ok(errors) => errors,
             Err(trouble) if self.refused + 1 == ATTEMPTS || !self.may_be_mended(model, &trouble) => {
@@ -140,7 +148,9 @@ impl Plan {
                 // At first without mending depths, which takes work however short a step is.
                 if self.repeated == 0 { self.dt } else { 0.5 * self.dt }
             }
-            Some(Flaw::Deepened(_)) if self.may_repeat(model) => 0.5 * self.dt,
+            // What is found deep though nothing moved, as where facets turn and edges count from now on, no shorter step keeps out: each would
+            // end just before that instant, for ever.
+            Some(Flaw::Deepened(_)) if self.may_repeat(model) && self.travel > STANDS => 0.5 * self.dt,
             Some(Flaw::Deepened(None)) => return Ok(true),
             Some(Flaw::Deepened(Some(trouble))) => return Err(trouble),
         };
@@ -259,4 +269,26 @@ fn judge(model: &Model, dt: f64, error: f64, rungs: f64) -> (bool, f64) {
 /// factorisations.
 fn on_ladder(dt: f64, rungs: f64) -> f64 {
     ((rungs * dt.log2() + 1e-9).floor() / rungs).exp2()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::integrator::{Integrator, Method, Order};
+
+    #[test]
+    fn what_is_found_deep_though_nothing_moves_makes_no_step_shorter() {
+        let size = StepSize::Adaptive { tolerance: 1e-3, largest: 0.1 };
+        let method = Method::Implicit { order: Order::Second };
+        let model = Model::of(Vec::new(), Integrator { method, size }, 10.0);
+        let mut state = State::new(&model, &[]);
+        state.next_step = 0.01;
+        let halves = |travel: f64| {
+            let mut plan = Plan::new(&model, &state, None);
+            assert_eq!(plan.allows(&model, Ok(Estimate { error: 0.0, travel })), Ok(true));
+            assert_eq!(plan.accepts(&model, Some(Flaw::Deepened(None))).map(|stands| !stands), Ok(travel > STANDS));
+            plan.dt
+        };
+        assert_eq!([0.5, 1e-2, 1e-4].map(halves), [0.005, 0.005, 0.01]);
+    }
 }

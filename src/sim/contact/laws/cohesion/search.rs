@@ -207,12 +207,16 @@ impl Seen<'_> {
                 best = Some((opening.width, Partner::Facet(atoms, feature)));
             }
         };
-        // What is surely farther than the best so far is passed over.
-        if let Some(known) = known.filter(|known| bounds[*known] < widest) {
-            look(known, &mut widest);
+        // What is surely farther than the best so far is passed over: so what is likely the best is looked at first.
+        let likely = numbers.clone().min_by(|one, other| bounds[*one].total_cmp(&bounds[*other]));
+        let likely = likely.filter(|likely| Some(*likely) != known);
+        for number in [known, likely].into_iter().flatten() {
+            if bounds[number] < widest {
+                look(number, &mut widest);
+            }
         }
         for number in numbers {
-            if bounds[number] < widest && Some(number) != known {
+            if bounds[number] < widest && Some(number) != known && Some(number) != likely {
                 look(number, &mut widest);
             }
         }
