@@ -101,9 +101,9 @@ fn meetings(scene: &Scene, before: &[Vec3], after: &[Vec3]) -> usize {
 fn atoms_near_planes_go_no_farther_than_is_safe_and_those_far_from_them_no_farther_than_they_are() {
     let ball = crate::geometry::icosphere(1.0, 1);
     let plane = |height: f64| Plane { point: Vec3::z() * height, normal: Vec3::z() };
-    let share = |height: f64, way: Vec3| {
+    let share = |height: f64, displacement: Vec3| {
         let stage = stage(&[(&ball, Sides::Outer, ball.positions.clone())], vec![plane(height)], REACH);
-        let after: Vec<Vec3> = stage.positions.iter().map(|x| x + way).collect();
+        let after: Vec<Vec3> = stage.positions.iter().map(|x| x + displacement).collect();
         measure(&mut Detector::default(), &stage.scene, &stage.positions, &after)
     };
     let lowest = ball.positions.iter().map(|x| x.z).fold(f64::INFINITY, f64::min);

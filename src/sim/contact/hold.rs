@@ -88,9 +88,12 @@ pub(super) fn put_back(model: &Model, contact: &ContactScene, s: &ContactScratch
     }
 }
 
+/// Volumes that are kept, and what their gradients are in modes, where cells move by them.
+type Volumes<'a> = (&'a [VolumeRow], &'a [InModes]);
+
 /// What the sweeps need of a kind.
 struct Part<'a> {
-    volumes: (&'a [VolumeRow], &'a [InModes]),
+    volumes: Volumes<'a>,
     /// Gradients of the volumes, µm².
     gradient: &'a [[f64; 3]],
     moved: &'a mut [V4],
@@ -101,7 +104,7 @@ struct Part<'a> {
 fn for_each_part(
     model: &Model,
     contact: &ContactScene,
-    ((volumes, modes), gradient, moved, mobility): ((&[VolumeRow], &[InModes]), &[[f64; 3]], &mut [V4], &mut Mobility),
+    ((volumes, modes), gradient, moved, mobility): (Volumes, &[[f64; 3]], &mut [V4], &mut Mobility),
     mut work: impl FnMut(Part),
 ) {
     let mut next = 0;
