@@ -22,6 +22,15 @@ const SPARE: f64 = 3.0;
 /// Bodies that a thread takes at once, at least.
 const BODIES_PER_JOB: usize = 64;
 
+/// How far bodies went in a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Travel {
+    /// Beside those that they may meet, over what is safe, eq. (contacts.6); 0 where it is below a fifth.
+    pub share: f64,
+    /// The farthest that an atom went, over the safe travel.
+    pub farthest: f64,
+}
+
 /// How a body moves in a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Stride {
@@ -108,9 +117,9 @@ fn share(scene: &Scene, strides: &[Stride], near: &mut Near) -> f64 {
 }
 
 impl Detector {
-    /// How far bodies go in a step beside those that they may meet, over what is safe, eq. (contacts.6), where they move by these strides,
-    /// one a body; 0 where it is below a fifth. It depends on them alone, not on what was detected before.
-    pub fn share_of_safe(&mut self, scene: &Scene, strides: &[Stride]) -> f64 {
-        share(scene, strides, self.near())
+    /// How far bodies go in a step where they move by these strides, one a body. It depends on them alone, not on what was detected before.
+    pub fn travel(&mut self, scene: &Scene, strides: &[Stride]) -> Travel {
+        let farthest = strides.iter().map(|stride| stride.motion.farthest).fold(0.0, f64::max);
+        Travel { share: share(scene, strides, self.near()), farthest: farthest / scene.safe_travel() }
     }
 }

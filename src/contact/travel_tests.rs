@@ -13,7 +13,7 @@ fn measure(detector: &mut Detector, scene: &Scene, before: &[Vec3], after: &[Vec
             Stride::of(scene, before.len(), |atom| before[atom], |atom| after[atom])
         })
         .collect();
-    detector.share_of_safe(scene, &strides)
+    detector.travel(scene, &strides).share
 }
 
 /// Every body goes somewhere, and its atoms a little beside it.

@@ -6,6 +6,7 @@ use super::kind::Kind;
 use super::model::Model;
 use super::state::{KindState, State};
 use super::trouble::Trouble;
+use crate::contact::Travel;
 use crate::mechanics::integrator::StepSize;
 
 /// Attempts before a step is given up; each is at least 0.3 times the one before, so that 60 shrink it by 30 decades.
@@ -52,8 +53,8 @@ pub struct Plan {
     next: f64,
     /// Error of the last attempt over the mean edge, with what contacts say.
     error: f64,
-    /// The farthest that an atom moved in the last attempt, over what contacts allow.
-    travel: f64,
+    /// The farthest that an atom moved in the last attempt, over the safe travel.
+    farthest: f64,
     /// Attempts that were refused.
     refused: u32,
     /// Attempts that were refused though their error allowed them.
@@ -67,8 +68,8 @@ pub struct Plan {
 pub struct Estimate {
     /// Error over the mean edge.
     pub error: f64,
-    /// The farthest that an atom moved, over what contacts allow.
-    pub travel: f64,
+    /// How far bodies went.
+    pub travel: Travel,
 }
 
 /// What may be wrong where an attempt ends, which its error does not tell.
@@ -107,7 +108,7 @@ impl Plan {
             wanted: first,
             next: first,
             error: 0.0,
-            travel: 0.0,
+            farthest: 0.0,
             refused: 0,
             repeated: 0,
             limited: false,
@@ -119,7 +120,7 @@ impl Plan {
     /// # Errors
     /// The trouble of an attempt that no shorter one would mend.
     pub fn allows(&mut self, model: &Model, outcome: Result<Estimate, Trouble>) -> Result<bool, Trouble> {
-        self.travel = outcome.as_ref().map_or(f64::INFINITY, |estimate| estimate.travel);
+        self.farthest = outcome.as_ref().map_or(f64::INFINITY, |estimate| estimate.travel.farthest);
         let (error, with_contacts) = match outcome.and_then(|estimate| self.with_contacts(model, estimate)) {
             Ok(errors) => errors,
             Err(trouble) if self.refused + 1 == ATTEMPTS || !self.may_be_mended(model, &trouble) => {
@@ -150,7 +151,7 @@ impl Plan {
             }
             // What is found deep though nothing moved, as where facets turn and edges count from now on, no shorter step keeps out: each would
             // end just before that instant, for ever.
-            Some(Flaw::Deepened(_)) if self.may_repeat(model) && self.travel > STANDS => 0.5 * self.dt,
+            Some(Flaw::Deepened(_)) if self.may_repeat(model) && self.farthest > STANDS => 0.5 * self.dt,
             Some(Flaw::Deepened(None)) => return Ok(true),
             Some(Flaw::Deepened(Some(trouble))) => return Err(trouble),
         };
@@ -202,10 +203,14 @@ impl Plan {
     }
 
     /// The error, and the same with what contacts say: a step in which an atom moves too far counts as one over the tolerance.
-    fn with_contacts(&self, model: &Model, Estimate { error, travel }: Estimate) -> Result<(f64, f64), Trouble> {
+    fn with_contacts(
+        &self,
+        model: &Model,
+        Estimate { error, travel: Travel { share, .. } }: Estimate,
+    ) -> Result<(f64, f64), Trouble> {
         match model.integrator.size {
-            StepSize::Adaptive { tolerance, .. } => Ok((error, error.max(tolerance * travel * travel))),
-            StepSize::Fixed(_) if travel > 1.0 => Err(Trouble::TooFast { time: self.time + self.dt, share: travel }),
+            StepSize::Adaptive { tolerance, .. } => Ok((error, error.max(tolerance * share * share))),
+            StepSize::Fixed(_) if share > 1.0 => Err(Trouble::TooFast { time: self.time + self.dt, share }),
             StepSize::Fixed(_) => Ok((error, error)),
         }
     }
@@ -283,10 +288,13 @@ mod tests {
         let model = Model::of(Vec::new(), Integrator { method, size }, 10.0);
         let mut state = State::new(&model, &[]);
         state.next_step = 0.01;
-        let halves = |travel: f64| {
+        let halves = |farthest: f64| {
             let mut plan = Plan::new(&model, &state, None);
-            assert_eq!(plan.allows(&model, Ok(Estimate { error: 0.0, travel })), Ok(true));
-            assert_eq!(plan.accepts(&model, Some(Flaw::Deepened(None))).map(|stands| !stands), Ok(travel > STANDS));
+            assert_eq!(
+                plan.allows(&model, Ok(Estimate { error: 0.0, travel: Travel { share: 0.0, farthest } })),
+                Ok(true)
+            );
+            assert_eq!(plan.accepts(&model, Some(Flaw::Deepened(None))).map(|stands| !stands), Ok(farthest > STANDS));
             plan.dt
         };
         assert_eq!([0.5, 1e-2, 1e-4].map(halves), [0.005, 0.005, 0.01]);

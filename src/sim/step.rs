@@ -22,6 +22,7 @@ use super::state::State;
 use super::trouble::Trouble;
 use super::velocity::measure_velocities;
 use super::workspace::Workspace;
+use crate::contact::Travel;
 
 /// Moves the state by one step.
 ///
@@ -92,7 +93,7 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     let error = move_freely(model, dt, from, to, ws);
     check_finite(model, end, to)?;
     if plan.refuses(model, error) {
-        return Ok(Estimate { error, travel: 0.0 });
+        return Ok(Estimate { error, travel: Travel::default() });
     }
     hold_contacts(model, dt, plan.sweep_rules(), from, to, ws)?;
     make_exact(model, end, from, to, ws)?;

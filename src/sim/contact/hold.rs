@@ -14,7 +14,7 @@ use super::sweep::{sweep_contacts, sweep_depths};
 use super::vectors::V4;
 use super::volumes::{InModes, VolumeRow, sweep_volumes};
 use crate::Vec3;
-use crate::contact::Stride;
+use crate::contact::{Stride, Travel};
 use crate::sim::kind::VolumeRule;
 use crate::sim::model::Model;
 use crate::sim::state::{KindState, State, vector};
@@ -176,9 +176,9 @@ fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
 }
 
 /// How far bodies moved in the step beside those that they may meet, over what contacts allow, eq. (contacts.6); 0 without contacts.
-pub fn travel(model: &Model, from: &State, to: &State, ws: &mut Workspace) -> f64 {
+pub fn travel(model: &Model, from: &State, to: &State, ws: &mut Workspace) -> Travel {
     let s = &mut ws.contact;
-    let Some(contact) = &s.scene(model, &from.kinds) else { return 0.0 };
+    let Some(contact) = &s.scene(model, &from.kinds) else { return Travel::default() };
     let scene = &contact.scene;
     s.strides.resize(scene.bodies.len(), Stride::NONE);
     let mut rest = &mut s.strides[..];
@@ -192,5 +192,5 @@ pub fn travel(model: &Model, from: &State, to: &State, ws: &mut Workspace) -> f6
             *stride = Stride::of(scene, kind.atoms(), start, end);
         });
     }
-    s.detector.share_of_safe(scene, &s.strides)
+    s.detector.travel(scene, &s.strides)
 }
