@@ -131,8 +131,8 @@ impl Plan {
         };
         let (allowed, next) = judge(model, self.dt, with_contacts, self.rungs);
         self.limited |= next < judge(model, self.dt, error, self.rungs).1;
-        // What made an attempt too long is still there in the next step.
-        let next = if allowed && self.refused > 0 { next.min(self.dt) } else { next };
+        // What made an attempt too long is still there in the next step; one that was made again more exactly was not too long.
+        let next = if allowed && self.refused > self.repeated { next.min(self.dt) } else { next };
         (self.error, self.next) = (with_contacts, next);
         if allowed { Ok(true) } else { self.retry(model, next) }
     }
