@@ -119,7 +119,10 @@ fn soft_walkers(kind: &Kind) -> Option<String> {
     ))
 }
 
-/// That cells of a kind gain more where they stick than their shape costs: they spread over each other.
+/// The work of separation over what a shape bears from which on packed cells fold by more than 100°, see the table at eq. (shape.7).
+const FOLDS: f64 = 0.2;
+
+/// That cells of a kind gain so much where they stick that they fold, or more than their shape costs: then they spread over each other.
 fn spreading_shape(model: &Model, number: usize) -> Option<String> {
     let kind = &model.kinds[number];
     let table = model.contact.as_ref()?.law.cohesion()?;
@@ -131,14 +134,15 @@ fn spreading_shape(model: &Model, number: usize) -> Option<String> {
     }
     // Each of the two surfaces that stick has half of the work.
     let bears = 2.0 * energy_that_shape_bears(&kind.forces, &kind.rest);
-    (work > bears).then(|| {
+    (work > FOLDS * bears).then(|| {
+        let then = if work > bears { "they spread over each other until others hold them, and fold" } else { "they may fold where they are packed" };
         format!(
-            "cells of type `{}` take {} to part an area of contact, and their shape bears {}: where they stick they spread over each other until \
-             others hold them, and soft ones fold. Make them at least {:.1} times as stiff, or give them less `energy`, a shorter `range` or less `strength`",
+            "cells of type `{}` take {} to part an area of contact, and their shape bears {}: where they stick {then}. Make them {:.1} times as stiff, \
+             or give them less `energy`, a shorter `range` or less `strength`",
             kind.name,
             pretty(work, Dimension::LINE_STIFFNESS),
             pretty(bears, Dimension::LINE_STIFFNESS),
-            work / bears
+            work / (FOLDS * bears)
         )
     })
 }
