@@ -1,6 +1,6 @@
 //! Cholesky's factor of a matrix of 3 × 3 blocks, in the pattern's order, of several cells side by side.
 
-use super::matrix::{Block, Blocks, Seen};
+use super::matrix::{Block, Blocks};
 use super::pattern::Pattern;
 use crate::mechanics::lanes::{Real, V3, VectorsMut};
 
@@ -33,25 +33,25 @@ pub fn factor<T: Real>(pattern: &Pattern, blocks: &mut Blocks<T>) {
     }
 }
 
-/// Solves A Y = F in place with the factor.
+/// Solves A Y = F in place with the factor, whose blocks `factor` tells.
 #[inline(always)]
-pub fn solve<T: Real>(pattern: &Pattern, factor: &Seen<T>, values: &mut VectorsMut<T>) {
+pub fn solve<T: Real>(pattern: &Pattern, factor: impl Fn(usize) -> Block<T>, values: &mut VectorsMut<T>) {
     for column in pattern.columns() {
-        let y = forward(&factor.get(column.atom), values.get(column.atom));
+        let y = forward(&factor(column.atom), values.get(column.atom));
         values.set(column.atom, y);
         for (&row, number) in column.rows.iter().zip(column.first..) {
-            let [a, b, c] = factor.get(number);
+            let [a, b, c] = factor(number);
             values.sub(row as usize, V3 { x: a.dot(y), y: b.dot(y), z: c.dot(y) });
         }
     }
     for column in pattern.columns().rev() {
         let mut y = values.get(column.atom);
         for (&row, number) in column.rows.iter().zip(column.first..) {
-            let [a, b, c] = factor.get(number);
+            let [a, b, c] = factor(number);
             let v = values.get(row as usize);
             y -= a.times(v.x) + b.times(v.y) + c.times(v.z);
         }
-        values.set(column.atom, backward(&factor.get(column.atom), y));
+        values.set(column.atom, backward(&factor(column.atom), y));
     }
 }
 

@@ -176,6 +176,12 @@ fn read<T: Real>(token: T::Token, values: &[T::Raw], stride: usize, part: usize,
     }
 }
 
+/// The block of one cell in all lanes.
+#[inline(always)]
+pub fn spread<T: Real>(token: T::Token, block: Block<f64>) -> Block<T> {
+    block.map(|row| V3::constant(token, [row.x, row.y, row.z]))
+}
+
 /// A block by its columns.
 #[inline(always)]
 pub fn transposed<T: Real>([a, b, c]: Block<T>) -> Block<T> {

@@ -74,10 +74,36 @@ impl Tangent {
         dispatch(lanes, Solve { pattern: &self.pattern, factor, values });
     }
 
+    /// Solves in place for [`LANES`] right sides of one cell with its factor.
+    pub fn solve_columns(&self, factor: &[f64], values: &mut [f64]) {
+        dispatch(LANES, SolveColumns { pattern: &self.pattern, factor, values });
+    }
+
     /// Solves in place for the cell of one lane of a block with the factor of all.
     pub fn solve_lane(&self, (lanes, lane): (usize, usize), factor: &[f64], values: &mut [f64]) {
         // Blocks of one lane are every so many-th number of all, as those of a part of a register's cells are.
         solve_part::<f64>(&self.pattern, (), factor, (lanes, lane), values, (1, 0));
+    }
+}
+
+/// Several right sides of one cell side by side.
+struct SolveColumns<'a> {
+    pattern: &'a Pattern,
+    /// The factor of the cell.
+    factor: &'a [f64],
+    values: &'a mut [f64],
+}
+
+impl BlockWork for SolveColumns<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<T: Real>(self, token: T::Token, stride: usize) {
+        let factor = matrix::Seen::<f64>::new((), self.factor, 1, 0);
+        let wide = |block: usize| matrix::spread::<T>(token, factor.get(block));
+        let values = T::view_mut(token, self.values);
+        for part in 0..stride {
+            factor::solve(self.pattern, wide, &mut VectorsMut::<T>::new(token, &mut *values, stride, part));
+        }
     }
 }
 
@@ -92,7 +118,7 @@ fn solve_part<T: Real>(
     (own_stride, own_part): (usize, usize),
 ) {
     let factor = matrix::Seen::new(token, factor, stride, part);
-    factor::solve(pattern, &factor, &mut VectorsMut::<T>::new(token, values, own_stride, own_part));
+    factor::solve(pattern, |block| factor.get(block), &mut VectorsMut::<T>::new(token, values, own_stride, own_part));
 }
 
 struct Make<'a> {

@@ -24,6 +24,8 @@ pub struct VolumeRow {
     pub mobility: f64,
     /// Squared displacement of all its atoms over squared pressure, µm⁶/pN².
     pub swelling: f64,
+    /// Where the column of its cell begins, if that moves by columns.
+    pub column: Option<usize>,
     /// Its cell.
     pub body: usize,
     /// What its gradient is in the modes of the cell, µm².
@@ -41,14 +43,15 @@ pub fn sweep_volumes(
     mobility: &mut Mobility,
     change: &mut Change,
 ) {
-    let Mobility { has_modes, kinds, bodies, moved: motions, changes, .. } = mobility;
+    let Mobility { has_modes, kinds, bodies, moved: motions, changes, columns, .. } = mobility;
+    let columns = &columns.values[..];
     let (moved, motions) = (Together::new(moved), Together::new(motions));
     let sweep = |volumes: &[VolumeRow], change: &mut Change| {
         let (moved, motions) = (&moved, &motions);
         if *has_modes {
-            Arch::new().dispatch(SweepVolumes::<true> { volumes, gradient, kinds, bodies, moved, motions, change });
+            Arch::new().dispatch(SweepVolumes::<true> { volumes, gradient, columns, kinds, bodies, moved, motions, change });
         } else {
-            Arch::new().dispatch(SweepVolumes::<false> { volumes, gradient, kinds, bodies, moved, motions, change });
+            Arch::new().dispatch(SweepVolumes::<false> { volumes, gradient, columns, kinds, bodies, moved, motions, change });
         }
     };
     if volumes.len() <= VOLUMES_PER_JOB {
@@ -66,6 +69,7 @@ pub fn sweep_volumes(
 struct SweepVolumes<'a, const BY_MODES: bool> {
     volumes: &'a [VolumeRow],
     gradient: &'a [[f64; 3]],
+    columns: &'a [V4],
     kinds: &'a [(u32, OfModes)],
     bodies: &'a [Body],
     moved: &'a Together<'a, V4>,
@@ -78,7 +82,7 @@ impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { volumes, gradient, kinds, bodies, moved, motions, change } = self;
+        let Self { volumes, gradient, columns, kinds, bodies, moved, motions, change } = self;
         for volume in volumes {
             let gradient = &gradient[volume.first..volume.end];
             // SAFETY: each volume has atoms of its own.
@@ -99,6 +103,10 @@ impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
                 missing += (by_modes[0] + by_modes[1]) + by_modes[2];
             }
             let pressure = -missing * volume.inverse;
+            if let Some(first) = volume.column {
+                let swell = &columns[first..];
+                moved.iter_mut().zip(swell).for_each(|(d, s)| *d = map(|i| d[i] + pressure * s[i]));
+            }
             let back = pressure * volume.mobility;
             for (d, g) in moved.iter_mut().zip(gradient) {
                 let g = [g[0], g[1], g[2], 0.0];
