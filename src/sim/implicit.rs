@@ -102,7 +102,11 @@ fn advance_stages(
             .zip(now.rest_volumes.par_chunks_exact(lanes).zip(now.positions.par_chunks_exact(length)))
             .zip(volume.par_chunks_exact_mut(lanes).zip(target.par_chunks_exact_mut(lanes)))
             .zip(energy.par_chunks_exact_mut(lanes).zip(pressure.par_chunks_exact_mut(lanes)))
-            .zip(each_or_none(increments, length, blocks).zip(each_or_none(own_factors, of_block.max(1), blocks)).zip(touch))
+            .zip(
+                each_or_none(increments, length, blocks)
+                    .zip(each_or_none(own_factors, of_block.max(1), blocks))
+                    .zip(touch),
+            )
             .enumerate()
             .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), ((kept, own), touch)))| {
                 let mut block = Block { number, x, rest, start, volume, target, energy, pressure, touch };

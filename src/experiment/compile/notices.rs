@@ -32,7 +32,8 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
     if model.contact.is_some() {
         notices.extend(model.kinds.iter().filter_map(soft_walkers));
         let is_implicit = matches!(model.integrator.method, Method::Implicit { .. });
-        notices.extend(model.kinds.iter().filter(|kind| is_implicit && kind.has_soft_shear()).map(creeping_shear));
+        let creeps = |kind: &&Kind| is_implicit && kind.tangent.is_none() && kind.has_soft_shear();
+        notices.extend(model.kinds.iter().filter(creeps).map(creeping_shear));
     } else if may_meet(model, centres) {
         let words = "nothing keeps cells apart: without [contact] they pass through each other; \
                      add that table, which may be empty, if they are to touch";
@@ -117,11 +118,12 @@ fn soft_walkers(kind: &Kind) -> Option<String> {
     ))
 }
 
-/// That cells of a kind creep: where they may touch each other nothing tells the implicit step how little they resist shear.
+/// That cells of a kind creep: where contacts move each atom by its drag alone nothing tells the implicit step how little they resist shear.
 fn creeping_shear(kind: &Kind) -> String {
     format!(
-        "the membrane of type `{}` resists dilation so much more than shear that in scenes with [contact] its cells come to rest too slowly at \
-         the usual tolerance, and nothing in the run tells: compare with `tolerance = 1e-5` in run.integrator, or give it a lower `area`",
+        "the membrane of type `{}` resists dilation so much more than shear that under this `model` of [contact] its cells come to rest too slowly at \
+         the usual tolerance, and nothing in the run tells: take the model \"cohesion\", compare with `tolerance = 1e-5` in run.integrator, or \
+         give it a lower `area`",
         kind.name
     )
 }

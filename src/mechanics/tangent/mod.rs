@@ -98,11 +98,10 @@ impl BlockWork for SolveColumns<'_> {
     type Output = ();
     #[inline(always)]
     fn run<T: Real>(self, token: T::Token, stride: usize) {
-        let factor = matrix::Seen::<f64>::new((), self.factor, 1, 0);
-        let wide = |block: usize| matrix::spread::<T>(token, factor.get(block));
+        let factor = matrix::Spread::<T>::new(token, self.factor);
         let values = T::view_mut(token, self.values);
         for part in 0..stride {
-            factor::solve(self.pattern, wide, &mut VectorsMut::<T>::new(token, &mut *values, stride, part));
+            factor::solve(self.pattern, &factor, &mut VectorsMut::<T>::new(token, &mut *values, stride, part));
         }
     }
 }
@@ -118,7 +117,7 @@ fn solve_part<T: Real>(
     (own_stride, own_part): (usize, usize),
 ) {
     let factor = matrix::Seen::new(token, factor, stride, part);
-    factor::solve(pattern, |block| factor.get(block), &mut VectorsMut::<T>::new(token, values, own_stride, own_part));
+    factor::solve(pattern, &factor, &mut VectorsMut::<T>::new(token, values, own_stride, own_part));
 }
 
 struct Make<'a> {
@@ -142,7 +141,12 @@ impl BlockWork for Make<'_> {
             let x = Vectors::<T>::new(token, x, stride, part);
             let mut blocks = Blocks::<T>::new(token, pattern, &mut *values, stride, part);
             blocks.clear();
-            forces.iter().filter(|force| force.is_elastic()).for_each(|force| force.add_tangent(&x, &mut blocks));
+            // What is done in a closure is not compiled for wide registers.
+            for force in forces {
+                if force.is_elastic() {
+                    force.add_tangent(&x, &mut blocks);
+                }
+            }
             for &(i, j, value) in &constant[0] {
                 blocks.add_isotropic(i, j, T::constant(token, value));
             }

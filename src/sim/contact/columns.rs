@@ -83,7 +83,13 @@ fn corners(row: &Row, side: usize, is_alone: bool) -> Range<usize> {
     match (row.pairing, side) {
         (Pairing::Rigid, _) | (Pairing::AtomOnPlane, 1) => 0..0,
         (Pairing::AtomOnPlane, _) => 0..1,
-        _ if is_alone => if side == 0 { 0..4 } else { 0..0 },
+        _ if is_alone => {
+            if side == 0 {
+                0..4
+            } else {
+                0..0
+            }
+        }
         (Pairing::AtomOnFacet, 0) => 0..1,
         (Pairing::AtomOnFacet, _) => 1..4,
         (Pairing::Edges, 0) => 0..2,
@@ -115,7 +121,13 @@ impl Columns {
     }
 
     /// Counts the columns of all rows, cell by cell: a column for the volume where it is kept, and those of the sides of rows.
-    pub fn count(&mut self, rows: &[Row], bodies_of: impl Fn(&Row) -> [u32; 2], bodies: usize, of: impl Fn(u32) -> Counted) {
+    pub fn count(
+        &mut self,
+        rows: &[Row],
+        bodies_of: impl Fn(&Row) -> [u32; 2],
+        bodies: usize,
+        of: impl Fn(u32) -> Counted,
+    ) {
         let Self { of_kind, spans, sides, first_side, first_value, values } = self;
         first_side.clear();
         first_side.resize(bodies + 2, 0);

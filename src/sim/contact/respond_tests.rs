@@ -71,9 +71,8 @@ fn stepped(model: &Model, state: &State, order: Order, forces: &[Vec3], ws: &mut
     advance_implicitly(model, DT, order, state, &mut next, ws);
     let (kind, now, then) = (&model.kinds[0], &state.kinds[0], &next.kinds[0]);
     let atoms = (0..now.cells()).flat_map(|cell| (0..kind.atoms()).map(move |atom| (cell, atom)));
-    let moved = atoms.map(|(cell, atom)| {
-        vector(kind, &then.positions, cell, atom) - vector(kind, &now.positions, cell, atom)
-    });
+    let moved =
+        atoms.map(|(cell, atom)| vector(kind, &then.positions, cell, atom) - vector(kind, &now.positions, cell, atom));
     (moved.collect(), next)
 }
 

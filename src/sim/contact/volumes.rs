@@ -49,9 +49,27 @@ pub fn sweep_volumes(
     let sweep = |volumes: &[VolumeRow], change: &mut Change| {
         let (moved, motions) = (&moved, &motions);
         if *has_modes {
-            Arch::new().dispatch(SweepVolumes::<true> { volumes, gradient, columns, kinds, bodies, moved, motions, change });
+            Arch::new().dispatch(SweepVolumes::<true> {
+                volumes,
+                gradient,
+                columns,
+                kinds,
+                bodies,
+                moved,
+                motions,
+                change,
+            });
         } else {
-            Arch::new().dispatch(SweepVolumes::<false> { volumes, gradient, columns, kinds, bodies, moved, motions, change });
+            Arch::new().dispatch(SweepVolumes::<false> {
+                volumes,
+                gradient,
+                columns,
+                kinds,
+                bodies,
+                moved,
+                motions,
+                change,
+            });
         }
     };
     if volumes.len() <= VOLUMES_PER_JOB {
