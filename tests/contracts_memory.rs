@@ -126,7 +126,7 @@ fn allocations_of_everything() -> usize {
     let (model, start) = everything(Some("0.05 s"), "1000 h");
     pool.install(|| {
         // Until the cells lie where they stay, and lists of contacts are as long as they become.
-        let (mut state, mut ws) = after(&model, start, 100);
+        let (mut state, mut ws) = after(&model, start, 300);
         let pulses = |state: &State| -> f64 { (0..3).map(|cell| state.chemistry.populations[0].state(cell, 3)).sum() };
         let contacts =
             |state: &State| [state.contact.atoms.len(), state.contact.edges.len(), state.contact.planes.len()];

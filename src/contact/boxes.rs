@@ -34,16 +34,52 @@ impl Bounds {
         for point in &points[1..] {
             (low, high) = (low.inf(point), high.sup(point));
         }
-        Self {
-            low: [down(low.x - reach), down(low.y - reach), down(low.z - reach)],
-            high: [up(high.x + reach), up(high.y + reach), up(high.z + reach)],
-        }
+        let reach = Vec3::repeat(reach);
+        Self::between(low - reach, high + reach)
+    }
+
+    /// The box between two corners.
+    pub fn between(low: Vec3, high: Vec3) -> Self {
+        Self { low: [down(low.x), down(low.y), down(low.z)], high: [up(high.x), up(high.y), up(high.z)] }
+    }
+
+    /// How far two boxes are apart, at least, µm; 0 where they meet.
+    pub fn apart(&self, other: &Self) -> f64 {
+        let along = |axis: usize| {
+            let between = (self.low[axis] - other.high[axis]).max(other.low[axis] - self.high[axis]);
+            // What a difference of numbers of four bytes rounds.
+            f64::from(between.max(0.0) * (1.0 - ROUNDING))
+        };
+        (0..3).map(|axis| along(axis).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Whether the whole of a box is in it.
+    pub fn holds(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
     }
 
     /// Whether two boxes share a point.
     pub fn meets(&self, other: &Self) -> bool {
         let meets = |axis: usize| (self.low[axis] <= other.high[axis]) & (other.low[axis] <= self.high[axis]);
         meets(0) & meets(1) & meets(2)
+    }
+
+    /// What two boxes share that meet.
+    pub fn shared_with(&self, other: &Self) -> Self {
+        let axis = [0, 1, 2];
+        Self {
+            low: axis.map(|axis| self.low[axis].max(other.low[axis])),
+            high: axis.map(|axis| self.high[axis].min(other.high[axis])),
+        }
+    }
+
+    /// Whether all points are on one side of the box, so that nothing between them is in it.
+    #[inline]
+    pub fn is_beside(&self, points: &[Vec3]) -> bool {
+        (0..3).any(|axis| {
+            let (low, high) = (f64::from(self.low[axis]), f64::from(self.high[axis]));
+            points.iter().all(|point| point[axis] < low) || points.iter().all(|point| point[axis] > high)
+        })
     }
 
     /// The box grown by `reach` µm.

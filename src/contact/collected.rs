@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::boxes::{Bounds, Pack, Steps};
 use super::lists::{Boxes, Lists};
 use super::motion::{Motion, Then, larger};
+use super::near::Near;
 use super::neighbours::Neighbours;
 use super::renew::{Past, Spare};
 use super::scene::Scene;
@@ -18,9 +19,8 @@ const FAR: f64 = 0.3;
 /// Where more than one of so many bodies is that far, all pairs are collected anew: with its neighbours a body has twice its share of pairs.
 const FEW: usize = 4;
 
-/// How much farther than a pair may be collected two bodies are for which it is not looked whether they have moved beside each other, over the
-/// margin.
-const NEAR: f64 = 4.0;
+/// How much farther than is needed bodies are listed as near each other, over the margin: the list lasts for some looks.
+const SPARE: f64 = 2.0;
 
 /// Bodies whose motion one job measures: it takes less than a microsecond each.
 const BODIES_PER_JOB: usize = 16;
@@ -35,10 +35,8 @@ pub(super) struct Collected {
     pub margin: f64,
     /// Where the atoms of each body were when its pairs were collected.
     at: Then,
-    /// Bodies that are near each other, and how they had moved when these were found; empty before.
-    near: Neighbours,
-    near_since: Vec<Motion>,
-    near_bounds: Vec<Bounds>,
+    /// Bodies that are near each other.
+    pub near: Near,
     /// Boxes of the bodies of each batch.
     measured: Vec<Vec<Bounds>>,
     /// Who might touch whom before bodies moved far.
@@ -90,33 +88,19 @@ impl Collected {
     /// Whether a pair may be missing that touches by now: whether two bodies that are near each other have moved beside each other by more
     /// than the margin. However far they have moved together, their pairs go on.
     pub fn are_stale(&mut self, scene: &Scene, positions: &[Vec3], moved: &[Motion]) -> bool {
-        self.find_near(scene, positions, moved);
+        let half = 0.5 * scene.reach.range();
+        let bounds = |body: u32, more: f64| match scene.of_body(body, positions) {
+            [] => Bounds::EMPTY,
+            atoms => Bounds::around(atoms, half + more),
+        };
+        let spare = SPARE * self.margin;
+        self.near.list(moved.len(), |body| bounds(body, 0.0), |body| bounds(body, spare));
         let (near, margin) = (&self.near, self.margin);
         let is_stale = |body: u32| {
             let others = near.of(body).iter().filter(|other| **other >= body);
             others.into_iter().any(|other| moved[body as usize].beside(&moved[*other as usize]) > margin)
         };
         (0..scene.bodies.len() as u32).into_par_iter().with_min_len(BODIES_PER_JOB).any(is_stale)
-    }
-
-    /// Finds the bodies that are near each other, where those found last may have come to be others.
-    fn find_near(&mut self, scene: &Scene, positions: &[Vec3], moved: &[Motion]) {
-        let most = NEAR * self.margin;
-        let stays =
-            |(now, then): (&Motion, &Motion)| (now.mean - then.mean).norm() + now.beside + then.beside <= 0.5 * most;
-        if self.near_since.len() == moved.len() && moved.iter().zip(&self.near_since).all(stays) {
-            return;
-        }
-        let half = 0.5 * (scene.reach.range() + most);
-        let bodies = (0..scene.bodies.len() as u32).into_par_iter().with_min_len(BODIES_PER_JOB);
-        let bounds = bodies.map(|body| match scene.of_body(body, positions) {
-            [] => Bounds::EMPTY,
-            atoms => Bounds::around(atoms, half),
-        });
-        bounds.collect_into_vec(&mut self.near_bounds);
-        self.near.find(&self.near_bounds);
-        self.near_since.clear();
-        self.near_since.extend_from_slice(moved);
     }
 
     /// How many bodies have moved far, if they are few.
@@ -139,7 +123,6 @@ impl Collected {
             packs.resize(count, Pack::EMPTY);
             measured.extend(scene.bodies_of(batch).map(|body| measure(scene, body, positions, packs)));
         });
-        self.near_since.clear();
         self.find_neighbours(scene);
         let Self { boxes, margin, lists, .. } = self;
         let lists = lists.par_iter_mut().enumerate();
@@ -157,7 +140,6 @@ impl Collected {
             let bodies = scene.bodies_of(batch).zip(measured).filter(|(body, _)| far[*body as usize]);
             bodies.for_each(|(body, measured)| *measured = measure(scene, body, positions, packs));
         });
-        self.near_since.clear();
         std::mem::swap(&mut self.before, &mut self.boxes.neighbours);
         self.find_neighbours(scene);
         for (body, motion) in (0..).zip(moved).filter(|(body, _)| self.far[*body as usize]) {
@@ -199,10 +181,7 @@ impl Collected {
         let bounds =
             size_of::<Bounds>() * self.boxes.bounds.capacity() + size_of::<Steps>() * self.boxes.steps.capacity();
         let neighbours = self.boxes.neighbours.bytes() + self.before.bytes() + self.far.capacity();
-        let near = self.near.bytes()
-            + size_of::<Motion>() * self.near_since.capacity()
-            + size_of::<Bounds>() * self.near_bounds.capacity();
-        packs + lists + measured + bounds + neighbours + near + self.at.bytes()
+        packs + lists + measured + bounds + neighbours + self.near.bytes() + self.at.bytes()
     }
 }
 

@@ -47,15 +47,18 @@ fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bou
     if !other.closed || other.sides != Sides::Outer {
         return most;
     }
-    let [around_inner, around_outer] = [inner, outer].map(|body| bounds[body as usize]);
+    // What passes through the other does so where their boxes overlap: for packed cells that is a thin slab.
+    let around_outer = bounds[outer as usize];
+    let shared = around_outer.shared_with(&bounds[inner as usize]);
     let corners = |facet: &[u32; 3]| facet.map(|atom| there[atom as usize]);
-    let near: Vec<[Vec3; 3]> =
-        other.facets.iter().map(corners).filter(|facet| Bounds::around(facet, 0.0).meets(&around_inner)).collect();
+    let near = other.facets.iter().map(corners).filter(|facet| !shared.is_beside(facet));
+    let near: Vec<(Bounds, [Vec3; 3])> = near.map(|facet| (Bounds::around(&facet, 0.0), facet)).collect();
     let distance = |position: Vec3, facets: &mut dyn Iterator<Item = [Vec3; 3]>| {
         facets.map(|facet| closest_on_facet(position, facet).offset.norm()).fold(f64::INFINITY, f64::min)
     };
     // The facets that are near tell at once that most points are not deeper, on whichever side they are, which takes longer to find out.
-    let is_shallow = |deepest: f64, position: Vec3| distance(position, &mut near.iter().copied()) <= deepest;
+    let is_shallow =
+        |deepest: f64, position: Vec3| distance(position, &mut near.iter().map(|(_, facet)| *facet)) <= deepest;
     let deeper = |deepest: f64, position: Vec3| match is_shallow(deepest, position) {
         true => deepest,
         false => deepest.max(distance(position, &mut other.facets.iter().map(corners))),
@@ -67,8 +70,10 @@ fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bou
     for &[a, b] in &shape.edges {
         let [from, to] = [here[a as usize], here[b as usize]];
         crossings.clear();
-        if Bounds::around(&[from, to], 0.0).meets(&around_outer) {
-            crossings.extend(near.iter().filter_map(|facet| crossing(from, to, *facet)));
+        if !shared.is_beside(&[from, to]) {
+            let own = Bounds::around(&[from, to], 0.0);
+            let met = near.iter().filter(|(around, _)| around.meets(&own));
+            crossings.extend(met.filter_map(|(_, facet)| crossing(from, to, *facet)));
         }
         if crossings.is_empty() {
             parts.join(a, b);
@@ -87,7 +92,7 @@ fn depth_inside(scene: &Scene, positions: &[Vec3], [inner, outer]: [u32; 2], bou
     // Of each part, by its root, whether it is inside, once that is known.
     let mut sides = vec![None; here.len()];
     for (position, atom) in here.iter().zip(0..) {
-        if !Bounds::around(&[*position], 0.0).meets(&around_outer) {
+        if around_outer.is_beside(&[*position]) {
             sides[parts.root(atom) as usize] = Some(false);
         }
     }

@@ -8,6 +8,7 @@ use super::edge_edge::find_edge_contacts;
 use super::found::{Contacts, PlaneContact, push};
 use super::lists::{Boxes, Lists, Moved, levels_over};
 use super::motion::Motion;
+use super::near::Near;
 use super::neighbours::Neighbours;
 use super::scene::Scene;
 use crate::Vec3;
@@ -143,6 +144,12 @@ impl Detector {
     /// Forgets the pairs, so that the next detection collects them anew. Contacts do not depend on it.
     pub fn forget(&mut self) {
         self.pairs.forget();
+        self.pairs.near.forget();
+    }
+
+    /// Bodies that are near each other.
+    pub(super) fn near(&mut self) -> &mut Near {
+        &mut self.pairs.near
     }
 
     /// How much farther than a contact the pairs were collected from, µm.

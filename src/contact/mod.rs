@@ -17,6 +17,7 @@ mod groove;
 mod inside;
 mod lists;
 mod motion;
+mod near;
 mod near_facets;
 mod neighbours;
 mod opening;
@@ -30,6 +31,7 @@ mod scene;
 mod separation;
 mod shape;
 mod swept;
+mod travel;
 mod turned;
 mod words;
 
@@ -48,6 +50,7 @@ pub use reference::detect_all_pairs;
 pub use scene::{Body, Plane, Reach, Scene};
 pub use shape::{Shape, Sides};
 pub use swept::{atom_meets_facet, edges_meet};
+pub use travel::{Stride, Travel};
 
 #[cfg(test)]
 mod analytic_tests;
@@ -57,3 +60,5 @@ mod fuzz_tests;
 mod swept_tests;
 #[cfg(test)]
 pub(crate) mod test_scenes;
+#[cfg(test)]
+mod travel_tests;

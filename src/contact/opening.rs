@@ -16,8 +16,9 @@ pub struct Opening {
     pub towards: Vec3,
 }
 
-/// What a point may be behind a facet that faces it and still touch it, over the length of the facet.
-const BEHIND: f64 = 0.1;
+/// What a point may be behind a facet that faces it and still touch it, over the length of the facet: twice the depth that is promised. Beside
+/// a ridge a point is behind the plane of the far wall by more, and is not in it.
+const BEHIND: f64 = 0.03;
 
 /// Cosine below which normals face each other.
 const FACING: f64 = -0.3;

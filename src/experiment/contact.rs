@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 pub enum ContactModel {
     /// Contacts bear any push and a shear, and surfaces attract each other: with `strength` at most, and over twice the `energy` that
     /// parts them over the strength.
-    Cohesion,
-    /// Contacts of atoms bear any push, and a pull and a shear by `strength`, and draw nothing near.
     #[default]
+    Cohesion,
+    /// Contacts of atoms bear any push, and a pull and a shear by `strength`: to compare with.
     Adhesives,
     /// Contacts bear any push, and springs hold the atoms of facets that collided, by `link`; they break beyond `range`.
     Links,
@@ -62,8 +62,8 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub area_within: Option<Length>,
-    /// Pull over area of contact at which surfaces of any two types part; model cohesion: the most that they attract each other with. Nothing
-    /// sticks when absent.
+    /// Pull over area of contact at which surfaces of any two types part, the most that they attract each other with: twice `energy` over
+    /// `range` when absent. Nothing sticks where neither it nor `energy` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub strength: Option<Stress>,
@@ -75,8 +75,8 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub friction: Option<SurfaceDrag>,
-    /// Model cohesion: work that parts an area of contact, half of `strength` times `range` when absent. Model adhesives: energy that an
-    /// area of contact releases, none when absent.
+    /// Work that parts an area of contact: half of `strength` times `range` when absent. Model adhesives: energy that an area of contact
+    /// releases, none when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
@@ -84,7 +84,7 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub link: Option<LineStiffness>,
-    /// Model cohesion: how far open surfaces still attract each other, in place of `energy`; 1.5 um when both are absent. Model links: mean length of its
+    /// How far open surfaces still attract each other, in place of `energy` or `strength`; 1.5 um where one of the three is given. Model links: mean length of its
     /// springs above which a link breaks; the smallest mean edge when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
@@ -111,11 +111,21 @@ pub struct Contact {
 pub(super) const RANGE: f64 = 1.5;
 
 impl Contact {
-    /// Work of separation (pN/µm) of surfaces that part at a strength (pN/µm²), by the energy or the range that is given for them, or
-    /// the range for all.
-    pub(super) fn work(&self, strength: f64, energy: Option<LineStiffness>, range: Option<Length>) -> f64 {
-        let by_range = || 0.5 * strength * range.or(self.range).map_or(RANGE, |range| range.value());
-        energy.map_or_else(by_range, |energy| energy.value())
+    /// Strength (pN/µm²) and work of separation (pN/µm) of surfaces of which two of strength, energy and range are given, or one, and
+    /// the range for all; zero where neither of the first two is.
+    pub(super) fn cohesive(
+        &self,
+        strength: Option<Stress>,
+        energy: Option<LineStiffness>,
+        range: Option<Length>,
+    ) -> [f64; 2] {
+        let range = range.or(self.range).map_or(RANGE, |range| range.value());
+        match (strength.map(|strength| strength.value()), energy.map(|energy| energy.value())) {
+            (Some(strength), Some(energy)) => [strength, energy],
+            (Some(strength), None) => [strength, 0.5 * strength * range],
+            (None, Some(energy)) => [2.0 * energy / range, energy],
+            (None, None) => [0.0, 0.0],
+        }
     }
 }
 
@@ -125,7 +135,7 @@ impl Contact {
 pub struct Between {
     /// Two types of cells, or a type and a plane; the same type twice for its cells among themselves.
     pub types: [String; 2],
-    /// Pull over area of contact at which they part; needed but in the models links and virtual_adhesives.
+    /// Pull over area of contact at which they part: twice `energy` over `range` when absent. Needed in the models adhesives and penalty.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub strength: Option<Stress>,
@@ -137,12 +147,12 @@ pub struct Between {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub friction: Option<SurfaceDrag>,
-    /// Model cohesion: work that parts an area of contact, half of `strength` times `range` when absent. Model adhesives: energy that an
-    /// area of contact releases, none when absent.
+    /// Work that parts an area of contact: half of `strength` times `range` when absent. Model adhesives: energy that an area of contact
+    /// releases, none when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub energy: Option<LineStiffness>,
-    /// Model cohesion: how far open they still attract each other, in place of `energy`; that of [contact] when both are absent.
+    /// How far open they still attract each other, in place of `energy` or `strength`; that of [contact] where one of the three is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub range: Option<Length>,

@@ -43,7 +43,7 @@ pub struct Integrator {
 
 impl Default for Integrator {
     fn default() -> Self {
-        Self { method: Method::Implicit, order: 2, step: None, tolerance: 1e-3, max_step: None, allow_unstable: false }
+        Self { method: Method::Implicit, order: 2, step: None, tolerance: 3e-3, max_step: None, allow_unstable: false }
     }
 }
 

@@ -4,8 +4,9 @@ use super::chemistry::next_exchange;
 use super::contact::SweepRules;
 use super::kind::Kind;
 use super::model::Model;
-use super::state::State;
+use super::state::{KindState, State};
 use super::trouble::Trouble;
+use crate::contact::Travel;
 use crate::mechanics::integrator::StepSize;
 
 /// Attempts before a step is given up; each is at least 0.3 times the one before, so that 60 shrink it by 30 decades.
@@ -17,8 +18,19 @@ const REPEATS: u32 = 10;
 /// What sweeps may leave when a step is made again, over what they might before: forces that sweeps leave unfound do work.
 const TIGHTER: f64 = 0.1;
 
+/// What atoms move over what contacts allow, below which what deepened was not moved in: a depth counts as deeper from a thousandth of an edge
+/// on, and contacts allow a twentieth of one.
+const STANDS: f64 = 1e-3;
+
 /// The shortest part of a fixed step that is made shorter still, over the whole: where that does not do, it was chosen badly.
 const SHORTEST: f64 = 0.01;
+
+/// How many steps are told apart between one and its double, and how many where a step costs much more than what is factored for it.
+const COARSE: f64 = 2.0;
+const FINE: f64 = 4.0;
+
+/// Cells of a kind over their atoms from which on that is so.
+const MANY: f64 = 0.1;
 
 /// What the next attempt of a step is to be.
 #[derive(Debug, Clone)]
@@ -31,6 +43,8 @@ pub struct Plan {
     pub energy: Option<f64>,
     /// Where the step begins, s.
     time: f64,
+    /// How many steps are told apart between one and its double.
+    rungs: f64,
     /// The step planned before the first attempt, s.
     first: f64,
     /// The step wanted now, s; a bend of a course may cut it short.
@@ -39,6 +53,8 @@ pub struct Plan {
     next: f64,
     /// Error of the last attempt over the mean edge, with what contacts say.
     error: f64,
+    /// The farthest that an atom moved in the last attempt, over the safe travel.
+    farthest: f64,
     /// Attempts that were refused.
     refused: u32,
     /// Attempts that were refused though their error allowed them.
@@ -52,8 +68,8 @@ pub struct Plan {
 pub struct Estimate {
     /// Error over the mean edge.
     pub error: f64,
-    /// The farthest that an atom moved, over what contacts allow.
-    pub travel: f64,
+    /// How far bodies went.
+    pub travel: Travel,
 }
 
 /// What may be wrong where an attempt ends, which its error does not tell.
@@ -87,10 +103,12 @@ impl Plan {
             tolerance_factor: 1.0,
             energy,
             time: state.time,
+            rungs: rungs(model, state),
             first,
             wanted: first,
             next: first,
             error: 0.0,
+            farthest: 0.0,
             refused: 0,
             repeated: 0,
             limited: false,
@@ -102,6 +120,7 @@ impl Plan {
     /// # Errors
     /// The trouble of an attempt that no shorter one would mend.
     pub fn allows(&mut self, model: &Model, outcome: Result<Estimate, Trouble>) -> Result<bool, Trouble> {
+        self.farthest = outcome.as_ref().map_or(f64::INFINITY, |estimate| estimate.travel.farthest);
         let (error, with_contacts) = match outcome.and_then(|estimate| self.with_contacts(model, estimate)) {
             Ok(errors) => errors,
             Err(trouble) if self.refused + 1 == ATTEMPTS || !self.may_be_mended(model, &trouble) => {
@@ -110,8 +129,10 @@ impl Plan {
             Err(Trouble::Contact { .. }) => (0.0, f64::INFINITY),
             Err(_) => (f64::INFINITY, f64::INFINITY),
         };
-        let (allowed, next) = judge(model, self.dt, with_contacts);
-        self.limited |= next < judge(model, self.dt, error).1;
+        let (allowed, next) = judge(model, self.dt, with_contacts, self.rungs);
+        self.limited |= next < judge(model, self.dt, error, self.rungs).1;
+        // What made an attempt too long is still there in the next step; one that was made again more exactly was not too long.
+        let next = if allowed && self.refused > self.repeated { next.min(self.dt) } else { next };
         (self.error, self.next) = (with_contacts, next);
         if allowed { Ok(true) } else { self.retry(model, next) }
     }
@@ -128,13 +149,20 @@ impl Plan {
                 // At first without mending depths, which takes work however short a step is.
                 if self.repeated == 0 { self.dt } else { 0.5 * self.dt }
             }
-            Some(Flaw::Deepened(_)) if self.may_repeat(model) => 0.5 * self.dt,
+            // What is found deep though nothing moved, as where facets turn and edges count from now on, no shorter step keeps out: each would
+            // end just before that instant, for ever.
+            Some(Flaw::Deepened(_)) if self.may_repeat(model) && self.farthest > STANDS => 0.5 * self.dt,
             Some(Flaw::Deepened(None)) => return Ok(true),
             Some(Flaw::Deepened(Some(trouble))) => return Err(trouble),
         };
         self.limited |= next < self.dt;
         self.repeated += 1;
         self.retry(model, next)
+    }
+
+    /// Whether the error of free motion alone refuses an attempt, so that it need not be made to its end.
+    pub fn refuses(&self, model: &Model, error: f64) -> bool {
+        matches!(model.integrator.size, StepSize::Adaptive { tolerance, .. } if error > tolerance)
     }
 
     /// How contacts are swept. Depths are mended in the first attempt only, since to push something out by moving it takes work.
@@ -175,10 +203,14 @@ impl Plan {
     }
 
     /// The error, and the same with what contacts say: a step in which an atom moves too far counts as one over the tolerance.
-    fn with_contacts(&self, model: &Model, Estimate { error, travel }: Estimate) -> Result<(f64, f64), Trouble> {
+    fn with_contacts(
+        &self,
+        model: &Model,
+        Estimate { error, travel: Travel { share, .. } }: Estimate,
+    ) -> Result<(f64, f64), Trouble> {
         match model.integrator.size {
-            StepSize::Adaptive { tolerance, .. } => Ok((error, error.max(tolerance * travel * travel))),
-            StepSize::Fixed(_) if travel > 1.0 => Err(Trouble::TooFast { time: self.time + self.dt, share: travel }),
+            StepSize::Adaptive { tolerance, .. } => Ok((error, error.max(tolerance * share * share))),
+            StepSize::Fixed(_) if share > 1.0 => Err(Trouble::TooFast { time: self.time + self.dt, share }),
             StepSize::Fixed(_) => Ok((error, error)),
         }
     }
@@ -201,9 +233,15 @@ fn first_step(model: &Model, state: &State) -> f64 {
         StepSize::Adaptive { largest, .. } if state.next_step > 0.0 => state.next_step.min(largest),
         StepSize::Adaptive { largest, .. } => {
             let relax = |kind: &Kind| kind.drag / kind.largest_stiffness.max(f64::MIN_POSITIVE);
-            on_ladder(model.kinds.iter().map(relax).fold(largest, f64::min)).min(largest)
+            on_ladder(model.kinds.iter().map(relax).fold(largest, f64::min), COARSE).min(largest)
         }
     }
+}
+
+/// How many steps are told apart between one and its double.
+fn rungs(model: &Model, state: &State) -> f64 {
+    let are_many = |(kind, now): (&Kind, &KindState)| now.cells() as f64 >= MANY * kind.atoms() as f64;
+    if model.kinds.iter().zip(&state.kinds).all(are_many) { FINE } else { COARSE }
 }
 
 /// Whether what is left of a step is too short to be made shorter still.
@@ -220,19 +258,45 @@ fn end_at_kinks(model: &Model, time: f64, dt: f64) -> f64 {
 }
 
 /// Whether the error allows the step, and the step to try next, s.
-fn judge(model: &Model, dt: f64, error: f64) -> (bool, f64) {
+fn judge(model: &Model, dt: f64, error: f64, rungs: f64) -> (bool, f64) {
     let StepSize::Adaptive { tolerance, largest } = model.integrator.size else {
         return if error.is_finite() { (true, dt) } else { (false, 0.5 * dt) };
     };
     if error.is_nan() || error.is_infinite() {
-        return (false, on_ladder(0.3 * dt));
+        return (false, on_ladder(0.3 * dt, rungs));
     }
     // The estimate is of first order, so that the error grows with the square of the step.
     let ideal = dt * (0.9 * (tolerance / error.max(1e-300)).sqrt()).clamp(0.3, 4.0);
-    (error <= tolerance, on_ladder(ideal).min(largest))
+    (error <= tolerance, on_ladder(ideal, rungs).min(largest))
 }
 
-/// The largest power of √2 seconds not above a step: few different steps mean few factorisations.
-fn on_ladder(dt: f64) -> f64 {
-    (0.5 * (2.0 * dt.log2() + 1e-9).floor()).exp2()
+/// The step to which a step is rounded down, of which there are so many between one and its double: few different steps mean few
+/// factorisations.
+fn on_ladder(dt: f64, rungs: f64) -> f64 {
+    ((rungs * dt.log2() + 1e-9).floor() / rungs).exp2()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::integrator::{Integrator, Method, Order};
+
+    #[test]
+    fn what_is_found_deep_though_nothing_moves_makes_no_step_shorter() {
+        let size = StepSize::Adaptive { tolerance: 1e-3, largest: 0.1 };
+        let method = Method::Implicit { order: Order::Second };
+        let model = Model::of(Vec::new(), Integrator { method, size }, 10.0);
+        let mut state = State::new(&model, &[]);
+        state.next_step = 0.01;
+        let halves = |farthest: f64| {
+            let mut plan = Plan::new(&model, &state, None);
+            assert_eq!(
+                plan.allows(&model, Ok(Estimate { error: 0.0, travel: Travel { share: 0.0, farthest } })),
+                Ok(true)
+            );
+            assert_eq!(plan.accepts(&model, Some(Flaw::Deepened(None))).map(|stands| !stands), Ok(farthest > STANDS));
+            plan.dt
+        };
+        assert_eq!([0.5, 1e-2, 1e-4].map(halves), [0.005, 0.005, 0.01]);
+    }
 }

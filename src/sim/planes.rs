@@ -9,6 +9,7 @@ use super::model::Model;
 use super::pressure::pressure;
 use super::solver::{Stage, System, solve_block};
 use crate::Vec3;
+use crate::mechanics::lanes::LANES;
 
 /// What a correction needs to know.
 #[derive(Clone, Copy)]
@@ -40,6 +41,8 @@ pub struct TouchScratch {
     found: Vec<Pair>,
     /// Pairs whose column is known.
     known: Vec<Pair>,
+    /// Which of these each active pair is.
+    numbers: Vec<usize>,
     /// How the cell answers a unit reaction of each known pair: increments of all atoms, µm/pN.
     columns: Vec<f64>,
     /// Pressure that holds the volume meanwhile, 1/µm², of each known pair.
@@ -48,6 +51,17 @@ pub struct TouchScratch {
     system: Vec<f64>,
     /// One cell's arrays, gathered from the block.
     cell: CellArrays,
+    /// The same cell in every lane, to find several columns at once.
+    copies: Copies,
+}
+
+/// A block whose lanes are copies of one cell, each with a unit reaction of its own.
+#[derive(Debug, Clone, Default)]
+struct Copies {
+    x: Vec<f64>,
+    columns: Vec<f64>,
+    spare: Vec<f64>,
+    spare2: Vec<f64>,
 }
 
 /// Arrays `[atom][axis]` of one cell.
@@ -74,6 +88,10 @@ impl TouchScratch {
             array.fill(f64::NAN);
         }
         for array in [&mut c.gradient, &mut c.swell, &mut c.free, &mut c.moved, &mut c.spare, &mut c.spare2] {
+            array.fill(f64::NAN);
+        }
+        let copies = &mut self.copies;
+        for array in [&mut copies.x, &mut copies.columns, &mut copies.spare, &mut copies.spare2] {
             array.fill(f64::NAN);
         }
     }
@@ -160,21 +178,24 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
     s.pressures.clear();
     s.cell.moved.clone_from(&s.cell.free);
     for _ in 0..ROUNDS {
-        for number in 0..s.active.len() {
-            let pair = s.active[number];
-            if !s.known.contains(&pair) {
-                reach(scene, target, pair, s);
+        let known = s.known.len();
+        s.numbers.clear();
+        for pair in &s.active {
+            let number = s.known.iter().position(|other| other == pair).unwrap_or(s.known.len());
+            if number == s.known.len() {
+                s.known.push(*pair);
             }
+            s.numbers.push(number);
         }
+        reach(scene, target, known, s);
         if !solve_reactions(scene, s) {
             break;
         }
         s.cell.moved.copy_from_slice(&s.cell.free);
         pressure = 0.0;
         let width = s.active.len() + 1;
-        for (number, pair) in s.active.iter().enumerate() {
+        for (number, &column) in s.numbers.iter().enumerate() {
             let r = s.system[number * width + width - 1];
-            let column = column_of(&s.known, pair);
             let answer = &s.columns[column * size..(column + 1) * size];
             s.cell.moved.iter_mut().zip(answer).for_each(|(to, c)| *to += r * c);
             pressure += r * s.pressures[column];
@@ -186,10 +207,6 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
     pressure
 }
 
-fn column_of(known: &[Pair], pair: &Pair) -> usize {
-    known.iter().position(|other| other == pair).expect("every active pair has its column")
-}
-
 /// Solves `C M Cᵀ r = −gap − C Y` for the active pairs, eq. (planes.1); r stands in the last column of the system.
 fn solve_reactions(scene: &Scene, s: &mut TouchScratch) -> bool {
     let (rows, size) = (s.active.len(), s.cell.x.len());
@@ -198,8 +215,8 @@ fn solve_reactions(scene: &Scene, s: &mut TouchScratch) -> bool {
     s.system.resize(rows * width, 0.0);
     for (i, &(atom, p)) in s.active.iter().enumerate() {
         let plane = &scene.model.planes[p];
-        for (j, pair) in s.active.iter().enumerate() {
-            let answer = &s.columns[column_of(&s.known, pair) * size..];
+        for (j, column) in s.numbers.iter().enumerate() {
+            let answer = &s.columns[column * size..];
             s.system[i * width + j] = plane.normal.dot(&vector_of(answer, atom));
         }
         let gap = (vector_of(&s.cell.x, atom) - plane.point).dot(&plane.normal);
@@ -258,23 +275,58 @@ fn change_active(scene: &Scene, s: &mut TouchScratch) -> bool {
     released || grown
 }
 
-/// M n for an atom and a plane: how the whole cell moves under a unit reaction, its volume constraint included.
-fn reach(scene: &Scene, target: f64, pair: Pair, s: &mut TouchScratch) {
-    let (kind, size, begin) = (scene.kind, s.cell.x.len(), s.columns.len());
-    s.columns.resize(begin + size, 0.0);
-    s.cell.spare.resize(size, 0.0);
-    s.cell.spare2.resize(size, 0.0);
-    let column = &mut s.columns[begin..];
-    column.fill(0.0);
-    column[3 * pair.0..3 * pair.0 + 3].copy_from_slice(scene.model.planes[pair.1].normal.as_slice());
-    let c = &mut s.cell;
-    solve_block(kind, 1, &scene.system, &c.x, column, &mut c.spare, &mut c.spare2);
-    let mut held = 0.0;
-    if kind.volume != VolumeRule::Free {
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        held = pressure(kind, scene.gamma, dot(&c.gradient, column), dot(&c.gradient, &c.swell), 0.0, target);
-        column.iter_mut().zip(&c.swell).for_each(|(to, s)| *to += held * s);
+/// M n for the known pairs of atom and plane from a number on: how the whole cell moves under a unit reaction of each, its volume
+/// constraint included.
+fn reach(scene: &Scene, target: f64, from: usize, s: &mut TouchScratch) {
+    let (kind, size) = (scene.kind, s.cell.x.len());
+    s.columns.resize(s.known.len() * size, 0.0);
+    let TouchScratch { known, columns, pressures, cell: c, copies, .. } = s;
+    let (known, columns) = (&known[from..], &mut columns[from * size..]);
+    for ((atom, p), column) in known.iter().zip(columns.chunks_exact_mut(size)) {
+        column.fill(0.0);
+        column[3 * atom..3 * atom + 3].copy_from_slice(scene.model.planes[*p].normal.as_slice());
     }
-    s.known.push(pair);
-    s.pressures.push(held);
+    match scene.system {
+        System::Shared(_) => copies.solve(scene, &c.x, columns),
+        System::Own { .. } => {
+            for array in [&mut c.spare, &mut c.spare2] {
+                array.resize(size, 0.0);
+            }
+            for column in columns.chunks_exact_mut(size) {
+                solve_block(kind, 1, &scene.system, &c.x, column, &mut c.spare, &mut c.spare2);
+            }
+        }
+    }
+    for column in columns.chunks_exact_mut(size) {
+        let mut held = 0.0;
+        if kind.volume != VolumeRule::Free {
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            held = pressure(kind, scene.gamma, dot(&c.gradient, column), dot(&c.gradient, &c.swell), 0.0, target);
+            column.iter_mut().zip(&c.swell).for_each(|(to, s)| *to += held * s);
+        }
+        pressures.push(held);
+    }
+}
+
+impl Copies {
+    /// Solves for columns of a cell whose atoms are at `x`, as many at a time as there are lanes, which takes about as long as one alone.
+    fn solve(&mut self, scene: &Scene, x: &[f64], columns: &mut [f64]) {
+        let size = x.len();
+        self.x.clear();
+        self.x.extend(x.iter().flat_map(|value| [*value; LANES]));
+        for array in [&mut self.columns, &mut self.spare, &mut self.spare2] {
+            array.resize(LANES * size, 0.0);
+        }
+        for columns in columns.chunks_mut(LANES * size) {
+            self.columns.fill(0.0);
+            for (lane, column) in columns.chunks_exact(size).enumerate() {
+                self.columns.chunks_exact_mut(LANES).zip(column).for_each(|(row, value)| row[lane] = *value);
+            }
+            let Self { x, columns: together, spare, spare2 } = self;
+            solve_block(scene.kind, LANES, &scene.system, x, together, spare, spare2);
+            for (lane, column) in columns.chunks_exact_mut(size).enumerate() {
+                self.columns.chunks_exact(LANES).zip(column).for_each(|(row, value)| *value = row[lane]);
+            }
+        }
+    }
 }

@@ -22,6 +22,7 @@ use super::state::State;
 use super::trouble::Trouble;
 use super::velocity::measure_velocities;
 use super::workspace::Workspace;
+use crate::contact::Travel;
 
 /// Moves the state by one step.
 ///
@@ -91,11 +92,14 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     advance_behaviours(model, dt, from, to, ws);
     let error = move_freely(model, dt, from, to, ws);
     check_finite(model, end, to)?;
+    if plan.refuses(model, error) {
+        return Ok(Estimate { error, travel: Travel::default() });
+    }
     hold_contacts(model, dt, plan.sweep_rules(), from, to, ws)?;
     make_exact(model, end, from, to, ws)?;
     correct_velocities(model, dt, to, ws);
     check_finite(model, end, to)?;
-    Ok(Estimate { error, travel: travel(model, from, to) })
+    Ok(Estimate { error, travel: travel(model, from, to, ws) })
 }
 
 /// Looks at where an attempt ends that its error allows.

@@ -81,12 +81,11 @@ fn the_table_gives_each_pair_its_strength_and_the_default_the_others() {
 }
 
 #[test]
-fn surfaces_attract_each_other_as_far_as_the_energy_or_the_range_or_the_default_says() {
+fn surfaces_attract_each_other_by_default_as_far_as_the_energy_or_the_range_or_the_default_says() {
     let found = |range: &str, of_pair: &str| {
         let table = TABLE.replace("\"2 Pa\"", &format!("\"2 Pa\"\n{of_pair}"));
-        let contact =
-            compiled(&format!("[contact]\nmodel = \"cohesion\"{range}{table}")).model.contact.expect("contacts");
-        let table = contact.law.cohesion().expect("the law").clone();
+        let contact = compiled(&format!("[contact]{range}{table}")).model.contact.expect("contacts");
+        let table = contact.law.cohesion().expect("the default").clone();
         let is_sheared_only = |strength: &Strength| (strength.tensile, strength.energy) == (0.0, 0.0);
         assert!(contact.between.iter().chain(&contact.on_planes).all(is_sheared_only));
         assert_eq!([contact.between[0].shear, contact.between[1].shear, contact.on_planes[0].shear], [4.0, 2.0, 5.0]);
@@ -97,6 +96,18 @@ fn surfaces_attract_each_other_as_far_as_the_energy_or_the_range_or_the_default_
     assert_eq!(found("\nrange = \"2 um\"", ""), [(10.0, 10.0), (2.0, 2.0), (50.0, 50.0)]);
     assert_eq!(found("\nrange = \"2 um\"", "energy = \"3 pN/um\""), [(10.0, 10.0), (2.0, 3.0), (50.0, 50.0)]);
     assert_eq!(found("\nenergy = \"9 pN/um\"", "range = \"4 um\""), [(10.0, 9.0), (2.0, 4.0), (50.0, 37.5)]);
+}
+
+#[test]
+fn an_energy_alone_has_the_strength_that_parts_it_over_the_range() {
+    let found = |contact: &str| {
+        let contact = compiled(contact).model.contact.expect("contacts");
+        let pair = contact.law.cohesion().expect("the default").between[0];
+        (pair.strength, pair.work, contact.between[0].shear)
+    };
+    assert_eq!(found("[contact]\nenergy = \"3 pN/um\"\n"), (4.0, 3.0, 4.0));
+    assert_eq!(found("[contact]\nenergy = \"3 pN/um\"\nrange = \"2 um\"\n"), (3.0, 3.0, 3.0));
+    assert_eq!(found("[contact]\nenergy = \"3 pN/um\"\nshear_strength = \"1 Pa\"\n"), (4.0, 3.0, 1.0));
 }
 
 #[test]

@@ -175,3 +175,9 @@ fn four_bunnies_fall_between_each_others_ears() {
 fn two_types_of_cells_sort() {
     experiment_keeps_its_word("sorting", "experiment.toml");
 }
+
+#[test]
+#[ignore = "slow: an hour of a thousand cells, five to ten minutes"]
+fn a_thousand_cells_gather_for_an_hour() {
+    experiment_keeps_its_word("crowd", "experiment.toml");
+}

@@ -189,11 +189,11 @@ fn a_run_that_goes_on_from_a_checkpoint_or_on_two_threads_has_the_same_bits() {
 }
 
 /// A sheet of 16 x 4 µm on a floor, held at one end, whose other end was pulled off and is then held up by a force an edge (pN/µm);
-/// the work of separation is 0.5 pN/µm.
+/// the work of separation is 0.5 pN/µm. At the default tolerance the front stands within a tenth of the work; at 10⁻³ it moves.
 fn peeled([along, across]: [u32; 2], strength: f64, more: &str, force: f64) -> String {
     let (end, force) = (across + 1, 4.0 * force);
     format!(
-        "title = \"A sheet is peeled off a floor\"\n[run]\nuntil = \"40 s\"\nintegrator = {{ max_step = \"0.4 s\" }}\n[[planes]]\nname = \"floor\"\n\
+        "title = \"A sheet is peeled off a floor\"\n[run]\nuntil = \"40 s\"\nintegrator = {{ max_step = \"0.4 s\", tolerance = 1e-3 }}\n[[planes]]\nname = \"floor\"\n\
          point = [\"0 um\", \"0 um\", \"0 um\"]\nnormal = [0, 0, 1]\n[cells.sheet]\n\
          mesh = {{ shape = \"sheet\", size = [\"16 um\", \"4 um\"], divisions = [{along}, {across}] }}\n\
          placement = {{ at = [[\"0 um\", \"0 um\", \"0.01 um\"]] }}\nfixed = [{{ cap = {{ direction = [-1, 0, 0], number = {} }} }}]\n\

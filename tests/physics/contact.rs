@@ -125,7 +125,7 @@ fn sheets_part_at(tensile: f64, largest: f64, parts: u32) -> f64 {
     let atoms = areas.iter().zip(0..).map(|(area, atom)| (atom, area / 36.0)).collect();
     let force = Course::through(vec![(0.0, 0.0), (100.0, 60.0)]).unwrap();
     soft.forces.push(Force::Load(Load::new("pull", atoms, Vec3::z(), force)));
-    // With the default of 1e-3 a rim may go 2 % early.
+    // At 1e-3 a rim may go 2 % early.
     let size = StepSize::Adaptive { tolerance: 2e-4, largest };
     let steps = Integrator { size, ..adaptive(largest) };
     let model = model(vec![rigid, soft], steps, 100.0, Strength { tensile, shear: 0.0, energy: 0.0 });

@@ -12,7 +12,7 @@ fn stirred(material: &str, strength: f64) -> (f64, f64) {
          placement = {{ random_from = [\"-25 um\", \"-25 um\", \"-25 um\"], random_to = [\"25 um\", \"25 um\", \"25 um\"] }}\n\
          [cells.cell.mechanics]\ndrag = \"20 pN s/um\"\n{material}\n[cells.cell.motility]\n\
          brownian = {{ speed = \"20 um/min\", persistence = \"20 s\", space = \"volume\" }}\n\
-         attraction = {{ to = [\"0 um\", \"0 um\", \"0 um\"], stiffness = \"0.02 pN/um\" }}\n[contact]\nmodel = \"cohesion\"\nstrength = \"{strength} pN/um^2\"\n[output]\nevery = \"1 s\"\n"
+         attraction = {{ to = [\"0 um\", \"0 um\", \"0 um\"], stiffness = \"0.02 pN/um\" }}\n[contact]\nstrength = \"{strength} pN/um^2\"\n[output]\nevery = \"1 s\"\n"
     );
     let mut simulation = Simulation::from_text("stirred.toml", &text).unwrap_or_else(|error| panic!("{error}"));
     let kind = simulation.types().next().expect("one type");

@@ -84,14 +84,15 @@ pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
     });
     let mut faults = Vec::new();
     for (path, (strength, energy, own), of) in std::iter::once(all).chain(pairs) {
-        let Some(strength) = strength.map(|strength| strength.value()) else { continue };
-        let range = Cohesive { strength, work: text.work(strength, energy, own), friction: 0.0 }.range();
+        let [of_strength, work] = text.cohesive(strength, energy, own);
+        let range = Cohesive { strength: of_strength, work, friction: 0.0 }.range();
         let of_all = text.range.is_some() && path != "contact";
-        let told = match (energy, own) {
-            (Some(_), _) => Told::ByEnergy(path),
-            (None, Some(_)) => Told::Itself(path),
-            (None, None) if of_all => Told::Itself("contact".into()),
-            (None, None) => Told::ByDefault(path),
+        let told = match (strength, energy, own) {
+            (Some(_), Some(_), _) => Told::ByEnergy(path),
+            (_, _, Some(_)) => Told::Itself(path),
+            (_, _, None) if of_all => Told::Itself("contact".into()),
+            (None, _, None) => Told::ByDefault(format!("{path}.energy")),
+            (_, _, None) => Told::ByDefault(format!("{path}.strength")),
         };
         let coarse = of.iter().map(|kind| &kinds[*kind]).max_by(|one, other| one.edge.total_cmp(&other.edge));
         let fine = of.iter().map(|kind| &kinds[*kind]).min_by(|one, other| one.edge.total_cmp(&other.edge));
@@ -105,7 +106,7 @@ pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
     if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
 }
 
-/// What says how far surfaces attract each other, by the table that does.
+/// What says how far surfaces attract each other, by the table that does, or the key that sticks as far as the default.
 enum Told {
     ByEnergy(String),
     Itself(String),
@@ -128,12 +129,9 @@ fn range_fault(document: &Document, told: &Told, (range, kind): (f64, &Kind), to
             format!("{path}.range"),
             "with this",
         ),
-        Told::ByDefault(path) => (
-            "the default range of attraction is",
-            "another `range`",
-            format!("{path}.strength"),
-            "sticks as far as the default",
-        ),
+        Told::ByDefault(path) => {
+            ("the default range of attraction is", "another `range`", path.clone(), "sticks as far as the default")
+        }
     };
     let fault = Fault::new(format!(
         "{range_is} {} um: too {too} for the mesh of type `{}`, whose mean edge is {} um",
@@ -172,21 +170,20 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
             return Some(model);
         }
     }
-    let of_model = |strength: Stress, energy: Option<LineStiffness>, range| match text.model {
-        Text::Cohesion => text.work(strength.value(), energy, range),
-        _ => energy.map_or(0.0, |energy| energy.value()),
+    let of_model = |strength: Option<Stress>, energy: Option<LineStiffness>, range| match text.model {
+        Text::Cohesion => text.cohesive(strength, energy, range),
+        _ => [strength.map_or(0.0, |strength| strength.value()), energy.map_or(0.0, |energy| energy.value())],
     };
-    if let Some(strength) = text.strength {
-        let energy = of_model(strength, text.energy, text.range);
-        let strength = strength_of(strength, (text.shear_strength, text.friction), energy);
+    if text.strength.is_some() || text.energy.is_some() {
+        let strength = of_model(text.strength, text.energy, text.range);
+        let strength = strength_of(strength, (text.shear_strength, text.friction));
         for kind in 0..kinds.len() {
             (kind..kinds.len()).for_each(|other| stick(&mut model, Pair::Types(kind, other), strength, text.friction));
         }
     }
     for between in &text.between {
         let shear = (between.shear_strength, between.friction);
-        let strength = between.strength.unwrap_or_default();
-        let strength = strength_of(strength, shear, of_model(strength, between.energy, between.range));
+        let strength = strength_of(of_model(between.strength, between.energy, between.range), shear);
         if let Some(pair) = between.pair(experiment) {
             stick(&mut model, pair, strength, between.friction);
         }
@@ -218,10 +215,10 @@ fn stick(model: &mut ContactModel, pair: Pair, strength: Strength, friction: Opt
     }
 }
 
-fn strength_of(strength: Stress, (shear, friction): (Option<Stress>, Option<SurfaceDrag>), energy: f64) -> Strength {
+fn strength_of([strength, energy]: [f64; 2], (shear, friction): (Option<Stress>, Option<SurfaceDrag>)) -> Strength {
     // What rubs is not stuck as well, unless the document says so.
-    let else_shear = if friction.is_some() { Stress::ZERO } else { strength };
-    Strength { tensile: strength.value(), shear: shear.unwrap_or(else_shear).value(), energy }
+    let else_shear = if friction.is_some() { 0.0 } else { strength };
+    Strength { tensile: strength, shear: shear.map_or(else_shear, |shear| shear.value()), energy }
 }
 
 /// Which types are glued to each other and to planes, and how well. As with strengths, cells stick to planes that are named only.

@@ -7,6 +7,7 @@ use crate::cell::Behaviour;
 use crate::geometry::{area, bounding_box};
 use crate::mechanics::Force;
 use crate::mechanics::integrator::Method;
+use crate::mechanics::shape_modulus::energy_that_shape_bears;
 use crate::mechanics::sum::stiffness;
 use crate::sim::{Kind, Model};
 use crate::units::{Dimension, pretty};
@@ -31,6 +32,7 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
     notices.extend(model.kinds.iter().filter_map(|kind| unordered_skin(document, kind)));
     if model.contact.is_some() {
         notices.extend(model.kinds.iter().filter_map(soft_walkers));
+        notices.extend((0..model.kinds.len()).filter_map(|kind| spreading_shape(model, kind)));
         let is_implicit = matches!(model.integrator.method, Method::Implicit { .. });
         let creeps = |kind: &&Kind| is_implicit && kind.tangent.is_none() && kind.has_soft_shear();
         notices.extend(model.kinds.iter().filter(creeps).map(creeping_shear));
@@ -116,6 +118,30 @@ fn soft_walkers(kind: &Kind) -> Option<String> {
         pretty(resists * kind.edge, Dimension::FORCE),
         push / (MOST_DENT * resists * kind.edge)
     ))
+}
+
+/// That cells of a kind gain more where they stick than their shape costs: they spread over each other.
+fn spreading_shape(model: &Model, number: usize) -> Option<String> {
+    let kind = &model.kinds[number];
+    let table = model.contact.as_ref()?.law.cohesion()?;
+    let kinds = model.kinds.len();
+    let of_pair = &table.between[number * kinds..(number + 1) * kinds];
+    let work = of_pair.iter().filter(|pair| pair.strength > 0.0).map(|pair| pair.work).fold(0.0, f64::max);
+    if !kind.closed || work == 0.0 {
+        return None;
+    }
+    // Each of the two surfaces that stick has half of the work.
+    let bears = 2.0 * energy_that_shape_bears(&kind.forces, &kind.rest);
+    (work > bears).then(|| {
+        format!(
+            "cells of type `{}` take {} to part an area of contact, and their shape bears {}: where they stick they spread over each other until \
+             others hold them, and soft ones fold. Make them at least {:.1} times as stiff, or give them less `energy`, a shorter `range` or less `strength`",
+            kind.name,
+            pretty(work, Dimension::LINE_STIFFNESS),
+            pretty(bears, Dimension::LINE_STIFFNESS),
+            work / bears
+        )
+    })
 }
 
 /// That cells of a kind creep: where contacts move each atom by its drag alone nothing tells the implicit step how little they resist shear.

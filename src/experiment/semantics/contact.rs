@@ -24,14 +24,15 @@ impl Check<'_> {
         let says_all = match contact.model {
             ContactModel::Links => true,
             ContactModel::VirtualAdhesives => contact.kappa.is_some(),
-            ContactModel::Adhesives | ContactModel::Cohesion | ContactModel::Penalty => contact.strength.is_some(),
+            ContactModel::Adhesives | ContactModel::Penalty => contact.strength.is_some(),
+            ContactModel::Cohesion => contact.strength.is_some() || contact.energy.is_some(),
         };
-        if adhesives && contact.shear_strength.is_some() && contact.strength.is_none() {
+        if adhesives && contact.shear_strength.is_some() && !says_all {
             let message = "`contact.shear_strength` is given without `strength`".to_owned();
             let help = "add `strength`; \"0 Pa\" for surfaces that resist sliding but not parting";
             self.fault("contact.shear_strength", "`strength` is missing", message, help);
         }
-        if adhesives && contact.energy.is_some() && contact.strength.is_none() {
+        if contact.model == ContactModel::Adhesives && contact.energy.is_some() && contact.strength.is_none() {
             let message = "`contact.energy` is given without `strength`".to_owned();
             let help =
                 "add `strength`: where contacts spread, their rim is pulled, and without strength nothing holds it";
@@ -74,10 +75,10 @@ impl Check<'_> {
             .enumerate()
             .map(|(index, pair)| (format!("contact.between[{index}]"), pair.strength, pair.energy, pair.range));
         for (path, strength, energy, range) in std::iter::once(all).chain(pairs) {
-            if energy.is_some() && range.is_some() {
-                let message = format!("`{path}` has an energy and a range");
-                let help = "keep one of them: the range is twice the energy over the strength";
-                self.fault(&format!("{path}.range"), "and `energy` above", message, help);
+            if strength.is_some() && energy.is_some() && range.is_some() {
+                let message = format!("`{path}` has a strength, an energy and a range");
+                let help = "keep two of them: the range is twice the energy over the strength";
+                self.fault(&format!("{path}.range"), "besides `strength` and `energy`", message, help);
             }
             let (Some(strength), Some(energy)) = (strength, energy) else { continue };
             if strength.value() > 0.0 && energy.value() == 0.0 {
@@ -95,12 +96,14 @@ impl Check<'_> {
 
     /// Friction of surfaces that do not attract each other: nothing says over which area it acts.
     fn friction(&mut self, contact: &Contact) {
-        let all = (String::from("contact"), contact.strength, contact.friction);
-        let pairs = contact.between.iter().enumerate();
-        let pairs = pairs.map(|(index, pair)| (format!("contact.between[{index}]"), pair.strength, pair.friction));
-        for (path, strength, friction) in std::iter::once(all).chain(pairs) {
+        let sticks = |strength, energy| contact.cohesive(strength, energy, None)[0] > 0.0;
+        let all = (String::from("contact"), sticks(contact.strength, contact.energy), contact.friction);
+        let pairs = contact.between.iter().enumerate().map(|(index, pair)| {
+            (format!("contact.between[{index}]"), sticks(pair.strength, pair.energy), pair.friction)
+        });
+        for (path, sticks, friction) in std::iter::once(all).chain(pairs) {
             let rubs = friction.is_some_and(|friction| friction.value() > 0.0);
-            if rubs && strength.is_none_or(|strength| strength.value() == 0.0) {
+            if rubs && !sticks {
                 let message = format!("`{path}.friction` is given without a `strength` above 0");
                 let help =
                     "give a `strength`, however small: surfaces rub where they are nearer than half of their range";
@@ -148,7 +151,12 @@ impl Check<'_> {
             } else if contact.model == ContactModel::VirtualAdhesives && between.kappa.is_none() {
                 let message = format!("`{path}` does not say how well the two are glued");
                 self.fault(&path, "`kappa` is missing", message, "add `kappa`; \"0 um\" does not stick");
-            } else if has_strength(contact.model) && between.strength.is_none() {
+            } else if contact.model == ContactModel::Cohesion && between.strength.is_none() && between.energy.is_none()
+            {
+                let message = format!("`{path}` does not say how strongly the two stick");
+                let help = "add `strength` or `energy`; \"0 Pa\" does not stick";
+                self.fault(&path, "`strength` is missing", message, help);
+            } else if needs_strength(contact.model) && between.strength.is_none() {
                 let message = format!("`{path}` does not say how strongly the two stick");
                 self.fault(&path, "`strength` is missing", message, "add `strength`; \"0 Pa\" does not stick");
             }
@@ -217,8 +225,8 @@ impl Check<'_> {
 }
 
 /// Whether pairs of a model have a strength.
-fn has_strength(model: ContactModel) -> bool {
-    matches!(model, ContactModel::Adhesives | ContactModel::Cohesion | ContactModel::Penalty)
+fn needs_strength(model: ContactModel) -> bool {
+    matches!(model, ContactModel::Adhesives | ContactModel::Penalty)
 }
 
 /// A model as documents name it.

@@ -81,6 +81,7 @@ fn row(
     stored: f32,
 ) -> Row {
     let normal_and_gap = [x, y, z, gap as f32];
+    let coordinates = coordinates.map(|coordinate| coordinate as f32);
     let (least, shear, friction) = (least as f32, shear as f32, friction as f32);
     Row { atoms, coordinates, normal_and_gap, least, shear, friction, stored, pairing, ..Row::NOTHING }
 }

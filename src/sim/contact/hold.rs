@@ -13,8 +13,9 @@ use super::scene::ContactScene;
 use super::scratch::{ContactScratch, SweepRules};
 use super::sweep::{sweep_contacts, sweep_depths};
 use super::vectors::V4;
-use super::volumes::{VolumeRow, sweep_volumes};
+use super::volumes::{InModes, VolumeRow, sweep_volumes};
 use crate::Vec3;
+use crate::contact::{Stride, Travel};
 use crate::sim::kind::VolumeRule;
 use crate::sim::model::Model;
 use crate::sim::state::{KindState, State, vector};
@@ -90,9 +91,12 @@ pub(super) fn put_back(model: &Model, contact: &ContactScene, s: &ContactScratch
     }
 }
 
+/// Volumes that are kept, and what their gradients are in modes, where cells move by them.
+type Volumes<'a> = (&'a [VolumeRow], &'a [InModes]);
+
 /// What the sweeps need of a kind.
 struct Part<'a> {
-    volumes: &'a [VolumeRow],
+    volumes: Volumes<'a>,
     /// Gradients of the volumes, µm².
     gradient: &'a [[f64; 3]],
     moved: &'a mut [V4],
@@ -103,14 +107,14 @@ struct Part<'a> {
 fn for_each_part(
     model: &Model,
     contact: &ContactScene,
-    (volumes, gradient, moved, mobility): (&[VolumeRow], &[[f64; 3]], &mut [V4], &mut Mobility),
+    ((volumes, modes), gradient, moved, mobility): (Volumes, &[[f64; 3]], &mut [V4], &mut Mobility),
     mut work: impl FnMut(Part),
 ) {
     let mut next = 0;
     for (number, kind) in model.kinds.iter().enumerate() {
         let range = contact.atoms_of(number);
         let count = if matches!(kind.volume, VolumeRule::Exact(_)) { range.len() / kind.atoms() } else { 0 };
-        let volumes = &volumes[next..next + count];
+        let volumes = (&volumes[next..next + count], modes.get(next..next + count).unwrap_or_default());
         work(Part { volumes, gradient: &gradient[range.clone()], moved: &mut moved[range], mobility });
         next += count;
     }
@@ -131,9 +135,14 @@ fn sweep(model: &Model, contact: &ContactScene, dt: f64, rules: SweepRules, s: &
         for &(atom, axis) in &s.held {
             s.moved[atom as usize][axis as usize] = before[atom as usize][axis as usize];
         }
-        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved, &mut s.mobility), |part| {
-            sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut change);
-        });
+        for_each_part(
+            model,
+            contact,
+            ((&s.volumes, &s.volume_modes), &s.gradient, &mut s.moved, &mut s.mobility),
+            |part| {
+                sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut change);
+            },
+        );
         s.sweeps = number;
         // A change that is not a number is no rest either.
         if change.largest <= contact.tolerance * rules.tolerance_factor || number == contact.most_sweeps {
@@ -158,26 +167,33 @@ fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
     for _ in 0..MENDING {
         sweep_depths(&s.rows, &mut s.deep, &mut s.moved, &mut s.mobility, MENDED * contact.reach.safe_travel());
         s.law.adhesives.align(&s.start, &mut s.moved);
-        for_each_part(model, contact, (&s.volumes, &s.gradient, &mut s.moved, &mut s.mobility), |part| {
-            sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut Change::default());
-        });
+        for_each_part(
+            model,
+            contact,
+            ((&s.volumes, &s.volume_modes), &s.gradient, &mut s.moved, &mut s.mobility),
+            |part| {
+                sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut Change::default());
+            },
+        );
     }
 }
 
-/// The farthest that an atom moved in the step over what contacts allow; 0 without contacts.
-pub fn travel(model: &Model, from: &State, to: &State) -> f64 {
-    let Some(contact) = &model.contact else { return 0.0 };
-    let mut farthest: f64 = 0.0;
+/// How far bodies moved in the step beside those that they may meet, over what contacts allow, eq. (contacts.6); 0 without contacts.
+pub fn travel(model: &Model, from: &State, to: &State, ws: &mut Workspace) -> Travel {
+    let s = &mut ws.contact;
+    let Some(contact) = &s.scene(model, &from.kinds) else { return Travel::default() };
+    let scene = &contact.scene;
+    s.strides.resize(scene.bodies.len(), Stride::NONE);
+    let mut rest = &mut s.strides[..];
     for ((kind, now), next) in model.kinds.iter().zip(&from.kinds).zip(&to.kinds) {
-        let of_cell = |cell: usize| {
+        let (own, others) = rest.split_at_mut(now.cells());
+        rest = others;
+        own.par_iter_mut().with_min_len(CELLS_PER_JOB).enumerate().for_each(|(cell, stride)| {
             let position = |x: &[f64], atom: usize| vector(kind, x, cell, atom);
-            let travels =
-                (0..kind.atoms()).map(|atom| position(&next.positions, atom) - position(&now.positions, atom));
-            travels.map(|travel| travel.norm_squared()).fold(0.0, f64::max)
-        };
-        // Lanes beyond the last cell may go elsewhere.
-        let cells = (0..now.cells()).into_par_iter().with_min_len(CELLS_PER_JOB);
-        farthest = farthest.max(cells.map(of_cell).reduce(|| 0.0, f64::max));
+            let ends = [&now.positions, &next.positions].map(|x| move |atom| position(x, atom));
+            let [start, end] = ends;
+            *stride = Stride::of(scene, kind.atoms(), start, end);
+        });
     }
-    farthest.sqrt() / contact.reach.safe_travel()
+    s.detector.travel(scene, &s.strides)
 }

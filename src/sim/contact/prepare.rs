@@ -49,6 +49,7 @@ pub fn prepare(
     s.moved.resize(contact.scene.atoms, [0.0; 4]);
     s.gradient.resize(contact.scene.atoms, [0.0; 3]);
     s.volumes.clear();
+    s.volume_modes.clear();
     s.held.clear();
     let as_steps = contact.law.moves_as_steps();
     let stiff = |(kind, w): (&Kind, &KindScratch)| as_steps && is_stiff(model, dt, kind, w);
@@ -199,19 +200,19 @@ fn add_volumes(
             swelling: mobility * mobility * squared,
             column: None,
             body: first_body + cell,
-            modes: Default::default(),
         };
         if s.mobility.has_modes {
-            row.modes = s.mobility.project(row.body, g);
+            let modes = s.mobility.project(row.body, g);
             let response = s.mobility.response(row.body);
             let (mut compliance, mut swelling) = (mobility * squared, mobility * mobility * squared);
-            for (response, part) in response.iter().zip(&row.modes) {
+            for (response, part) in response.iter().zip(&modes) {
                 let squared: f64 = part.iter().map(|part| part * part).sum();
                 compliance += response * squared;
                 // What is moved by a mode is moved by its response and by what each atom moves alone.
                 swelling += response * (response + 2.0 * mobility) * squared;
             }
             (row.inverse, row.swelling) = (1.0 / compliance, swelling);
+            s.volume_modes.push(modes);
         }
         s.volumes.push(row);
     }

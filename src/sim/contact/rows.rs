@@ -10,7 +10,7 @@ pub struct Row {
     /// Its atoms; those that are not there have weight 0.
     pub atoms: [u32; 4],
     /// Where it is: the weights of the second and third atom of a facet, or the positions along two edges; see [`Row::weights`].
-    pub coordinates: [f64; 2],
+    pub coordinates: [f32; 2],
     /// From the other side to the first, and the gap where the step began, µm.
     pub normal_and_gap: [f32; 4],
     /// Least normal force, pN: minus the pull at which the contact parts.
@@ -76,7 +76,7 @@ impl Row {
     /// The weights of its atoms: positive on the first side of the contact, negative on the other; each side sums to ±1.
     #[inline(always)]
     pub fn weights(&self) -> [f64; 4] {
-        let [s, t] = self.coordinates;
+        let [s, t] = self.coordinates.map(f64::from);
         match self.pairing {
             Pairing::AtomOnFacet => [1.0, -(1.0 - s - t), -s, -t],
             Pairing::Edges => [1.0 - s, s, t - 1.0, -t],

@@ -49,6 +49,7 @@ pub fn write_rubbing(
             }
         };
         let [x, y, z] = [normal.x, normal.y, normal.z].map(|part| part as f32);
+        let coordinates = coordinates.map(|coordinate| coordinate as f32);
         rows.push(Row {
             atoms,
             coordinates,

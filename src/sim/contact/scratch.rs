@@ -6,9 +6,9 @@ use super::momentum::Momentum;
 use super::rows::{Pull, Row};
 use super::scene::{ContactScene, Surfaces};
 use super::vectors::V4;
-use super::volumes::VolumeRow;
+use super::volumes::{InModes, VolumeRow};
 use crate::Vec3;
-use crate::contact::{Contacts, Detector};
+use crate::contact::{Contacts, Detector, Stride};
 use crate::sim::model::Model;
 use crate::sim::state::{KindState, State};
 
@@ -70,11 +70,15 @@ pub struct ContactScratch {
     pub(super) mobility: Mobility,
     /// Volumes to keep.
     pub(super) volumes: Vec<VolumeRow>,
+    /// What their gradients are in modes, where cells move by them.
+    pub(super) volume_modes: Vec<InModes>,
     /// Atoms and axes that are held.
     pub(super) held: Vec<(u32, u32)>,
     /// Rows that are inside, and the pushes that mend them, pN.
     pub(super) deep: Vec<(u32, f64)>,
     pub(super) momentum: Momentum,
+    /// How bodies move in the step.
+    pub(super) strides: Vec<Stride>,
     /// Sweeps of the last projection.
     pub sweeps: u32,
 }
@@ -114,6 +118,7 @@ impl ContactScratch {
         self.rows.clear();
         self.pulls.clear();
         self.volumes.clear();
+        self.volume_modes.clear();
         self.held.clear();
         self.law.poison();
         let forces = [&mut self.forces.carried, &mut self.forces.live];
@@ -125,6 +130,7 @@ impl ContactScratch {
         self.mobility.clear(false);
         self.relief.fill(f64::NAN);
         self.momentum.poison();
+        self.strides.clear();
         self.sweeps = u32::MAX;
     }
 }

@@ -214,6 +214,10 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
                 gap = map(|i| gap[i] + by_modes[i]);
             }
             let new = narrow(&turn(row, &gap, &force, &wide(pull.carried), dt));
+            // What is open, or at rest, has nothing to write: no force changes, nor did one.
+            if new == pull.force && pull.change == [0.0; 3] && pull.direction == [0.0; 3] {
+                continue;
+            }
             let found = wide(new);
             let step = map(|i| found[i] - force[i]);
             push(row, weights, &step, moved);

@@ -9,7 +9,7 @@ use super::volumes::{VolumeRow, sweep_volumes};
 use crate::Vec3;
 use crate::geometry::icosphere;
 use crate::mechanics::integrator::Order;
-use crate::mechanics::modes::{MODES, Modes};
+use crate::mechanics::modes::Modes;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::random::{Purpose, Stream};
 
@@ -45,7 +45,7 @@ fn scene(seed: u64) -> (Vec<V4>, Vec<Row>, Vec<Pull>) {
         let sticks = count % 4 > 0;
         rows.push(Row {
             atoms,
-            coordinates: [u, v],
+            coordinates: [u as f32, v as f32],
             normal_and_gap: [normal.x as f32, normal.y as f32, normal.z as f32, (0.05 * number(&mut dice)) as f32],
             least: if sticks { -0.3 } else { 0.0 },
             shear: if count % 4 > 1 { 0.2 } else { 0.0 },
@@ -135,18 +135,18 @@ fn a_sweep_over_volumes_meets_every_linear_target() {
     let volume = |first: usize, end: usize, offset: f64| {
         let squared: f64 = gradient[first..end].iter().flatten().map(|g| g * g).sum();
         let (inverse, swelling) = (1.0 / (0.2 * squared), 0.2 * 0.2 * squared);
-        VolumeRow { first, end, offset, inverse, mobility: 0.2, swelling, body: 0, modes: [[0.0; 4]; MODES] }
+        VolumeRow { first, end, offset, inverse, mobility: 0.2, swelling, body: 0 }
     };
     let volumes = [volume(0, 25, 0.3), volume(25, 40, -0.1)];
     let mut change = Change::default();
-    sweep_volumes(&volumes, &gradient, &mut moved, &mut Mobility::default(), &mut change);
+    sweep_volumes((&volumes, &[]), &gradient, &mut moved, &mut Mobility::default(), &mut change);
     for volume in &volumes {
         let parts = gradient[volume.first..volume.end].iter().zip(&moved[volume.first..volume.end]);
         let along: f64 = parts.map(|(g, d)| (0..3).map(|axis| g[axis] * d[axis]).sum::<f64>()).sum();
         assert!((along + volume.offset).abs() < 1e-13, "{along} and {}", volume.offset);
     }
     let (mut again, before) = (Change::default(), moved.clone());
-    sweep_volumes(&volumes, &gradient, &mut moved, &mut Mobility::default(), &mut again);
+    sweep_volumes((&volumes, &[]), &gradient, &mut moved, &mut Mobility::default(), &mut again);
     assert!(again.largest < 1e-13 * change.largest.max(1.0), "nothing is left: {again:?}");
     assert!(moved.iter().zip(&before).all(|(now, before)| now[3] == before[3]), "mobilities stay");
 }
@@ -252,10 +252,9 @@ fn a_sweep_by_modes_brings_volumes_to_their_targets() {
         mobility: response.rest,
         swelling: 1.0,
         body: 0,
-        modes: parts,
     };
     let mut moved = vec![[0.0, 0.0, 0.0, response.rest]; 84];
-    sweep_volumes(&[volume], &gradient, &mut moved, &mut mobility, &mut Change::default());
+    sweep_volumes((&[volume], &[parts]), &gradient, &mut moved, &mut mobility, &mut Change::default());
     let displaced = |atom: usize| {
         Vec3::new(moved[atom][0], moved[atom][1], moved[atom][2]) + mobility.of_atom(0, atom, positions[atom])
     };

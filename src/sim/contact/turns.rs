@@ -6,6 +6,8 @@
 
 use rayon::prelude::*;
 
+use super::together::Together;
+
 /// Pairs that take turns.
 const SIDE_BY_SIDE: usize = 8;
 
@@ -18,18 +20,24 @@ const SHARED_FROM: usize = 4096;
 /// Rows that a thread takes at once, at least.
 const ROWS_PER_JOB: u32 = 256;
 
-/// Rows whose bodies a thread looks up at once, at least.
+/// Rows whose bodies a thread looks up, bodies whose rows it sorts, and groups of pairs that it gives turns at once, at least.
 const KEYS_PER_JOB: usize = 2048;
+const BODIES_PER_JOB: usize = 64;
+const GROUPS_PER_JOB: usize = 64;
 
 /// The order of the sweeps, and what is needed to find it.
 #[derive(Debug, Clone, Default)]
 pub struct Turns {
     /// The turn of each row.
     turn_of: Vec<u32>,
-    /// Pairs of cells with the numbers of their rows.
-    rows: Vec<(u64, u32)>,
+    /// For the smaller body of each row after the other the larger one, and the number of the row: ascending, so that the rows of a pair stand together.
+    rows: Vec<u64>,
+    /// Where those of each body end.
+    ends: Vec<u32>,
     /// Pairs: colour, first row in `rows` and one behind the last.
     pairs: Vec<(u32, u32, u32)>,
+    /// Pairs that take turns: the first of them, one behind the last, and their first turn.
+    groups: Vec<(u32, u32, u32)>,
     /// Of each cell the colours that it has.
     taken: Vec<u64>,
     /// What has been put where it belongs.
@@ -43,28 +51,91 @@ pub struct Turns {
 impl Turns {
     /// Finds the order of so many rows, each between two bodies.
     pub fn find(&mut self, count: usize, between: impl Fn(usize) -> [u32; 2] + Sync, bodies: usize) {
-        let key = |[a, b]: [u32; 2]| u64::from(a.min(b)) << 32 | u64::from(a.max(b));
-        self.rows.resize(count, (0, 0));
-        let rows = self.rows.par_iter_mut().enumerate().with_min_len(KEYS_PER_JOB);
-        rows.for_each(|(row, known)| *known = (key(between(row)), row as u32));
-        self.rows.par_sort_unstable();
+        self.turn_of.resize(count, 0);
+        self.sort_rows(between, bodies);
         self.colour_pairs(bodies);
         // Pairs with as many rows stay side by side longest.
         self.pairs.par_sort_unstable_by_key(|&(colour, first, end)| (colour, end - first, first));
-        self.turn_of.resize(count, 0);
+        self.group_pairs(Self::are_many(count));
+        let (pairs, rows, turn_of) = (&self.pairs, &self.rows, Together::new(&mut self.turn_of));
+        let groups = self.groups.par_iter().with_min_len(GROUPS_PER_JOB);
+        groups.for_each(|&(first, end, mut next)| {
+            let group = &pairs[first as usize..end as usize];
+            let longest = group.iter().map(|&(_, first, end)| end - first).max().unwrap_or(0);
+            for turn in 0..longest {
+                for &(_, first, _) in group.iter().filter(|&&(_, first, end)| first + turn < end) {
+                    // SAFETY: each row is in one pair, and that in one group.
+                    unsafe { *turn_of.item(number(rows[(first + turn) as usize])) = next };
+                    next += 1;
+                }
+            }
+        });
+    }
+
+    /// Sorts the rows by the pairs of bodies that they are between: by the smaller of these first, which is counted.
+    fn sort_rows(&mut self, between: impl Fn(usize) -> [u32; 2] + Sync, bodies: usize) {
+        let Self { turn_of, rows, ends, .. } = self;
+        let smaller = turn_of.par_iter_mut().enumerate().with_min_len(KEYS_PER_JOB);
+        smaller.for_each(|(row, smaller)| {
+            let [one, other] = between(row);
+            *smaller = one.min(other);
+        });
+        ends.clear();
+        ends.resize(bodies + 1, 0);
+        turn_of.iter().for_each(|body| ends[*body as usize + 1] += 1);
+        (0..bodies).for_each(|body| ends[body + 1] += ends[body]);
+        rows.resize(turn_of.len(), 0);
+        for (row, body) in (0..).zip(&*turn_of) {
+            let end = &mut ends[*body as usize];
+            rows[*end as usize] = row;
+            *end += 1;
+        }
+        // By now the end of each is where the next one begins.
+        ends.pop();
+        let (ends, rows) = (&*ends, Together::new(rows));
+        (0..bodies).into_par_iter().with_min_len(BODIES_PER_JOB).for_each(|body| {
+            let start = if body == 0 { 0 } else { ends[body - 1] };
+            // SAFETY: each body has rows of its own.
+            let own = unsafe { rows.part(start as usize..ends[body] as usize) };
+            for row in &mut *own {
+                let [one, other] = between(number(*row));
+                *row |= u64::from(one.max(other)) << 32;
+            }
+            own.sort_unstable();
+        });
+    }
+
+    /// Lists the pairs of bodies, no body twice in a colour.
+    fn colour_pairs(&mut self, bodies: usize) {
+        self.taken.clear();
+        self.taken.resize(bodies, 0);
+        self.pairs.clear();
+        let mut first = 0;
+        for (body, &end) in self.ends.iter().enumerate() {
+            for pair in self.rows[first as usize..end as usize].chunk_by(|one, other| one >> 32 == other >> 32) {
+                let other = (pair[0] >> 32) as usize;
+                let colour = (self.taken[body] | self.taken[other]).trailing_ones().min(COLOURS - 1);
+                self.taken[body] |= 1 << colour;
+                self.taken[other] |= 1 << colour;
+                let end = first + pair.len() as u32;
+                self.pairs.push((colour, first, end));
+                first = end;
+            }
+        }
+    }
+
+    /// Groups the pairs of a colour that take turns, and the groups to jobs.
+    fn group_pairs(&mut self, is_shared: bool) {
+        self.groups.clear();
         self.jobs.clear();
         self.colours.clear();
-        let is_shared = Self::are_many(count);
-        let mut next = 0;
+        let (mut next, mut pair) = (0, 0);
         for colour in self.pairs.chunk_by(|one, other| one.0 == other.0) {
             for group in colour.chunks(SIDE_BY_SIDE) {
-                let longest = group.iter().map(|&(_, first, end)| end - first).max().unwrap_or(0);
-                for turn in 0..longest {
-                    for &(_, first, _) in group.iter().filter(|&&(_, first, end)| first + turn < end) {
-                        self.turn_of[self.rows[(first + turn) as usize].1 as usize] = next;
-                        next += 1;
-                    }
-                }
+                let end = pair + group.len() as u32;
+                self.groups.push((pair, end, next));
+                next += group.iter().map(|&(_, first, end)| end - first).sum::<u32>();
+                pair = end;
                 let begun = self.jobs.last().copied().unwrap_or(0);
                 if is_shared && colour[0].0 + 1 < COLOURS && next - begun >= ROWS_PER_JOB {
                     self.jobs.push(next);
@@ -78,23 +149,6 @@ impl Turns {
         end_job(&mut self.jobs, next);
         if !is_shared {
             self.colours.push(self.jobs.len() as u32);
-        }
-    }
-
-    /// Lists the pairs of bodies, no body twice in a colour.
-    fn colour_pairs(&mut self, bodies: usize) {
-        self.taken.clear();
-        self.taken.resize(bodies, 0);
-        self.pairs.clear();
-        let mut first = 0;
-        for pair in self.rows.chunk_by(|one, other| one.0 == other.0) {
-            let [a, b] = [pair[0].0 >> 32, pair[0].0 & 0xffff_ffff].map(|body| body as usize);
-            let colour = (self.taken[a] | self.taken[b]).trailing_ones().min(COLOURS - 1);
-            self.taken[a] |= 1 << colour;
-            self.taken[b] |= 1 << colour;
-            let end = first + pair.len() as u32;
-            self.pairs.push((colour, first, end));
-            first = end;
         }
     }
 
@@ -159,6 +213,11 @@ impl Turns {
             }
         }
     }
+}
+
+/// The number of a row.
+fn number(row: u64) -> usize {
+    (row & 0xffff_ffff) as usize
 }
 
 /// Ends the last job after so many turns, if it has any.

@@ -28,16 +28,18 @@ pub struct VolumeRow {
     pub column: Option<usize>,
     /// Its cell.
     pub body: usize,
-    /// What its gradient is in the modes of the cell, µm².
-    pub modes: [V4; MODES],
 }
+
+/// What the gradient of a volume is in the modes of its cell, µm².
+pub type InModes = [V4; MODES];
 
 /// Volumes that a thread takes at once.
 const VOLUMES_PER_JOB: usize = 64;
 
-/// Puts all volumes back to first order, eq. (adhesion.6); `gradient` are those of the volumes, µm².
+/// Puts all volumes back to first order, eq. (adhesion.6); `gradient` are those of the volumes, µm², and `modes` what these are in modes, where
+/// cells move by them.
 pub fn sweep_volumes(
-    volumes: &[VolumeRow],
+    (volumes, modes): (&[VolumeRow], &[InModes]),
     gradient: &[[f64; 3]],
     moved: &mut [V4],
     mobility: &mut Mobility,
@@ -46,52 +48,41 @@ pub fn sweep_volumes(
     let Mobility { has_modes, kinds, bodies, moved: motions, changes, columns, .. } = mobility;
     let columns = &columns.values[..];
     let (moved, motions) = (Together::new(moved), Together::new(motions));
-    let sweep = |volumes: &[VolumeRow], change: &mut Change| {
-        let (moved, motions) = (&moved, &motions);
+    let sweep = |first: usize, volumes: &[VolumeRow], change: &mut Change| {
+        let cells = Cells { gradient, columns, kinds, bodies, moved: &moved, motions: &motions };
         if *has_modes {
-            Arch::new().dispatch(SweepVolumes::<true> {
-                volumes,
-                gradient,
-                columns,
-                kinds,
-                bodies,
-                moved,
-                motions,
-                change,
-            });
+            let modes = &modes[first..first + volumes.len()];
+            Arch::new().dispatch(SweepVolumes::<true> { volumes, modes, cells, change });
         } else {
-            Arch::new().dispatch(SweepVolumes::<false> {
-                volumes,
-                gradient,
-                columns,
-                kinds,
-                bodies,
-                moved,
-                motions,
-                change,
-            });
+            Arch::new().dispatch(SweepVolumes::<false> { volumes, modes: &[], cells, change });
         }
     };
     if volumes.len() <= VOLUMES_PER_JOB {
-        return sweep(volumes, change);
+        return sweep(0, volumes, change);
     }
     changes.clear();
     changes.resize(volumes.len().div_ceil(VOLUMES_PER_JOB), Change::default());
     let jobs = changes.par_iter_mut().zip(volumes.par_chunks(VOLUMES_PER_JOB));
-    jobs.for_each(|(change, volumes)| sweep(volumes, change));
+    jobs.enumerate().for_each(|(job, (change, volumes))| sweep(job * VOLUMES_PER_JOB, volumes, change));
     let worst = change.worst;
     changes.iter().for_each(|of_job| change.add(of_job));
     change.worst = worst;
 }
 
-struct SweepVolumes<'a, const BY_MODES: bool> {
-    volumes: &'a [VolumeRow],
+/// What volumes move.
+struct Cells<'a> {
     gradient: &'a [[f64; 3]],
     columns: &'a [V4],
     kinds: &'a [(u32, OfModes)],
     bodies: &'a [Body],
     moved: &'a Together<'a, V4>,
     motions: &'a Together<'a, Motion>,
+}
+
+struct SweepVolumes<'a, const BY_MODES: bool> {
+    volumes: &'a [VolumeRow],
+    modes: &'a [InModes],
+    cells: Cells<'a>,
     change: &'a mut Change,
 }
 
@@ -100,8 +91,9 @@ impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { volumes, gradient, columns, kinds, bodies, moved, motions, change } = self;
-        for volume in volumes {
+        let Self { volumes, modes, cells, change } = self;
+        let Cells { gradient, columns, kinds, bodies, moved, motions } = cells;
+        for (number, volume) in volumes.iter().enumerate() {
             let gradient = &gradient[volume.first..volume.end];
             // SAFETY: each volume has atoms of its own.
             let moved = unsafe { moved.part(volume.first..volume.end) };
@@ -115,7 +107,7 @@ impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
                 let mut by_modes = [0.0; 4];
                 // SAFETY: each volume has a cell of its own.
                 let motion = unsafe { motions.item(volume.body) };
-                for (along, part) in motion.along.iter().zip(&volume.modes) {
+                for (along, part) in motion.along.iter().zip(&modes[number]) {
                     by_modes = map(|i| by_modes[i] + part[i] * along[i]);
                 }
                 missing += (by_modes[0] + by_modes[1]) + by_modes[2];
@@ -133,7 +125,7 @@ impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
             if BY_MODES {
                 // SAFETY: as above.
                 let (response, motion) = (&kinds[bodies[volume.body].kind()].1, unsafe { motions.item(volume.body) });
-                for ((along, part), response) in motion.along.iter_mut().zip(&volume.modes).zip(response) {
+                for ((along, part), response) in motion.along.iter_mut().zip(&modes[number]).zip(response) {
                     let share = pressure * response;
                     *along = map(|i| along[i] + share * part[i]);
                 }

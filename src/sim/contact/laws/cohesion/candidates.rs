@@ -104,6 +104,20 @@ fn least_opening(from: [f64; 3], n: [f64; 3], m: [f64; 3], radius: f64) -> f64 {
     SURELY * if to_sphere > to_plane { to_sphere } else { to_plane }
 }
 
+/// The least opening, µm, that a facet can have to any point of another one, as seen from the side of the other to which n looks.
+pub fn least_opening_between(other: &Facet, n: Vec3, facet: &Facet) -> f64 {
+    let (from, along) = (other.middle - facet.middle, n.dot(&facet.normal));
+    // Points of the other lie in its plane: they are all as high over the middle of the facet along n, and stray along its normal by so much.
+    let strays = other.radius * (1.0 - along * along).max(0.0).sqrt();
+    let (apart, rise) = ((from.norm() - other.radius).max(0.0), facet.radius - from.dot(&n));
+    let outside = (apart * apart - facet.radius * facet.radius).max(0.0);
+    let to_sphere = if rise > 0.0 { outside / rise } else { f64::INFINITY };
+    let height = from.dot(&facet.normal);
+    let before = 2.0 * (height - strays).max(0.0) / (1.0 - along).max(f64::MIN_POSITIVE);
+    let behind = 2.0 * (-height - strays - BEHIND * facet.radius).max(0.0) / (1.0 + along).max(f64::MIN_POSITIVE);
+    SURELY * to_sphere.max(before).max(behind)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,5 +144,29 @@ mod tests {
             assert!(opening.width < 0.0 && bound <= 1e-9 || bound <= opening.width, "{bound} {opening:?}");
         }
         assert!(seen > 5000 && near > seen / 4, "bounds of {near} of {seen} facets tell something");
+    }
+
+    #[test]
+    fn no_point_of_a_facet_is_nearer_to_another_than_their_bound() {
+        let mut stream = Stream::new(12, Purpose::Placement, 0, 0);
+        let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
+        let (mut seen, mut near) = (0, 0);
+        for _ in 0..20_000 {
+            let mut corners = || [0, 1, 2].map(|_| Vec3::new(number(), number(), number()));
+            let (own, there) = (corners(), corners());
+            let own = own.map(|corner| 0.5 * corner + Vec3::new(1.0, 0.0, 0.0));
+            let (facet, other) = (Facet::of(&there), Facet::of(&own));
+            let bound = least_opening_between(&other, other.normal, &facet);
+            let mut widths = Vec::new();
+            for [u, v] in [[0.01, 0.01], [0.98, 0.01], [0.01, 0.98], [0.3, 0.3]] {
+                let x = (1.0 - u - v) * own[0] + u * own[1] + v * own[2];
+                widths.extend(opening_to_facet(x, other.normal, &there, facet.normal).map(|found| found.0.width));
+            }
+            let Some(least) = widths.into_iter().reduce(f64::min) else { continue };
+            seen += 1;
+            near += usize::from(bound > 0.0);
+            assert!(least < 0.0 && bound <= 1e-9 || bound <= least, "{bound} {least}");
+        }
+        assert!(seen > 5000 && near > seen / 4, "bounds of {near} of {seen} pairs tell something");
     }
 }

@@ -1,7 +1,7 @@
 //! What attracts each part of a surface most.
 
 use super::super::super::vectors::gather_corners;
-use super::candidates::{Candidates, Facet};
+use super::candidates::{Candidates, Facet, least_opening_between};
 use super::patch::{Partner, Patch, depth_of_well, width_of_well};
 use super::table::CohesionTable;
 use crate::Vec3;
@@ -113,7 +113,7 @@ impl Seen<'_> {
     /// Finds what of the facets near one of a body may attract a point of it, be it from behind where it `has_two` sides.
     fn look_around(&self, body: u32, (facet, has_two): (u32, bool), near: &[u32], around: &mut Around) {
         let (scene, kinds) = (self.scene, self.table.points.len());
-        let Facet { normal, middle, radius } = self.facets[facet as usize];
+        let own = self.facets[facet as usize];
         let kind = scene.bodies[body as usize].shape as usize;
         let factor = self.controls.adhesion_of(body as usize);
         let Around { candidates, bodies } = around;
@@ -129,16 +129,10 @@ impl Seen<'_> {
             let cohesive = self.table.between[kind * kinds + there.shape as usize];
             let strength = 0.5 * factor * self.controls.adhesion_of(other as usize) * cohesive.strength;
             let range = cohesive.range();
-            // What touches a ball on a point of the facet that is no wider than the range lies in one around them all.
-            let half = 0.5 * range;
-            let centre = middle + half * normal;
-            let is_met = |seen: &Facet, centre: Vec3| {
-                let reach = half + radius + seen.radius;
-                (seen.middle - centre).norm_squared() <= reach * reach
-            };
             for &facet in facets {
                 let seen = self.facets[facet as usize];
-                if is_met(&seen, centre) || has_two && is_met(&seen, middle - half * normal) {
+                let is_met = |n: Vec3| least_opening_between(&own, n, &seen) < range;
+                if is_met(own.normal) || has_two && is_met(-own.normal) {
                     candidates.push(facet, &seen);
                 }
             }
@@ -213,12 +207,16 @@ impl Seen<'_> {
                 best = Some((opening.width, Partner::Facet(atoms, feature)));
             }
         };
-        // What is surely farther than the best so far is passed over.
-        if let Some(known) = known.filter(|known| bounds[*known] < widest) {
-            look(known, &mut widest);
+        // What is surely farther than the best so far is passed over: so what is likely the best is looked at first.
+        let likely = numbers.clone().min_by(|one, other| bounds[*one].total_cmp(&bounds[*other]));
+        let likely = likely.filter(|likely| Some(*likely) != known);
+        for number in [known, likely].into_iter().flatten() {
+            if bounds[number] < widest {
+                look(number, &mut widest);
+            }
         }
         for number in numbers {
-            if bounds[number] < widest && Some(number) != known {
+            if bounds[number] < widest && Some(number) != known && Some(number) != likely {
                 look(number, &mut widest);
             }
         }
