@@ -241,6 +241,7 @@ mod tests {
 
     #[test]
     fn membranes_whose_shear_creeps_in_contact_are_told() {
+        const PENALTY: &str = "[contact]\nmodel = \"penalty\"\npenalty = \"100 pN/um\"\n";
         let skin = |area: &str, contact: &str| {
             said(&format!(
                 "[cells.ball]\nmesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 1 }}\nmechanics = {{ drag = \"20 pN s/um\", \
@@ -249,8 +250,13 @@ mod tests {
             .len()
         };
         assert_eq!(
-            [skin("500 pN/um", ""), skin("500 pN/um", "[contact]\n"), skin("6 pN/um", "[contact]\n")],
-            [0, 1, 0]
+            [
+                skin("500 pN/um", ""),
+                skin("500 pN/um", "[contact]\n"),
+                skin("500 pN/um", PENALTY),
+                skin("6 pN/um", PENALTY)
+            ],
+            [0, 0, 1, 0]
         );
     }
 

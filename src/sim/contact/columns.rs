@@ -105,6 +105,12 @@ impl Columns {
         self.spans.clear();
     }
 
+    /// Writes NaN over all numbers and forgets who moves by them.
+    pub fn poison(&mut self) {
+        self.begin(std::iter::empty());
+        self.values.as_flattened_mut().fill(f64::NAN);
+    }
+
     /// Whether the cells of a kind move by columns.
     pub fn are_of(&self, kind: usize) -> bool {
         self.of_kind[kind]
