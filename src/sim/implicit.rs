@@ -89,20 +89,35 @@ fn advance_stages(
         let targets = Targets::of(model, kind, [from.time, from.time + dt]);
         let step = Step { model, kind, forces, solver, targets, order, start: from.time, dt };
         let (length, lanes) = (kind.block_len(), kind.lanes);
+        let blocks = now.blocks(kind);
         if order == Order::Second && stages.len() == 1 {
             w.increments.resize(now.positions.len(), 0.0);
         }
-        let KindScratch { increments, energy, volume, target, pressure, touch, .. } = w;
+        // Contacts move cells by their factors; alone each has it only while it is made a step with.
+        let of_block = kind.tangent.as_ref().map_or(0, |tangent| tangent.len(lanes));
+        let are_kept = model.contact.is_some() && solver.own.is_empty();
+        w.own_factors.resize(if are_kept { of_block * blocks } else { 0 }, 0.0);
+        let KindScratch { increments, energy, volume, target, pressure, touch, own_factors, .. } = w;
         let error = (next.positions.par_chunks_exact_mut(length))
             .zip(now.rest_volumes.par_chunks_exact(lanes).zip(now.positions.par_chunks_exact(length)))
             .zip(volume.par_chunks_exact_mut(lanes).zip(target.par_chunks_exact_mut(lanes)))
             .zip(energy.par_chunks_exact_mut(lanes).zip(pressure.par_chunks_exact_mut(lanes)))
-            .zip(each_or_none(increments, length, now.blocks(kind)).zip(touch))
+            .zip(
+                each_or_none(increments, length, blocks)
+                    .zip(each_or_none(own_factors, of_block.max(1), blocks))
+                    .zip(touch),
+            )
             .enumerate()
-            .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), (kept, touch)))| {
+            .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), ((kept, own), touch)))| {
                 let mut block = Block { number, x, rest, start, volume, target, energy, pressure, touch };
-                buffers
-                    .enter_with_factor(length, |buffer, factor| step.advance(&mut block, stages, kept, buffer, factor))
+                buffers.enter_with_factor(length, |buffer, spare| {
+                    let (factor, has_factor) = match own {
+                        Some(own) => (own, stages[0] == Stage::Second),
+                        None => (spare, false),
+                    };
+                    let system = step.system(&block, factor, has_factor);
+                    step.advance(&mut block, &system, stages, kept, buffer)
+                })
             })
             .reduce(|| 0.0, larger);
         worst = larger(worst, error / kind.edge);
@@ -140,8 +155,8 @@ struct Block<'a> {
 }
 
 impl Step<'_> {
-    /// The linear system of the cells of a block; `factor` is scratch for one of their own.
-    fn system<'b>(&'b self, block: &Block, factor: &'b mut [f64]) -> System<'b> {
+    /// The linear system of the cells of a block; `factor` takes one of their own, or has it from the first stage.
+    fn system<'b>(&'b self, block: &Block, factor: &'b mut [f64], has_factor: bool) -> System<'b> {
         let (kind, dt) = (self.kind, self.dt);
         let Some(tangent) = &kind.tangent else { return System::Shared(self.solver) };
         let mobility = dt / kind.drag;
@@ -156,7 +171,9 @@ impl Step<'_> {
             held: &kind.held,
         };
         let factor = &mut factor[..tangent.len(kind.lanes)];
-        tangent.factor(&kind.forces, kind.lanes, block.start, scales, factor);
+        if !has_factor {
+            tangent.factor(&kind.forces, kind.lanes, block.start, scales, factor);
+        }
         System::Own { mobility, tangent, factor, lanes: (kind.lanes, None) }
     }
 
@@ -165,18 +182,17 @@ impl Step<'_> {
     fn advance(
         &self,
         block: &mut Block,
+        system: &System,
         stages: &[Stage],
         mut kept: Option<&mut [f64]>,
         [y, first, gradient, swell, spare, spare2]: [&mut [f64]; 6],
-        factor: &mut [f64],
     ) -> f64 {
         let (kind, end) = (self.kind, self.start + self.dt);
-        let system = self.system(block, factor);
         if let Some(targets) = &self.targets {
             targets.on_block(block.start, block.rest, gradient, block.volume, block.target);
             // The displacement that a unit of pressure causes, eq. (step.5).
             swell.copy_from_slice(gradient);
-            solve_block(kind, kind.lanes, &system, block.start, swell, spare, spare2);
+            solve_block(kind, kind.lanes, system, block.start, swell, spare, spare2);
         }
         let mut error = 0.0;
         for &stage in stages {
@@ -188,7 +204,7 @@ impl Step<'_> {
             if stage == Stage::Second {
                 carry_pressure(kind, block.x, block.pressure, y, spare);
             }
-            self.solve(&system, block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
+            self.solve(system, block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
             block.go_on(stage, y, first);
             if stage == Stage::Second {
                 first.iter_mut().zip(&*y).for_each(|(first, y)| *first = 0.5 * (*first + y));

@@ -46,7 +46,7 @@ impl Kind {
     }
 
     /// Lets each cell have its own stiffness, eq. (step.10), where K overestimates the shear of a membrane too far. Not for cells that
-    /// others may touch: what contacts move is known for K, or for atoms that stand alone.
+    /// contacts move by the drag of their atoms alone.
     pub fn use_tangent(&mut self) {
         if self.has_soft_shear() {
             self.tangent = Some(Tangent::new(&self.forces, &self.rest.positions));

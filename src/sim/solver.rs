@@ -130,7 +130,8 @@ fn solve_axes(factors: &[Factor], lanes: usize, values: &mut [f64], scratch: &mu
     }
 }
 
-/// Solves A Y = F for a block of `lanes` cells with rigid motion taken out, eq. (step.4); F is replaced by Y.
+/// Solves A Y = F for a block of `lanes` cells, or of as many right sides of one cell that has a stiffness of its own, with rigid motion
+/// taken out, eq. (step.4); F is replaced by Y.
 pub fn solve_block(
     kind: &Kind,
     lanes: usize,
@@ -143,6 +144,8 @@ pub fn solve_block(
     let solve = |y: &mut [f64], scratch: &mut [f64]| match *system {
         System::Shared(solver) => solve_axes(&solver.factors, lanes, y, scratch),
         System::Own { tangent, factor, lanes: (all, Some(lane)), .. } => tangent.solve_lane((all, lane), factor, y),
+        // Several right sides of a cell that stands alone.
+        System::Own { tangent, factor, lanes: (1, None), .. } if lanes > 1 => tangent.solve_columns(factor, y),
         System::Own { tangent, factor, lanes: (all, None), .. } => tangent.solve(all, factor, y),
     };
     solve_with(solve, kind, (lanes, system.mobility()), x, y, spare, spare2);

@@ -4,7 +4,9 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
+use super::kind::Kind;
 use super::model::Model;
+use crate::mechanics::lanes::LANES;
 
 /// Buffers of a thread.
 const ARRAYS: usize = 6;
@@ -26,7 +28,9 @@ impl Clone for ThreadBuffers {
 impl ThreadBuffers {
     /// Makes buffers for all threads, large enough for every block of a model. Nothing is allocated where they are there.
     pub fn suit(&mut self, model: &Model) {
-        let longest = model.kinds.iter().map(|kind| kind.block_len()).max().unwrap_or(0);
+        // Cells that have a stiffness of their own are solved for several right sides at once.
+        let length = |kind: &Kind| if kind.tangent.is_some() { 3 * kind.atoms() * LANES } else { kind.block_len() };
+        let longest = model.kinds.iter().map(length).max().unwrap_or(0);
         let factor = model.kinds.iter().map(|kind| kind.tangent.as_ref().map_or(0, |tangent| tangent.len(kind.lanes)));
         let factor = factor.max().unwrap_or(0);
         self.0.resize_with(rayon::current_num_threads().max(self.0.len()), Mutex::default);

@@ -56,6 +56,8 @@ pub struct KindScratch {
     pub pressure: Vec<f64>,
     /// Target volume of each cell, padded, µm³.
     pub target: Vec<f64>,
+    /// The factors of cells that have a stiffness of their own, block by block, where contacts need them in the attempt; else empty.
+    pub own_factors: Vec<f64>,
     /// One entry a block: contact with planes.
     pub touch: Vec<TouchScratch>,
     /// One entry a block: the thorough projection.
@@ -89,6 +91,7 @@ impl KindScratch {
             left: Vec::new(),
             pressure: Vec::new(),
             target: Vec::new(),
+            own_factors: Vec::new(),
             touch: Vec::new(),
             project: Vec::new(),
             stiffness_shape: Vec::new(),
@@ -160,6 +163,7 @@ impl KindScratch {
             &mut self.left,
             &mut self.pressure,
             &mut self.target,
+            &mut self.own_factors,
         ] {
             array.fill(f64::NAN);
         }

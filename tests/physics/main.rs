@@ -17,6 +17,7 @@ mod modulus;
 mod motility;
 mod ordering;
 mod own_stiffness;
+mod own_stiffness_touching;
 mod population;
 mod soft_cells;
 mod sphere;

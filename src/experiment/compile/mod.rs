@@ -129,7 +129,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     };
     let integrator = steps::integrator(document, &mut kinds)?;
     let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach));
-    if contact.is_none() {
+    if contact.as_ref().is_none_or(|contact| contact.law.moves_as_steps()) {
         kinds.iter_mut().for_each(Kind::use_tangent);
     }
     let model = Model {

@@ -34,7 +34,8 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
         notices.extend(model.kinds.iter().filter_map(soft_walkers));
         notices.extend((0..model.kinds.len()).filter_map(|kind| spreading_shape(model, kind)));
         let is_implicit = matches!(model.integrator.method, Method::Implicit { .. });
-        notices.extend(model.kinds.iter().filter(|kind| is_implicit && kind.has_soft_shear()).map(creeping_shear));
+        let creeps = |kind: &&Kind| is_implicit && kind.tangent.is_none() && kind.has_soft_shear();
+        notices.extend(model.kinds.iter().filter(creeps).map(creeping_shear));
     } else if may_meet(model, centres) {
         let words = "nothing keeps cells apart: without [contact] they pass through each other; \
                      add that table, which may be empty, if they are to touch";
@@ -147,11 +148,12 @@ fn spreading_shape(model: &Model, number: usize) -> Option<String> {
     })
 }
 
-/// That cells of a kind creep: where they may touch each other nothing tells the implicit step how little they resist shear.
+/// That cells of a kind creep: where contacts move each atom by its drag alone nothing tells the implicit step how little they resist shear.
 fn creeping_shear(kind: &Kind) -> String {
     format!(
-        "the membrane of type `{}` resists dilation so much more than shear that in scenes with [contact] its cells come to rest too slowly at \
-         the usual tolerance, and nothing in the run tells: compare with `tolerance = 1e-5` in run.integrator, or give it a lower `area`",
+        "the membrane of type `{}` resists dilation so much more than shear that under this `model` of [contact] its cells come to rest too slowly at \
+         the usual tolerance, and nothing in the run tells: take the model \"cohesion\", compare with `tolerance = 1e-5` in run.integrator, or \
+         give it a lower `area`",
         kind.name
     )
 }
@@ -243,6 +245,7 @@ mod tests {
 
     #[test]
     fn membranes_whose_shear_creeps_in_contact_are_told() {
+        const PENALTY: &str = "[contact]\nmodel = \"penalty\"\npenalty = \"100 pN/um\"\n";
         let skin = |area: &str, contact: &str| {
             said(&format!(
                 "[cells.ball]\nmesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 1 }}\nmechanics = {{ drag = \"20 pN s/um\", \
@@ -251,8 +254,13 @@ mod tests {
             .len()
         };
         assert_eq!(
-            [skin("500 pN/um", ""), skin("500 pN/um", "[contact]\n"), skin("6 pN/um", "[contact]\n")],
-            [0, 1, 0]
+            [
+                skin("500 pN/um", ""),
+                skin("500 pN/um", "[contact]\n"),
+                skin("500 pN/um", PENALTY),
+                skin("6 pN/um", PENALTY)
+            ],
+            [0, 0, 1, 0]
         );
     }
 

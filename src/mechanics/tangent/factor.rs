@@ -1,6 +1,6 @@
 //! Cholesky's factor of a matrix of 3 × 3 blocks, in the pattern's order, of several cells side by side.
 
-use super::matrix::{Block, Blocks, Seen};
+use super::matrix::{Block, BlockSource, Blocks};
 use super::pattern::Pattern;
 use crate::mechanics::lanes::{Real, V3, VectorsMut};
 
@@ -26,8 +26,7 @@ pub fn factor<T: Real>(pattern: &Pattern, blocks: &mut Blocks<T>) {
                 debug_assert!(i > j || target == atom as usize);
                 let [a, b, c] = blocks.get(column.first + i);
                 let [p, q, r] = blocks.get(target);
-                let product = |row: V3<T>| V3 { x: row.dot(right[0]), y: row.dot(right[1]), z: row.dot(right[2]) };
-                blocks.set(target, [p - product(a), q - product(b), r - product(c)]);
+                blocks.set(target, [p - products(&right, a), q - products(&right, b), r - products(&right, c)]);
             }
         }
     }
@@ -35,7 +34,7 @@ pub fn factor<T: Real>(pattern: &Pattern, blocks: &mut Blocks<T>) {
 
 /// Solves A Y = F in place with the factor.
 #[inline(always)]
-pub fn solve<T: Real>(pattern: &Pattern, factor: &Seen<T>, values: &mut VectorsMut<T>) {
+pub fn solve<T: Real>(pattern: &Pattern, factor: &impl BlockSource<T>, values: &mut VectorsMut<T>) {
     for column in pattern.columns() {
         let y = forward(&factor.get(column.atom), values.get(column.atom));
         values.set(column.atom, y);
@@ -59,14 +58,25 @@ pub fn solve<T: Real>(pattern: &Pattern, factor: &Seen<T>, values: &mut VectorsM
 #[inline(always)]
 fn root<T: Real>(token: T::Token, [a, b, c]: Block<T>) -> Block<T> {
     let (zero, one) = (T::constant(token, 0.0), T::constant(token, 1.0));
-    let pivot = |value: T, began: T| one / value.max(began * LEAST_PIVOT).sqrt();
-    let xx = pivot(a.x, a.x);
+    let xx = pivot(one, a.x, a.x);
     let yx = b.x * xx;
     let zx = c.x * xx;
-    let yy = pivot(b.y - yx * yx, b.y);
+    let yy = pivot(one, b.y - yx * yx, b.y);
     let zy = (c.y - zx * yx) * yy;
-    let zz = pivot(c.z - zx * zx - zy * zy, c.z);
+    let zz = pivot(one, c.z - zx * zx - zy * zy, c.z);
     [V3 { x: xx, y: zero, z: zero }, V3 { x: yx, y: yy, z: zero }, V3 { x: zx, y: zy, z: zz }]
+}
+
+/// The scalar products of a vector with the rows of a block. (A closure in its place is not compiled for wide registers.)
+#[inline(always)]
+fn products<T: Real>(rows: &Block<T>, v: V3<T>) -> V3<T> {
+    V3 { x: v.dot(rows[0]), y: v.dot(rows[1]), z: v.dot(rows[2]) }
+}
+
+/// One over the root of a pivot that began as this.
+#[inline(always)]
+fn pivot<T: Real>(one: T, value: T, began: T) -> T {
+    one / value.max(began * LEAST_PIVOT).sqrt()
 }
 
 /// L⁻¹ v for the factor of a block on the diagonal.

@@ -154,26 +154,64 @@ impl<'a, T: Real> Seen<'a, T> {
     pub fn new(token: T::Token, values: &'a [T::Raw], stride: usize, part: usize) -> Self {
         Self { token, values, stride, part }
     }
+}
 
+/// Blocks of a factor that is only read.
+pub trait BlockSource<T: Real> {
     /// A block.
+    fn get(&self, block: usize) -> Block<T>;
+}
+
+impl<T: Real> BlockSource<T> for Seen<'_, T> {
     #[inline(always)]
-    pub fn get(&self, block: usize) -> Block<T> {
+    fn get(&self, block: usize) -> Block<T> {
         read(self.token, self.values, self.stride, self.part, block)
+    }
+}
+
+/// Blocks of one cell, the same in all lanes.
+pub struct Spread<'a, T: Real> {
+    token: T::Token,
+    values: &'a [f64],
+}
+
+impl<'a, T: Real> Spread<'a, T> {
+    /// Sees the blocks of a cell that stands alone.
+    #[inline(always)]
+    pub fn new(token: T::Token, values: &'a [f64]) -> Self {
+        Self { token, values }
+    }
+}
+
+impl<T: Real> BlockSource<T> for Spread<'_, T> {
+    #[inline(always)]
+    fn get(&self, block: usize) -> Block<T> {
+        let [a, b, c, d, e, f, g, h, i] = self.values.as_chunks::<9>().0[block];
+        [V3::constant(self.token, [a, b, c]), V3::constant(self.token, [d, e, f]), V3::constant(self.token, [g, h, i])]
     }
 }
 
 /// A block of values. Where registers hold all lanes its nine numbers stand side by side and are looked up at once.
 #[inline(always)]
 fn read<T: Real>(token: T::Token, values: &[T::Raw], stride: usize, part: usize, block: usize) -> Block<T> {
-    let v = |x: T::Raw, y: T::Raw, z: T::Raw| V3 { x: T::load(token, x), y: T::load(token, y), z: T::load(token, z) };
     if stride == 1 {
         let [a, b, c, d, e, f, g, h, i] = values.as_chunks::<9>().0[block];
-        [v(a, b, c), v(d, e, f), v(g, h, i)]
+        [loaded(token, a, b, c), loaded(token, d, e, f), loaded(token, g, h, i)]
     } else {
         let slots = &values[9 * block * stride..9 * (block + 1) * stride];
-        let at = |k: usize| slots[k * stride + part];
-        [v(at(0), at(1), at(2)), v(at(3), at(4), at(5)), v(at(6), at(7), at(8))]
+        let mut rows = [V3::zero(token); 3];
+        for (k, row) in rows.iter_mut().enumerate() {
+            let at = 3 * k * stride + part;
+            *row = loaded(token, slots[at], slots[at + stride], slots[at + 2 * stride]);
+        }
+        rows
     }
+}
+
+/// A vector of three registers.
+#[inline(always)]
+fn loaded<T: Real>(token: T::Token, x: T::Raw, y: T::Raw, z: T::Raw) -> V3<T> {
+    V3 { x: T::load(token, x), y: T::load(token, y), z: T::load(token, z) }
 }
 
 /// A block by its columns.

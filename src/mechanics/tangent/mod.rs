@@ -74,10 +74,35 @@ impl Tangent {
         dispatch(lanes, Solve { pattern: &self.pattern, factor, values });
     }
 
+    /// Solves in place for [`LANES`] right sides of one cell with its factor.
+    pub fn solve_columns(&self, factor: &[f64], values: &mut [f64]) {
+        dispatch(LANES, SolveColumns { pattern: &self.pattern, factor, values });
+    }
+
     /// Solves in place for the cell of one lane of a block with the factor of all.
     pub fn solve_lane(&self, (lanes, lane): (usize, usize), factor: &[f64], values: &mut [f64]) {
         // Blocks of one lane are every so many-th number of all, as those of a part of a register's cells are.
         solve_part::<f64>(&self.pattern, (), factor, (lanes, lane), values, (1, 0));
+    }
+}
+
+/// Several right sides of one cell side by side.
+struct SolveColumns<'a> {
+    pattern: &'a Pattern,
+    /// The factor of the cell.
+    factor: &'a [f64],
+    values: &'a mut [f64],
+}
+
+impl BlockWork for SolveColumns<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<T: Real>(self, token: T::Token, stride: usize) {
+        let factor = matrix::Spread::<T>::new(token, self.factor);
+        let values = T::view_mut(token, self.values);
+        for part in 0..stride {
+            factor::solve(self.pattern, &factor, &mut VectorsMut::<T>::new(token, &mut *values, stride, part));
+        }
     }
 }
 
@@ -116,7 +141,12 @@ impl BlockWork for Make<'_> {
             let x = Vectors::<T>::new(token, x, stride, part);
             let mut blocks = Blocks::<T>::new(token, pattern, &mut *values, stride, part);
             blocks.clear();
-            forces.iter().filter(|force| force.is_elastic()).for_each(|force| force.add_tangent(&x, &mut blocks));
+            // What is done in a closure is not compiled for wide registers.
+            for force in forces {
+                if force.is_elastic() {
+                    force.add_tangent(&x, &mut blocks);
+                }
+            }
             for &(i, j, value) in &constant[0] {
                 blocks.add_isotropic(i, j, T::constant(token, value));
             }

@@ -6,7 +6,8 @@ use super::change::Change;
 use super::gather::scatter;
 use super::mobility::Mobility;
 use super::momentum::{begin, go_on, go_on_by_modes};
-use super::prepare::{load_rows, prepare};
+use super::prepare::{arrange_rows, load_rows, prepare};
+use super::respond::find_columns;
 use super::rows::Row;
 use super::scene::ContactScene;
 use super::scratch::{ContactScratch, SweepRules};
@@ -50,6 +51,8 @@ pub fn hold_contacts(
         return Ok(());
     }
     prepare(model, contact, dt, from, to, s, kinds, buffers);
+    arrange_rows(contact, s);
+    find_columns(model, contact, dt, (from, to), s, kinds, buffers);
     load_rows(contact, rules, s);
     let left = sweep(model, contact, dt, rules, s);
     if rules.mends && s.rows.iter().any(|row| row.gap() < 0.0) {

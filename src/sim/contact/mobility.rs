@@ -6,6 +6,7 @@
 use nalgebra::Matrix3;
 
 use super::change::Change;
+use super::columns::Columns;
 use super::rows::{Pairing, Row};
 use super::turns::Turns;
 use super::vectors::{V4, map};
@@ -89,6 +90,8 @@ pub struct Mobility {
     pub kinds: Vec<(u32, OfModes)>,
     pub bodies: Vec<Body>,
     pub levers: Vec<Lever>,
+    /// Cells that move by columns of their own stiffness.
+    pub columns: Columns,
     /// The order in which rows are swept.
     pub turns: Turns,
     /// Whether rows were put in that order for the sweeps alone.

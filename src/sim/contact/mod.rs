@@ -10,6 +10,7 @@
 mod assemble;
 mod cause;
 mod change;
+mod columns;
 mod compliance;
 mod depth;
 mod find;
@@ -22,6 +23,9 @@ mod momentum;
 mod prepare;
 mod remember;
 mod renumber;
+mod respond;
+#[cfg(test)]
+mod respond_tests;
 mod rounds;
 mod rows;
 mod rub;

@@ -29,13 +29,10 @@ const ROWS_PER_JOB: usize = 1024;
 /// cell may lose its hold without them.
 const STIFF: f64 = 8.0;
 
-/// Whether elasticity takes back much of what a force does in an implicit step, so that drag alone does not tell what it moves.
-fn is_stiff(model: &Model, dt: f64, kinds: &[KindScratch]) -> bool {
+/// Whether elasticity takes back much of what a force does to a cell in an implicit step, so that drag alone does not tell what it moves.
+fn is_stiff(model: &Model, dt: f64, kind: &Kind, w: &KindScratch) -> bool {
     let Method::Implicit { order } = model.integrator.method else { return false };
-    let taken_back = |(kind, w): (&Kind, &KindScratch)| {
-        gamma(kind, order) * w.stiffening * kind.largest_stiffness * dt / kind.drag > STIFF
-    };
-    model.kinds.iter().zip(kinds).any(taken_back)
+    gamma(kind, order) * w.stiffening * kind.largest_stiffness * dt / kind.drag > STIFF
 }
 
 /// Displacements, mobilities and volumes before the first sweep.
@@ -54,7 +51,10 @@ pub fn prepare(
     s.volumes.clear();
     s.volume_modes.clear();
     s.held.clear();
-    s.mobility.clear(contact.law.moves_as_steps() && is_stiff(model, dt, kinds));
+    let as_steps = contact.law.moves_as_steps();
+    let stiff = |(kind, w): (&Kind, &KindScratch)| as_steps && is_stiff(model, dt, kind, w);
+    s.mobility.clear(model.kinds.iter().zip(&*kinds).any(|both| both.0.tangent.is_none() && stiff(both)));
+    s.mobility.columns.begin(model.kinds.iter().zip(&*kinds).map(|both| both.0.tangent.is_some() && stiff(both)));
     let cells = from.kinds.iter().zip(&to.kinds);
     let mut first_body = 0;
     for (number, ((kind, (now, next)), w)) in model.kinds.iter().zip(cells).zip(kinds).enumerate() {
@@ -63,11 +63,12 @@ pub fn prepare(
             Method::Implicit { .. } | Method::Explicit => dt / kind.drag,
             _ => dt * dt / kind.mass,
         };
-        let modes = if s.mobility.has_modes { w.modes(kind) } else { None };
+        let modes = if s.mobility.has_modes && kind.tangent.is_none() { w.modes(kind) } else { None };
         let response = match (&modes, model.integrator.method) {
             (Some(modes), Method::Implicit { order }) => {
                 Response::new(modes, w.stiffening, (order, gamma(kind, order)), dt, kind.drag)
             }
+            _ if s.mobility.columns.are_of(number) => Response::alone(0.0),
             _ => Response::alone(free),
         };
         let mobility = response.rest;
@@ -100,9 +101,8 @@ pub fn prepare(
     }
 }
 
-/// Rows carry what they carried where the step begins; how they yield depends on the mobilities. Where cells move by modes they are put
-/// in the order in which they are swept.
-pub fn load_rows(contact: &ContactScene, rules: SweepRules, s: &mut ContactScratch) {
+/// Where cells move by modes rows are put in the order in which they are swept.
+pub fn arrange_rows(contact: &ContactScene, s: &mut ContactScratch) {
     let bodies_of = |row: &Row| [row.atoms[0], row.atoms[3]].map(|atom| contact.body_of(atom));
     let has_modes = s.mobility.has_modes;
     let Mobility { turns, is_arranged, .. } = &mut s.mobility;
@@ -115,7 +115,14 @@ pub fn load_rows(contact: &ContactScene, rules: SweepRules, s: &mut ContactScrat
     } else if !s.is_in_turns {
         turns.leave(s.rows.len());
     }
+}
+
+/// Rows carry what they carried where the step begins; how they yield depends on the mobilities.
+pub fn load_rows(contact: &ContactScene, rules: SweepRules, s: &mut ContactScratch) {
+    let bodies_of = |row: &Row| [row.atoms[0], row.atoms[3]].map(|atom| contact.body_of(atom));
+    let has_modes = s.mobility.has_modes;
     let ContactScratch { rows, pulls, moved, mobility, start, .. } = s;
+    let columns = std::mem::take(&mut mobility.columns);
     let load = |row: &mut Row, pull: &mut Pull, by_modes: [f64; 2]| {
         *pull = Pull { force: pull.carried, carried: pull.carried, ..Pull::default() };
         let parts = row.atoms.iter().zip(row.weights());
@@ -123,19 +130,21 @@ pub fn load_rows(contact: &ContactScene, rules: SweepRules, s: &mut ContactScrat
         [row.compliance, row.across] = by_modes.map(|by_modes| (alone + by_modes) as f32);
         set_compliance(row, pull, rules.in_account);
     };
-    let both = rows.par_iter_mut().zip(pulls).with_min_len(ROWS_PER_JOB);
+    let both = rows.par_iter_mut().zip(pulls).enumerate().with_min_len(ROWS_PER_JOB);
     if has_modes {
         let mut levers = std::mem::take(&mut mobility.levers);
-        let with_levers = both.map(|(row, pull)| {
+        let with_levers = both.map(|(number, (row, pull))| {
             let (lever, by_modes) = mobility.lever(row, bodies_of(row), start);
-            load(row, pull, by_modes);
+            let by_columns = columns.response(number, row);
+            load(row, pull, [by_modes[0] + by_columns[0], by_modes[1] + by_columns[1]]);
             lever
         });
         with_levers.collect_into_vec(&mut levers);
         mobility.levers = levers;
     } else {
-        both.for_each(|(row, pull)| load(row, pull, [0.0; 2]));
+        both.for_each(|(number, (row, pull))| load(row, pull, columns.response(number, row)));
     }
+    mobility.columns = columns;
 }
 
 /// Lists what is held of a kind; atoms that are held along every axis get no mobility.
@@ -189,6 +198,7 @@ fn add_volumes(
             inverse: 1.0 / (mobility * squared),
             mobility,
             swelling: mobility * mobility * squared,
+            column: None,
             body: first_body + cell,
         };
         if s.mobility.has_modes {

@@ -128,6 +128,7 @@ impl ContactScratch {
         self.moved.fill([f64::NAN; 4]);
         self.deep.clear();
         self.mobility.clear(false);
+        self.mobility.columns.poison();
         self.relief.fill(f64::NAN);
         self.momentum.poison();
         self.strides.clear();

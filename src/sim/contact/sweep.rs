@@ -6,6 +6,7 @@
 use pulp::{Arch, NullaryFnOnce};
 
 use super::change::Change;
+use super::columns::Columns;
 use super::mobility::{Body, Lever, Mobility, Motion, moved_apart, push_body, sides};
 use super::rounds::in_rounds;
 use super::rows::{Pull, Row};
@@ -106,14 +107,15 @@ pub fn sweep_contacts(
     (dt, share): (f64, f64),
     change: &mut Change,
 ) {
-    let Mobility { has_modes, shapes, kinds, bodies, levers, moved: motions, turns, changes, .. } = mobility;
+    let Mobility { has_modes, shapes, kinds, bodies, levers, moved: motions, turns, changes, columns, .. } = mobility;
+    let columns = columns.if_there();
     let (moved, motions, pulls) = (Together::new(moved), Together::new(motions), Together::new(pulls));
     let sweep = |job: usize, change: &mut Change| {
         let turns = turns.of_job(job);
         // SAFETY: jobs have turns of their own, and those of a colour move different cells.
         let pulls = unsafe { pulls.part(turns.clone()) };
         let (first, rows) = (turns.start, &rows[turns]);
-        let cells = Cells { shapes, kinds, bodies, moved: &moved, motions: &motions };
+        let cells = Cells { shapes, kinds, bodies, moved: &moved, motions: &motions, columns };
         *change = Change::default();
         if *has_modes {
             Arch::new().dispatch(Sweep::<true> { first, rows, pulls, levers, cells, dt, share, change });
@@ -142,6 +144,8 @@ struct Cells<'a> {
     bodies: &'a [Body],
     moved: &'a Together<'a, V4>,
     motions: &'a Together<'a, Motion>,
+    /// Where some cells move by columns.
+    columns: Option<&'a Columns>,
 }
 
 struct Sweep<'a, const BY_MODES: bool> {
@@ -193,7 +197,7 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
     #[inline(always)]
     fn call(self) {
         let Self { first, rows, pulls, levers, cells, dt, share, change } = self;
-        let Cells { shapes, moved, motions, .. } = cells;
+        let Cells { shapes, moved, motions, columns, .. } = cells;
         let mut largest = 0.0;
         for (number, (row, pull)) in (first..).zip(rows.iter().zip(pulls)) {
             if row.compliance == 0.0 {
@@ -220,6 +224,9 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
             if let Some(sides) = &sides {
                 sides.push(cells, &step);
             }
+            if let Some(columns) = columns {
+                columns.push(number, &normal(row), &step, moved);
+            }
             pull.direction = narrow(&map(|i| share * direction[i] + last[i]));
             pull.change = narrow(&step);
             pull.force = new;
@@ -238,9 +245,9 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
 /// mended by displacement, not by force, eq. (adhesion.7). `deep` are the rows that are inside and can move, each with the force that
 /// would do it, zero at first.
 pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], mobility: &mut Mobility, most: f64) {
-    let Mobility { shapes, kinds, bodies, levers, moved: motions, has_modes, turns, deep_ends, .. } = mobility;
+    let Mobility { shapes, kinds, bodies, levers, moved: motions, has_modes, turns, deep_ends, columns, .. } = mobility;
     let (moved, motions) = (&Together::new(moved), &Together::new(motions));
-    let cells = Cells { shapes, kinds, bodies, moved, motions };
+    let cells = Cells { shapes, kinds, bodies, moved, motions, columns: columns.if_there() };
     let levers = has_modes.then_some(&levers[..]);
     if !Turns::are_many(deep.len()) {
         return push_out(rows, deep, levers, cells, most);
@@ -256,7 +263,7 @@ pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], mob
 
 /// Pushes out what some rows are inside, one after the other.
 fn push_out(rows: &[Row], deep: &mut [(u32, f64)], levers: Option<&[Lever]>, cells: Cells, most: f64) {
-    let Cells { shapes, moved, motions, .. } = cells;
+    let Cells { shapes, moved, motions, columns, .. } = cells;
     for (number, pushed) in deep {
         let row = &rows[*number as usize];
         let (weights, normal) = (row.weights(), normal(row));
@@ -272,6 +279,9 @@ fn push_out(rows: &[Row], deep: &mut [(u32, f64)], levers: Option<&[Lever]>, cel
         push(row, weights, &change, moved);
         if let Some(sides) = &sides {
             sides.push(cells, &change);
+        }
+        if let Some(columns) = columns {
+            columns.push(*number as usize, &normal, &change, moved);
         }
         *pushed = new;
     }

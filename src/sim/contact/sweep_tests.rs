@@ -135,7 +135,7 @@ fn a_sweep_over_volumes_meets_every_linear_target() {
     let volume = |first: usize, end: usize, offset: f64| {
         let squared: f64 = gradient[first..end].iter().flatten().map(|g| g * g).sum();
         let (inverse, swelling) = (1.0 / (0.2 * squared), 0.2 * 0.2 * squared);
-        VolumeRow { first, end, offset, inverse, mobility: 0.2, swelling, body: 0 }
+        VolumeRow { first, end, offset, inverse, mobility: 0.2, swelling, column: None, body: 0 }
     };
     let volumes = [volume(0, 25, 0.3), volume(25, 40, -0.1)];
     let mut change = Change::default();
@@ -251,6 +251,7 @@ fn a_sweep_by_modes_brings_volumes_to_their_targets() {
         inverse: 1.0 / (response.rest * squared + by_modes),
         mobility: response.rest,
         swelling: 1.0,
+        column: None,
         body: 0,
     };
     let mut moved = vec![[0.0, 0.0, 0.0, response.rest]; 84];

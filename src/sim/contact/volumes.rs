@@ -24,6 +24,8 @@ pub struct VolumeRow {
     pub mobility: f64,
     /// Squared displacement of all its atoms over squared pressure, µm⁶/pN².
     pub swelling: f64,
+    /// Where the column of its cell begins, if that moves by columns.
+    pub column: Option<usize>,
     /// Its cell.
     pub body: usize,
 }
@@ -43,10 +45,11 @@ pub fn sweep_volumes(
     mobility: &mut Mobility,
     change: &mut Change,
 ) {
-    let Mobility { has_modes, kinds, bodies, moved: motions, changes, .. } = mobility;
+    let Mobility { has_modes, kinds, bodies, moved: motions, changes, columns, .. } = mobility;
+    let columns = &columns.values[..];
     let (moved, motions) = (Together::new(moved), Together::new(motions));
     let sweep = |first: usize, volumes: &[VolumeRow], change: &mut Change| {
-        let cells = Cells { gradient, kinds, bodies, moved: &moved, motions: &motions };
+        let cells = Cells { gradient, columns, kinds, bodies, moved: &moved, motions: &motions };
         if *has_modes {
             let modes = &modes[first..first + volumes.len()];
             Arch::new().dispatch(SweepVolumes::<true> { volumes, modes, cells, change });
@@ -69,6 +72,7 @@ pub fn sweep_volumes(
 /// What volumes move.
 struct Cells<'a> {
     gradient: &'a [[f64; 3]],
+    columns: &'a [V4],
     kinds: &'a [(u32, OfModes)],
     bodies: &'a [Body],
     moved: &'a Together<'a, V4>,
@@ -88,7 +92,7 @@ impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
     #[inline(always)]
     fn call(self) {
         let Self { volumes, modes, cells, change } = self;
-        let Cells { gradient, kinds, bodies, moved, motions } = cells;
+        let Cells { gradient, columns, kinds, bodies, moved, motions } = cells;
         for (number, volume) in volumes.iter().enumerate() {
             let gradient = &gradient[volume.first..volume.end];
             // SAFETY: each volume has atoms of its own.
@@ -109,6 +113,10 @@ impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
                 missing += (by_modes[0] + by_modes[1]) + by_modes[2];
             }
             let pressure = -missing * volume.inverse;
+            if let Some(first) = volume.column {
+                let swell = &columns[first..];
+                moved.iter_mut().zip(swell).for_each(|(d, s)| *d = map(|i| d[i] + pressure * s[i]));
+            }
             let back = pressure * volume.mobility;
             for (d, g) in moved.iter_mut().zip(gradient) {
                 let g = [g[0], g[1], g[2], 0.0];

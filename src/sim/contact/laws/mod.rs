@@ -130,7 +130,7 @@ impl Law {
     }
 
     /// Whether what the projection moves gives way as in a step, eq. (adhesion.16); else atoms move by their drag alone.
-    pub(super) fn moves_as_steps(&self) -> bool {
+    pub fn moves_as_steps(&self) -> bool {
         match self {
             Self::Adhesives | Self::Cohesion(_) | Self::Links(_) => true,
             Self::Penalty(_) | Self::VirtualAdhesives(_) => false,
