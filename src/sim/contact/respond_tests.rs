@@ -51,7 +51,7 @@ fn rows(model: &Model, cells: usize) -> Vec<Row> {
     let row = |number: u32, atoms: [u32; 4], pairing| {
         let normal = Vec3::new(0.3 + 0.1 * f64::from(number % 5), -0.5, 0.8 - 0.2 * f64::from(number % 3)).normalize();
         let normal_and_gap = [normal.x as f32, normal.y as f32, normal.z as f32, 0.01];
-        let shear = if number % 3 == 0 { 1.0 } else { 0.0 };
+        let shear = if number.is_multiple_of(3) { 1.0 } else { 0.0 };
         Row { atoms, coordinates: [0.2, 0.5], normal_and_gap, shear, pairing, ..Row::NOTHING }
     };
     let mut rows: Vec<Row> = (0..5).map(|number| row(number, [7 * number; 4], Pairing::AtomOnPlane)).collect();
