@@ -135,7 +135,10 @@ fn spreading_shape(model: &Model, number: usize) -> Option<String> {
     }
     // Each of the two surfaces that stick has half of the work.
     let bears = 2.0 * energy_that_shape_bears(&kind.forces, &kind.rest);
-    (work > FOLDS * bears).then(|| {
+    // A surface under tension does not fold: it meets others at the angle of Young and Dupré as long as it bears the work.
+    let is_tense = kind.forces.iter().any(|force| matches!(force, Force::Tension(_)));
+    let least = if is_tense { bears } else { FOLDS * bears };
+    (work > least).then(|| {
         let then = if work > bears { "they spread over each other until others hold them, and fold" } else { "they may fold where they are packed" };
         format!(
             "cells of type `{}` take {} to part an area of contact, and their shape bears {}: where they stick {then}. Make them {:.1} times as stiff, \
@@ -143,7 +146,7 @@ fn spreading_shape(model: &Model, number: usize) -> Option<String> {
             kind.name,
             pretty(work, Dimension::LINE_STIFFNESS),
             pretty(bears, Dimension::LINE_STIFFNESS),
-            work / (FOLDS * bears)
+            work / least
         )
     })
 }
