@@ -38,12 +38,23 @@ pub fn opening_to_facet(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3) -> Optio
     // Behind a valley of two facets a point is beside both by less than it is behind them.
     let beside = (-height / size).max(0.0);
     let faces = height >= 0.0 || n.dot(&m) < FACING && -height <= BEHIND * size;
-    let on_face =
-        opening_to_face(x, n, corners, m).filter(|opening| faces && opening.weights.iter().all(|w| *w >= -beside));
-    match on_face {
+    let plane = opening_to_face(x, n, corners, m);
+    match plane.filter(|opening| faces && opening.weights.iter().all(|w| *w >= -beside)) {
         Some(opening) => Some((opening, Feature::Face)),
-        None => opening_to_sides(x, n, corners),
+        None => {
+            let met = if height >= 0.0 { plane } else { opening_to_face(x, n, corners, -m) };
+            opening_to_sides(x, n, corners, met.map_or([true; 3], sides_beyond))
+        }
     }
+}
+
+/// The sides of a facet, by the corner before each, that a ball may touch first. It grows on the point where it rests and meets the plane of the
+/// facet at one point, from where on it covers a growing disc of that: what the disc comes to first is on a side beyond which that point lies.
+#[inline]
+fn sides_beyond(met: Opening) -> [bool; 3] {
+    let [u, v, w] = met.weights.map(|weight| weight <= 0.0);
+    // A ball that comes from behind may meet the face itself, which counts for nothing.
+    if u || v || w { [w, u, v] } else { [true; 3] }
 }
 
 /// The opening to what of a facet the ball touched before things moved a little: to the plane of its face, the line of a side or a
@@ -85,10 +96,10 @@ fn opening_to_face(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3) -> Option<Ope
     (det > 0.0).then_some(Opening { width, weights: [1.0 - v - w, v, w], towards })
 }
 
-/// The least opening to the sides of a facet.
-fn opening_to_sides(x: Vec3, n: Vec3, corners: &[Vec3; 3]) -> Option<(Opening, Feature)> {
+/// The least opening to sides of a facet, each by the corner where it begins.
+fn opening_to_sides(x: Vec3, n: Vec3, corners: &[Vec3; 3], sides: [bool; 3]) -> Option<(Opening, Feature)> {
     let mut best: Option<(Opening, Feature)> = None;
-    for side in 0..3 {
+    for side in (0..3).filter(|side| sides[*side]) {
         let next = (side + 1) % 3;
         let (from, along) = (corners[side] - x, corners[next] - corners[side]);
         let share = share_of_side(n, from, along).clamp(0.0, 1.0);
@@ -158,6 +169,25 @@ mod tests {
     fn a_wall_over_a_plane_is_twice_its_height_open() {
         let (width, towards) = opening_to_plane(Vec3::x(), 0.3, Vec3::z()).expect("a ball");
         assert!((width - 0.6).abs() < 1e-15 && (towards - (Vec3::x() - Vec3::z())).norm() < 1e-15);
+    }
+
+    #[test]
+    fn sides_that_are_passed_over_are_never_touched_first() {
+        let mut stream = Stream::new(9, Purpose::Placement, 0, 0);
+        let mut passed_over = 0;
+        for _ in 0..20_000 {
+            let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
+            let n = Vec3::new(number(), number(), number()).normalize();
+            let x = Vec3::new(2.0 + 3.0 * number(), 2.0 + 3.0 * number(), 1.4 * number());
+            let Some((found, feature)) = opening_to_facet(x, n, &FACET, Vec3::z()) else { continue };
+            if feature != Feature::Face {
+                let (of_all, _) = opening_to_sides(x, n, &FACET, [true; 3]).expect("a side");
+                assert!((found.width - of_all.width).abs() <= 1e-9 * of_all.width, "{found:?} {of_all:?}");
+                let met = opening_to_face(x, n, &FACET, if x.z >= 0.0 { Vec3::z() } else { -Vec3::z() });
+                passed_over += sides_beyond(met.expect("met")).iter().filter(|side| !**side).count();
+            }
+        }
+        assert!(passed_over > 10_000, "{passed_over}");
     }
 
     #[test]

@@ -107,6 +107,7 @@ impl ContactScratch {
     /// Forgets what was found, so that the next look finds it anew.
     pub fn forget(&mut self) {
         self.detector.forget();
+        self.law.cohesion.forget();
         self.has_looked = false;
     }
 

@@ -84,7 +84,7 @@ impl Candidates {
     }
 }
 
-/// What a point may be behind a facet and still be looked at, over the size of the facet.
+/// What a point may be behind a facet, and beside it there, and still be looked at, over the size of the facet.
 const BEHIND: f64 = 0.2;
 
 /// A little less than 1, so that rounding makes no bound too wide.
@@ -95,10 +95,12 @@ const SURELY: f64 = 1.0 - 1e-9;
 #[inline(always)]
 fn least_opening(from: [f64; 3], n: [f64; 3], m: [f64; 3], radius: f64) -> f64 {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let (squared, rise) = (dot(from, from), radius - dot(from, n));
-    let outside = (squared - radius * radius).max(0.0);
-    let to_sphere = if rise > 0.0 { outside / rise } else { f64::INFINITY };
     let (height, along) = (dot(from, m), dot(n, m));
+    // What is behind a facet may be a little beside it, too.
+    let sphere = if height > 0.0 { radius } else { (1.0 + BEHIND) * radius };
+    let (squared, rise) = (dot(from, from), sphere - dot(from, n));
+    let outside = (squared - sphere * sphere).max(0.0);
+    let to_sphere = if rise > 0.0 { outside / rise } else { f64::INFINITY };
     let (height, apart) = if height > 0.0 { (height, 1.0 - along) } else { (-height - BEHIND * radius, 1.0 + along) };
     let to_plane = 2.0 * height.max(0.0) / apart.max(f64::MIN_POSITIVE);
     SURELY * if to_sphere > to_plane { to_sphere } else { to_plane }
@@ -109,13 +111,22 @@ pub fn least_opening_between(other: &Facet, n: Vec3, facet: &Facet) -> f64 {
     let (from, along) = (other.middle - facet.middle, n.dot(&facet.normal));
     // Points of the other lie in its plane: they are all as high over the middle of the facet along n, and stray along its normal by so much.
     let strays = other.radius * (1.0 - along * along).max(0.0).sqrt();
-    let (apart, rise) = ((from.norm() - other.radius).max(0.0), facet.radius - from.dot(&n));
-    let outside = (apart * apart - facet.radius * facet.radius).max(0.0);
-    let to_sphere = if rise > 0.0 { outside / rise } else { f64::INFINITY };
     let height = from.dot(&facet.normal);
+    let sphere = if height > strays { facet.radius } else { (1.0 + BEHIND) * facet.radius };
+    let (apart, rise) = ((from.norm() - other.radius).max(0.0), sphere - from.dot(&n));
+    let outside = (apart * apart - sphere * sphere).max(0.0);
+    let to_sphere = if rise > 0.0 { outside / rise } else { f64::INFINITY };
     let before = 2.0 * (height - strays).max(0.0) / (1.0 - along).max(f64::MIN_POSITIVE);
     let behind = 2.0 * (-height - strays - BEHIND * facet.radius).max(0.0) / (1.0 + along).max(f64::MIN_POSITIVE);
     SURELY * to_sphere.max(before).max(behind)
+}
+
+/// Whether balls as wide as `range` (µm) on the side of a facet to which n looks, or points of it that are behind the other facet, may touch
+/// that: a quick look that leaves out most.
+pub fn may_meet(own: &Facet, n: Vec3, facet: &Facet, range: f64) -> bool {
+    let from = own.middle + 0.5 * range * n - facet.middle;
+    let most = own.radius + 0.5 * range + (1.0 + BEHIND) * facet.radius;
+    from.norm_squared() <= most * most
 }
 
 #[cfg(test)]
@@ -166,6 +177,7 @@ mod tests {
             seen += 1;
             near += usize::from(bound > 0.0);
             assert!(least < 0.0 && bound <= 1e-9 || bound <= least, "{bound} {least}");
+            assert!(may_meet(&other, other.normal, &facet, least.max(0.0) + 1e-9), "{least}");
         }
         assert!(seen > 5000 && near > seen / 4, "bounds of {near} of {seen} pairs tell something");
     }

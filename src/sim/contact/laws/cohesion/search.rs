@@ -1,7 +1,7 @@
 //! What attracts each part of a surface most.
 
 use super::super::super::vectors::gather_corners;
-use super::candidates::{Candidates, Facet, least_opening_between};
+use super::candidates::{Candidates, Facet, least_opening_between, may_meet};
 use super::patch::{Partner, Patch, depth_of_well, width_of_well};
 use super::table::CohesionTable;
 use crate::Vec3;
@@ -130,10 +130,10 @@ impl Seen<'_> {
             let strength = 0.5 * factor * self.controls.adhesion_of(other as usize) * cohesive.strength;
             let range = cohesive.range();
             for &facet in facets {
-                let seen = self.facets[facet as usize];
-                let is_met = |n: Vec3| least_opening_between(&own, n, &seen) < range;
+                let seen = &self.facets[facet as usize];
+                let is_met = |n: Vec3| may_meet(&own, n, seen, range) && least_opening_between(&own, n, seen) < range;
                 if is_met(own.normal) || has_two && is_met(-own.normal) {
-                    candidates.push(facet, &seen);
+                    candidates.push(facet, seen);
                 }
             }
             bodies.push(Attracting { body: other, end: candidates.facets.len(), strength, range });
