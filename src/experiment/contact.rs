@@ -1,7 +1,7 @@
 //! Contacts between cells: how near is a contact, and how strongly which surfaces stick.
 
 use crate::recorded::Recorded;
-use crate::units::{Length, LineStiffness, Stress, SurfaceDrag};
+use crate::units::{Force, Frequency, Length, LineStiffness, Stress, SurfaceDensity, SurfaceDrag};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -24,15 +24,47 @@ pub enum ContactModel {
     VirtualAdhesives,
 }
 
-impl ContactModel {
-    /// Which series it records besides those of all contacts.
-    pub fn recorded(self) -> Recorded {
-        match self {
-            Self::Adhesives | Self::Cohesion | Self::Penalty => Recorded::Always,
-            Self::Links => Recorded::WithLinks,
-            Self::VirtualAdhesives => Recorded::WithAdhesives,
-        }
-    }
+/// Bonds between surfaces: how many there can be, and how fast they close and open.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
+pub struct Bonds {
+    /// The most bonds that an area of contact can have.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub density: SurfaceDensity,
+    /// Rate at which each that is open closes while the surfaces are within the range.
+    #[schemars(extend("x-minimum" = 0))]
+    pub on: Frequency,
+    /// Rate at which bonds without load open.
+    #[schemars(extend("x-minimum" = 0))]
+    pub off: Frequency,
+    /// Load of a bond that makes it open e times as fast.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub force: Force,
+    /// A second pathway along which they open, which load shuts: catch bonds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub catch: Option<Catch>,
+    /// The share that is closed in contacts that are there when the run begins; 0 when absent.
+    #[serde(default, skip_serializing_if = "is_none_closed")]
+    #[schemars(range(min = 0, max = 1))]
+    pub start: f64,
+}
+
+fn is_none_closed(share: &f64) -> bool {
+    *share == 0.0
+}
+
+/// A pathway along which bonds open that load shuts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
+pub struct Catch {
+    /// Rate at which bonds without load open along it.
+    #[schemars(extend("x-minimum" = 0))]
+    pub off: Frequency,
+    /// Load of a bond that makes this e times slower.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub force: Force,
 }
 
 /// Which virtual adhesives merge where their atoms are neighbours on a mesh.
@@ -75,6 +107,9 @@ pub struct Contact {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub friction: Option<SurfaceDrag>,
+    /// Model cohesion: bonds that close and open and do all that holds these surfaces together; without, all are closed wherever surfaces are within the range.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bonds: Option<Bonds>,
     /// Work that parts an area of contact: half of `strength` times `range` when absent. Model adhesives: energy that an area of contact
     /// releases, none when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -111,6 +146,21 @@ pub struct Contact {
 pub(super) const RANGE: f64 = 1.5;
 
 impl Contact {
+    /// Which series a run records besides those of all contacts.
+    pub(super) fn recorded(&self) -> Recorded {
+        match self.model {
+            ContactModel::Cohesion if self.has_bonds() => Recorded::WithBonds,
+            ContactModel::Adhesives | ContactModel::Cohesion | ContactModel::Penalty => Recorded::Always,
+            ContactModel::Links => Recorded::WithLinks,
+            ContactModel::VirtualAdhesives => Recorded::WithAdhesives,
+        }
+    }
+
+    /// Whether any surfaces have bonds.
+    fn has_bonds(&self) -> bool {
+        self.bonds.is_some() || self.between.iter().any(|pair| pair.bonds.is_some())
+    }
+
     /// Strength (pN/µm²) and work of separation (pN/µm) of surfaces of which two of strength, energy and range are given, or one, and
     /// the range for all; zero where neither of the first two is.
     pub(super) fn cohesive(
@@ -147,6 +197,9 @@ pub struct Between {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-minimum" = 0))]
     pub friction: Option<SurfaceDrag>,
+    /// Model cohesion: bonds that close and open and do all that holds these surfaces together; without, all are closed wherever surfaces are within the range.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bonds: Option<Bonds>,
     /// Work that parts an area of contact: half of `strength` times `range` when absent. Model adhesives: energy that an area of contact
     /// releases, none when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]

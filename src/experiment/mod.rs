@@ -58,7 +58,7 @@ pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{
     Compiled, Prepared, PushedApart, Schedule, compile, notices, prepare, settle_start, settle_start_told,
 };
-pub use contact::{Between, Contact, ContactModel, Zones};
+pub use contact::{Between, Bonds, Catch, Contact, ContactModel, Zones};
 pub use document::Document;
 #[cfg(feature = "cli")]
 pub(crate) use document::near_file;

@@ -102,9 +102,9 @@ impl Check<'_> {
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> =
             cells.flat_map(|cell| &cell.applied.loads).map(|load| format!("load.{}", load.name)).collect();
-        let model = self.document.experiment.contact.as_ref().map(|contact| contact.model);
-        let contacts = model.is_some();
-        let of_model = model.into_iter().flat_map(|model| contact_quantities(model.recorded()));
+        let contact = self.document.experiment.contact.as_ref();
+        let contacts = contact.is_some();
+        let of_model = contact.into_iter().flat_map(|contact| contact_quantities(contact.recorded()));
         let of_contacts: Vec<&str> = of_model.map(|row| row.name).collect();
         let of_pairs = pairs.iter().filter(|_| contacts);
         let known = || {
@@ -115,14 +115,15 @@ impl Check<'_> {
             return;
         }
         let row: Option<&ContactQuantity> = CONTACTS.iter().find(|row| row.name == text);
-        let model = row.and_then(|row| match row.recorded {
+        let lacks = row.and_then(|row| match row.recorded {
             Recorded::Always => None,
-            Recorded::WithLinks => Some("links"),
-            Recorded::WithAdhesives => Some("virtual_adhesives"),
+            Recorded::WithBonds => Some(("without bonds", "`bonds` to [contact] or a pair of its table")),
+            Recorded::WithLinks => Some(("in this contact model", "model = \"links\" to [contact]")),
+            Recorded::WithAdhesives => Some(("in this contact model", "model = \"virtual_adhesives\" to [contact]")),
         });
-        if let (true, Some(model)) = (contacts, model) {
-            let message = format!("`{path}`: there is no series \"{text}\" in this contact model");
-            return self.fault(path, "not recorded", message, format!("add model = \"{model}\" to [contact]"));
+        if let (true, Some((without, key))) = (contacts, lacks) {
+            let message = format!("`{path}`: there is no series \"{text}\" {without}");
+            return self.fault(path, "not recorded", message, format!("add {key}"));
         }
         let is_of_contacts = row.is_some() || pairs.iter().any(|name| name == text);
         if is_of_contacts && !self.document.experiment.chemistry.contains_key("contact") {

@@ -15,6 +15,8 @@ pub enum ContactSeries {
     LargestAggregate,
     /// Energy of what contacts that hold have yielded.
     Energy,
+    /// Bonds of surfaces that are closed.
+    Bonds,
     /// Links between facets.
     Links,
     /// Virtual adhesives.
@@ -28,6 +30,8 @@ pub enum ContactSeries {
 pub enum Recorded {
     /// In all.
     Always,
+    /// With bonds that close and open.
+    WithBonds,
     /// With links.
     WithLinks,
     /// With virtual adhesives.
@@ -59,7 +63,7 @@ const fn row(
     ContactQuantity { series, name, unit, label, recorded }
 }
 
-use Recorded::{Always, WithAdhesives, WithLinks};
+use Recorded::{Always, WithAdhesives, WithBonds, WithLinks};
 
 /// All recorded series about contacts, in the order of the result file.
 #[rustfmt::skip]
@@ -70,6 +74,7 @@ pub const CONTACTS: &[ContactQuantity] = &[
     row(ContactSeries::Aggregates, "aggregates", "1", "aggregates", Always),
     row(ContactSeries::LargestAggregate, "largest_aggregate", "1", "cells of the largest aggregate", Always),
     row(ContactSeries::Energy, "contact.energy", "pN um", "energy in contacts", Always),
+    row(ContactSeries::Bonds, "contact.bonds", "1", "closed bonds", WithBonds),
     row(ContactSeries::Links, "contact.links", "1", "contact.links", WithLinks),
     row(ContactSeries::Adhesives, "contact.adhesives", "1", "contact.adhesives", WithAdhesives),
     row(ContactSeries::LargestAdhesive, "contact.largest_adhesive", "1", "contact.largest_adhesive", WithAdhesives),
@@ -196,6 +201,7 @@ mod tests {
     fn a_model_of_contacts_records_its_own_series_after_those_of_all() {
         let names = |own| contact_quantities(own).map(|row| row.name).collect::<Vec<_>>();
         assert_eq!(names(Recorded::Always).len(), 6);
+        assert_eq!(names(Recorded::WithBonds)[6..], ["contact.bonds"]);
         assert_eq!(names(Recorded::WithLinks)[6..], ["contact.links"]);
         assert_eq!(names(Recorded::WithAdhesives)[6..], ["contact.adhesives", "contact.largest_adhesive"]);
     }

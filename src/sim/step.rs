@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use super::chemistry::{advance_chemistry, begin_chemistry as carry_first, next_exchange};
 use super::constraints::make_exact;
 use super::contact::{
-    carry_forces, check_depth, hold_contacts, keep_contacts, locate_contacts, look_for_depth, travel,
+    carry_forces, check_depth, hold_contacts, keep_contacts, locate_contacts, look_for_depth, travel, turn_over_bonds,
 };
 use super::finite::check_finite;
 use super::gain::{energy_before, has_gained};
@@ -99,6 +99,7 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     make_exact(model, end, from, to, ws)?;
     correct_velocities(model, dt, to, ws);
     check_finite(model, end, to)?;
+    let error = error.max(turn_over_bonds(model, dt, from, to, ws));
     Ok(Estimate { error, travel: travel(model, from, to, ws) })
 }
 

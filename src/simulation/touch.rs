@@ -5,7 +5,7 @@ use crate::Vec3;
 use crate::contact::{Contacts, Detector, Scene};
 use crate::output::{Frame, Touching, clusters};
 use crate::recorded::{ContactSeries, contact_quantities};
-use crate::sim::contact::{AreaScratch, CohesionScratch, ContactScene, LinkScratch, Touching as Instant};
+use crate::sim::contact::{AreaScratch, CohesionScratch, ContactScene, Earlier, LinkScratch, Touching as Instant};
 use crate::sim::{Model, State, Workspace};
 
 /// How many aggregates there are, and cells of the largest.
@@ -27,6 +27,8 @@ pub struct Touch {
     area: AreaScratch,
     /// Energy of surfaces that attract each other, pN·µm.
     energy: f64,
+    /// Bonds of surfaces that are closed.
+    bonds: f64,
     /// A cell, what it touches in the same way, and an area.
     areas: Vec<(u32, u32, f64)>,
 }
@@ -96,6 +98,7 @@ impl Touch {
             ContactSeries::Sweeps => return sweeps,
             ContactSeries::Deepest => return (-self.found.smallest_gap()).max(0.0) / edge,
             ContactSeries::Energy => return state.contact.stored() + self.energy,
+            ContactSeries::Bonds => return self.bonds,
             ContactSeries::Count => self.found.atoms.len() + self.found.edges.len() + self.found.planes.len(),
             ContactSeries::Aggregates => aggregates.number,
             ContactSeries::LargestAggregate => aggregates.largest,
@@ -120,7 +123,7 @@ impl Touch {
     /// Measures the areas of contact, eq. (adhesion.8). Bodies that touch with an atom or an edge belong together even without an area.
     fn measure_areas(&mut self, contact: &ContactScene, state: &State, frame: &mut Frame) {
         let bodies = contact.scene.bodies.len() as u32;
-        let Self { cohesion, area, positions, areas, partners, energy, .. } = self;
+        let Self { cohesion, area, positions, areas, partners, energy, bonds, .. } = self;
         areas.clear();
         areas.extend(partners.chunk_by(|one, other| one.0 == other.0).flat_map(|of_atom| {
             let cell = contact.scene.body_of_atom(of_atom[0].0);
@@ -128,7 +131,9 @@ impl Touch {
         }));
         contact.area.add_areas(&contact.scene, positions, area, areas);
         *energy = contact.law.cohesion().map_or(0.0, |table| {
-            table.find(&contact.scene, &state.chemistry.controls, positions, cohesion);
+            let before = Earlier { bonds: &state.contact.bonds, time: state.time };
+            table.find(&contact.scene, &state.chemistry.controls, before, positions, cohesion);
+            *bonds = table.closed_bonds(&contact.scene, cohesion, positions);
             table.energy(&contact.scene, cohesion, positions)
         });
         // Edges have no area, and yet they join.

@@ -33,7 +33,7 @@ struct Named {
 }
 
 #[rustfmt::skip] // a table
-const NAMED: [Named; 17] = [
+const NAMED: [Named; 18] = [
     Named { dimension: Dimension::LENGTH, name: "length", unit: "um", label: "µm", example: "5 um",
         ladder: &[("nm", 1e-3), ("µm", 1.0), ("mm", 1e3), ("m", 1e6)] },
     Named { dimension: Dimension::TIME, name: "time", unit: "s", label: "s", example: "10 s",
@@ -62,6 +62,8 @@ const NAMED: [Named; 17] = [
         ladder: &[("µm³", 1.0), ("pl", 1e3), ("nl", 1e6), ("µl", 1e9), ("ml", 1e12)] },
     Named { dimension: Dimension::STRESS, name: "stress", unit: "Pa", label: "Pa", example: "1 kPa",
         ladder: &[("mPa", 1e-3), ("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6)] },
+    Named { dimension: Dimension::SURFACE_DENSITY, name: "density on a surface", unit: "/um^2", label: "1/µm²",
+        example: "100 /um^2", ladder: &[("/mm²", 1e-6), ("/µm²", 1.0)] },
     Named { dimension: Dimension::FREQUENCY, name: "rate", unit: "/s", label: "1/s", example: "3 /min",
         ladder: &[("mHz", 1e-3), ("Hz", 1.0), ("kHz", 1e3)] },
     Named { dimension: Dimension::AMOUNT, name: "amount", unit: "zmol", label: "zmol", example: "2 fmol",
@@ -101,6 +103,8 @@ impl Dimension {
     pub const VOLUME: Self = Self::of(3, 0, 0);
     /// A stress, a pressure, a bulk modulus: pN/µm² = Pa.
     pub const STRESS: Self = Self::of(-2, 0, 1);
+    /// How many there are on an area, 1/µm².
+    pub const SURFACE_DENSITY: Self = Self::of(-2, 0, 0);
     /// A rate, 1/s.
     pub const FREQUENCY: Self = Self::of(0, -1, 0);
     /// An amount of substance, zmol.

@@ -1,4 +1,4 @@
-//! A scene that has everything: two types, contacts that stick, walks that turn, a plane, loads, fibres, a field that cells secrete into
+//! A scene that has everything: two types, contacts that stick by bonds that close and open, walks that turn, a plane, loads, fibres, a field that cells secrete into
 //! and climb, systems with events, links both ways, an atom that is put somewhere.
 
 use pseudopod::experiment::{Compiled, Document, compile};
@@ -66,6 +66,7 @@ normal = [0, 0, 1]
 
 [contact]
 strength = "0.5 pN/um^2"
+bonds = { density = "2 /um^2", on = "2 /s", off = "0.2 /s", force = "0.2 pN", catch = { off = "0.3 /s", force = "0.1 pN" }, start = 0.5 }
 
 [chemistry.field]
 document = "field.eml"

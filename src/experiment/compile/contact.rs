@@ -1,7 +1,8 @@
 //! Contacts as the step knows them.
 
-use super::super::contact::{ContactModel as Text, Pair, Zones as ZonesText};
+use super::super::contact::{Bonds, ContactModel as Text, Pair, Zones as ZonesText};
 use super::super::{Document, Experiment};
+use super::bonds::kinetics;
 use crate::contact::Reach;
 use crate::error::{Error, Fault, Result, short};
 use crate::sim::contact::{
@@ -85,7 +86,7 @@ pub fn check_ranges(document: &Document, kinds: &[Kind]) -> Result<()> {
     let mut faults = Vec::new();
     for (path, (strength, energy, own), of) in std::iter::once(all).chain(pairs) {
         let [of_strength, work] = text.cohesive(strength, energy, own);
-        let range = Cohesive { strength: of_strength, work, friction: 0.0 }.range();
+        let range = Cohesive { strength: of_strength, work, ..Cohesive::default() }.range();
         let of_all = text.range.is_some() && path != "contact";
         let told = match (strength, energy, own) {
             (Some(_), Some(_), _) => Told::ByEnergy(path),
@@ -178,14 +179,15 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
         let strength = of_model(text.strength, text.energy, text.range);
         let strength = strength_of(strength, (text.shear_strength, text.friction));
         for kind in 0..kinds.len() {
-            (kind..kinds.len()).for_each(|other| stick(&mut model, Pair::Types(kind, other), strength, text.friction));
+            let holds = (text.friction, text.bonds);
+            (kind..kinds.len()).for_each(|other| stick(&mut model, Pair::Types(kind, other), strength, holds));
         }
     }
     for between in &text.between {
         let shear = (between.shear_strength, between.friction);
         let strength = strength_of(of_model(between.strength, between.energy, between.range), shear);
         if let Some(pair) = between.pair(experiment) {
-            stick(&mut model, pair, strength, between.friction);
+            stick(&mut model, pair, strength, (between.friction, between.bonds));
         }
     }
     if let Law::Cohesion(table) = &mut model.law {
@@ -196,11 +198,17 @@ pub fn contact(experiment: &Experiment, kinds: &[Kind], planes: &[Plane], reach:
 }
 
 /// Writes how two surfaces stick where the law of contact has it. Under cohesion contacts carry only the shear.
-fn stick(model: &mut ContactModel, pair: Pair, strength: Strength, friction: Option<SurfaceDrag>) {
+fn stick(
+    model: &mut ContactModel,
+    pair: Pair,
+    strength: Strength,
+    (friction, bonds): (Option<SurfaceDrag>, Option<Bonds>),
+) {
     let strength = match &mut model.law {
         Law::Cohesion(table) => {
             let friction = friction.map_or(0.0, |friction| friction.value());
-            let cohesive = Cohesive { strength: strength.tensile, work: strength.energy, friction };
+            let bonds = bonds.map(kinetics);
+            let cohesive = Cohesive { strength: strength.tensile, work: strength.energy, friction, bonds };
             match pair {
                 Pair::Types(one, other) => table.stick(one, other, cohesive),
                 Pair::OnPlane(kind, plane) => table.stick_to_plane(kind, plane, cohesive),

@@ -1,5 +1,6 @@
 //! From what the user wrote to what it means: a [`Model`] in µm, s and pN, and the [`State`] it starts from.
 
+mod bonds;
 mod builder;
 mod chemistry;
 mod contact;

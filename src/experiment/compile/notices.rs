@@ -1,7 +1,7 @@
 //! What is worth a word before a run though nothing is wrong: sizes that no cell has, cells that nothing keeps apart.
 
 use super::super::{Document, Mesh};
-use super::Prepared;
+use super::{Prepared, bonds};
 use crate::Vec3;
 use crate::cell::Behaviour;
 use crate::geometry::{area, bounding_box};
@@ -33,6 +33,7 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
     if model.contact.is_some() {
         notices.extend(model.kinds.iter().filter_map(soft_walkers));
         notices.extend((0..model.kinds.len()).filter_map(|kind| spreading_shape(model, kind)));
+        notices.extend(bonds::notices(document));
         let is_implicit = matches!(model.integrator.method, Method::Implicit { .. });
         let creeps = |kind: &&Kind| is_implicit && kind.tangent.is_none() && kind.has_soft_shear();
         notices.extend(model.kinds.iter().filter(creeps).map(creeping_shear));

@@ -41,6 +41,7 @@ impl Check<'_> {
         if contact.model == ContactModel::Cohesion {
             self.work_of_separation(contact);
             self.friction(contact);
+            self.bonds(contact);
         }
         let mut named: Vec<Pair> = Vec::new();
         for (index, between) in contact.between.iter().enumerate() {
@@ -108,6 +109,29 @@ impl Check<'_> {
                 let help =
                     "give a `strength`, however small: surfaces rub where they are nearer than half of their range";
                 self.fault(&format!("{path}.friction"), "over which area?", message, help);
+            }
+        }
+    }
+
+    /// Bonds of surfaces that do not attract each other, and bonds that are never closed.
+    fn bonds(&mut self, contact: &Contact) {
+        let sticks = |strength, energy| contact.cohesive(strength, energy, None)[0] > 0.0;
+        let all = (String::from("contact"), sticks(contact.strength, contact.energy), contact.bonds);
+        let pairs =
+            contact.between.iter().enumerate().map(|(index, pair)| {
+                (format!("contact.between[{index}]"), sticks(pair.strength, pair.energy), pair.bonds)
+            });
+        for (path, sticks, bonds) in std::iter::once(all).chain(pairs) {
+            let Some(bonds) = bonds else { continue };
+            if !sticks {
+                let message = format!("`{path}.bonds` is given without a `strength` above 0");
+                let help = "give the `strength` of all bonds together, or leave `bonds` out";
+                self.fault(&format!("{path}.bonds"), "what do they bear?", message, help);
+            }
+            if bonds.on.value() == 0.0 && bonds.start == 0.0 {
+                let message = format!("`{path}.bonds` never close: `on` is 0, and none are closed at the start");
+                let help = "give `on` above 0, or `start`, the share that is closed when the run begins";
+                self.fault(&format!("{path}.bonds.on"), "never", message, help);
             }
         }
     }
@@ -253,6 +277,7 @@ fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
         ("strength".into(), contact.strength.is_some(), &[Adhesives, Cohesion, Penalty]),
         ("shear_strength".into(), contact.shear_strength.is_some(), &[Adhesives, Cohesion]),
         ("friction".into(), contact.friction.is_some(), &[Cohesion]),
+        ("bonds".into(), contact.bonds.is_some(), &[Cohesion]),
         ("energy".into(), contact.energy.is_some(), &[Adhesives, Cohesion]),
         ("link".into(), contact.link.is_some(), &[Links]),
         ("range".into(), contact.range.is_some(), &[Cohesion, Links]),
@@ -265,6 +290,7 @@ fn keys_of_models(contact: &Contact) -> Vec<(String, &'static [ContactModel])> {
         keys.push((path("strength"), between.strength.is_some(), &[Adhesives, Cohesion, Penalty]));
         keys.push((path("shear_strength"), between.shear_strength.is_some(), &[Adhesives, Cohesion]));
         keys.push((path("friction"), between.friction.is_some(), &[Cohesion]));
+        keys.push((path("bonds"), between.bonds.is_some(), &[Cohesion]));
         keys.push((path("energy"), between.energy.is_some(), &[Adhesives, Cohesion]));
         keys.push((path("range"), between.range.is_some(), &[Cohesion]));
         keys.push((path("link"), between.link.is_some(), &[Links]));

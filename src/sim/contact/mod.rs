@@ -38,6 +38,7 @@ mod sweep;
 #[cfg(test)]
 mod sweep_tests;
 mod together;
+mod turnover;
 mod turns;
 mod vectors;
 mod volumes;
@@ -51,12 +52,13 @@ pub use find::{
 };
 pub use hold::{hold_contacts, travel};
 pub use laws::{
-    AdhesiveScratch, AdhesiveTable, AreaScratch, CohesionScratch, CohesionTable, Cohesive, Law, LinkScratch, LinkTable,
-    Penalty, Strength, Touching, Zones,
+    AdhesiveScratch, AdhesiveTable, AreaScratch, BondKinetics, CohesionScratch, CohesionTable, Cohesive, Earlier, Law,
+    LinkScratch, LinkTable, Pathway, Penalty, Strength, Touching, Zones,
 };
 pub use model::{AREA_WITHIN, ContactModel};
 pub use rows::{Pairing, Pull, Row};
 pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
-pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Link, PlaneBond};
+pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, PlaneBond, SurfaceBonds};
+pub use turnover::turn_over_bonds;

@@ -1,7 +1,7 @@
 //! Cells that come and go: what contacts carry keeps to the cells that stay.
 
 use super::scene::ContactScene;
-use super::state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Link, PlaneBond};
+use super::state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, PlaneBond, SurfaceBonds};
 
 /// From the numbers of before to those of now.
 struct Renumbering<'a> {
@@ -39,6 +39,14 @@ impl Renumbering<'_> {
         Some([number(self, one)?, number(self, other)?])
     }
 
+    fn surface_bonds(&self, bonds: &SurfaceBonds) -> Option<SurfaceBonds> {
+        let other = match bonds.other {
+            Faced::Body(body) => Faced::Body(self.body(body)?),
+            plane @ Faced::Plane(_) => plane,
+        };
+        Some(SurfaceBonds { facet: self.facet(bonds.facet)?, other, ..*bonds })
+    }
+
     fn link(&self, link: &Link) -> Option<Link> {
         let mut pairs = link.pairs;
         for pair in &mut pairs {
@@ -74,6 +82,7 @@ impl ContactState {
             links: self.links.iter().filter_map(|link| to.link(link)).collect(),
             adhesives: adhesives(&to, &self.adhesives),
             released: self.released.iter().filter_map(|atom| to.atom(*atom)).collect(),
+            bonds: self.bonds.iter().filter_map(|bonds| to.surface_bonds(bonds)).collect(),
         }
     }
 }

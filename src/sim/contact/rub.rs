@@ -28,8 +28,8 @@ pub fn write_rubbing(
     }
     for this in facing {
         let body = model.body_of(this.atom);
-        let friction = model.cohesion_of(body, this.other).map_or(0.0, |cohesive| cohesive.friction);
-        if friction == 0.0 || touches(model, found, this) {
+        let friction = rubs(model, found, this);
+        if friction == 0.0 {
             continue;
         }
         let own = friction * this.area * controls.adhesion_of(body as usize);
@@ -60,6 +60,12 @@ pub fn write_rubbing(
         });
         pulls.push(Pull::default());
     }
+}
+
+/// The friction with which an atom rubs on what it faces where it has no contact with it, pN·s/µm³; 0 where it has one.
+pub(super) fn rubs(model: &ContactScene, found: &Contacts, this: &Facing) -> f64 {
+    let friction = model.cohesion_of(model.body_of(this.atom), this.other).map_or(0.0, |cohesive| cohesive.friction);
+    if friction == 0.0 || touches(model, found, this) { 0.0 } else { friction }
 }
 
 /// Whether an atom has a contact with what it faces.

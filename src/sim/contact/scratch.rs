@@ -57,6 +57,8 @@ pub struct ContactScratch {
     pub(super) positions: Vec<Vec3>,
     /// What the surface at each atom releases an area of contact, pN/µm.
     pub(super) relief: Vec<f64>,
+    /// What each bond bears along the surface around each atom and what it faces, pN; empty where surfaces have no bonds.
+    pub(super) shear: Vec<f64>,
     /// Contacts as the sweeps see them: atoms on facets, then edges on edges, then atoms on planes; where there are many, in the order in
     /// which they are swept.
     pub rows: Vec<Row>,
@@ -131,6 +133,7 @@ impl ContactScratch {
         self.mobility.clear(false);
         self.mobility.columns.poison();
         self.relief.fill(f64::NAN);
+        self.shear.clear();
         self.momentum.poison();
         self.strides.clear();
         self.sweeps = u32::MAX;

@@ -60,6 +60,28 @@ pub struct Link {
     pub pairs: [[u32; 2]; 3],
 }
 
+/// What a part of a surface or an atom of it faces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Faced {
+    /// Another body.
+    Body(u32),
+    /// A plane.
+    Plane(u32),
+}
+
+/// Bonds of a part of a surface to what it faces, eq. (adhesion.22).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SurfaceBonds {
+    /// The facet, numbered through all cells.
+    pub facet: u32,
+    /// Which part of it: the number of its point.
+    pub point: u32,
+    /// What it faces.
+    pub other: Faced,
+    /// The share of its bonds that is closed.
+    pub closed: f64,
+}
+
 /// An atom in an adhesive.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AdhesiveAtom {
@@ -73,7 +95,7 @@ pub struct AdhesiveAtom {
     pub force: [f64; 3],
 }
 
-/// All contacts that carry a force, in the order in which they are found, links and virtual adhesives.
+/// All contacts that carry a force, in the order in which they are found, links, virtual adhesives and bonds of surfaces.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ContactState {
     /// Atoms on facets.
@@ -88,6 +110,8 @@ pub struct ContactState {
     pub adhesives: Vec<AdhesiveAtom>,
     /// Atoms that adhesives released and that still touch, in their order.
     pub released: Vec<u32>,
+    /// Bonds of surfaces, in the order of facets; none where surfaces have no bonds that close and open.
+    pub bonds: Vec<SurfaceBonds>,
 }
 
 impl ContactState {

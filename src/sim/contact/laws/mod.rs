@@ -10,7 +10,9 @@ mod virtual_adhesives;
 
 pub(super) use adhesives::PROMISED;
 pub use adhesives::Strength;
-pub use cohesion::{AreaScratch, CohesionScratch, CohesionTable, Cohesive, Faced, Facing, area_between};
+pub use cohesion::{
+    AreaScratch, BondKinetics, CohesionScratch, CohesionTable, Cohesive, Earlier, Faced, Facing, Pathway, area_between,
+};
 pub use links::{LinkScratch, LinkTable};
 pub use penalty::Penalty;
 pub use virtual_adhesives::{AdhesiveScratch, AdhesiveTable, Zones};
@@ -78,7 +80,10 @@ impl Law {
         let Touching { scene, controls, found, positions } = now;
         match self {
             Self::Adhesives | Self::Penalty(_) => scratch.clear(),
-            Self::Cohesion(table) => table.find(scene, controls, positions, &mut scratch.cohesion),
+            Self::Cohesion(table) => {
+                let before = Earlier { bonds: &before.bonds, time };
+                table.find(scene, controls, before, positions, &mut scratch.cohesion);
+            }
             Self::Links(table) => table.find(scene, controls, &before.links, found, positions, &mut scratch.links),
             Self::VirtualAdhesives(table) => {
                 scratch.adhesives.find(table, scene, kinds, controls, before, found, positions, time);
@@ -184,8 +189,10 @@ impl Law {
         kept.links.clear();
         kept.released.clear();
         kept.adhesives.clear();
+        kept.bonds.clear();
         match self {
-            Self::Adhesives | Self::Cohesion(_) | Self::Penalty(_) => {}
+            Self::Adhesives | Self::Penalty(_) => {}
+            Self::Cohesion(table) => scratch.cohesion.keep_bonds(table, scene, &mut kept.bonds),
             Self::Links(_) => kept.links.clone_from(&scratch.links.links),
             Self::VirtualAdhesives(table) => scratch.adhesives.keep(table, scene, controls, found, moved, kept),
         }
@@ -194,6 +201,7 @@ impl Law {
     /// Which series a run records besides those of all contacts.
     pub fn series(&self) -> Recorded {
         match self {
+            Self::Cohesion(table) if table.has_bonds() => Recorded::WithBonds,
             Self::Adhesives | Self::Cohesion(_) | Self::Penalty(_) => Recorded::Always,
             Self::Links(_) => Recorded::WithLinks,
             Self::VirtualAdhesives(_) => Recorded::WithAdhesives,

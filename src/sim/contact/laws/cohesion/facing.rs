@@ -1,17 +1,10 @@
 //! What of the area in contact belongs to each atom, by what it faces: contacts of atoms bear shear by it, and friction acts on it.
 
+use super::closed::PatchBonds;
 use super::patch::{Partner, Patch};
 use crate::Vec3;
 use crate::contact::Scene;
-
-/// What an atom faces.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Faced {
-    /// Another body.
-    Body(u32),
-    /// A plane.
-    Plane(u32),
-}
+pub use crate::sim::contact::state::Faced;
 
 /// The area in contact around an atom with one of what it faces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +13,7 @@ pub struct Facing {
     pub atom: u32,
     /// What it faces.
     pub other: Faced,
-    /// What of the area in contact is nearest to it, µm².
+    /// What of the area in contact is nearest to it, µm²; where surfaces have bonds, what of it is bound.
     pub area: f64,
     /// The atoms of a facet of the other body before the part of that area that weighs most, in the order in which its normal points to
     /// the atom; of a plane the atom itself.
@@ -30,10 +23,16 @@ pub struct Facing {
 }
 
 impl Facing {
-    /// Adds those of the parts of surfaces of a batch of bodies, in the order of atoms.
-    pub(super) fn add(patches: &[Patch], scene: &Scene, positions: &[Vec3], to: &mut Vec<Self>) {
-        for patch in patches {
-            let area = patch.area_in_contact(scene, positions);
+    /// Adds those of the parts of surfaces of a batch of bodies, with their bonds as far as they have some, in the order of atoms.
+    pub(super) fn add(
+        (patches, bonds): (&[Patch], &[PatchBonds]),
+        scene: &Scene,
+        positions: &[Vec3],
+        to: &mut Vec<Self>,
+    ) {
+        for (number, patch) in patches.iter().enumerate() {
+            let closed = bonds.get(number).map_or(1.0, PatchBonds::closed);
+            let area = closed * patch.area_in_contact(scene, positions);
             if area <= 0.0 {
                 continue;
             }

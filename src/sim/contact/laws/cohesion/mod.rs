@@ -5,23 +5,31 @@
 mod area;
 #[cfg(test)]
 mod area_tests;
+mod bonds;
 mod candidates;
+mod closed;
 mod facing;
 mod patch;
 mod search;
 mod table;
 #[cfg(test)]
 mod tests;
+mod turnover;
 
 use rayon::prelude::*;
 
 pub use self::area::AreaScratch;
+pub use self::bonds::{BondKinetics, Pathway};
+pub use self::closed::Earlier;
+use self::closed::PatchBonds;
 pub use self::facing::{Faced, Facing, area_between};
 use self::patch::{Partner, Patch};
 use self::search::{Around, Seen, Surroundings};
 pub use self::table::{CohesionTable, Cohesive};
+use self::turnover::Turnover;
 use crate::Vec3;
 use crate::contact::Scene;
+use crate::sim::contact::state::SurfaceBonds;
 use crate::sim::controls::Controls;
 
 /// What the law finds where a step begins.
@@ -36,6 +44,10 @@ pub struct CohesionScratch {
     of_batches: Vec<Vec<Facing>>,
     /// Those of all, in the order of atoms.
     pub(in crate::sim::contact) facing: Vec<Facing>,
+    /// Bonds of the parts of each batch, one for each; none where no surfaces have bonds.
+    bonds: Vec<Vec<PatchBonds>>,
+    /// What their turnover changes of the forces on atoms, pN.
+    change: Vec<Vec3>,
 }
 
 impl CohesionScratch {
@@ -44,31 +56,73 @@ impl CohesionScratch {
         self.around.near.forget();
         self.patches.clear();
         self.facing.clear();
+        self.bonds.clear();
+        self.change.clear();
+    }
+
+    /// Lets bonds close and open in a step that ends at these positions, eq. (adhesion.25); `shear` is what each bears along the surface, pN,
+    /// as `facing`. Returns what that changes of the forces on atoms there, pN.
+    pub(in crate::sim::contact) fn turn_over(
+        &mut self,
+        table: &CohesionTable,
+        (scene, positions): (&Scene, &[Vec3]),
+        (dt, shear): (f64, &[f64]),
+    ) -> &[Vec3] {
+        let Self { patches, facing, bonds, change, .. } = self;
+        let turnover = Turnover { table, scene, positions, dt, facing, shear };
+        bonds.par_iter_mut().zip(&*patches).for_each(|(bonds, patches)| turnover.turn_over(bonds, patches));
+        change.clear();
+        change.resize(scene.atoms, Vec3::zeros());
+        bonds.iter().zip(&*patches).for_each(|(bonds, patches)| turnover.add_change(bonds, patches, change));
+        change
+    }
+
+    /// Writes the bonds that there are where a step ends.
+    pub(super) fn keep_bonds(&self, table: &CohesionTable, scene: &Scene, kept: &mut Vec<SurfaceBonds>) {
+        kept.extend(self.bonds.iter().flatten().filter_map(|bonds| bonds.kept(table, scene)));
     }
 }
 
 impl CohesionTable {
-    /// Finds which parts of surfaces attract each other at these positions.
-    pub fn find(&self, scene: &Scene, controls: &Controls, positions: &[Vec3], to: &mut CohesionScratch) {
+    /// Finds which parts of surfaces attract each other at these positions, by those of their bonds that were closed before.
+    pub fn find(
+        &self,
+        scene: &Scene,
+        controls: &Controls,
+        before: Earlier,
+        positions: &[Vec3],
+        to: &mut CohesionScratch,
+    ) {
         let range = self.range();
         if range == 0.0 {
             return to.clear();
         }
         to.around.find(scene, positions, range, true);
-        let CohesionScratch { around: Surroundings { near, facets }, patches, looks, of_batches, facing } = to;
+        let CohesionScratch {
+            around: Surroundings { near, facets }, patches, looks, of_batches, facing, bonds, ..
+        } = to;
         let seen = Seen { table: self, scene, controls, positions, facets, range };
         patches.resize_with(scene.batches(), Vec::new);
         looks.resize_with(scene.batches(), Around::default);
         of_batches.resize_with(scene.batches(), Vec::new);
-        let batches = patches.par_iter_mut().zip(looks.par_iter_mut()).zip(of_batches.par_iter_mut()).enumerate();
-        batches.for_each(|(batch, ((patches, around), facing))| {
+        bonds.resize_with(scene.batches(), Vec::new);
+        let has_bonds = self.has_bonds();
+        let batches = patches.par_iter_mut().zip(looks.par_iter_mut()).zip(of_batches.par_iter_mut());
+        batches.zip(bonds.par_iter_mut()).enumerate().for_each(|(batch, (((patches, around), facing), bonds))| {
             patches.clear();
+            bonds.clear();
+            let mut before = before.from_body(scene, scene.bodies_of(batch).start);
             scene.bodies_of(batch).for_each(|body| {
-                seen.find(body, near.of_body(scene, body), around, |patch| patches.push(patch));
+                seen.find(body, near.of_body(scene, body), around, |spot, mut patch| {
+                    if has_bonds {
+                        bonds.push(before.bind(self, scene, (body, spot), &mut patch));
+                    }
+                    patches.push(patch);
+                });
             });
             facing.clear();
             if self.resists {
-                Facing::add(patches, scene, positions, facing);
+                Facing::add((patches, bonds), scene, positions, facing);
             }
         });
         facing.clear();
@@ -90,6 +144,12 @@ impl CohesionTable {
             }
         }
         energy
+    }
+
+    /// How many bonds are closed of what was found, where the atoms are now.
+    pub fn closed_bonds(&self, scene: &Scene, found: &CohesionScratch, now: &[Vec3]) -> f64 {
+        let parts = found.bonds.iter().flatten().zip(found.patches.iter().flatten());
+        parts.map(|(bonds, patch)| bonds.count(self, scene, patch, now)).sum()
     }
 
     /// The energy of what was found, where the atoms are now, pN·µm.

@@ -100,6 +100,17 @@ impl Patch {
         (opening.width < self.range).then_some((opening, twice, sides, n))
     }
 
+    /// The traction over the strength where the atoms are now.
+    pub fn share_of_traction(&self, scene: &Scene, now: &[Vec3]) -> f64 {
+        self.opening(scene, now).map_or(0.0, |(opening, ..)| traction(opening.width / self.range))
+    }
+
+    /// The area of all of its facet, µm².
+    pub fn area_of_facet(&self, now: &[Vec3]) -> f64 {
+        let [a, b, c] = gather_corners(now, self.own);
+        0.5 * (b - a).cross(&(c - a)).norm()
+    }
+
     /// The part of its area that is in contact, as seen from the other surface, µm²: all of it up to half of the range, from where on the
     /// traction falls.
     pub fn area_in_contact(&self, scene: &Scene, now: &[Vec3]) -> f64 {

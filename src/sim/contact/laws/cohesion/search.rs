@@ -45,6 +45,15 @@ pub struct Seen<'a> {
     pub range: f64,
 }
 
+/// Which part of a surface a point stands for.
+#[derive(Debug, Clone, Copy)]
+pub struct Spot {
+    /// Its facet, numbered through all bodies.
+    pub facet: u32,
+    /// The number of the point on it; of surfaces with two sides those of the one from behind count on.
+    pub point: u32,
+}
+
 /// What attracts a point.
 struct Attracted {
     /// Of the point's side, pN/µm².
@@ -80,7 +89,7 @@ impl Seen<'_> {
         body: u32,
         near: impl Iterator<Item = &'a [u32]>,
         around: &mut Around,
-        mut found: impl FnMut(Patch),
+        mut found: impl FnMut(Spot, Patch),
     ) {
         let (scene, of) = (self.scene, self.scene.bodies[body as usize]);
         let points = points_of_facet(self.table.points[of.shape as usize]);
@@ -97,13 +106,14 @@ impl Seen<'_> {
             let corners = gather_corners(self.positions, own);
             let at = |weights: &[f64; 3]| weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
             let other_side = has_two.then_some(([own[0], own[2], own[1]], -normal));
-            for (own, n) in std::iter::once((own, normal)).chain(other_side) {
+            for (side, (own, n)) in (0..).zip(std::iter::once((own, normal)).chain(other_side)) {
                 around.candidates.bound(points.iter().map(at), n);
                 let mut first = 0;
                 for (number, weights) in points.iter().enumerate() {
                     if let Some(most) = self.strongest(body, (at(weights), n), (around, number), &mut first) {
                         let Attracted { strength, range, partner: other } = most;
-                        found(Patch { own, other, weights, share, strength: share * strength, range });
+                        let spot = Spot { facet, point: (side * points.len() + number) as u32 };
+                        found(spot, Patch { own, other, weights, share, strength: share * strength, range });
                     }
                 }
             }

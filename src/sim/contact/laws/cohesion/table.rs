@@ -1,5 +1,6 @@
 //! Which surfaces stick, how strongly and how far.
 
+use super::bonds::BondKinetics;
 use super::facing::Faced;
 use crate::contact::Scene;
 
@@ -12,6 +13,8 @@ pub struct Cohesive {
     pub work: f64,
     /// Traction over the speed at which they slide along each other, pN·s/µm³, eq. (adhesion.19).
     pub friction: f64,
+    /// How the bonds close and open that do all this; without, all are closed wherever surfaces are within the range.
+    pub bonds: Option<BondKinetics>,
 }
 
 impl Cohesive {
@@ -60,7 +63,7 @@ impl CohesionTable {
     /// A table in which all that is less than `range` (µm) apart is alike, of kinds with these mean edges (µm): to measure areas of contact.
     pub fn alike(edges: &[f64], planes: usize, range: f64) -> Self {
         let mut table = Self::new(edges.len(), planes);
-        let cohesive = Cohesive { strength: 1.0, work: 0.5 * range, friction: 0.0 };
+        let cohesive = Cohesive { strength: 1.0, work: 0.5 * range, ..Cohesive::default() };
         table.between.fill(cohesive);
         table.on_planes.fill(cohesive);
         table.resolve_for(edges, false);
@@ -107,6 +110,11 @@ impl CohesionTable {
             Faced::Body(other) => self.between[kind(body) * self.points.len() + kind(other)],
             Faced::Plane(plane) => self.on_planes[kind(body) * scene.planes.len() + plane as usize],
         }
+    }
+
+    /// Whether any surfaces have bonds that close and open.
+    pub fn has_bonds(&self) -> bool {
+        self.between.iter().chain(&self.on_planes).any(|cohesive| cohesive.bonds.is_some())
     }
 
     /// Whether anything slides with friction.

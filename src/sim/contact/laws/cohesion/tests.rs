@@ -26,7 +26,7 @@ fn moved(mut surface: Surface, by: Vec3) -> Surface {
 
 fn found(table: &CohesionTable, scene: &Scene, positions: &[Vec3]) -> CohesionScratch {
     let mut found = CohesionScratch::default();
-    table.find(scene, &Controls::default(), positions, &mut found);
+    table.find(scene, &Controls::default(), NONE, positions, &mut found);
     found
 }
 
@@ -34,7 +34,10 @@ fn floor() -> Plane {
     Plane { point: Vec3::zeros(), normal: Vec3::z() }
 }
 
-const GLUE: Cohesive = Cohesive { strength: 3.0, work: 1.2, friction: 0.0 };
+/// No bonds from before.
+const NONE: Earlier = Earlier { bonds: &[], time: 0.0 };
+
+const GLUE: Cohesive = Cohesive { strength: 3.0, work: 1.2, friction: 0.0, bonds: None };
 
 #[test]
 fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
