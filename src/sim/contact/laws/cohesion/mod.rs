@@ -51,9 +51,14 @@ pub struct CohesionScratch {
 }
 
 impl CohesionScratch {
+    /// Forgets what was near, so that the next look finds it anew.
+    pub fn forget(&mut self) {
+        self.around.near.forget();
+    }
+
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
-        self.around.near.forget();
+        self.forget();
         self.patches.clear();
         self.facing.clear();
         self.bonds.clear();
