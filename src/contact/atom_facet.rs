@@ -66,7 +66,7 @@ pub(super) fn find_atom_contacts(
                 atom: numbered,
                 facet: first_facet + low.facet,
                 feature: low.point.feature,
-                second_weights: low.point.weights,
+                second_weights: low.point.weights.map(|weight| weight as f32),
                 gap,
                 normal: normal.into(),
                 facing,

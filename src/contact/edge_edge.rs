@@ -35,7 +35,7 @@ pub(super) fn find_edge_contacts<'a>(
             contacts,
             EdgeContact {
                 edges: [numbered(body, edge), numbered(other, candidate)],
-                along,
+                along: along.map(|share| share as f32),
                 gap,
                 normal: normal.into(),
             },
@@ -205,7 +205,7 @@ pub fn edges_still_touch(scene: &Scene, positions: &[Vec3], edges: [u32; 2], nor
     let near = gap < scene.reach.proximity && gap >= -scene.reach.depth;
     (near && !have_turned(&first, &second, &normal, SLACK)).then(|| EdgeContact {
         edges,
-        along: [on_first / squared, on_second / squared],
+        along: [on_first, on_second].map(|share| (share / squared) as f32),
         gap,
         normal: normal.into(),
     })

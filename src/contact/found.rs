@@ -58,8 +58,8 @@ pub struct AtomContact {
     pub facet: u32,
     /// Where on the facet the closest point lies. A point on a side or a corner is told once, for one of its facets.
     pub feature: Feature,
-    /// Barycentric weights of the facet's second and third atom; see [`AtomContact::weights`].
-    pub second_weights: [f64; 2],
+    /// Barycentric weights of the facet's second and third atom, to seven digits; see [`AtomContact::weights`].
+    pub second_weights: [f32; 2],
     /// Distance along the normal, µm; negative inside.
     pub gap: f64,
     /// Unit normal from the facet to the outside, to seven digits: atom = closest point + gap × normal.
@@ -76,7 +76,7 @@ impl AtomContact {
 
     /// The barycentric weights of the closest point on the three atoms of the facet; their sum is 1.
     pub fn weights(&self) -> [f64; 3] {
-        let [second, third] = self.second_weights;
+        let [second, third] = self.second_weights.map(f64::from);
         [1.0 - second - third, second, third]
     }
 }
@@ -86,8 +86,8 @@ impl AtomContact {
 pub struct EdgeContact {
     /// The two edges, numbered through the scene; the first has the smaller number.
     pub edges: [u32; 2],
-    /// Where along each edge the closest points lie, from 0 at its first atom to 1.
-    pub along: [f64; 2],
+    /// Where along each edge the closest points lie, from 0 at its first atom to 1, to seven digits.
+    pub along: [f32; 2],
     /// Distance along the normal, µm; negative inside.
     pub gap: f64,
     /// Unit normal from the second edge to the first, to seven digits: point on first = point on second + gap × normal.

@@ -146,7 +146,7 @@ fn a_contact_is_a_point_of_the_facet_and_a_gap_along_a_unit_normal() {
         for contact in &contacts.edges {
             let [first, second] = [0, 1].map(|k| {
                 let [a, b] = stage.scene.edge_atoms(contact.bodies(&stage.scene)[k], contact.edges[k]).map(at);
-                a + (b - a) * contact.along[k]
+                a + (b - a) * f64::from(contact.along[k])
             });
             // Nearly parallel edges: the direction loses digits with the sine of their angle.
             assert!((second + contact.normal.wide() * contact.gap - first).norm() < 1e-6, "seed {seed} {contact:?}");

@@ -74,14 +74,13 @@ pub fn write_rows(from: Written, index: impl Fn(usize) -> usize + Sync, rows: &m
 fn row(
     pairing: Pairing,
     atoms: [u32; 4],
-    coordinates: [f64; 2],
+    coordinates: [f32; 2],
     Normal([x, y, z]): Normal,
     gap: f64,
     [least, shear, friction]: [f64; 3],
     stored: f32,
 ) -> Row {
     let normal_and_gap = [x, y, z, gap as f32];
-    let coordinates = coordinates.map(|coordinate| coordinate as f32);
     let (least, shear, friction) = (least as f32, shear as f32, friction as f32);
     Row { atoms, coordinates, normal_and_gap, least, shear, friction, stored, pairing, ..Row::NOTHING }
 }

@@ -25,13 +25,19 @@ const KEYS_PER_JOB: usize = 2048;
 const BODIES_PER_JOB: usize = 64;
 const GROUPS_PER_JOB: usize = 64;
 
+/// Marks the first row of a pair.
+const FIRST: u32 = 1 << 31;
+
+/// Rows of a body that are sorted with what they are sorted by beside them.
+const FEW_ROWS: usize = 256;
+
 /// The order of the sweeps, and what is needed to find it.
 #[derive(Debug, Clone, Default)]
 pub struct Turns {
     /// The turn of each row.
     turn_of: Vec<u32>,
-    /// For the smaller body of each row after the other the larger one, and the number of the row: ascending, so that the rows of a pair stand together.
-    rows: Vec<u64>,
+    /// The rows by the smaller of their bodies and then by the larger, so that those of a pair stand together; the first of each is marked.
+    rows: Vec<u32>,
     /// Where those of each body end.
     ends: Vec<u32>,
     /// Pairs: colour, first row in `rows` and one behind the last.
@@ -52,8 +58,8 @@ impl Turns {
     /// Finds the order of so many rows, each between two bodies.
     pub fn find(&mut self, count: usize, between: impl Fn(usize) -> [u32; 2] + Sync, bodies: usize) {
         self.turn_of.resize(count, 0);
-        self.sort_rows(between, bodies);
-        self.colour_pairs(bodies);
+        self.sort_rows(&between, bodies);
+        self.colour_pairs(&between, bodies);
         // Pairs with as many rows stay side by side longest.
         self.pairs.par_sort_unstable_by_key(|&(colour, first, end)| (colour, end - first, first));
         self.group_pairs(Self::are_many(count));
@@ -73,7 +79,7 @@ impl Turns {
     }
 
     /// Sorts the rows by the pairs of bodies that they are between: by the smaller of these first, which is counted.
-    fn sort_rows(&mut self, between: impl Fn(usize) -> [u32; 2] + Sync, bodies: usize) {
+    fn sort_rows(&mut self, between: &(impl Fn(usize) -> [u32; 2] + Sync), bodies: usize) {
         let Self { turn_of, rows, ends, .. } = self;
         let smaller = turn_of.par_iter_mut().enumerate().with_min_len(KEYS_PER_JOB);
         smaller.for_each(|(row, smaller)| {
@@ -97,23 +103,30 @@ impl Turns {
             let start = if body == 0 { 0 } else { ends[body - 1] };
             // SAFETY: each body has rows of its own.
             let own = unsafe { rows.part(start as usize..ends[body] as usize) };
-            for row in &mut *own {
-                let [one, other] = between(number(*row));
-                *row |= u64::from(one.max(other)) << 32;
+            let larger = |row: u32| {
+                let [one, other] = between(row as usize);
+                one.max(other)
+            };
+            sort_by_body(own, larger);
+            let mut last = None;
+            for row in own {
+                let other = larger(*row);
+                *row |= if last == Some(other) { 0 } else { FIRST };
+                last = Some(other);
             }
-            own.sort_unstable();
         });
     }
 
     /// Lists the pairs of bodies, no body twice in a colour.
-    fn colour_pairs(&mut self, bodies: usize) {
+    fn colour_pairs(&mut self, between: &impl Fn(usize) -> [u32; 2], bodies: usize) {
         self.taken.clear();
         self.taken.resize(bodies, 0);
         self.pairs.clear();
         let mut first = 0;
         for (body, &end) in self.ends.iter().enumerate() {
-            for pair in self.rows[first as usize..end as usize].chunk_by(|one, other| one >> 32 == other >> 32) {
-                let other = (pair[0] >> 32) as usize;
+            for pair in self.rows[first as usize..end as usize].chunk_by(|_, next| next & FIRST == 0) {
+                let [one, other] = between(number(pair[0]));
+                let other = one.max(other) as usize;
                 let colour = (self.taken[body] | self.taken[other]).trailing_ones().min(COLOURS - 1);
                 self.taken[body] |= 1 << colour;
                 self.taken[other] |= 1 << colour;
@@ -215,9 +228,20 @@ impl Turns {
     }
 }
 
-/// The number of a row.
-fn number(row: u64) -> usize {
-    (row & 0xffff_ffff) as usize
+/// The number of a row, marked or not.
+fn number(row: u32) -> usize {
+    (row & !FIRST) as usize
+}
+
+/// Sorts rows by a body of each, then by their numbers. Few, as they are, with the bodies beside them.
+fn sort_by_body(rows: &mut [u32], body: impl Fn(u32) -> u32) {
+    let mut beside = [0u64; FEW_ROWS];
+    let Some(beside) = beside.get_mut(..rows.len()) else {
+        return rows.sort_unstable_by_key(|row| (body(*row), *row));
+    };
+    beside.iter_mut().zip(&*rows).for_each(|(both, row)| *both = u64::from(body(*row)) << 32 | u64::from(*row));
+    beside.sort_unstable();
+    rows.iter_mut().zip(beside).for_each(|(row, both)| *row = *both as u32);
 }
 
 /// Ends the last job after so many turns, if it has any.
