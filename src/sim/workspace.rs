@@ -75,7 +75,7 @@ pub struct KindScratch {
 }
 
 /// Factors kept: the ladder of steps is coarse, so few are in use at a time.
-const FACTORS_KEPT: usize = 4;
+const FACTORS_KEPT: usize = 3;
 
 impl KindScratch {
     fn new() -> Self {
