@@ -72,6 +72,31 @@ pub struct Estimate {
     pub travel: Travel,
 }
 
+/// Why an attempt was not made to its end.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Halt {
+    /// Free motion alone misses the tolerance, by this error over the mean edge.
+    Missed(f64),
+    /// A stage failed.
+    Failed(Trouble),
+}
+
+impl From<Trouble> for Halt {
+    fn from(trouble: Trouble) -> Self {
+        Self::Failed(trouble)
+    }
+}
+
+impl Halt {
+    /// What is known of the step; of one that was not made to its end not how far bodies went.
+    fn estimate(self) -> Result<Estimate, Trouble> {
+        match self {
+            Self::Missed(error) => Ok(Estimate { error, travel: Travel::default() }),
+            Self::Failed(trouble) => Err(trouble),
+        }
+    }
+}
+
 /// What may be wrong where an attempt ends, which its error does not tell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Flaw {
@@ -119,7 +144,8 @@ impl Plan {
     ///
     /// # Errors
     /// The trouble of an attempt that no shorter one would mend.
-    pub fn allows(&mut self, model: &Model, outcome: Result<Estimate, Trouble>) -> Result<bool, Trouble> {
+    pub fn allows(&mut self, model: &Model, outcome: Result<Estimate, Halt>) -> Result<bool, Trouble> {
+        let outcome = outcome.or_else(Halt::estimate);
         self.farthest = outcome.as_ref().map_or(f64::INFINITY, |estimate| estimate.travel.farthest);
         let (error, with_contacts) = match outcome.and_then(|estimate| self.with_contacts(model, estimate)) {
             Ok(errors) => errors,
@@ -160,9 +186,15 @@ impl Plan {
         self.retry(model, next)
     }
 
-    /// Whether the error of free motion alone refuses an attempt, so that it need not be made to its end.
-    pub fn refuses(&self, model: &Model, error: f64) -> bool {
-        matches!(model.integrator.size, StepSize::Adaptive { tolerance, .. } if error > tolerance)
+    /// Looks whether the error of free motion alone refuses an attempt.
+    ///
+    /// # Errors
+    /// It does, and the attempt need not be made to its end.
+    pub fn check_error(&self, model: &Model, error: f64) -> Result<(), Halt> {
+        match model.integrator.size {
+            StepSize::Adaptive { tolerance, .. } if error > tolerance => Err(Halt::Missed(error)),
+            _ => Ok(()),
+        }
     }
 
     /// How contacts are swept. Depths are mended in the first attempt only, since to push something out by moving it takes work.

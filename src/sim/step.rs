@@ -16,13 +16,12 @@ use super::inertial::correct_velocities;
 use super::model::Model;
 use super::motility::advance_behaviours;
 use super::motion::move_freely;
-use super::plan::{Estimate, Flaw, Plan, StepReport};
+use super::plan::{Estimate, Flaw, Halt, Plan, StepReport};
 use super::refresh::fit_stiffness;
 use super::state::State;
 use super::trouble::Trouble;
 use super::velocity::measure_velocities;
 use super::workspace::Workspace;
-use crate::contact::Travel;
 
 /// Moves the state by one step.
 ///
@@ -86,15 +85,13 @@ fn prepare(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> R
 }
 
 /// The stages of an attempt.
-fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Workspace) -> Result<Estimate, Trouble> {
+fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Workspace) -> Result<Estimate, Halt> {
     let (dt, end) = (plan.dt, from.time + plan.dt);
     carry_forces(model, from, ws);
     advance_behaviours(model, dt, from, to, ws);
     let error = move_freely(model, dt, from, to, ws);
     check_finite(model, end, to)?;
-    if plan.refuses(model, error) {
-        return Ok(Estimate { error, travel: Travel::default() });
-    }
+    plan.check_error(model, error)?;
     hold_contacts(model, dt, plan.sweep_rules(), from, to, ws)?;
     make_exact(model, end, from, to, ws)?;
     correct_velocities(model, dt, to, ws);
