@@ -72,7 +72,7 @@ fn wall(
     let up = third - start;
     let rises = facing.dot(&up) > FLAT * up.norm() && normal.dot(&facing) > 0.0;
     let point = closest_on_facet(position, corners);
-    let (gap, second_weights, feature) =
-        (normal.dot(&(position - a)), point.weights.map(|weight| weight as f32), point.feature);
+    let second_weights = point.weights.map(|weight| weight as f32);
+    let (gap, feature) = (normal.dot(&(position - a)), point.feature);
     rises.then_some(AtomContact { facet, feature, second_weights, gap, normal: normal.into(), ..*near })
 }

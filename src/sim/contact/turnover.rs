@@ -2,7 +2,7 @@
 
 use super::assemble::SHARE;
 use super::gather::gather_positions;
-use super::laws::{Faced, Facing};
+use super::laws::{Faced, Facing, number_of};
 use super::rows::{Pairing, Pull, Row};
 use super::rub::rubs;
 use super::scene::ContactScene;
@@ -55,8 +55,7 @@ fn find_shear(contact: &ContactScene, controls: &Controls, s: &ContactScratch, s
         (&s.rows[at], &s.pulls[at])
     };
     let mut add = |(row, pull): (&Row, &Pull), other: Faced| {
-        let key = (row.atoms[0], other);
-        if let Ok(at) = facing.binary_search_by_key(&key, |known| (known.atom, known.other)) {
+        if let Some(at) = number_of(facing, row.atoms[0], other) {
             shear[at] += across(row, pull);
         }
     };

@@ -12,6 +12,7 @@ pub(super) use adhesives::PROMISED;
 pub use adhesives::Strength;
 pub use cohesion::{
     AreaScratch, BondKinetics, CohesionScratch, CohesionTable, Cohesive, Earlier, Faced, Facing, Pathway, area_between,
+    number_of,
 };
 pub use links::{LinkScratch, LinkTable};
 pub use penalty::Penalty;

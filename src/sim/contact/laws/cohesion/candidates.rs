@@ -158,6 +158,38 @@ mod tests {
     }
 
     #[test]
+    fn a_facet_that_a_point_is_behind_and_a_little_beside_is_not_passed_over() {
+        let mut stream = Stream::new(13, Purpose::Placement, 0, 0);
+        let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
+        let (mut seen, mut outside) = (0, 0);
+        for _ in 0..20_000 {
+            let corners = [0, 1, 2].map(|_| Vec3::new(number(), number(), number()));
+            let twice = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+            let m = twice.normalize();
+            let n = (0.3 * Vec3::new(number(), number(), number()) - m).normalize();
+            // Around the first corner, on all sides of it.
+            let (v, w, behind) = (0.03 * number(), 0.03 * number(), 0.03 * number().abs());
+            let at = (1.0 - v - w) * corners[0] + v * corners[1] + w * corners[2];
+            let x = at - behind * twice.norm().sqrt() * m;
+            let found = opening_to_facet(x, n, &corners, m).filter(|(opening, _)| opening.width < 0.0);
+            if found.is_none() {
+                continue;
+            }
+            let facet = Facet::of(&corners);
+            let mut candidates = Candidates::default();
+            candidates.push(7, &facet);
+            candidates.bound([x].into_iter(), n);
+            let point = Facet { normal: n, middle: x, radius: 0.0 };
+            let bounds = [candidates.bounds_of(0)[0], least_opening_between(&point, n, &facet)];
+            assert_eq!(bounds, [0.0, 0.0], "{found:?} {corners:?}");
+            assert!(may_meet(&point, n, &facet, 0.0));
+            seen += 1;
+            outside += usize::from((x - facet.middle).norm() > facet.radius);
+        }
+        assert!(seen > 2000 && outside > 100, "{outside} of {seen} are outside the sphere around the facet");
+    }
+
+    #[test]
     fn no_point_of_a_facet_is_nearer_to_another_than_their_bound() {
         let mut stream = Stream::new(12, Purpose::Placement, 0, 0);
         let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;

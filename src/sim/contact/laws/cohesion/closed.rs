@@ -1,10 +1,10 @@
 //! Which bonds of surfaces are closed where a step begins.
 
-use super::patch::{Partner, Patch};
+use super::patch::Patch;
 use super::search::Spot;
 use super::table::CohesionTable;
 use crate::contact::Scene;
-use crate::sim::contact::state::{Faced, SurfaceBonds};
+use crate::sim::contact::state::SurfaceBonds;
 
 /// The bonds of a part of a surface in a step.
 #[derive(Debug, Clone, Copy)]
@@ -48,7 +48,7 @@ impl<'a> Earlier<'a> {
         (body, Spot { facet, point }): (u32, Spot),
         patch: &mut Patch,
     ) -> PatchBonds {
-        let other = faced(scene, patch);
+        let other = patch.faces(scene);
         let cohesive = table.of(scene, body, other);
         let strength = patch.strength;
         let Some(bonds) = cohesive.bonds else {
@@ -63,13 +63,5 @@ impl<'a> Earlier<'a> {
         let closed = self.bonds.first().filter(is_same).map_or(new, |known| known.closed);
         patch.strength *= closed;
         PatchBonds { before: SurfaceBonds { facet, point, other, closed }, strength, after: closed }
-    }
-}
-
-/// What a part of a surface faces.
-fn faced(scene: &Scene, patch: &Patch) -> Faced {
-    match patch.other {
-        Partner::Facet([atom, ..], _) => Faced::Body(scene.body_of_atom(atom)),
-        Partner::Plane(plane) => Faced::Plane(plane),
     }
 }

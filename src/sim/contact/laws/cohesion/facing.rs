@@ -36,10 +36,7 @@ impl Facing {
             if area <= 0.0 {
                 continue;
             }
-            let other = match patch.other {
-                Partner::Facet([atom, ..], _) => Faced::Body(scene.body_of_atom(atom)),
-                Partner::Plane(plane) => Faced::Plane(plane),
-            };
+            let other = patch.faces(scene);
             // Parts of one facet follow each other: most are added to what stands last.
             let last = to.len().saturating_sub(3);
             if !(to.len() >= 3 && (0..3).all(|i| (to[last + i].atom, to[last + i].other) == (patch.own[i], other))) {
@@ -74,8 +71,12 @@ impl Facing {
     }
 }
 
+/// Which of these is that of an atom and what it faces.
+pub fn number_of(facing: &[Facing], atom: u32, other: Faced) -> Option<usize> {
+    facing.binary_search_by_key(&(atom, other), |known| (known.atom, known.other)).ok()
+}
+
 /// The area in contact between an atom and what it faces, µm².
 pub fn area_between(facing: &[Facing], atom: u32, other: Faced) -> f64 {
-    let found = facing.binary_search_by_key(&(atom, other), |known| (known.atom, known.other));
-    found.map_or(0.0, |number| facing[number].area)
+    number_of(facing, atom, other).map_or(0.0, |number| facing[number].area)
 }

@@ -22,7 +22,7 @@ pub use self::area::AreaScratch;
 pub use self::bonds::{BondKinetics, Pathway};
 pub use self::closed::Earlier;
 use self::closed::PatchBonds;
-pub use self::facing::{Faced, Facing, area_between};
+pub use self::facing::{Faced, Facing, area_between, number_of};
 use self::patch::{Partner, Patch};
 use self::search::{Around, Seen, Surroundings};
 pub use self::table::{CohesionTable, Cohesive};

@@ -3,6 +3,7 @@
 use super::super::super::vectors::gather_corners;
 use crate::Vec3;
 use crate::contact::{Feature, Opening, Scene, opening_to_feature, opening_to_plane};
+use crate::sim::contact::state::Faced;
 
 /// A part of a facet that another surface attracts: forces of both are those of an energy of the positions of their atoms.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,6 +99,14 @@ impl Patch {
             }
         };
         (opening.width < self.range).then_some((opening, twice, sides, n))
+    }
+
+    /// What it faces.
+    pub fn faces(&self, scene: &Scene) -> Faced {
+        match self.other {
+            Partner::Facet([atom, ..], _) => Faced::Body(scene.body_of_atom(atom)),
+            Partner::Plane(plane) => Faced::Plane(plane),
+        }
     }
 
     /// The traction over the strength where the atoms are now.

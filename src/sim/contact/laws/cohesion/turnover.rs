@@ -1,7 +1,7 @@
 //! Bonds of surfaces over a step: what each bears where it ends, and how many are closed there.
 
 use super::closed::PatchBonds;
-use super::facing::Facing;
+use super::facing::{Facing, number_of};
 use super::patch::{Partner, Patch};
 use super::table::CohesionTable;
 use crate::Vec3;
@@ -57,8 +57,8 @@ impl Turnover<'_> {
     /// The shear that each bond of a part bears, pN: that of bonds around the atoms of its facet, by its weights.
     fn shear_at(&self, patch: &Patch, other: Faced) -> f64 {
         let around = |atom: u32| {
-            let found = self.facing.binary_search_by_key(&(atom, other), |known| (known.atom, known.other));
-            found.ok().and_then(|number| self.shear.get(number)).copied().unwrap_or(0.0)
+            let number = number_of(self.facing, atom, other);
+            number.and_then(|number| self.shear.get(number)).copied().unwrap_or(0.0)
         };
         patch.own.iter().zip(patch.weights).map(|(atom, weight)| weight * around(*atom)).sum()
     }
