@@ -20,6 +20,8 @@ pub enum Purpose {
     Permutation = 3,
     /// Which cells are removed; the number of the change is that of the draw.
     Removal = 4,
+    /// Which cells are drawn for an interval by the bootstrap; the number of the draw stands for the cell. Numbers of analysis begin with 100.
+    Bootstrap = 100,
 }
 
 const ROUNDS: usize = 10;

@@ -32,7 +32,7 @@ pub(super) fn entries(chart: &Chart, colours: &[Colour]) -> Vec<Entry> {
         let shape = match series {
             Series::Line { stroke, width, .. } => Shape::Line(*stroke, *width),
             Series::Points { marker, bars, .. } => Shape::Points(*marker, !bars.is_empty()),
-            Series::Band { .. } => Shape::Band,
+            Series::Band { .. } | Series::Areas { .. } => Shape::Band,
             Series::Tracks { .. } => Shape::Line(Stroke::Solid, 1.6),
         };
         match (entries.iter_mut().find(|entry| entry.label == label), shape) {

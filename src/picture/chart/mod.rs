@@ -9,6 +9,7 @@ mod entry;
 mod frame;
 mod heat;
 mod legend;
+mod polar;
 mod series;
 #[cfg(test)]
 mod tests;
@@ -40,6 +41,8 @@ pub struct Chart {
     pub legend: Legend,
     /// How lengths along x and y relate.
     pub aspect: Aspect,
+    /// What the data are drawn on.
+    pub ground: Ground,
 }
 
 /// One axis.
@@ -83,6 +86,19 @@ pub enum Aspect {
     Free,
     /// One unit is as long along x as along y, for maps and tracks (linear axes only).
     Equal,
+}
+
+/// What the data are drawn on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Ground {
+    /// A frame with two axes.
+    #[default]
+    Frame,
+    /// Rings about the origin and spokes, for directions; with equal aspect and ranges about the origin.
+    Polar {
+        /// Radius of the outermost ring, in the unit of the axes.
+        radius: f64,
+    },
 }
 
 /// Where the names of the series stand. Series without a label have none.
@@ -148,6 +164,15 @@ pub enum Series {
         /// Its borders.
         points: Vec<[f64; 3]>,
         /// Colour; drawn faint.
+        colour: Option<Colour>,
+    },
+    /// Areas with an outline each: columns of a histogram, sectors of a rose.
+    Areas {
+        /// Name in the legend; empty for none.
+        label: String,
+        /// The corners of each, in order.
+        outlines: Vec<Vec<[f64; 2]>>,
+        /// Colour; areas of several series show through each other.
         colour: Option<Colour>,
     },
     /// The paths of many cells, each with a dot at its end.
@@ -237,6 +262,7 @@ impl Series {
         let (Self::Line { colour, .. }
         | Self::Points { colour, .. }
         | Self::Band { colour, .. }
+        | Self::Areas { colour, .. }
         | Self::Tracks { colour, .. }) = &mut self;
         *colour = Some(wish);
         self
@@ -256,6 +282,7 @@ impl Series {
             Self::Line { label, .. }
             | Self::Points { label, .. }
             | Self::Band { label, .. }
+            | Self::Areas { label, .. }
             | Self::Tracks { label, .. } => label,
         }
     }
