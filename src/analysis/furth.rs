@@ -26,7 +26,7 @@ pub struct PersistentWalk {
     pub speed: f64,
     /// Persistence, s: the mean duration of a run, or the time in which the velocity is forgotten to 1/e.
     pub persistence: f64,
-    /// What errors of localisation add to the mean squared displacement at every lag, µm².
+    /// What errors of localisation add to the mean squared displacement at every lag, eq. (analysis.26), µm².
     pub offset: f64,
 }
 

@@ -3,7 +3,9 @@
 use super::*;
 use crate::analysis::msd;
 use crate::analysis::noise;
+use crate::analysis::statistics::mean;
 use ndarray::Array3;
+use rayon::prelude::*;
 
 #[test]
 fn fuerths_law_is_straight_first_and_diffuses_later() {
@@ -31,7 +33,8 @@ fn the_fit_finds_what_made_the_curve() {
             // The curve is exact; the persistence is found to 1e-9 of its logarithm, and as far as a minimum can be told from its neighbourhood, 1e-8.
             assert!((walk.speed / speed - 1.0).abs() < 1e-6, "{walk:?}");
             assert!((walk.persistence / persistence - 1.0).abs() < 1e-6, "{walk:?}");
-            assert!((walk.offset - offset).abs() < 1e-6 * offset.max(1e-2), "{walk:?}");
+            // Where lags begin beyond the persistence, the offset is told from it by the shortest lag alone: ten times as far.
+            assert!((walk.offset - offset).abs() < 1e-5 * offset.max(1e-2), "{walk:?}");
         }
     }
 }
@@ -97,18 +100,20 @@ fn intervals_of_noisy_tracks_hold_what_made_them_in_95_of_100_trials() {
     let (trials, cells, frames, interval) = (100, 60, 40, 0.4);
     let times: Vec<f64> = (0..frames).map(|frame| frame as f64 * interval).collect();
     let lags: Vec<usize> = (1..=frames / 4).collect();
-    let mut all = [0; 3];
+    let mut all = [0_usize; 3];
     for (name, truth) in CELLS {
-        let (mut held, mut means) = ([0; 3], [0.0; 3]);
-        for trial in 0..trials {
+        let trial = |trial: u64| {
             let positions = tracks(cells, frames, 3, interval, truth, 1_000 + trial);
             let of = msd::of_cells(positions.view(), &times, &lags);
             let found = estimate(&of, 3, Localisation::Noisy, trial).unwrap();
-            for (index, one) in [found.speed, found.persistence, found.noise].iter().enumerate() {
-                held[index] += u32::from(one.low <= truth[index] && truth[index] <= one.high);
-                means[index] += one.value / trials as f64;
-            }
-        }
+            [found.speed, found.persistence, found.noise]
+        };
+        let found: Vec<[Estimate; 3]> = (0..trials).into_par_iter().map(trial).collect();
+        let holds = |index: usize, one: &Estimate| one.low <= truth[index] && truth[index] <= one.high;
+        let held: [usize; 3] =
+            std::array::from_fn(|index| found.iter().filter(|one| holds(index, &one[index])).count());
+        let means: [f64; 3] =
+            std::array::from_fn(|index| mean(&found.iter().map(|one| one[index].value).collect::<Vec<_>>()));
         println!("{name}: {truth:?} held by {held:?} of {trials}, means {means:?}");
         // Without bias: a mean of 100 trials has an error of about 0.3 % of the speed and 1 % of the persistence.
         assert!(

@@ -121,8 +121,8 @@ fn tell(name: &str, tracks: &Tracks, lines: &[Line], notes: &[String]) -> Report
         let _ = write!(words, "  {:width$}  ", line.label);
         let _ = match &line.undefined {
             Some(why) => writeln!(words, "NaN: {why}"),
-            None if low.is_nan() => writeln!(words, "{}{}", short(value), unit(line)),
-            None => writeln!(words, "{} ({} to {}){}", short(value), short(low), short(high), unit(line)),
+            None if low.is_nan() => writeln!(words, "{}{}", rounded(value), unit(line)),
+            None => writeln!(words, "{} ({} to {}){}", rounded(value), rounded(low), rounded(high), unit(line)),
         };
         let number = |value: f64| if value.is_nan() { Value::Null } else { json!(value) };
         let mut facts = json!({ "value": number(value), "low": number(low), "high": number(high), "unit": line.unit });
@@ -144,6 +144,14 @@ fn tell(name: &str, tracks: &Tracks, lines: &[Line], notes: &[String]) -> Report
         .fact("interval_s", interval)
         .fact("measures", measures)
         .fact("notes", notes.to_vec())
+}
+
+/// Four digits that count: intervals say that more would be noise.
+fn rounded(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-4 {
+        return format!("{value:.1e}");
+    }
+    format!("{value:.3e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
 /// A row for each track.

@@ -1,15 +1,16 @@
 //! Charts of tracks, simulated or measured: paths, displacements, directions, and how a number of tracks is distributed.
 
-use super::chart::{Aspect, Axis, Chart, Ground, Range, Scale, Series, Stroke};
+use super::chart::{Aspect, Axis, Chart, Ground, Legend, Range, Scale, Series, Stroke};
 use super::colour::Colour;
 use super::field_view::with_unit;
+use super::ticks::nice_above;
 use crate::analysis::circular;
 use crate::analysis::furth::furth;
 use crate::analysis::msd;
 use crate::analysis::statistics::mean;
 use crate::analysis::tracks::motion::{Quantity, turning_angles};
 use crate::analysis::tracks::{Tracks, summary};
-use crate::error::{Error, Fault, Result, short};
+use crate::error::{Error, Fault, Result};
 use std::f64::consts::TAU;
 
 /// Tracks under one name, such as those of a type of cells.
@@ -105,7 +106,7 @@ pub fn rose(groups: &[Group], sectors: u32) -> Result<Chart> {
     let around = Axis::linear("tracks in each sector; x points to 0°, y to 90°")
         .range(Range::Fixed(-1.16 * radius, 1.16 * radius));
     let y = Axis { label: String::new(), ..around.clone() };
-    let mut chart = Chart { x: around, y, aspect: Aspect::Equal, ground, ..Chart::default() };
+    let mut chart = Chart { x: around, y, aspect: Aspect::Equal, ground, legend: Legend::Beside, ..Chart::default() };
     for (index, (group, directions, counts)) in counted.iter().enumerate() {
         let wedge = |(sector, count): (usize, &u32)| wedge((sector as f64 - 0.5) * width, width, f64::from(*count));
         let colour = Colour::of_palette(index);
@@ -128,12 +129,12 @@ pub fn rose(groups: &[Group], sectors: u32) -> Result<Chart> {
     Ok(chart)
 }
 
-/// Two digits that count.
+/// Three digits that count, one of what is next to nothing.
 fn digits(value: f64) -> String {
     if value < 1e-3 {
         format!("{value:.0e}")
     } else {
-        format!("{}", format!("{value:.1e}").parse::<f64>().unwrap_or(value))
+        format!("{}", format!("{value:.2e}").parse::<f64>().unwrap_or(value))
     }
 }
 
@@ -166,13 +167,21 @@ pub fn histogram(groups: &[Group], quantity: Quantity, bins: Option<u32>) -> Res
         return Err(Error::input(fault.help("give tracks of cells that move")));
     }
     all.sort_by(f64::total_cmp);
-    let (low, high) = match quantity {
-        Quantity::Directness => (0.0, 1.0),
-        Quantity::TurningAngle => (0.0, 180.0),
-        _ => (0.0, all[all.len() - 1].max(f64::MIN_POSITIVE)),
+    let most = all[all.len() - 1].max(f64::MIN_POSITIVE);
+    let range = match quantity {
+        Quantity::Directness => 1.0,
+        Quantity::TurningAngle => 180.0,
+        _ => most,
     };
-    let bins = bins.unwrap_or_else(|| bins_of(&all, high - low)).max(1) as usize;
-    let width = (high - low) / bins as f64;
+    let (bins, width) = match bins {
+        Some(bins) => (bins.max(1), range / f64::from(bins.max(1))),
+        None => {
+            // Columns of a round width may go on beyond the largest value.
+            let width = width_of(&all, range);
+            ((range / width - 1e-9).ceil().clamp(1.0, 200.0) as u32, width)
+        }
+    };
+    let (low, high, bins) = (0.0, width * f64::from(bins), bins as usize);
     let what = if quantity == Quantity::TurningAngle { "steps" } else { "tracks" };
     let name = with_unit(quantity.label(), quantity.unit());
     let mut chart = Chart {
@@ -199,7 +208,7 @@ pub fn histogram(groups: &[Group], quantity: Quantity, bins: Option<u32>) -> Res
             "{}mean of {}: {}",
             if label.is_empty() { label } else { format!("{label}: ") },
             values.len(),
-            short(middle)
+            digits(middle)
         );
         let dark = colour.mixed(Colour([0; 3]), 0.55);
         chart.series.push(Series::dashed(label, vec![[middle, 0.0], [middle, f64::from(most)]]).coloured(dark));
@@ -207,9 +216,10 @@ pub fn histogram(groups: &[Group], quantity: Quantity, bins: Option<u32>) -> Res
     Ok(chart)
 }
 
-/// Number of columns over a range, for sorted values, from 5 to 40: each as wide as twice the range of the middle half over the cube root of their number.
-fn bins_of(sorted: &[f64], range: f64) -> u32 {
+/// A round width of columns near that of Freedman and Diaconis, twice the range of the middle half over the cube root of the number, for sorted values; it fits between about
+/// five and forty times into a range.
+fn width_of(sorted: &[f64], range: f64) -> f64 {
     let at = |share: f64| sorted[(share * (sorted.len() - 1) as f64).round() as usize];
     let width = 2.0 * (at(0.75) - at(0.25)) / (sorted.len() as f64).cbrt();
-    if width > 0.0 { (range / width).ceil().clamp(5.0, 40.0) as u32 } else { 10 }
+    nice_above((0.6 * width).clamp(range / 40.0, range / 10.0))
 }

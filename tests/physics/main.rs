@@ -20,6 +20,7 @@ mod ordering;
 mod own_stiffness;
 mod own_stiffness_touching;
 mod population;
+mod sensing;
 mod soft_cells;
 mod sphere;
 mod stability_limits;

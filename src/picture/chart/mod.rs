@@ -301,12 +301,17 @@ pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>> {
 }
 
 /// Writes the chart as `path.svg` and `path.png` (720 × 480, the PNG with twice as many pixels; square charts for equal
-/// aspect) and returns both paths.
+/// aspect, 860 × 600 for rings) and returns both paths.
 ///
 /// # Errors
 /// When a file cannot be written.
 pub fn save_chart(chart: &Chart, path_without_extension: &Path) -> Result<Vec<PathBuf>> {
-    let (width, height) = if chart.aspect == Aspect::Equal { (600.0, 600.0) } else { (720.0, 480.0) };
+    let (width, height) = match (chart.ground, chart.aspect) {
+        // Beside the rings there is space for the legend, which would cover them.
+        (Ground::Polar { .. }, _) => (860.0, 600.0),
+        (_, Aspect::Equal) => (600.0, 600.0),
+        _ => (720.0, 480.0),
+    };
     let svg = to_svg(chart, width, height);
     let with = |extension: &str| {
         let mut name = path_without_extension.as_os_str().to_owned();
