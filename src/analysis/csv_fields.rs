@@ -17,35 +17,38 @@ pub fn lines(text: &str) -> impl Iterator<Item = Range<usize>> {
     // A byte order mark, as spreadsheets write it, belongs to no name.
     let mut start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
     let ranges = text[start..].split_inclusive('\n').map(move |line| {
-        let range = start..start + line.trim_end().len();
+        // Tabs at the end part empty fields.
+        let range = start..start + line.trim_end_matches(['\r', '\n', ' ']).len();
         start += line.len();
         range
     });
-    ranges.filter(|range| !range.is_empty() && !text[range.clone()].trim_start().starts_with('#'))
+    let counts = |content: &str| !content.is_empty() && !content.starts_with('#');
+    ranges.filter(move |range| counts(text[range.clone()].trim()))
 }
 
-/// Parts a line at its commas, or another sign; the crate csv takes quotes away.
+/// Parts a line at its commas, or another sign; the crate csv takes quotes away where there are any.
 pub fn fields(text: &str, line: Range<usize>, sign: char) -> Vec<Field> {
     let content = &text[line.clone()];
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .delimiter(sign as u8)
-        .trim(csv::Trim::All)
-        .from_reader(content.as_bytes());
-    let record = reader.records().next().and_then(std::result::Result::ok).unwrap_or_default();
     if content.contains('"') {
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .delimiter(sign as u8)
+            .trim(csv::Trim::All)
+            .from_reader(content.as_bytes());
+        let record = reader.records().next().and_then(std::result::Result::ok).unwrap_or_default();
         // Quotes may hide commas, so the whole line is what can be pointed at.
         return record.iter().map(|field| Field { text: field.to_owned(), range: line.clone() }).collect();
     }
     let mut start = line.start;
-    let ranges = content.split(sign).map(|field| {
+    let part = |field: &str| {
         let blanks = field.len() - field.trim_start().len();
-        let range = start + blanks..start + blanks + field.trim().len();
-        start += field.len() + 1;
-        range
-    });
-    record.iter().zip(ranges).map(|(field, range)| Field { text: field.to_owned(), range }).collect()
+        let text = field.trim().to_owned();
+        let range = start + blanks..start + blanks + text.len();
+        start += field.len() + sign.len_utf8();
+        Field { text, range }
+    };
+    content.split(sign).map(part).collect()
 }
 
 /// The number that a field says; NaN for an empty one, none for anything but a finite number.

@@ -1,31 +1,14 @@
 //! Reads tracks from CSV files in the columns of TrackMate, or others that are named.
 
 use super::assemble::{MOST_FAULTS, Spot, assemble};
+pub use super::head::{COLUMNS, Options, TYPE};
+use super::head::{Head, Row, unit_in};
 use super::set::Tracks;
-use crate::analysis::csv_fields::{Field, fields, lines, location, missing_column, name_faults, number, number_fault};
+use crate::analysis::csv_fields::{Field, lines, location, number, number_fault};
 use crate::error::{Error, Fault, Result, Source};
 use crate::units::{Length, Time};
-use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
-
-/// The columns of tracks: the id of the track, the number of the frame, when, and where.
-pub const COLUMNS: [&str; 6] = ["TRACK_ID", "FRAME", "POSITION_T", "POSITION_X", "POSITION_Y", "POSITION_Z"];
-/// The column with the type of the cell, which may be there.
-pub const TYPE: &str = "TYPE";
-
-/// What the reader of a file is told of it beforehand.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Options {
-    /// The names of the columns with id, time, x, y and, in space, z; those of [`COLUMNS`] when absent.
-    pub columns: Option<Vec<String>>,
-    /// What a 1 means in the column of times, s; as the file says, or 1 s.
-    pub time_unit: Option<f64>,
-    /// What a 1 means in columns of positions, µm; as the file says, or 1 µm.
-    pub length_unit: Option<f64>,
-    /// Time between frames, s, for files that only number them.
-    pub interval: Option<f64>,
-}
 
 /// What was read.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,15 +31,6 @@ pub fn read(path: &Path, options: &Options) -> Result<Read> {
     parse(&path.display().to_string(), &text, options)
 }
 
-/// The columns of a file that count, by their numbers.
-struct Columns {
-    id: usize,
-    frame: Option<usize>,
-    time: Option<usize>,
-    position: Vec<usize>,
-    kind: Option<usize>,
-}
-
 /// Reads tracks from text: a line of column names, then a row for each track and frame, in any order, parted by commas, semicolons or tabs.
 ///
 /// The lines in which TrackMate describes its columns are passed over, as are rows without a track; the units of time and length that they say count. A row with an empty position is a frame in which the cell was not found.
@@ -70,151 +44,109 @@ pub fn parse(name: &str, text: &str, options: &Options) -> Result<Read> {
         let fault = Fault::new(format!("{name} is empty"));
         return Err(Error::input(fault.help(format!("start it with a line of column names, {}", COLUMNS.join(",")))));
     };
-    let sign = [',', ';', '\t'].into_iter().find(|sign| text[heading.clone()].contains(*sign)).unwrap_or(',');
-    let first = fields(text, heading.clone(), sign);
-    let names: Vec<String> = first.iter().map(|field| field.text.clone()).collect();
-    let twice = name_faults(&source, &first);
-    if !twice.is_empty() {
-        return Err(Error::Input(twice));
-    }
-    let columns = columns_of(&source, &heading, &names, options)?;
-    let rows: Vec<(Range<usize>, Vec<Field>)> =
-        ranges.map(|range| (range.clone(), fields(text, range, sign))).collect();
-    // TrackMate says in up to three lines what its columns are and in which unit; none of them has a number where numbers stand.
-    let numeric = |fields: &[Field], column: usize| {
-        fields.get(column).is_some_and(|field| !field.text.is_empty() && number(&field.text).is_some())
-    };
-    let of_numbers: Vec<usize> =
-        columns.time.into_iter().chain(columns.frame).chain(columns.position.iter().copied()).collect();
-    let begins = rows.iter().take(3).position(|(_, fields)| of_numbers.iter().any(|column| numeric(fields, *column)));
-    let described = begins.unwrap_or_else(|| rows.len().min(3));
-    // A single line of words is a mistake in a row, which is to be told; TrackMate writes several.
-    let described =
-        if described > 1 && rows[..described].iter().any(|row| row.1.len() == names.len()) { described } else { 0 };
+    let head = Head::of(&source, heading, options)?;
+    let rows: Vec<Row> = ranges.map(|range| Row::of(text, range, head.sign)).collect();
+    let (described, rows) = rows.split_at(head.described(&rows));
     let mut notes = Vec::new();
-    let unit_in = |column: Option<usize>| {
-        let said =
-            rows[..described].iter().filter_map(|(_, fields)| fields.get(column?)).map(|field| field.text.as_str());
-        said.filter_map(|text| text.strip_prefix('(')?.strip_suffix(')')).next_back().map(str::to_owned)
-    };
-    let time_unit = match options.time_unit {
-        Some(unit) => unit,
-        None => unit_of(&source, "time", unit_in(columns.time), "--time-unit", &mut notes, |text| {
-            text.parse::<Time>().ok().map(Time::value)
-        })?,
+    let time = |text: &str| text.parse::<Time>().ok().map(Time::value);
+    let length = |text: &str| text.parse::<Length>().ok().map(Length::value);
+    let said = |column: usize| unit_in(described, column);
+    let interval = options.interval.unwrap_or(f64::NAN);
+    let time_unit = match (head.columns.time, options.time_unit) {
+        (None, _) => interval,
+        (_, Some(unit)) => unit,
+        (Some(column), None) => unit_of(&source, "time", said(column), "--time-unit", &mut notes, time)?,
     };
     let length_unit = match options.length_unit {
         Some(unit) => unit,
-        None => unit_of(
-            &source,
-            "length",
-            unit_in(columns.position.first().copied()),
-            "--length-unit",
-            &mut notes,
-            |text| text.parse::<Length>().ok().map(Length::value),
-        )?,
+        None => unit_of(&source, "length", said(head.columns.position[0]), "--length-unit", &mut notes, length)?,
     };
-    let (mut spots, mut faults, mut alone, mut lost) = (Vec::new(), Vec::new(), 0, 0);
-    for (row, fields) in rows.into_iter().skip(described) {
-        if faults.len() >= MOST_FAULTS {
-            break;
-        }
-        if fields.len() != names.len() {
-            let found = format!("a row of {} fields under {} column names", fields.len(), names.len());
-            let fault = Fault::new(found).at(location(&source, row, "in this row"));
-            faults.push(fault.help("give one value for each column; decimal commas must be points"));
-            continue;
-        }
-        let mut value = |column: usize| match number(&fields[column].text) {
-            Some(value) => value,
-            None => {
-                let Field { text, range } = &fields[column];
-                faults.push(number_fault(&source, Field { text: text.clone(), range: range.clone() }));
-                f64::NAN
-            }
-        };
-        let id = fields[columns.id].text.as_str();
-        if id.is_empty() || id == "None" {
-            alone += 1;
-            continue;
-        }
-        let frame = columns.frame.map(&mut value);
-        let time = match columns.time {
-            Some(column) => value(column) * time_unit,
-            None => frame.unwrap_or(f64::NAN) * options.interval.unwrap_or(f64::NAN),
-        };
-        let mut position = [f64::NAN; 3];
-        columns.position.iter().zip(&mut position).for_each(|(column, part)| *part = value(*column) * length_unit);
-        if faults.is_empty() && (time.is_nan() || frame.is_some_and(f64::is_nan)) {
-            let fault = Fault::new(format!("a position of track {id} has no time")).at(location(
-                &source,
-                row.clone(),
-                "in this row",
-            ));
-            faults.push(fault.help("give each row its frame and time"));
-        }
-        if position[..columns.position.len()].iter().any(|part| part.is_nan()) {
-            lost += 1;
-            continue;
-        }
-        let kind = columns.kind.map_or(String::new(), |column| fields[column].text.clone());
-        spots.push(Spot { track: id.to_owned(), kind, frame, time, position, row });
-    }
-    if !faults.is_empty() {
-        return Err(Error::Input(faults));
-    }
-    for (number, what) in [(alone, "belong to no track"), (lost, "have no position")] {
+    let found = spots(&source, &head, rows, [time_unit, length_unit])?;
+    for (number, what) in [(found.alone, "belong to no track"), (found.lost, "have no position")] {
         if number > 0 {
             notes.push(format!("{number} rows {what} and are passed over"));
         }
     }
-    Ok(Read { tracks: assemble(&spots, &source)?, notes })
+    Ok(Read { tracks: assemble(&found.spots, &source)?, notes })
 }
 
-fn columns_of(source: &Arc<Source>, heading: &Range<usize>, names: &[String], options: &Options) -> Result<Columns> {
-    let find = |name: &str| names.iter().position(|known| known.eq_ignore_ascii_case(name));
-    let need = |name: &str| {
-        find(name).ok_or_else(|| {
-            let mut fault = missing_column(source, heading, names, name);
-            if options.columns.is_none() {
-                let help = fault.help.take().unwrap_or_default();
-                fault.help = Some(format!("{help}; --columns names other columns, as in --columns id,t,x,y"));
-            }
-            Error::input(fault)
+/// What rows hold.
+#[derive(Default)]
+struct Found {
+    spots: Vec<Spot>,
+    /// Number of rows without a track.
+    alone: usize,
+    /// Number of rows without a position.
+    lost: usize,
+}
+
+/// The spots of rows; times and positions times their units.
+fn spots(source: &Arc<Source>, head: &Head, rows: &[Row], units: [f64; 2]) -> Result<Found> {
+    let (mut found, mut faults) = (Found::default(), Vec::new());
+    for row in rows {
+        if faults.len() >= MOST_FAULTS {
+            break;
+        }
+        if row.fields.len() != head.width {
+            let message = format!("a row of {} fields under {} column names", row.fields.len(), head.width);
+            let fault = Fault::new(message).at(location(source, row.range.clone(), "in this row"));
+            faults.push(fault.help("give one value for each column; decimal commas must be points"));
+            continue;
+        }
+        let id = row.fields[head.columns.id].text.as_str();
+        if id.is_empty() || id == "None" {
+            found.alone += 1;
+            continue;
+        }
+        match spot(source, head, row, units) {
+            Ok(Some(spot)) => found.spots.push(spot),
+            Ok(None) => found.lost += 1,
+            Err(mut of_row) => faults.append(&mut of_row),
+        }
+    }
+    if faults.is_empty() { Ok(found) } else { Err(Error::Input(faults)) }
+}
+
+/// The spot of a row; none without a position.
+fn spot(
+    source: &Arc<Source>,
+    head: &Head,
+    row: &Row,
+    [time_unit, length_unit]: [f64; 2],
+) -> std::result::Result<Option<Spot>, Vec<Fault>> {
+    let columns = &head.columns;
+    let mut faults = Vec::new();
+    let mut value = |column: usize| {
+        let Field { text, range } = &row.fields[column];
+        number(text).unwrap_or_else(|| {
+            faults.push(number_fault(source, Field { text: text.clone(), range: range.clone() }));
+            f64::NAN
         })
     };
-    let kind = find(TYPE);
-    if let Some(own) = &options.columns {
-        let numbers = own.iter().map(|name| need(name)).collect::<Result<Vec<_>>>()?;
-        return Ok(Columns {
-            id: numbers[0],
-            frame: None,
-            time: Some(numbers[1]),
-            position: numbers[2..].to_vec(),
-            kind,
-        });
+    let frame = columns.frame.map(&mut value);
+    // Without a column of times the unit of time is that between frames.
+    let time = columns.time.map(&mut value).or(frame).unwrap_or(f64::NAN) * time_unit;
+    let mut position = [f64::NAN; 3];
+    columns.position.iter().zip(&mut position).for_each(|(column, part)| *part = value(*column) * length_unit);
+    let track = row.fields[columns.id].text.clone();
+    if faults.is_empty() && (time.is_nan() || frame.is_some_and(f64::is_nan)) {
+        let fault = Fault::new(format!("a position of track {track} has no time"));
+        let fault = fault.at(location(source, row.range.clone(), "in this row"));
+        faults.push(fault.help("give each row its frame and time"));
     }
-    let [id, frame, time, x, y, z] = COLUMNS;
-    let (id, frame) = (need(id)?, find(frame));
-    let time = match (find(time), options.interval) {
-        (_, Some(_)) if frame.is_some() => None,
-        (None, None) if frame.is_some() => {
-            let fault = missing_column(source, heading, names, time);
-            return Err(Error::input(
-                fault.help("frames are numbered, but when were they? add --interval, as in --interval \"30 s\""),
-            ));
-        }
-        _ => Some(need(time)?),
-    };
-    let position = [need(x)?, need(y)?].into_iter().chain(find(z)).collect();
-    Ok(Columns { id, frame, time, position, kind })
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let kind = columns.kind.map_or(String::new(), |column| row.fields[column].text.clone());
+    let is_known = position[..columns.position.len()].iter().all(|part| !part.is_nan());
+    Ok(is_known.then(|| Spot { track, kind, frame, time, position, row: row.range.clone() }))
 }
 
 /// What a 1 means in base units, by what the file says of it; 1 with a note where it says nothing.
 fn unit_of(
     source: &Arc<Source>,
     what: &str,
-    said: Option<String>,
+    said: Option<&str>,
     option: &str,
     notes: &mut Vec<String>,
     parse: impl Fn(&str) -> Option<f64>,
