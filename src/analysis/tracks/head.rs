@@ -1,7 +1,7 @@
 //! What a file with tracks says at its head: which columns it has, and what they are.
 
-use crate::analysis::csv_fields::{Field, fields, location, missing_column, name_faults, number};
-use crate::error::{Error, Fault, Result, Source};
+use crate::analysis::csv_fields::{Field, fields, missing_column, name_faults, number};
+use crate::error::{Error, Result, Source};
 use std::ops::Range;
 use std::sync::Arc;
 
