@@ -108,7 +108,8 @@ pub fn run(args: &MeasureArgs) -> Result<Report> {
 fn tell(name: &str, tracks: &Tracks, lines: &[Line], notes: &[String]) -> Report {
     let space = if tracks.axes() == 2 { "in the plane" } else { "in space" };
     let (number, frames, interval) = (tracks.number(), tracks.times.len(), tracks.interval());
-    let mut words = format!("{name}: {number} tracks {space}, {frames} frames");
+    let plural = if number == 1 { "" } else { "s" };
+    let mut words = format!("{name}: {number} track{plural} {space}, {frames} frames");
     if !interval.is_nan() {
         let _ = write!(words, " of {} s", short(interval));
     }

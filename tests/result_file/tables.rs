@@ -45,7 +45,7 @@ fn tracks_and_runs_are_those_that_were_recorded() {
     let wanted = frame(&cells(3), 3).records[2].position;
     assert_eq!(tracks[0].join(","), "TRACK_ID,FRAME,POSITION_T,POSITION_X,POSITION_Y,POSITION_Z,TYPE");
     let last = tracks.last().unwrap();
-    assert_eq!((last[..3].join(","), last[6].as_str()), ("2,3,0.75".to_owned(), "lone"));
+    assert_eq!((last[..3].join(","), last[6].as_str()), ("2,3,0.75".to_owned(), "round"));
     let found: Vec<f64> = last[3..6].iter().map(|field| field.parse().unwrap()).collect();
     assert_eq!(found, wanted);
     // Track by track, and each from its first frame to its last.

@@ -95,6 +95,18 @@ impl Head {
     }
 }
 
+/// The sign of a unit that tools write as a word; other words as they are.
+pub fn unit_sign(said: &str) -> &str {
+    match said.to_ascii_lowercase().as_str() {
+        "sec" | "secs" | "second" | "seconds" => "s",
+        "mins" | "minute" | "minutes" => "min",
+        "hr" | "hrs" | "hour" | "hours" => "h",
+        "micron" | "microns" | "micrometer" | "micrometers" | "micrometre" | "micrometres" => "um",
+        "millimeter" | "millimeters" | "millimetre" | "millimetres" => "mm",
+        _ => said,
+    }
+}
+
 /// The unit in brackets that rows below the names say of a column.
 pub fn unit_in(described: &[Row], column: usize) -> Option<&str> {
     let said = described.iter().filter_map(|row| row.fields.get(column)).map(|field| field.text.as_str());

@@ -1,6 +1,7 @@
 //! Reads tracks from a package in the layout of biotracks (CMSO): a folder with a description and tables of objects and links.
 
 use super::assemble::{Spot, assemble};
+use super::head::unit_sign;
 use super::read::{Options, Read};
 use crate::analysis::table::Table;
 use crate::error::{Error, Fault, Result, Source};
@@ -51,7 +52,7 @@ pub fn read(description: &Path, options: &Options) -> Result<Read> {
         package[key].as_str(),
     ) {
         (Some(known), _) => Ok(known),
-        (None, Some(said)) => parse(&format!("1 {said}")).ok_or_else(|| {
+        (None, Some(said)) => parse(&format!("1 {}", unit_sign(said))).ok_or_else(|| {
             fault(
                 format!("{name} says that its {key} is \"{said}\""),
                 &format!("say what that is with {option} \"{base}\" or the like"),

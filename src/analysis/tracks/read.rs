@@ -2,7 +2,7 @@
 
 use super::assemble::{MOST_FAULTS, Spot, assemble};
 pub use super::head::{COLUMNS, Options, TYPE};
-use super::head::{Head, Row, unit_in};
+use super::head::{Head, Row, unit_in, unit_sign};
 use super::set::Tracks;
 use crate::analysis::csv_fields::{Field, lines, location, number, number_fault};
 use crate::error::{Error, Fault, Result, Source};
@@ -62,9 +62,9 @@ pub fn parse(name: &str, text: &str, options: &Options) -> Result<Read> {
         None => unit_of(&source, "length", said(head.columns.position[0]), "--length-unit", &mut notes, length)?,
     };
     let found = spots(&source, &head, rows, [time_unit, length_unit])?;
-    for (number, what) in [(found.alone, "belong to no track"), (found.lost, "have no position")] {
+    for (number, what) in [(found.alone, "without a track"), (found.lost, "without a position")] {
         if number > 0 {
-            notes.push(format!("{number} rows {what} and are passed over"));
+            notes.push(format!("{number} row{} {what}, passed over", if number == 1 { "" } else { "s" }));
         }
     }
     Ok(Read { tracks: assemble(&found.spots, &source)?, notes })
@@ -158,7 +158,7 @@ fn unit_of(
         ));
         return Ok(1.0);
     };
-    parse(&format!("1 {said}")).ok_or_else(|| {
+    parse(&format!("1 {}", unit_sign(said))).ok_or_else(|| {
         let fault = Fault::new(format!("{} says that its unit of {what} is \"{said}\"", source.name));
         let example = if what == "time" { "30 s" } else { "0.65 um" };
         Error::input(fault.help(format!("say what that is with {option}, as in {option} \"{example}\"")))

@@ -32,14 +32,16 @@ fn what_trackmate_writes_is_read_with_its_units() {
     let text = "LABEL,ID,TRACK_ID,QUALITY,POSITION_X,POSITION_Y,POSITION_Z,POSITION_T,FRAME\n\
                 Label,Spot ID,Track ID,Quality,X,Y,Z,T,Frame\n\
                 Label,Spot ID,Track ID,Quality,X,Y,Z,T,Frame\n\
-                ,,,(quality),(mm),(mm),(mm),(min),\n\
+                ,,,(quality),(mm),(mm),(mm),(minutes),\n\
                 ID1,1,0,9.5,0.001,0.002,0,0,0\n\
                 ID2,2,0,9.5,0.002,0.002,0,0.5,1\n\
                 ID3,3,,9.5,0.5,0.5,0,0.5,1\n";
     let Read { tracks, notes } = read(text);
     assert_eq!(tracks.times, [0.0, 30.0]);
     assert_eq!(tracks.position(1, 0), [2.0, 2.0, 0.0]);
-    assert_eq!(notes, ["1 rows belong to no track and are passed over"]);
+    assert_eq!(notes, ["1 row without a track, passed over"]);
+    let micron = parse("t.csv", &text.replace("(mm)", "(micron)").replace("(minutes)", "(sec)"), &Options::default());
+    assert_eq!(micron.unwrap().tracks.times, [0.0, 0.5]);
     let pixels = text.replace("(mm)", "(pixel)");
     assert!(faults(&pixels, &Options::default())[0].help.as_ref().unwrap().contains("--length-unit"));
     let options = Options { length_unit: Some(0.5), ..Options::default() };
