@@ -19,7 +19,7 @@ pub struct TrackArgs {
     /// The type of cells; all when absent.
     #[arg(long, value_name = "TYPE")]
     pub cells: Option<String>,
-    /// Whether cells move in the plane x, y or in space; by whether z changes when absent.
+    /// Whether cells move in the plane x, y or in space; in the plane when absent and z changes by less than a hundredth of x and y.
     #[arg(long, value_enum)]
     pub space: Option<SpaceName>,
     /// Begins with the first frame from this time on, as in "10 min".
@@ -127,13 +127,23 @@ pub fn is_table(file: &Path) -> bool {
     matches!(ending.as_deref(), Some("csv" | "txt" | "tsv"))
 }
 
-/// 2 where no track changes along z, else 3.
+/// Tracks that go less than this part of what they go along x and y along z are taken to be in the plane: round-off, and cells that crawl on one.
+const FLAT: f64 = 0.01;
+
+/// 2 where tracks hardly change along z, else 3.
 fn axes_of(tracks: &Tracks) -> usize {
-    let flat = |track: usize| {
-        let mut heights = tracks.frames_of(track).map(|frame| tracks.position(frame, track)[2]);
-        heights.next().is_none_or(|first| heights.all(|height| height == first))
+    // How far a track at most goes along an axis.
+    let extent = |axis: usize| {
+        let of = |track: usize| {
+            let [low, high] = tracks
+                .frames_of(track)
+                .map(|frame| tracks.position(frame, track)[axis])
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], part| [low.min(part), high.max(part)]);
+            high - low
+        };
+        (0..tracks.number()).map(of).fold(0.0, f64::max)
     };
-    if tracks.axes() < 3 || (0..tracks.number()).all(flat) { 2 } else { 3 }
+    if tracks.axes() < 3 || extent(2) <= FLAT * extent(0).max(extent(1)) { 2 } else { 3 }
 }
 
 /// A time, s: a number with its unit, or a unit for one of it.
