@@ -22,6 +22,8 @@ pub enum Purpose {
     Removal = 4,
     /// Durations and directions of pseudopods.
     Pseudopods = 5,
+    /// Which cells are drawn for an interval by the bootstrap; the number of the draw stands for the cell. Numbers of analysis begin with 100.
+    Bootstrap = 100,
 }
 
 const ROUNDS: usize = 10;

@@ -1,9 +1,13 @@
 //! Numbers and series from a finished result file.
 
 pub mod aggregates;
+pub mod bootstrap;
+pub mod circular;
 pub mod claims;
+mod csv_fields;
 pub mod curve;
 pub mod fields;
+pub mod furth;
 pub mod measures;
 pub mod msd;
 #[cfg(test)]
@@ -11,8 +15,10 @@ mod noise;
 pub mod over;
 pub mod pattern;
 pub mod recording;
+pub mod sensing;
 pub mod statistics;
 pub mod table;
+pub mod tracks;
 pub mod waves;
 
 use crate::error::Result;

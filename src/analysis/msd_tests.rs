@@ -16,7 +16,7 @@ fn straight_walks_spread_with_the_square_of_time() {
     let positions = straight();
     for displacements in [
         from_the_start(positions.view(), &[0.0, 2.0, 4.0, 6.0, 8.0], &[0, 1, 3]),
-        over_origins(positions.view(), 2.0, &[0, 1, 3]),
+        of_cells(positions.view(), &[0.0, 2.0, 4.0, 6.0, 8.0], &[0, 1, 3]).displacements(),
     ] {
         for (displacement, frames) in displacements.iter().zip([0.0, 1.0, 3.0_f64]) {
             assert_eq!(displacement.lag, 2.0 * frames);
@@ -31,41 +31,31 @@ fn straight_walks_spread_with_the_square_of_time() {
 fn origins_are_averaged() {
     // One cell that stands, jumps by 2 µm, and stands: squares 0, 4, 0 from three origins, 0 from the first.
     let jump = Array3::from_shape_vec((4, 1, 1), vec![0.0, 0.0, 2.0, 2.0]).unwrap();
-    assert!((over_origins(jump.view(), 1.0, &[1])[0].msd - 4.0 / 3.0).abs() < 1e-15);
+    let overlapping = of_cells(jump.view(), &[0.0, 1.0, 2.0, 3.0], &[1]).displacements();
+    assert!((overlapping[0].msd - 4.0 / 3.0).abs() < 1e-15);
     assert_eq!(from_the_start(jump.view(), &[0.0, 1.0, 2.0, 3.0], &[1])[0].msd, 0.0);
-    assert!(over_origins(jump.view(), 1.0, &[1])[0].error.is_nan());
+    assert!(overlapping[0].error.is_nan());
 }
 
 #[test]
-fn fuerths_law_is_straight_first_and_diffuses_later() {
-    let (speed, persistence) = (0.1, 120.0);
-    // v²t² with the relative correction −t/3p, and 2v²p(t − p).
-    assert!((furth(1e-4, speed, persistence) / 1e-10 - 1.0).abs() < 1e-6);
-    assert!((furth(1e5, speed, persistence) / (2.0 * 0.01 * 120.0 * (1e5 - 120.0)) - 1.0).abs() < 1e-12);
-    // The series and the closed form meet at a thousandth of p without a jump: across 2e-9 of the lag the law itself
-    // changes by 4e-9, the closed form has lost 1e-10 and the series leaves out 2e-14.
-    let (below, above) = (1e-3 * (1.0 - 1e-9) * persistence, 1e-3 * (1.0 + 1e-9) * persistence);
-    assert!((furth(above, speed, persistence) / furth(below, speed, persistence) - 1.0 - 4e-9).abs() < 1e-9);
+fn windows_of_unequal_frames_have_the_lag_that_they_have() {
+    // One cell at 2 µm/s; the third frame is late by 0.2 s of 1 s, and one is missing.
+    let times = [0.0, 1.0, 2.2, 3.0, 5.0];
+    let positions = Array3::from_shape_fn((5, 1, 1), |(frame, _, _)| 2.0 * times[frame]);
+    let found = of_cells(positions.view(), &times, &[1, 2]);
+    // 0 to 1, 1 to 2.2 and 2.2 to 3; 0 to 2.2, 1 to 3, 3 to 5.
+    assert!((found.lags[0] - 1.0).abs() < 1e-12 && (found.lags[1] - 6.2 / 3.0).abs() < 1e-12, "{found:?}");
+    assert!((found.squares[[0, 0]] - 4.0 * (1.0 + 1.44 + 0.64) / 3.0).abs() < 1e-12);
 }
 
 #[test]
-fn the_fit_finds_what_made_the_curve() {
-    let lags = [30.0, 60.0, 120.0, 300.0, 1200.0];
-    for (speed, persistence) in [(0.0833, 120.0), (3.0, 20.0), (0.01, 2_000.0)] {
-        let curve: Vec<Displacement> = lags
-            .iter()
-            .map(|&lag| Displacement { lag, msd: furth(lag, speed, persistence), error: f64::NAN })
-            .collect();
-        let walk = fit_furth(&curve).unwrap();
-        // The curve is exact, and the fit stops at relative changes of 1e-10.
-        assert!((walk.speed / speed - 1.0).abs() < 1e-6, "{walk:?}");
-        assert!((walk.persistence / persistence - 1.0).abs() < 1e-6, "{walk:?}");
-    }
-}
-
-#[test]
-fn a_fit_without_movement_is_refused() {
-    let still = [1.0, 2.0].map(|lag| Displacement { lag, msd: 0.0, error: 0.0 });
-    assert!(fit_furth(&still).is_err());
-    assert!(fit_furth(&[]).is_err());
+fn a_cell_that_is_away_for_a_while_has_the_windows_that_it_has() {
+    let mut positions = straight();
+    positions.slice_mut(ndarray::s![2..4, 0, ..]).fill(f64::NAN);
+    let found = of_cells(positions.view(), &[0.0, 2.0, 4.0, 6.0, 8.0], &[1, 2, 4]);
+    assert_eq!(found.squares.column(0).to_vec()[..1], [1.0]);
+    assert!(found.squares[[1, 0]].is_nan() && found.squares[[2, 0]] == 16.0);
+    assert_eq!(found.mean_of(&[0, 1])[1], 36.0);
+    let [low, high] = found.intervals(1)[2];
+    assert!(low == 16.0 && high == 144.0, "two cells give draws of one or both");
 }

@@ -1,6 +1,7 @@
 //! Measured tables: CSV files with named columns, read with errors that point at the faulty cell.
 
-use crate::error::{Error, Fault, Location, Result, Source};
+use super::csv_fields::{fields, lines, location, missing_column, name_faults, number, number_fault};
+use crate::error::{Error, Fault, Result, Source};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -37,7 +38,7 @@ impl Table {
     /// With all faults found: no names, a name used twice, too few or too many fields, a field that is no number.
     pub fn parse(name: &str, text: &str) -> Result<Self> {
         let source = Arc::new(Source { name: name.to_owned(), text: text.to_owned() });
-        let mut lines = lines(text).map(|range| (range.clone(), fields(text, range)));
+        let mut lines = lines(text).map(|range| (range.clone(), fields(text, range, ',')));
         let Some((heading, first)) = lines.next() else {
             let fault = Fault::new(format!("the table {name} is empty"));
             return Err(Error::input(fault.help("start it with a line of column names, parted by commas")));
@@ -80,91 +81,8 @@ impl Table {
         if let Some(index) = self.names.iter().position(|known| known == name) {
             return Ok(&self.columns[index]);
         }
-        let near = self.names.iter().map(|known| (strsim::jaro_winkler(known, name), known));
-        let near = near.filter(|(likeness, _)| *likeness > 0.8).max_by(|a, b| a.0.total_cmp(&b.0));
-        let guess = near.map_or(String::new(), |(_, known)| format!("; did you mean \"{known}\"?"));
-        let fault = Fault::new(format!("there is no column \"{name}\" in {}", self.source.name));
-        let help = format!("its columns are {}{guess}", self.names.join(", "));
-        Err(Error::input(fault.at(location(&self.source, self.heading.clone(), "these are the columns")).help(help)))
+        Err(Error::input(missing_column(&self.source, &self.heading, &self.names, name)))
     }
-}
-
-/// One field of a line, without the blanks around it, and where it stands.
-struct Field {
-    text: String,
-    range: Range<usize>,
-}
-
-/// The byte ranges of the lines that count.
-fn lines(text: &str) -> impl Iterator<Item = Range<usize>> {
-    // A byte order mark, as spreadsheets write it, belongs to no name.
-    let mut start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
-    let ranges = text[start..].split_inclusive('\n').map(move |line| {
-        let range = start..start + line.trim_end().len();
-        start += line.len();
-        range
-    });
-    ranges.filter(|range| !range.is_empty() && !text[range.clone()].trim_start().starts_with('#'))
-}
-
-/// Parts a line at its commas; the crate csv takes quotes away.
-fn fields(text: &str, line: Range<usize>) -> Vec<Field> {
-    let content = &text[line.clone()];
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .from_reader(content.as_bytes());
-    let record = reader.records().next().and_then(std::result::Result::ok).unwrap_or_default();
-    if content.contains('"') {
-        // Quotes may hide commas, so the whole line is what can be pointed at.
-        return record.iter().map(|field| Field { text: field.to_owned(), range: line.clone() }).collect();
-    }
-    let mut start = line.start;
-    let ranges = content.split(',').map(|field| {
-        let blanks = field.len() - field.trim_start().len();
-        let range = start + blanks..start + blanks + field.trim().len();
-        start += field.len() + 1;
-        range
-    });
-    record.iter().zip(ranges).map(|(field, range)| Field { text: field.to_owned(), range }).collect()
-}
-
-/// The number that a field says; NaN for an empty one, none for anything but a finite number.
-fn number(field: &str) -> Option<f64> {
-    if field.is_empty() {
-        return Some(f64::NAN);
-    }
-    field.parse().ok().filter(|value: &f64| value.is_finite())
-}
-
-fn number_fault(source: &Arc<Source>, field: Field) -> Fault {
-    let fault = Fault::new(format!("\"{}\" is not a number", field.text));
-    let location = location(source, field.range, "expected a finite number");
-    fault
-        .at(location)
-        .help("write numbers with a point, such as 15.987, and leave a field empty where nothing was measured")
-}
-
-/// Finds column names that are empty or used twice.
-fn name_faults(source: &Arc<Source>, names: &[Field]) -> Vec<Fault> {
-    let mut faults = Vec::new();
-    for (index, field) in names.iter().enumerate() {
-        let location = location(source, field.range.clone(), "this name");
-        if field.text.is_empty() {
-            faults.push(
-                Fault::new(format!("column {} has no name", index + 1)).at(location).help("give each column a name"),
-            );
-        } else if names[..index].iter().any(|earlier| earlier.text == field.text) {
-            let fault = Fault::new(format!("two columns are called \"{}\"", field.text));
-            faults.push(fault.at(location).help("give each column a name of its own"));
-        }
-    }
-    faults
-}
-
-fn location(source: &Arc<Source>, range: Range<usize>, label: &str) -> Location {
-    Location { source: source.clone(), start: range.start, length: range.len(), label: label.to_owned() }
 }
 
 #[cfg(test)]

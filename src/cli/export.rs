@@ -8,6 +8,7 @@ use crate::analysis::aggregates::table_of_changes;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::When;
 use crate::geometry::{Surface, export_surface};
+use crate::output::biotracks::write_biotracks;
 use crate::output::{ResultFile, Table, write_field_image, write_field_table, write_table, write_text};
 use std::path::PathBuf;
 
@@ -17,7 +18,7 @@ use std::path::PathBuf;
 pub struct ExportArgs {
     /// The result file.
     pub result: PathBuf,
-    /// The file; its ending says what is written: .obj, .ply, .stl a mesh, .vti a field, .csv a table.
+    /// The file; its ending says what is written: .obj, .ply, .stl a mesh, .vti a field, .csv a table. A folder for --table biotracks.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Which frame a mesh or a field shows; the last when absent.
@@ -48,8 +49,10 @@ pub struct ExportArgs {
 pub enum TableKind {
     /// A row per frame and cell with the series of the cells and the scene.
     Series,
-    /// A row per frame and cell with the position of its centre.
+    /// A row per cell and frame with the position of its centre, in the columns of TrackMate.
     Tracks,
+    /// A folder with the tracks in the layout of biotracks (CMSO): dp.json, objects.csv, links.csv, tracks.csv.
+    Biotracks,
     /// A row per motility run that ended.
     Runs,
     /// A row per measure of the experiment.
@@ -67,6 +70,7 @@ pub enum TableKind {
 pub fn run(args: &ExportArgs) -> Result<Report> {
     let ending = args.output.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     let what = match ending.as_deref() {
+        _ if args.table == Some(TableKind::Biotracks) => What::Package,
         Some("csv") if args.field.is_some() => What::FieldTable,
         Some("csv") => What::Table,
         Some("vti") => What::FieldImage,
@@ -86,6 +90,7 @@ pub fn run(args: &ExportArgs) -> Result<Report> {
             Some(table) => write_table(&result, &table, &args.output)?,
             None => write_text(&table_of_changes(&result)?, &args.output)?,
         },
+        What::Package => return Ok(Report::of_files(&args.result, &write_biotracks(&result, &args.output)?)),
         What::Mesh => {
             let frame = args.frame.of(&result, When::Last)?;
             export_surface(&surface_of(&result, frame, args.cell)?, &args.output)?;
@@ -100,6 +105,7 @@ pub fn run(args: &ExportArgs) -> Result<Report> {
 enum What {
     Mesh,
     Table,
+    Package,
     FieldTable,
     FieldImage,
 }
@@ -120,7 +126,8 @@ fn write_field(args: &ExportArgs, result: &ResultFile, what: What) -> Result<()>
 
 /// Options that say nothing about what is written are a mistake that the user wants to know of.
 fn refuse_unused(args: &ExportArgs, what: What) -> Result<()> {
-    let (table, field) = (what == What::Table, matches!(what, What::FieldTable | What::FieldImage));
+    let (table, field) =
+        (matches!(what, What::Table | What::Package), matches!(what, What::FieldTable | What::FieldImage));
     let unused = match () {
         () if table && args.frame.frame.is_some() => "--frame",
         () if table && args.frame.time.is_some() => "--time",
@@ -146,7 +153,7 @@ fn table_of(args: &ExportArgs) -> Option<Table> {
         TableKind::Runs => Table::Runs,
         TableKind::Summary => Table::Summary,
         TableKind::Contacts => Table::Contacts,
-        TableKind::Aggregates => return None,
+        TableKind::Aggregates | TableKind::Biotracks => return None,
     })
 }
 

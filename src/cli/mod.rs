@@ -5,6 +5,7 @@ pub mod eml;
 pub mod export;
 pub mod frames;
 pub mod info;
+pub mod measure;
 pub mod plot;
 pub mod progress;
 pub mod render;
@@ -12,6 +13,7 @@ pub mod report;
 pub mod resume;
 pub mod run;
 pub mod schema;
+pub mod track_file;
 
 use crate::error::{Paint, Result, render, say};
 use clap::{Parser, Subcommand};
@@ -42,6 +44,8 @@ pub enum Command {
     Render(render::RenderArgs),
     /// Makes charts of a result file.
     Plot(plot::PlotArgs),
+    /// Measures tracks of cells: those of a result file, or measured ones.
+    Measure(measure::MeasureArgs),
     /// Writes a frame of a result file as a mesh, or its numbers as a table.
     Export(export::ExportArgs),
     /// Checks, solves and converts documents of equations: EML, and SBML models.
@@ -60,6 +64,7 @@ impl Command {
             Self::Info(args) => ("info", args.json),
             Self::Render(args) => ("render", args.json),
             Self::Plot(args) => ("plot", args.json),
+            Self::Measure(args) => ("measure", args.json),
             Self::Export(args) => ("export", args.json),
             Self::Eml(args) => args.command.manner(),
             Self::Schema(_) => ("schema", false),
@@ -91,6 +96,7 @@ fn act(command: Command) -> Result<Report> {
         Command::Info(args) => info::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Plot(args) => plot::run(&args),
+        Command::Measure(args) => measure::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Eml(args) => eml::run(&args),
         Command::Schema(args) => schema::run(&args),

@@ -2,19 +2,25 @@
 
 use super::render::{Named, refuse_existing};
 use super::report::Report;
+use super::track_file::Known;
+use crate::analysis::tracks::Tracks;
+use crate::analysis::tracks::motion::Quantity;
+use crate::analysis::tracks::read::Read;
+use crate::error::words::any_of;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Axis, FieldLine, OneOrMany, Plot, PlotKind, When};
 use crate::output::ResultFile;
 use crate::picture::from_file::beside;
 use crate::picture::plots::chart_of;
 use crate::picture::save_chart;
+use crate::picture::track_plots::{self, Group};
 use crate::units::Length;
 use std::path::PathBuf;
 
 /// Draws the charts of the experiment, or one of its own.
 #[derive(Debug, Clone, clap::Args)]
 pub struct PlotArgs {
-    /// The result file.
+    /// The result file; or measured tracks, a CSV file or the folder of a biotracks package.
     pub result: PathBuf,
     /// A chart that the experiment names; all of them when absent.
     pub name: Option<String>,
@@ -30,6 +36,18 @@ pub struct PlotArgs {
     /// The mean squared displacement.
     #[arg(long, conflicts_with_all = ["y", "name", "tracks"])]
     pub msd: bool,
+    /// Into which directions cells came.
+    #[arg(long, conflicts_with_all = ["y", "name", "tracks", "msd"])]
+    pub rose: bool,
+    /// How a number that each track has is distributed.
+    #[arg(long, value_name = "QUANTITY", value_parser = quantity, conflicts_with_all = ["y", "name", "tracks", "msd", "rose"])]
+    pub histogram: Option<Quantity>,
+    /// The columns of a histogram, or the sectors of a rose; chosen when absent.
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(3..=72))]
+    pub bins: Option<u32>,
+    /// What a file with measured tracks does not say by itself.
+    #[command(flatten)]
+    pub known: Known,
     /// Every cell as a thin line besides the mean.
     #[arg(long, requires = "y", conflicts_with = "x")]
     pub each_cell: bool,
@@ -64,6 +82,9 @@ pub struct PlotArgs {
 /// # Errors
 /// A result, chart or series that is not there; files that exist or cannot be written.
 pub fn run(args: &PlotArgs) -> Result<Report> {
+    if let Some(read) = args.known.read(&args.result)? {
+        return plot_tracks(args, read);
+    }
     let result = ResultFile::open(&args.result)?;
     let document = crate::run::document_of(result.header(), &args.result)?;
     let plots = wanted(args, &document.experiment.plot)?;
@@ -75,6 +96,61 @@ pub fn run(args: &PlotArgs) -> Result<Report> {
         made.extend(save_chart(&chart_of(&result, &document, &plot)?, &beside(&args.result, &plot.name))?);
     }
     Ok(Report::of_files(&args.result, &made))
+}
+
+/// The charts of measured tracks: the one that is asked for, or paths, displacements and directions.
+fn plot_tracks(args: &PlotArgs, read: Read) -> Result<Report> {
+    let unlike =
+        [("--y", !args.y.is_empty()), ("--profile", args.profile.is_some()), ("--kymograph", args.kymograph.is_some())];
+    let unlike = unlike.into_iter().find(|(_, given)| *given).map(|(option, _)| option.to_owned());
+    if let Some(what) = unlike.or_else(|| args.name.clone()) {
+        let fault = Fault::new(format!("{what}: {} has tracks and nothing else", args.result.display()));
+        return Err(Error::input(fault.help("use --tracks, --msd, --rose or --histogram")));
+    }
+    let file = args.result.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let groups = groups_of(read.tracks, &file)?;
+    let all = !(args.tracks || args.msd || args.rose || args.histogram.is_some());
+    let mut charts = Vec::new();
+    if args.tracks || all {
+        charts.push(("tracks".to_owned(), track_plots::paths(&groups)));
+    }
+    if args.msd || all {
+        charts.push(("msd".to_owned(), track_plots::displacements(&groups, None, 0)));
+    }
+    if args.rose || all {
+        charts.push(("rose".to_owned(), track_plots::rose(&groups, args.bins.unwrap_or(track_plots::SECTORS))?));
+    }
+    if let Some(quantity) = args.histogram {
+        charts.push((histogram_name(quantity), track_plots::histogram(&groups, quantity, args.bins)?));
+    }
+    for ending in charts.iter().flat_map(|(name, _)| ["svg", "png"].map(|ending| format!("{name}.{ending}"))) {
+        refuse_existing(&beside(&args.result, &ending), args.force, Named::ByItself)?;
+    }
+    let mut made = Vec::new();
+    for (name, mut chart) in charts {
+        chart.title = file.clone();
+        made.extend(save_chart(&chart, &beside(&args.result, &name))?);
+    }
+    Ok(Report::of_files(&args.result, &made))
+}
+
+/// Tracks by the types of their cells, in the order of the file.
+fn groups_of(tracks: Tracks, file: &str) -> Result<Vec<Group>> {
+    let mut kinds: Vec<String> = Vec::new();
+    tracks.types.iter().for_each(|kind| {
+        if !kinds.contains(kind) {
+            kinds.push(kind.clone());
+        }
+    });
+    if let [only] = &kinds[..] {
+        let label = if only.is_empty() { file.to_owned() } else { only.clone() };
+        return Ok(vec![Group { label, tracks }]);
+    }
+    kinds.into_iter().map(|kind| Ok(Group { tracks: tracks.clone().of_type(&kind)?, label: kind })).collect()
+}
+
+fn histogram_name(quantity: Quantity) -> String {
+    format!("histogram-{}", quantity.label().replace(' ', "-"))
 }
 
 /// The charts that the arguments ask for.
@@ -93,6 +169,12 @@ fn wanted(args: &PlotArgs, known: &[Plot]) -> Result<Vec<Plot>> {
     }
     if args.msd {
         return Ok(vec![own("msd", PlotKind::Msd { speed: None, persistence: None })]);
+    }
+    if args.rose {
+        return Ok(vec![own("rose", PlotKind::Rose { sectors: args.bins })]);
+    }
+    if let Some(quantity) = args.histogram {
+        return Ok(vec![own(&histogram_name(quantity), PlotKind::Histogram { quantity, bins: args.bins })]);
     }
     let line = |field: &String| FieldLine {
         field: Some(field.clone()),
@@ -125,7 +207,7 @@ fn wanted(args: &PlotArgs, known: &[Plot]) -> Result<Vec<Plot>> {
     if found.is_empty() {
         let names: Vec<&str> = known.iter().map(|plot| plot.name.as_str()).collect();
         let help = match names.is_empty() {
-            true => "it declares no [[plot]]; name series with --y, or use --tracks, --msd, --profile or --kymograph"
+            true => "it declares no [[plot]]; name series with --y, or use --tracks, --msd, --rose, --histogram, --profile or --kymograph"
                 .to_owned(),
             false => format!("its charts are: {}; or name series with --y", names.join(", ")),
         };
@@ -133,6 +215,21 @@ fn wanted(args: &PlotArgs, known: &[Plot]) -> Result<Vec<Plot>> {
         return Err(Error::input(fault));
     }
     Ok(found)
+}
+
+fn quantity(text: &str) -> std::result::Result<Quantity, String> {
+    let all = [
+        Quantity::MeanSpeed,
+        Quantity::Directness,
+        Quantity::PathLength,
+        Quantity::NetDisplacement,
+        Quantity::TurningAngle,
+    ];
+    let name = |quantity: &Quantity| quantity.label().replace(' ', "_");
+    let found = all.iter().find(|quantity| name(quantity) == text.replace('-', "_"));
+    found
+        .copied()
+        .ok_or_else(|| format!("give {}", any_of(all.iter().map(name).collect::<Vec<_>>().iter().map(String::as_str))))
 }
 
 fn axis(text: &str) -> std::result::Result<Axis, String> {

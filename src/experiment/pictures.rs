@@ -1,5 +1,6 @@
 //! The picture and the charts that a run makes when it ends.
 
+use crate::analysis::tracks::motion::Quantity;
 use crate::units::{Length, Speed, Time};
 use crate::values::{Axis, OneOrMany, When};
 use schemars::JsonSchema;
@@ -142,6 +143,22 @@ pub enum PlotKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(extend("x-exclusive-minimum" = 0))]
         persistence: Option<Time>,
+    },
+    /// Into which directions in the plane cells came, as sectors about a point, and the mean of these directions.
+    Rose {
+        /// Number of sectors; 16 when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 3, max = 72))]
+        sectors: Option<u32>,
+    },
+    /// How a number that each track has is distributed, as columns.
+    Histogram {
+        /// The number; turning angles are those of all steps.
+        quantity: Quantity,
+        /// Number of columns; by the number and spread of the values when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1, max = 200))]
+        bins: Option<u32>,
     },
     /// A field along an axis, a curve for each instant.
     Profile {

@@ -4,6 +4,7 @@
 //! [`save_checkpoint`] keeps the state to resume from. Fields and systems of chemistry stand beside the cells. This
 //! module is the only one that knows HDF5.
 
+pub mod biotracks;
 pub mod catalogue;
 mod cell_column;
 mod cells;

@@ -12,7 +12,7 @@ use crate::error::Result;
 pub enum Table {
     /// A row per frame and cell that is there, by its id: these series of the cells, or of the scene. All of them if none is named.
     Series(Vec<String>),
-    /// A row per frame and cell that is there: where its centre is, µm.
+    /// A row per cell and frame in which it is there, in the columns of TrackMate: when, s, and where its centre is, µm.
     Tracks,
     /// A row per motility run that ended: cell, end (s), duration (s).
     Runs,
@@ -54,7 +54,7 @@ pub fn table_text(result: &ResultFile, table: &Table) -> Result<String> {
             series(result, &result.series_names().into_iter().chain(result.scene_names()).collect::<Vec<_>>())
         }
         Table::Series(names) => series(result, names),
-        Table::Tracks => series(result, &["position_x", "position_y", "position_z"].map(str::to_owned)),
+        Table::Tracks => tracks(result),
         Table::Runs => runs(result),
         Table::Summary => summary(result),
         Table::Contacts => contacts(result),
@@ -91,6 +91,22 @@ fn series(result: &ResultFile, names: &[String]) -> Result<String> {
                 text.push_str(&format!(",{value}"));
             }
             text.push('\n');
+        }
+    }
+    Ok(text)
+}
+
+/// Cell by cell, as programs that read tracks expect it.
+fn tracks(result: &ResultFile) -> Result<String> {
+    let (layout, times) = (result.layout(), result.times()?);
+    let [x, y, z] = ["position_x", "position_y", "position_z"].map(|name| result.cell_series(name));
+    let (x, y, z) = (x?, y?, z?);
+    let mut text = String::from("TRACK_ID,FRAME,POSITION_T,POSITION_X,POSITION_Y,POSITION_Z,TYPE\n");
+    for (column, known) in result.known_cells().iter().enumerate() {
+        let kind = field(&layout.types[known.cell.kind as usize].name);
+        for frame in known.frames.clone() {
+            let (at, time) = ([frame, column], times[frame]);
+            text.push_str(&format!("{},{frame},{time},{},{},{},{kind}\n", known.cell.id, x[at], y[at], z[at]));
         }
     }
     Ok(text)

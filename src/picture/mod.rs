@@ -20,6 +20,7 @@ pub mod render;
 mod svg;
 pub(crate) mod text;
 pub mod ticks;
+pub mod track_plots;
 
 pub use chart::{Axis, Chart, Series, save_chart};
 pub use colour::{Colour, ColourMap};

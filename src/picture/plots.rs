@@ -1,13 +1,14 @@
 //! Charts of a result file, as the experiment or the command line asks for them.
 
-use super::chart::{Aspect, Axis, Chart, Scale, Series, Stroke};
+use super::chart::{Axis, Chart, Series, Stroke};
 use super::colour::Colour;
 use super::field_plots;
 use super::field_view::{unit_text, with_unit};
-use crate::analysis::msd::{from_the_start, furth};
+use super::track_plots::{self, Group, SECTORS};
 use crate::analysis::over::Over;
-use crate::analysis::recording::Recording;
+use crate::analysis::recording::{POSITION, Recording};
 use crate::analysis::table::Table;
+use crate::analysis::tracks::Tracks;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Plot, PlotKind, PlotTable};
 use crate::output::ResultFile;
@@ -38,11 +39,13 @@ pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result
             chart
         }
         PlotKind::Curve { x, y } => curves(result, plot, x, y.as_slice())?,
-        PlotKind::Tracks => tracks(result, plot)?,
+        PlotKind::Tracks => track_plots::paths(&groups(result, plot)?),
         PlotKind::Msd { speed, persistence } => {
             let formula = speed.zip(*persistence).map(|(v, p)| (v.value(), p.value()));
-            displacement(result, plot, formula)?
+            track_plots::displacements(&groups(result, plot)?, formula, result.header().seed)
         }
+        PlotKind::Rose { sectors } => track_plots::rose(&groups(result, plot)?, sectors.unwrap_or(SECTORS))?,
+        PlotKind::Histogram { quantity, bins } => track_plots::histogram(&groups(result, plot)?, *quantity, *bins)?,
         PlotKind::Profile { line, times } => field_plots::profile(result, line, times.as_ref())?,
         PlotKind::Kymograph { line, range } => field_plots::kymograph(result, line, *range)?,
     };
@@ -140,43 +143,11 @@ fn lines_of_cells(result: &ResultFile, plot: &Plot, series: &[String]) -> Result
     Ok(lines)
 }
 
-fn tracks(result: &ResultFile, plot: &Plot) -> Result<Chart> {
-    let recording = Recording::read(result, &["position_x", "position_y", "position_z"])?;
-    let mut chart =
-        Chart { x: Axis::linear("x (µm)"), y: Axis::linear("y (µm)"), aspect: Aspect::Equal, ..Chart::default() };
-    for kind in types_of(result, plot) {
-        let positions = recording.positions(&recording.cells_of(Some(&kind))?)?;
-        let (frames, cells, _) = positions.dim();
-        // A cell that comes late or leaves has a track where it is.
-        let path = |cell: usize| {
-            let points = (0..frames).map(|f| [positions[[f, cell, 0]], positions[[f, cell, 1]]]);
-            points.filter(|point| !point[0].is_nan()).collect()
-        };
-        chart.series.push(Series::tracks((0..cells).map(path).collect()));
-    }
-    Ok(chart)
-}
-
-fn displacement(result: &ResultFile, plot: &Plot, formula: Option<(f64, f64)>) -> Result<Chart> {
-    let recording = Recording::read(result, &["position_x", "position_y", "position_z"])?;
-    let mut chart = Chart {
-        x: Axis { scale: Scale::Log, ..Axis::linear("lag (s)") },
-        y: Axis { scale: Scale::Log, ..Axis::linear("mean squared displacement (µm²)") },
-        ..Chart::default()
-    };
-    let frames: Vec<usize> = (1..recording.times.len()).collect();
-    for kind in types_of(result, plot) {
-        let positions = recording.positions(&recording.cells_of(Some(&kind))?)?;
-        let found = from_the_start(positions.view(), &recording.times, &frames);
-        let points = found.iter().map(|d| [d.lag, d.msd]).collect();
-        let bars = found.iter().map(|d| [d.msd - d.error, d.msd + d.error]).collect();
-        chart.series.push(Series::measured(kind, points, bars));
-        if let Some((speed, persistence)) = formula {
-            let points = found.iter().map(|d| [d.lag, furth(d.lag, speed, persistence)]).collect();
-            chart.series.push(Series::line("Fürth's formula", points));
-        }
-    }
-    Ok(chart)
+/// The tracks of each type that a plot shows.
+fn groups(result: &ResultFile, plot: &Plot) -> Result<Vec<Group>> {
+    let recording = Recording::read(result, &POSITION)?;
+    let group = |label: String| Ok(Group { tracks: Tracks::of(&recording, Some(&label))?, label });
+    types_of(result, plot).into_iter().map(group).collect()
 }
 
 /// The points and bars of a measured table.

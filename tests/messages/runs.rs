@@ -1,8 +1,8 @@
 //! What the program says on the terminal when something goes wrong: transcripts of commands beside their inputs.
 //!
-//! Every `.txt` file of `tests/messages/runs` and `tests/messages/equations` is a transcript. It begins with a comment
+//! Every `.txt` file of `tests/messages/runs`, `tests/messages/equations` and `tests/messages/tracks` is a transcript. It begins with a comment
 //! (`# …`) that says what must hold; each line `$ …` is a command of the shell, run in a folder of its own that holds the
-//! documents of its folder (`*.toml`, `*.eml`, `*.xml`) and, for runs, the meshes of `tests/messages/meshes`; below it
+//! documents of its folder (`*.toml`, `*.eml`, `*.xml`, `*.csv`) and, for runs, the meshes of `tests/messages/meshes`; below it
 //! stand what the command printed on standard output, then on standard error, and its exit status if that is not 0.
 
 use crate::turns::take_turn;
@@ -11,6 +11,7 @@ use std::process::Command;
 
 const RUNS: &str = "tests/messages/runs";
 const EQUATIONS: &str = "tests/messages/equations";
+const TRACKS: &str = "tests/messages/tracks";
 
 /// Files of a folder that end in `ending`, in order.
 fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
@@ -25,7 +26,7 @@ fn stage(folder: &str) -> tempfile::TempDir {
     let stage = tempfile::tempdir().unwrap();
     let endings = if folder == RUNS { ["obj", "stl", "ply"].as_slice() } else { &[] };
     let meshes = endings.iter().flat_map(|ending| files("tests/messages/meshes", ending));
-    let documents = ["toml", "eml", "xml"].into_iter().flat_map(|ending| files(folder, ending));
+    let documents = ["toml", "eml", "xml", "csv", "json"].into_iter().flat_map(|ending| files(folder, ending));
     for path in documents.chain(meshes) {
         std::fs::copy(&path, stage.path().join(path.file_name().unwrap())).unwrap();
     }
@@ -82,6 +83,12 @@ fn every_transcript_of_equations_comes_out_as_it_is_kept() {
     compare(EQUATIONS, 5);
 }
 
+#[test]
+fn every_transcript_of_tracks_comes_out_as_it_is_kept() {
+    let _turn = take_turn();
+    compare(TRACKS, 2);
+}
+
 /// Plays the transcripts of a folder, of which there are some at least.
 fn compare(folder: &str, least: usize) {
     let transcripts = files(folder, "txt");
@@ -104,7 +111,7 @@ fn compare(folder: &str, least: usize) {
 #[test]
 fn every_refusal_says_what_to_do_and_ends_as_promised() {
     let _turn = take_turn();
-    for path in files(RUNS, "txt").into_iter().chain(files(EQUATIONS, "txt")) {
+    for path in files(RUNS, "txt").into_iter().chain(files(EQUATIONS, "txt")).chain(files(TRACKS, "txt")) {
         let text = std::fs::read_to_string(&path).unwrap();
         for part in text.split("\n$ ").skip(1).filter(|part| part.starts_with("pseudopod ")) {
             let Some((_, code)) = part.trim_end().rsplit_once("exit ") else { continue };

@@ -21,6 +21,7 @@ mod own_stiffness;
 mod own_stiffness_touching;
 mod population;
 mod pseudopods;
+mod sensing;
 mod soft_cells;
 mod sphere;
 mod stability_limits;

@@ -2,7 +2,8 @@
 
 use ndarray::Array3;
 use pseudopod::Vec3;
-use pseudopod::analysis::msd::{fit_furth, from_the_start, over_origins};
+use pseudopod::analysis::furth::{Localisation, fit_furth};
+use pseudopod::analysis::msd::{from_the_start, of_cells};
 use pseudopod::analysis::statistics::kolmogorov_smirnov;
 use pseudopod::cell::motility::{BrownianMotility, Space, furth};
 
@@ -44,13 +45,13 @@ fn displacements_follow_furth_from_any_origin() {
         let (positions, _) = walks(space);
         let times: Vec<f64> = (0..FRAMES).map(|frame| frame as f64 * INTERVAL).collect();
         let fixed = from_the_start(positions.view(), &times, &LAGS);
-        let averaged = over_origins(positions.view(), INTERVAL, &LAGS);
+        let averaged = of_cells(positions.view(), &times, &LAGS).displacements();
         for one in fixed.iter().chain(&averaged) {
             // Three standard errors of independent walkers.
             let deviation = (one.msd - furth(one.lag, SPEED, PERSISTENCE)) / one.error;
             assert!(deviation.abs() < 3.0, "{space:?}, {} s: {deviation} standard errors", one.lag);
         }
-        let fitted = fit_furth(&averaged).unwrap();
+        let fitted = fit_furth(&averaged, Localisation::Exact).unwrap();
         // The averaged displacements have errors of 1 to 3 %, of which the fit keeps less.
         assert!((fitted.speed / SPEED - 1.0).abs() < 0.03, "{fitted:?}");
         assert!((fitted.persistence / PERSISTENCE - 1.0).abs() < 0.05, "{fitted:?}");

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use pseudopod::analysis::tracks::motion::Quantity;
 use pseudopod::experiment::{Document, Picture, Plot, PlotKind, When};
 use pseudopod::geometry::icosphere;
 use pseudopod::output::{Cell, CellRecord, CellType, Frame, Header, Layout, Overwrite, ResultFile, ResultWriter};
-use pseudopod::picture::chart::Series;
+use pseudopod::picture::chart::{Series, to_svg};
 use pseudopod::picture::from_file::{film, still};
 use pseudopod::picture::plots::chart_of;
 use pseudopod::picture::quantities::AtomQuantity;
@@ -97,4 +98,61 @@ fn a_track_is_where_its_cell_is() {
     let [Series::Tracks { tracks, .. }] = &chart.series[..] else { panic!("one series of tracks") };
     let expected: [&[[f64; 2]]; 2] = [&[[0.0, 0.0], [0.0, 2.0], [0.0, 4.0]], &[[24.0, 4.0], [24.0, 6.0]]];
     assert_eq!(tracks.iter().map(Vec::as_slice).collect::<Vec<_>>(), expected);
+}
+
+fn plot_of(kind: PlotKind) -> Plot {
+    Plot {
+        name: "chart".to_owned(),
+        kind,
+        cells: Some("walker".to_owned()),
+        table: None,
+        title: None,
+        x_label: None,
+        y_label: None,
+    }
+}
+
+#[test]
+fn a_rose_counts_directions_and_a_histogram_tracks() {
+    let folder = tempfile::tempdir().unwrap();
+    let (result, document) = record(folder.path());
+    // Both walkers go straight along y, at 2 µm a frame.
+    let rose = chart_of(&result, &document, &plot_of(PlotKind::Rose { sectors: Some(4) })).unwrap();
+    let [Series::Areas { outlines, .. }, Series::Line { points, label, .. }] = &rose.series[..] else {
+        panic!("{rose:?}")
+    };
+    assert_eq!(outlines.len(), 1, "one sector has both");
+    let farthest = outlines[0].iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+    assert!(
+        (farthest - 2.0).abs() < 1e-12 && outlines[0].iter().all(|[x, y]| *y >= x.abs() - 1e-12),
+        "about the y axis"
+    );
+    assert!(points[1][0].abs() < 1e-12 && (points[1][1] - 2.0).abs() < 1e-12, "a resultant of 1 ends at the rim");
+    assert!(label.starts_with("mean of 2: R = 1, p = "), "{label}");
+    let kind = PlotKind::Histogram { quantity: Quantity::Directness, bins: Some(5) };
+    let histogram = chart_of(&result, &document, &plot_of(kind)).unwrap();
+    let [Series::Areas { outlines, .. }, _] = &histogram.series[..] else { panic!("{histogram:?}") };
+    assert_eq!(outlines.len(), 1);
+    assert!(outlines[0].iter().all(|[x, y]| *x >= 0.8 - 1e-12 && *x <= 1.0 + 1e-12 && (*y == 0.0 || *y == 2.0)));
+    for chart in [rose, histogram] {
+        roxmltree::Document::parse(&to_svg(&chart, 600.0, 600.0)).unwrap();
+    }
+}
+
+#[test]
+fn displacements_have_a_band_and_a_line_of_one_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let (result, document) = record(folder.path());
+    let chart = chart_of(&result, &document, &plot_of(PlotKind::Msd { speed: None, persistence: None })).unwrap();
+    let [Series::Band { points: band, label, .. }, Series::Line { points, label: name, .. }] = &chart.series[..] else {
+        panic!("{chart:?}")
+    };
+    assert_eq!(label, name);
+    // Steps of 2 µm alike: the interval is the point.
+    assert!(
+        band.iter()
+            .zip(points)
+            .all(|(band, point)| (band[1] - point[1]).abs() < 1e-12 && (band[2] - point[1]).abs() < 1e-12)
+    );
+    assert!((points[0][1] - 4.0).abs() < 1e-12);
 }

@@ -3,7 +3,8 @@
 use super::declared::Declared;
 use super::statistic::Statistic;
 use crate::analysis::recording::{POSITION, Recording};
-use crate::analysis::waves;
+use crate::analysis::tracks::Tracks;
+use crate::analysis::tracks::motion::Motion;
 use crate::cell::motility::Space;
 use crate::error::{Error, Fault, Result};
 use crate::units::{Length, Time};
@@ -48,33 +49,22 @@ impl ChemotacticIndex {
     /// # Errors
     /// When there is no such type, fewer than two frames lie between the times, or no cell moved.
     pub(super) fn evaluate(&self, recording: &Recording) -> Result<f64> {
-        let cells = recording.cells_of(self.cells.as_deref())?;
-        let (axes, towards) = (self.space.axes(), self.towards.map(Length::value));
-        let times = &recording.times;
-        let first = waves::first_frame(times, self.from.map(Time::value));
-        let slack = 1e-9 * times.last().map_or(0.0, |last| last.abs());
-        let end = self.to.map_or(times.len(), |to| times.partition_point(|time| *time <= to.value() + slack));
-        if end < first + 2 {
-            let found = format!("the path of cells is not known from {} frames", end.saturating_sub(first));
-            return Err(Error::input(Fault::new(found).help("give times with two frames or more between them")));
-        }
-        let positions = recording.positions(&cells)?;
-        let distance = |frame: usize, cell: usize, to: &dyn Fn(usize) -> f64| {
-            (0..axes).map(|axis| (positions[[frame, cell, axis]] - to(axis)).powi(2)).sum::<f64>().sqrt()
+        let tracks = Tracks::of(recording, self.cells.as_deref())?
+            .along(self.space.axes())
+            .between(self.from.map(Time::value), self.to.map(Time::value))?;
+        let towards = self.towards.map(Length::value);
+        // Of cells that come later or leave earlier the part of the path that they make.
+        let index = |track: usize| {
+            let motion = Motion::of(&tracks, track)?;
+            let away = |position: [f64; 3]| {
+                (0..tracks.axes()).map(|axis| (position[axis] - towards[axis]).powi(2)).sum::<f64>().sqrt()
+            };
+            let nearer = away(motion.start) - away(std::array::from_fn(|axis| motion.start[axis] + motion.net[axis]));
+            (motion.path > 0.0).then_some(nearer / motion.path)
         };
-        let index = |cell: usize| {
-            // Of cells that come later or leave earlier the part of the path that they make.
-            let mut there = (first..end).filter(|frame| recording.is_there(*frame, cells[cell]));
-            let first = there.next()?;
-            let end = there.next_back()? + 1;
-            let step = |frame: usize| distance(frame, cell, &|axis| positions[[frame - 1, cell, axis]]);
-            let nearer = distance(first, cell, &|axis| towards[axis]) - distance(end - 1, cell, &|axis| towards[axis]);
-            let path: f64 = (first + 1..end).map(step).sum();
-            (path > 0.0).then_some(nearer / path)
-        };
-        let indices: Vec<f64> = (0..cells.len()).filter_map(index).collect();
+        let indices: Vec<f64> = (0..tracks.number()).filter_map(index).collect();
         if indices.is_empty() {
-            let fault = Fault::new(format!("none of {} cells moved", cells.len()));
+            let fault = Fault::new(format!("none of {} cells moved", tracks.number()));
             return Err(Error::input(fault.help("give the cells motility or a pull")));
         }
         self.statistic.of(&indices)

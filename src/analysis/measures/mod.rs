@@ -10,9 +10,13 @@ mod distance;
 mod field_value;
 mod finished;
 mod fit;
+mod forward_index;
 mod gaps;
 mod msd_deviation;
+mod msd_exponent;
 mod period;
+mod persistence;
+mod rayleigh;
 mod reduction;
 mod run_length;
 mod segregation;
@@ -22,7 +26,9 @@ mod statistic;
 mod test_recordings;
 #[cfg(test)]
 mod test_results;
+mod track_average;
 mod value;
+mod velocity_correlation;
 mod wave_speed;
 mod wavelength;
 
@@ -35,18 +41,25 @@ pub use distance::Distance;
 pub use field_value::FieldValue;
 pub use finished::Finished;
 pub use fit::Fit;
+pub use forward_index::{ForwardIndex, ForwardPart};
 pub use gaps::{GapStatistic, Gaps};
 pub use msd_deviation::MsdDeviation;
+pub use msd_exponent::MsdExponent;
 pub use period::Period;
+pub use persistence::{Persistence, PersistenceStatistic};
+pub use rayleigh::{Rayleigh, RayleighStatistic};
 pub use reduction::Reduction;
 pub use run_length::RunLength;
 pub use segregation::{Segregation, SegregationStatistic};
 pub use sphere_fit::SphereFit;
 pub use statistic::Statistic;
+pub use track_average::TrackAverage;
 pub use value::Value;
+pub use velocity_correlation::VelocityCorrelation;
 pub use wave_speed::{WaveSpeed, WaveStatistic};
 pub use wavelength::Wavelength;
 
+use super::tracks::motion::Quantity;
 use crate::error::Result;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -102,6 +115,22 @@ pub enum MeasureKind {
     TableRatio(Comparison),
     /// The largest distance, in standard errors, between the mean squared displacement and Fürth's formula.
     MsdDeviation(MsdDeviation),
+    /// The power of the lag with which the mean squared displacement grows.
+    MsdExponent(MsdExponent),
+    /// The persistence time, s, by the fit of Fürth's formula to the mean squared displacement, or its interval, or the speed.
+    Persistence(Persistence),
+    /// The length of the path over its duration, µm/s.
+    MeanSpeed(TrackAverage),
+    /// How straight cells go: net displacement over the length of the path, from 0 to 1.
+    Directness(TrackAverage),
+    /// The mean angle between steps that follow each other, degrees from 0 to 180.
+    TurningAngle(TrackAverage),
+    /// How well cells go along a cue: the net displacement along it, or across, over the length of the path.
+    ForwardIndex(ForwardIndex),
+    /// How far cells go on as they went some time ago: the autocorrelation of their velocities.
+    VelocityCorrelation(VelocityCorrelation),
+    /// Whether net displacements point anywhere more than elsewhere: the probability by Rayleigh's test, the length of their mean, or where it points.
+    Rayleigh(Rayleigh),
     /// The probability, by Kolmogorov and Smirnov, of durations of runs as unlike the exponential as these.
     RunLengthP(RunLength),
     /// A field at a point, or its mean, extremes or amount.
@@ -133,6 +162,12 @@ impl MeasureKind {
             Self::SphereShear(fit) => fit.series(),
             Self::TableRms(table) | Self::TableBars(table) | Self::TableRatio(table) => table.series(),
             Self::MsdDeviation(msd) => msd.series(),
+            Self::MsdExponent(msd) => msd.series(),
+            Self::Persistence(fit) => fit.series(),
+            Self::MeanSpeed(tracks) | Self::Directness(tracks) | Self::TurningAngle(tracks) => tracks.series(),
+            Self::ForwardIndex(index) => index.series(),
+            Self::VelocityCorrelation(lag) => lag.series(),
+            Self::Rayleigh(directions) => directions.series(),
             Self::ChemotacticIndex(index) => index.series(),
             Self::Distance(distance) => distance.series(),
             Self::Period(period) => period.series(),
@@ -151,6 +186,12 @@ impl MeasureKind {
             Self::Slope(fit) | Self::RSquared(fit) => fit.check(at),
             Self::TableBars(table) => table.check_bars(at),
             Self::MsdDeviation(msd) => msd.check(at),
+            Self::MsdExponent(msd) => msd.check(at),
+            Self::Persistence(fit) => fit.check(at),
+            Self::MeanSpeed(tracks) | Self::Directness(tracks) | Self::TurningAngle(tracks) => tracks.check(at),
+            Self::ForwardIndex(index) => index.check(at),
+            Self::VelocityCorrelation(lag) => lag.check(at),
+            Self::Rayleigh(directions) => directions.check(at),
             Self::FieldValue(value) => value.check(at),
             Self::ChemotacticIndex(index) => index.check(at),
             Self::Distance(distance) => distance.check(at),
@@ -177,6 +218,14 @@ impl MeasureKind {
             Self::TableBars(table) => table.bars(run),
             Self::TableRatio(table) => table.ratio(run),
             Self::MsdDeviation(msd) => msd.evaluate(run.recording),
+            Self::MsdExponent(msd) => msd.evaluate(run.recording),
+            Self::Persistence(fit) => fit.evaluate(run),
+            Self::MeanSpeed(tracks) => tracks.evaluate(run.recording, Quantity::MeanSpeed),
+            Self::Directness(tracks) => tracks.evaluate(run.recording, Quantity::Directness),
+            Self::TurningAngle(tracks) => tracks.evaluate(run.recording, Quantity::TurningAngle),
+            Self::ForwardIndex(index) => index.evaluate(run.recording),
+            Self::VelocityCorrelation(lag) => lag.evaluate(run.recording),
+            Self::Rayleigh(directions) => directions.evaluate(run.recording),
             Self::RunLengthP(runs) => runs.evaluate(run.recording),
             Self::FieldValue(value) => value.evaluate(run),
             Self::ChemotacticIndex(index) => index.evaluate(run.recording),

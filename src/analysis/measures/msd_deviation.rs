@@ -1,6 +1,7 @@
 //! How far the mean squared displacement of cells is from Fürth's formula.
 
 use super::declared::Declared;
+use crate::analysis::furth::furth;
 use crate::analysis::msd;
 use crate::analysis::recording::{POSITION, Recording};
 use crate::error::{Error, Fault, Result};
@@ -78,7 +79,7 @@ impl MsdDeviation {
         let mut frames: Vec<usize> = (0..LAGS).filter_map(|index| nearest(wanted(index))).collect();
         frames.dedup();
         let measured = msd::from_the_start(recording.positions(&cells)?.view(), times, &frames);
-        let deviation = |one: &msd::Displacement| (one.msd - msd::furth(one.lag, speed, persistence)).abs() / one.error;
+        let deviation = |one: &msd::Displacement| (one.msd - furth(one.lag, speed, persistence)).abs() / one.error;
         // A maximum that NaN passes through: cells that stand still all alike agree with no law.
         Ok(measured.iter().map(deviation).fold(0.0, |most: f64, next| if next <= most { most } else { next }))
     }

@@ -3,21 +3,17 @@
 use std::fmt::Write;
 
 use super::entry::entries;
-use super::frame::{FittedAxis, Frame, LABEL, NUMBER, TITLE};
+use super::frame::{FINE_GRID_COLOUR, FRAME_COLOUR, FittedAxis, Frame, GRID_COLOUR, LABEL, NUMBER, TITLE};
 use super::heat::Heat;
 use super::legend::{self, Box};
 use super::series::{write_points, write_series};
-use super::{Chart, Legend, Series, svg_to_png};
+use super::{Chart, Ground, Legend, Series, polar, svg_to_png};
 use crate::error::Result;
 use crate::picture::Image;
 use crate::picture::colour::Colour;
 use crate::picture::svg::svg_to_pixels;
 use crate::picture::text::{self, Anchor, Style, Weight, write_text, write_turned_text};
 use crate::picture::ticks;
-
-const FRAME_COLOUR: &str = "#5a616b";
-const GRID_COLOUR: &str = "#e3e6ea";
-const FINE_GRID_COLOUR: &str = "#f2f4f6";
 
 /// Draws a chart on a page of `width` × `height` px. Any contents give a valid SVG document.
 pub fn to_svg(chart: &Chart, width: f64, height: f64) -> String {
@@ -79,7 +75,10 @@ fn compose(chart: &Chart, width: f64, height: f64, page: Page) -> (String, Frame
         let _ = writeln!(svg, r##"<rect width="{width}" height="{height}" fill="#ffffff"/>"##);
     }
     match &chart.heat {
-        None => write_grid(&mut svg, &frame),
+        None => match chart.ground {
+            Ground::Frame => write_grid(&mut svg, &frame),
+            Ground::Polar { radius } => polar::write_rings(&mut svg, &frame, radius),
+        },
         Some(heat) => {
             if page == Page::Whole {
                 heat.write_image(&mut svg, &frame);
@@ -105,7 +104,10 @@ fn compose(chart: &Chart, width: f64, height: f64, page: Page) -> (String, Frame
             write_points(&mut svg, points, bars, *marker, *colour, &frame);
         }
     }
-    write_axes(&mut svg, chart, &frame);
+    match chart.ground {
+        Ground::Frame => write_axes(&mut svg, chart, &frame),
+        Ground::Polar { radius } => polar::write_names(&mut svg, chart, &frame, radius),
+    }
     if let (Some(key), Some([left, top])) = (&key, key_at) {
         key.write(&mut svg, left, top);
     }
@@ -125,6 +127,7 @@ fn colours(chart: &Chart) -> Vec<Colour> {
             let (Series::Line { colour, .. }
             | Series::Points { colour, .. }
             | Series::Band { colour, .. }
+            | Series::Areas { colour, .. }
             | Series::Tracks { colour, .. }) = series;
             let label = series.label();
             let known = named.iter().find(|(name, _)| !label.is_empty() && *name == label).map(|n| n.1);

@@ -17,6 +17,7 @@ enum Shape {
     Line(Stroke, f64),
     Points(Marker, bool),
     Band,
+    Area,
     /// A line and its band under one name.
     LineInBand(Stroke, f64),
 }
@@ -33,6 +34,7 @@ pub(super) fn entries(chart: &Chart, colours: &[Colour]) -> Vec<Entry> {
             Series::Line { stroke, width, .. } => Shape::Line(*stroke, *width),
             Series::Points { marker, bars, .. } => Shape::Points(*marker, !bars.is_empty()),
             Series::Band { .. } => Shape::Band,
+            Series::Areas { .. } => Shape::Area,
             Series::Tracks { .. } => Shape::Line(Stroke::Solid, 1.6),
         };
         match (entries.iter_mut().find(|entry| entry.label == label), shape) {
@@ -53,10 +55,11 @@ pub(super) fn entries(chart: &Chart, colours: &[Colour]) -> Vec<Entry> {
 /// Draws the sample of a series in the legend between two x at height `y`.
 pub(super) fn write_sample(svg: &mut String, entry: &Entry, left: f64, right: f64, y: f64) {
     let colour = entry.colour.hex();
-    if let Shape::Band | Shape::LineInBand(..) = entry.shape {
+    if let Shape::Band | Shape::Area | Shape::LineInBand(..) = entry.shape {
+        let opacity = if let Shape::Area = entry.shape { 0.5 } else { 0.2 };
         let _ = writeln!(
             svg,
-            r#"<rect x="{left:.1}" y="{:.1}" width="{:.1}" height="11" fill="{colour}" fill-opacity="0.2"/>"#,
+            r#"<rect x="{left:.1}" y="{:.1}" width="{:.1}" height="11" fill="{colour}" fill-opacity="{opacity}"/>"#,
             y - 5.5,
             right - left
         );
@@ -76,6 +79,6 @@ pub(super) fn write_sample(svg: &mut String, entry: &Entry, left: f64, right: f6
             }
             write_marker(svg, marker, x, y, &colour);
         }
-        Shape::Band => {}
+        Shape::Band | Shape::Area => {}
     }
 }

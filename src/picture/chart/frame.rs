@@ -9,6 +9,11 @@ pub(super) const TITLE: f64 = 16.0;
 pub(super) const LABEL: f64 = 14.0;
 pub(super) const NUMBER: f64 = 12.5;
 
+/// Colours of what is behind the data.
+pub(super) const FRAME_COLOUR: &str = "#5a616b";
+pub(super) const GRID_COLOUR: &str = "#e3e6ea";
+pub(super) const FINE_GRID_COLOUR: &str = "#f2f4f6";
+
 /// One axis fitted to data and page.
 #[derive(Debug, Clone)]
 pub(super) struct FittedAxis {
@@ -151,6 +156,7 @@ fn extents(chart: &Chart) -> [[f64; 2]; 2] {
                 take([p[0], p[1]]);
                 take([p[0], p[2]]);
             }),
+            Series::Areas { outlines, .. } => outlines.iter().flatten().for_each(|p| take(*p)),
             Series::Tracks { tracks, .. } => tracks.iter().flatten().for_each(|p| take(*p)),
         }
     }

@@ -113,6 +113,7 @@ fn visit(chart: &Chart, frame: &Frame, mut seen: impl FnMut([f64; 2])) {
             Series::Band { points, .. } => {
                 points.iter().for_each(|p| along(&mut [[p[0], p[1]], [p[0], p[2]]].into_iter()))
             }
+            Series::Areas { outlines, .. } => outlines.iter().for_each(|outline| along(&mut outline.iter().copied())),
             Series::Tracks { tracks, .. } => tracks.iter().for_each(|track| along(&mut track.iter().copied())),
         }
     }

@@ -9,6 +9,7 @@ mod entry;
 mod frame;
 mod heat;
 mod legend;
+mod polar;
 mod series;
 #[cfg(test)]
 mod tests;
@@ -40,6 +41,8 @@ pub struct Chart {
     pub legend: Legend,
     /// How lengths along x and y relate.
     pub aspect: Aspect,
+    /// What the data are drawn on.
+    pub ground: Ground,
 }
 
 /// One axis.
@@ -83,6 +86,19 @@ pub enum Aspect {
     Free,
     /// One unit is as long along x as along y, for maps and tracks (linear axes only).
     Equal,
+}
+
+/// What the data are drawn on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Ground {
+    /// A frame with two axes.
+    #[default]
+    Frame,
+    /// Rings about the origin and spokes, for directions; with equal aspect and ranges about the origin.
+    Polar {
+        /// Radius of the outermost ring, in the unit of the axes.
+        radius: f64,
+    },
 }
 
 /// Where the names of the series stand. Series without a label have none.
@@ -148,6 +164,15 @@ pub enum Series {
         /// Its borders.
         points: Vec<[f64; 3]>,
         /// Colour; drawn faint.
+        colour: Option<Colour>,
+    },
+    /// Areas with an outline each: columns of a histogram, sectors of a rose.
+    Areas {
+        /// Name in the legend; empty for none.
+        label: String,
+        /// The corners of each, in order.
+        outlines: Vec<Vec<[f64; 2]>>,
+        /// Colour; areas of several series show through each other.
         colour: Option<Colour>,
     },
     /// The paths of many cells, each with a dot at its end.
@@ -237,6 +262,7 @@ impl Series {
         let (Self::Line { colour, .. }
         | Self::Points { colour, .. }
         | Self::Band { colour, .. }
+        | Self::Areas { colour, .. }
         | Self::Tracks { colour, .. }) = &mut self;
         *colour = Some(wish);
         self
@@ -256,6 +282,7 @@ impl Series {
             Self::Line { label, .. }
             | Self::Points { label, .. }
             | Self::Band { label, .. }
+            | Self::Areas { label, .. }
             | Self::Tracks { label, .. } => label,
         }
     }
@@ -274,12 +301,17 @@ pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>> {
 }
 
 /// Writes the chart as `path.svg` and `path.png` (720 × 480, the PNG with twice as many pixels; square charts for equal
-/// aspect) and returns both paths.
+/// aspect, 860 × 600 for rings) and returns both paths.
 ///
 /// # Errors
 /// When a file cannot be written.
 pub fn save_chart(chart: &Chart, path_without_extension: &Path) -> Result<Vec<PathBuf>> {
-    let (width, height) = if chart.aspect == Aspect::Equal { (600.0, 600.0) } else { (720.0, 480.0) };
+    let (width, height) = match (chart.ground, chart.aspect) {
+        // Beside the rings there is space for the legend, which would cover them.
+        (Ground::Polar { .. }, _) => (860.0, 600.0),
+        (_, Aspect::Equal) => (600.0, 600.0),
+        _ => (720.0, 480.0),
+    };
     let svg = to_svg(chart, width, height);
     let with = |extension: &str| {
         let mut name = path_without_extension.as_os_str().to_owned();

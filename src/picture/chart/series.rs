@@ -31,6 +31,15 @@ pub(super) fn write_series(svg: &mut String, series: &Series, colour: Colour, fr
                 let _ = writeln!(svg, r#"<path d="{path}Z" fill="{hex}" fill-opacity="0.2"/>"#);
             }
         }
+        Series::Areas { outlines, .. } => {
+            for outline in outlines {
+                let path = path(outline.iter().copied(), frame, FINE);
+                let _ = writeln!(
+                    svg,
+                    r#"<path d="{path}Z" fill="{hex}" fill-opacity="0.5" stroke="{hex}" stroke-linejoin="round"/>"#
+                );
+            }
+        }
         Series::Tracks { tracks, colour: one, .. } => write_tracks(svg, tracks, one.map(|_| colour), frame),
     }
 }
