@@ -86,11 +86,7 @@ fn describe(path: &Path, read: &Read) -> String {
 /// A document for scripts.
 fn object(path: &Path, read: &Read) -> Value {
     let document = &read.document;
-    let level = match document.level {
-        Level::Scene => "scene",
-        Level::Cell => "cell",
-        Level::Field => "field",
-    };
+    let level = document.level.name();
     let mut object = json!({
         "path": path_text(path),
         "name": document.name,
@@ -117,6 +113,7 @@ fn whose(level: Level) -> &'static str {
         Level::Scene => "one system for the scene",
         Level::Cell => "one system for each cell",
         Level::Field => "fields",
+        Level::Membrane => "one system on each membrane",
     }
 }
 

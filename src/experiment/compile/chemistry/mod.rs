@@ -2,13 +2,14 @@
 
 mod ends;
 mod links;
+mod membrane;
 mod names;
 mod order;
 mod profile;
 mod read;
 
 use super::super::{Chemistry as Entry, Document, Scheme};
-use crate::equations::eml;
+use crate::equations::eml::{self, Level};
 use crate::equations::program::{Program, initial_values};
 use crate::equations::tree::Role;
 use crate::error::{Error, Fault, Location};
@@ -77,7 +78,10 @@ pub fn chemistry(
     }
     links::open_linked_parameters(&mut parts);
     for part in parts.iter().filter(|part| !part.is_field()) {
-        chemistry.reactors.extend(reactor(document, part, faults));
+        chemistry.reactors.extend(match part.document.level {
+            Level::Membrane => membrane::reactor(document, part, kinds, faults),
+            _ => reactor(document, part, faults),
+        });
     }
     // Ends of links name systems and fields by their numbers, which stand only when all are there.
     if faults.len() == before {
@@ -139,6 +143,7 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         name: part.name.to_owned(),
         program,
         events,
+        membrane: None,
         members,
         seconds: eml.seconds,
         method,

@@ -96,6 +96,11 @@ fn check_level(document: &Document, name: &str, eml: &eml::Document, owners: &[u
             .help(format!("remove \"{name}\" from the types' `chemistry`; cells sense a field through links"));
         faults.push(at(document, &format!("chemistry.{name}.document"), "fields", fault));
     }
+    if eml.level == Level::Membrane && owners.is_empty() {
+        let fault = Fault::new(format!("`{name}` is of membranes (level=\"membrane\"), but no type of cells has it"))
+            .help(format!("add `chemistry = [\"{name}\"]` to a type of cells"));
+        faults.push(at(document, &format!("chemistry.{name}.document"), "no type has it", fault));
+    }
     if eml.level == Level::Cell && owners.is_empty() {
         let fault = Fault::new(format!("`{name}` is a system of cells (level=\"cell\"), but no type of cells has it"))
             .help(format!("add `chemistry = [\"{name}\"]` to a type of cells"));
