@@ -8,6 +8,8 @@ mod evaluate;
 mod mesh;
 mod scratch;
 mod shape;
+#[cfg(test)]
+mod shape_tests;
 mod solve;
 mod start;
 mod state;
