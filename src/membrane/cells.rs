@@ -53,8 +53,8 @@ enum Task {
 }
 
 impl MembraneSystem {
-    /// Gives cells that have not started their first values, pools included, and works out what is summed over the surfaces of
-    /// all. Their insides are the members of the population from `first` on.
+    /// Gives cells that have not started their first values, pools included, and works out what is summed over their surfaces.
+    /// The insides are the members of the population from `first` on.
     pub fn begin(
         &self,
         cells: &mut MembraneCells,
@@ -69,7 +69,7 @@ impl MembraneSystem {
     }
 
     /// Moves all cells of a kind through a window of the document's time while their surfaces go from one shape to another, eq.
-    /// (membrane.1) to (membrane.6). Nothing is allocated after the first window with the same scratch, and no result depends on the
+    /// (surface.1) to (surface.6). Nothing is allocated after the first window with the same scratch, and no result depends on the
     /// number of threads or on the other cells.
     ///
     /// # Errors

@@ -104,7 +104,7 @@ fn sweep<const L: usize>(
     }
 }
 
-/// Works out what is summed over the surface, eq. (membrane.4), and puts it among what is open of the inside.
+/// Works out what is summed over the surface, eq. (surface.4), and puts it among what is open of the inside.
 #[inline(always)]
 pub fn sum<const L: usize>(
     system: &MembraneSystem,

@@ -1,7 +1,7 @@
 //! Substances on the surfaces of cells: they spread along the surface, react, and are exchanged with pools inside.
 //!
 //! A [`MembraneSystem`] is the compiled document, a [`SurfaceMesh`] the neighbourhoods of a kind's atoms, [`MembraneState`] what
-//! changes. [`MembraneSystem::advance`] moves blocks of cells, eight abreast where there are many, eq. (membrane.1) to (membrane.6).
+//! changes. [`MembraneSystem::advance`] moves blocks of cells, eight abreast where there are many, eq. (surface.1) to (surface.6).
 
 mod cells;
 mod evaluate;

@@ -42,7 +42,7 @@ fn double_area<const L: usize>(a: &Vector<L>, b: &Vector<L>) -> [f64; L] {
     result
 }
 
-/// The area of each atom, µm²: a third of those of its facets, eq. (membrane.2).
+/// The area of each atom, µm²: a third of those of its facets, eq. (surface.2).
 #[inline(always)]
 pub fn areas<const L: usize>(mesh: &SurfaceMesh, x: &[[f64; L]], areas: &mut [[f64; L]]) {
     areas.fill([0.0; L]);
@@ -57,7 +57,7 @@ pub fn areas<const L: usize>(mesh: &SurfaceMesh, x: &[[f64; L]], areas: &mut [[f
     }
 }
 
-/// The same, and the weight of each edge: half the sum of the cotangents of the angles opposite it, eq. (membrane.2).
+/// The same, and the weight of each edge: half the sum of the cotangents of the angles opposite it, eq. (surface.2).
 #[inline(always)]
 pub fn areas_and_weights<const L: usize>(
     mesh: &SurfaceMesh,

@@ -2,7 +2,7 @@
 
 use super::mesh::SurfaceMesh;
 
-/// The matrix of a stage, eq. (membrane.5): areas on its diagonal, and a lane's factor times the differences to the neighbours.
+/// The matrix of a stage, eq. (surface.5): areas on its diagonal, and a lane's factor times the differences to the neighbours.
 pub struct Matrix<'a, const L: usize> {
     pub mesh: &'a SurfaceMesh,
     pub areas: &'a [[f64; L]],

@@ -7,7 +7,7 @@ use super::shape::{areas, coordinates};
 use super::system::MembraneSystem;
 use super::window::Part;
 
-/// Gives the cells of a block that have not started their first values, and works out what is summed over the surfaces of all.
+/// Gives the cells of a block that have not started their first values, and works out what is summed over their surfaces.
 #[inline(always)]
 pub fn begin<const L: usize>(
     system: &MembraneSystem,
@@ -35,6 +35,7 @@ pub fn begin<const L: usize>(
     }
     let cell = Cell { time: [time; L], pools: &work.pools, area, volume };
     sum(system, &cell, (part.values, &work.areas, &work.coordinates), open, registers);
-    part.inside[..pools].copy_from_slice(&work.pools);
-    part.inside[pools..].copy_from_slice(&work.open);
+    for l in (0..L).filter(|l| fresh[*l]) {
+        part.inside.iter_mut().zip(work.pools.iter().chain(&*open)).for_each(|(to, value)| to[l] = value[l]);
+    }
 }

@@ -1,4 +1,4 @@
-//! One step of reactions, diffusion and exchange together, eq. (membrane.5) and (membrane.6).
+//! One step of reactions, diffusion and exchange together, eq. (surface.5) and (surface.6).
 
 use super::evaluate::{Cell, rates, sum};
 use super::mesh::SurfaceMesh;

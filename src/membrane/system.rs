@@ -7,7 +7,7 @@ use crate::equations::tree::{Expr, QuantityId, Role, System};
 /// How a window is cut into steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MembraneStepping {
-    /// So that the error of a step stays below the tolerances, eq. (membrane.6).
+    /// So that the error of a step stays below the tolerances, eq. (surface.6).
     Adaptive {
         /// Relative to the size of a variable.
         relative: f64,

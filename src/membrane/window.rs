@@ -52,7 +52,7 @@ pub fn advance<const L: usize>(
     (work.area[0], work.volume[0]) = measures(mesh, &work.x, &work.areas);
     work.pools.copy_from_slice(&part.inside[..pools]);
     work.open.copy_from_slice(&part.inside[pools..]);
-    // What is there stays when the surface stretches, eq. (membrane.3): half of the change before, half after.
+    // What is there stays when the surface stretches, eq. (surface.3): half of the change before, half after.
     let ratio = |now: &[f64; L], then: &[f64; L]| -> [f64; L] { std::array::from_fn(|l| then[l] / now[l]) };
     for (row, y) in part.values.chunks_exact(mesh.atoms).zip(work.y.chunks_exact_mut(mesh.atoms)) {
         for (i, value) in row.iter().enumerate() {

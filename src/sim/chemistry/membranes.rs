@@ -35,7 +35,7 @@ impl Membrane {
     }
 }
 
-/// Gives the membranes of cells that have not started their first values, and works out what is summed over all.
+/// Gives the membranes of cells that have not started their first values, and works out what is summed over these.
 pub fn begin_membranes(model: &Model, state: &mut State, scratch: &mut [MembraneScratch]) {
     let State { kinds, chemistry, .. } = state;
     let ChemistryState { populations, membranes, times, .. } = chemistry;
