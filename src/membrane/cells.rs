@@ -5,32 +5,14 @@ use std::sync::{Mutex, PoisonError};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use super::failure::{Failure, MembraneTrouble};
 use super::mesh::SurfaceMesh;
 use super::scratch::{MembraneScratch, ThreadWork, Work};
 use super::start::begin;
 use super::state::MembraneCells;
 use super::system::MembraneSystem;
 use super::window::{Part, advance};
-use crate::ode::{Population, Reason};
-
-/// What went wrong in a block.
-#[derive(Debug, Clone, Copy)]
-pub struct Failure {
-    pub lane: usize,
-    pub time: f64,
-    pub reason: Reason,
-}
-
-/// What went wrong on a membrane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MembraneTrouble {
-    /// The cell, by its number within its kind.
-    pub cell: usize,
-    /// When, in the document's unit of time.
-    pub time: f64,
-    /// What is wrong.
-    pub reason: Reason,
-}
+use crate::ode::Population;
 
 /// The shapes of the cells of a kind where a step begins and where it ends: positions `[block][atom][axis][lane]`, µm.
 #[derive(Debug, Clone, Copy)]
@@ -41,6 +23,13 @@ pub struct Shapes<'a> {
     pub from: &'a [f64],
     /// Where it ends.
     pub to: &'a [f64],
+}
+
+/// What all blocks share.
+struct Shared<'a> {
+    shapes: &'a Shapes<'a>,
+    task: Task,
+    threads: &'a [Mutex<ThreadWork>],
 }
 
 /// What is done to a block.
@@ -101,10 +90,11 @@ impl MembraneSystem {
         gather(cells, population, first, self.numbers(), inside);
         failures.clear();
         failures.resize(cells.blocks(), None);
+        let shared = Shared { shapes, task, threads };
         if cells.lanes == 1 {
-            self.blocks::<1>(cells, shapes, task, inside, failures, threads, |work| &mut work.one);
+            self.blocks::<1>(cells, (inside, failures), &shared, |work| &mut work.one);
         } else {
-            self.blocks::<8>(cells, shapes, task, inside, failures, threads, |work| &mut work.eight);
+            self.blocks::<8>(cells, (inside, failures), &shared, |work| &mut work.eight);
         }
         scatter(cells, population, first, self.numbers(), inside);
         let failed = failures.iter().enumerate().find_map(|(block, failure)| Some((block, failure.as_ref()?)));
@@ -119,15 +109,11 @@ impl MembraneSystem {
         (self.inside.size(), self.inside.open.len())
     }
 
-    #[allow(clippy::too_many_arguments)]
     fn blocks<const L: usize>(
         &self,
         cells: &mut MembraneCells,
-        shapes: &Shapes,
-        task: Task,
-        inside: &mut [f64],
-        failures: &mut [Option<Failure>],
-        threads: &[Mutex<ThreadWork>],
+        (inside, failures): (&mut [f64], &mut [Option<Failure>]),
+        &Shared { shapes, task, threads }: &Shared,
         of_lanes: impl Fn(&mut ThreadWork) -> &mut Option<Box<Work<L>>> + Sync,
     ) {
         let (atoms, all, count) = (shapes.mesh.atoms, self.numbers(), cells.cells);

@@ -109,7 +109,7 @@ fn sweep<const L: usize>(
 pub fn sum<const L: usize>(
     system: &MembraneSystem,
     cell: &Cell<L>,
-    (y, areas, coordinates): (&[[f64; L]], &[[f64; L]], &[[f64; L]]),
+    [y, areas, coordinates]: [&[[f64; L]]; 3],
     open: &mut [[f64; L]],
     registers: &mut Registers,
 ) {

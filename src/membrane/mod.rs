@@ -5,6 +5,7 @@
 
 mod cells;
 mod evaluate;
+mod failure;
 mod mesh;
 mod scratch;
 mod shape;
@@ -18,7 +19,8 @@ mod system;
 mod tableau;
 mod window;
 
-pub use cells::{MembraneTrouble, Shapes};
+pub use cells::Shapes;
+pub use failure::MembraneTrouble;
 pub use mesh::SurfaceMesh;
 pub use scratch::MembraneScratch;
 pub use state::{MembraneCells, MembraneState};

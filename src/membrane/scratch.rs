@@ -2,8 +2,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use super::cells::Failure;
 use super::evaluate::Registers;
+use super::failure::Failure;
 use super::mesh::SurfaceMesh;
 use super::solve::Gradients;
 use super::system::MembraneSystem;

@@ -34,7 +34,7 @@ pub fn begin<const L: usize>(
         part.volume[l] = volume[l];
     }
     let cell = Cell { time: [time; L], pools: &work.pools, area, volume };
-    sum(system, &cell, (part.values, &work.areas, &work.coordinates), open, registers);
+    sum(system, &cell, [part.values, &work.areas, &work.coordinates], open, registers);
     for l in (0..L).filter(|l| fresh[*l]) {
         part.inside.iter_mut().zip(work.pools.iter().chain(&*open)).for_each(|(to, value)| to[l] = value[l]);
     }

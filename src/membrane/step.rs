@@ -11,6 +11,9 @@ use super::tableau::{B, C, ERROR, EXPLICIT, GAMMA, IMPLICIT, STAGES};
 /// What the linear solver may leave of a density, over the tolerance of a step.
 const LEFT: f64 = 1e-3;
 
+/// The error of a step whose linear systems were not solved.
+pub const UNSOLVED: f64 = f64::MAX;
+
 /// Tries a step of each lane from `work.y` and `work.pools`; lanes whose step is 0 stay. Where it leads stands in `work.next` and
 /// `work.pools_next`. Returns the error of each lane over what is allowed.
 #[inline(always)]
@@ -25,7 +28,7 @@ pub fn attempt<const L: usize>(
         for variable in 0..system.variables() {
             let solved = spread_stage(system, mesh, work, variable, stage, step);
             for l in 0..L {
-                error[l] = if solved[l] { error[l] } else { f64::INFINITY };
+                error[l] = if solved[l] { error[l] } else { UNSOLVED };
             }
         }
         react_stage(system, work, stage, (time, step));
@@ -144,7 +147,7 @@ fn react_stage<const L: usize>(
     }
     let Work { stage: values, coordinates, areas, open, registers, explicit, pool_rates, pools_stage, .. } = work;
     let cell = Cell { time: now, pools: pools_stage, area: work.area[0], volume: work.volume[0] };
-    sum(system, &cell, (values, areas, coordinates), open, registers);
+    sum(system, &cell, [values, areas, coordinates], open, registers);
     let to = (&mut explicit[stage * all..(stage + 1) * all], &mut pool_rates[stage * pools..(stage + 1) * pools]);
     rates(system, &cell, (values, coordinates), open, registers, to);
 }

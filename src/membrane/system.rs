@@ -151,6 +151,11 @@ impl MembraneSystem {
         &self.inside
     }
 
+    /// Diffusion coefficients of the variables on the surface, µm² per unit of time.
+    pub fn diffusion(&self) -> &[f64] {
+        &self.diffusion
+    }
+
     /// How many variables live on the surface.
     pub fn variables(&self) -> usize {
         self.names.len()

@@ -1,11 +1,11 @@
 //! A block of cells through a step of mechanics: each lane with steps of its own.
 
-use super::cells::Failure;
 use super::evaluate::{Cell, measures, sum};
+use super::failure::Failure;
 use super::mesh::SurfaceMesh;
 use super::scratch::Work;
 use super::shape::{areas, areas_and_weights, coordinates};
-use super::step::attempt;
+use super::step::{UNSOLVED, attempt};
 use super::system::{MembraneStepping, MembraneSystem};
 use crate::ode::Reason;
 
@@ -103,7 +103,7 @@ fn course<const L: usize>(
         let error = attempt(system, mesh, work, (&time, &step));
         let mut good = [false; L];
         for l in (0..L).filter(|l| step[*l] > 0.0) {
-            let bearable = if fixed.is_some() { error[l] < f64::INFINITY } else { error[l] <= 1.0 };
+            let bearable = error[l] <= 1.0 || (fixed.is_some() && error[l] < UNSOLVED);
             let factor = (SAFETY * error[l].max(1e-12).powf(-EXPONENT)).clamp(LEAST, MOST);
             if bearable {
                 good[l] = true;
@@ -114,7 +114,11 @@ fn course<const L: usize>(
             } else {
                 wanted[l] = step[l] * factor.min(SHRINK);
                 if wanted[l] <= shortest || fixed.is_some() {
-                    let reason = if error[l] < f64::INFINITY { Reason::StepUnderflow } else { Reason::NotFinite };
+                    let reason = match error[l] {
+                        f64::INFINITY => Reason::NotFinite,
+                        _ if fixed.is_some() => Reason::Solver,
+                        _ => Reason::StepUnderflow,
+                    };
                     failure = failure.or(Some(Failure { lane: l, time: time[l], reason }));
                     left[l] = 0.0;
                 }
@@ -162,7 +166,7 @@ fn finish<const L: usize>(
     coordinates(to, part.areas, &mut work.coordinates);
     *part.volume = volume;
     let cell = Cell { time: [end; L], pools: &work.pools, area, volume };
-    sum(system, &cell, (&work.y, part.areas, &work.coordinates), &mut work.open, &mut work.registers);
+    sum(system, &cell, [&work.y, part.areas, &work.coordinates], &mut work.open, &mut work.registers);
     part.inside[..pools].copy_from_slice(&work.pools);
     part.inside[pools..].copy_from_slice(&work.open);
     // Lanes without a cell hold zeros.

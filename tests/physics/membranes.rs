@@ -225,8 +225,8 @@ fn a_pinned_wave_polarises_from_a_transient_cue_keeps_its_side_and_turns_with_th
     println!("a front stands still at b = {still:.4}, between a = {low:.4} and {high:.4}");
     // The inactive form is all but uniform, at the density at which a front stands still; the front here is bent and D_b finite.
     let mean = 0.5 * (b.0 + b.1);
-    assert!((mean / still - 1.0).abs() < 0.05, "{mean} against {still}");
-    assert!((a.0 / low - 1.0).abs() < 0.1 && (a.1 / high - 1.0).abs() < 0.1, "{a:?} against {low} and {high}");
+    assert!((mean / still - 1.0).abs() < 0.02, "{mean} against {still}");
+    assert!((a.0 / low - 1.0).abs() < 0.05 && (a.1 / high - 1.0).abs() < 0.05, "{a:?} against {low} and {high}");
     let (turned, ..) = until(&mut scene, 120.0);
     let (stays, ..) = until(&mut scene, 200.0);
     assert!(turned < -0.3 && stays < -0.3, "turned to {turned}, stays {stays}");
@@ -240,15 +240,11 @@ fn without_a_cue_nothing_is_polarised() {
     assert_ne!(own, PINNING);
     let mut scene = scene(&[("own", &own)], &sphere(2, "100 s", "1 s"));
     scene.begin();
-    let start = surfaces(&scene).clone();
     scene.run();
-    let now = surfaces(&scene);
-    let (low, high) = extremes(now, 0);
-    let stretch = |atom: usize| (now.area(0, atom) / start.area(0, atom) - 1.0).abs();
-    let stretched = (0..scene.compiled.model.kinds[0].atoms()).map(stretch).fold(0.0, f64::max);
-    println!("densities differ by {:.1e}, areas changed by {stretched:.1e}", high / low - 1.0);
-    // What differs is what the atoms' areas settle by, and nothing that has grown.
-    assert!(high / low - 1.0 < 2.0 * stretched + 1e-12 && stretched < 1e-6, "{low} to {high}, areas {stretched}");
+    let (low, high) = extremes(surfaces(&scene), 0);
+    println!("densities differ by {:.1e}", high / low - 1.0);
+    // Stretches of atoms that come back to 1 differ by round-off in each of 100 steps; nothing makes more of it.
+    assert!(high / low - 1.0 < 1e-12, "{low} to {high}");
 }
 
 /// What spreads, reacts and is exchanged, all of it not linear.

@@ -1,39 +1,12 @@
 //! Membranes in the step: the surfaces of the cells that have a system, kind after kind.
 
-use super::super::kind::Kind;
 use super::super::model::Model;
 use super::super::state::State;
+use super::membrane::Membrane;
 use super::model::{Members, Reactor};
 use super::state::ChemistryState;
-use crate::membrane::{MembraneCells, MembraneScratch, MembraneState, MembraneSystem, Shapes, SurfaceMesh};
+use crate::membrane::{MembraneScratch, Shapes};
 use crate::ode::OdeTrouble;
-
-/// What a system does on the membranes of its cells.
-#[derive(Debug, Clone)]
-pub struct Membrane {
-    /// The compiled document.
-    pub system: MembraneSystem,
-    /// The surface of each kind that has it, in the order of its members.
-    pub meshes: Vec<SurfaceMesh>,
-}
-
-impl Membrane {
-    /// A system on the membranes of some kinds.
-    pub fn new(system: MembraneSystem, kinds: &[usize], all: &[Kind]) -> Self {
-        let mesh = |kind: &usize| SurfaceMesh::new(&all[*kind].rest, all[*kind].closed);
-        Self { system, meshes: kinds.iter().map(mesh).collect() }
-    }
-
-    /// Surfaces of so many cells of each kind that have not started.
-    pub(super) fn state(&self, members: &Members, kinds: &[Kind], cells: &[usize]) -> MembraneState {
-        let Members::Kinds(own) = members else { return MembraneState::default() };
-        let one = |&kind: &usize| {
-            let (lanes, atoms) = (kinds[kind].lanes, kinds[kind].atoms());
-            MembraneCells::new(lanes, atoms, self.system.variables(), cells[kind])
-        };
-        MembraneState { kinds: own.iter().map(one).collect() }
-    }
-}
 
 /// Gives the membranes of cells that have not started their first values, and works out what is summed over these.
 pub fn begin_membranes(model: &Model, state: &mut State, scratch: &mut [MembraneScratch]) {

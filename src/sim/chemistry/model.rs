@@ -1,7 +1,7 @@
 //! What chemistry means: compiled systems, fields and links. Nothing here changes during a run.
 
 use super::links::{Link, Observations};
-use super::membranes::Membrane;
+use super::membrane::Membrane;
 use crate::equations::program::Program;
 use crate::equations::tree::QuantityId;
 use crate::field::{FieldSystem, Stepping};

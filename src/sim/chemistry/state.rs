@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::controls::Controls;
 use super::super::model::Model;
-use super::model::Reactor;
+use super::model::{Members, Reactor};
 use crate::field::Fields;
 use crate::membrane::{MembraneCells, MembraneState};
 use crate::ode::{EventMemory, Population};
@@ -50,9 +50,9 @@ impl ChemistryState {
             true => Vec::new(),
             false => vec![reactor.events.before_start(); members(reactor)],
         };
-        let membrane = |reactor: &Reactor| match &reactor.membrane {
-            Some(membrane) => membrane.state(&reactor.members, &model.kinds, cells),
-            None => MembraneState::default(),
+        let membrane = |reactor: &Reactor| match (&reactor.membrane, &reactor.members) {
+            (Some(membrane), Members::Kinds(own)) => membrane.state(own, &model.kinds, cells),
+            _ => MembraneState::default(),
         };
         let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
             values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),

@@ -1,7 +1,7 @@
 //! Documents of membranes.
 
 use super::super::super::Document;
-use super::{Part, at};
+use super::{Part, at, within};
 use crate::equations::tree::Role;
 use crate::error::Fault;
 use crate::membrane::{MembraneStepping, MembraneSystem};
@@ -11,6 +11,32 @@ use crate::sim::chemistry::{Members, Membrane, Reactor};
 
 /// Tolerances of a step where neither document says any: relative and absolute.
 const TOLERANCE: (f64, f64) = (1e-4, 1e-7);
+
+/// Coefficients of diffusion that `set` has made negative, or that a link is to change during the run.
+fn check_diffusion(part: &Part, system: &MembraneSystem, faults: &mut Vec<Fault>) {
+    let Some(membrane) = &part.document.membrane else { return };
+    for (variable, value) in membrane.surface.iter().zip(system.diffusion()) {
+        let id = &part.document.system.quantities[variable.quantity as usize].id;
+        if !(value.is_finite() && *value >= 0.0) {
+            let message = format!("`diffusion` of `{id}` is {value}; 0 or more was expected");
+            faults.push(within(&variable.location, "spreads so", message, "correct what the experiment sets"));
+        }
+        let mut linked = None;
+        variable.diffusion.each_quantity(&mut |used| {
+            let quantity = &part.document.system.quantities[used as usize];
+            linked = linked.take().or((quantity.role == Role::Input).then_some(&quantity.id));
+        });
+        if let Some(parameter) = linked {
+            let message = format!("a link sets `{parameter}`, but `diffusion` of `{id}` keeps one value");
+            faults.push(within(
+                &variable.location,
+                "spreads so",
+                message,
+                "let no link set what a diffusion coefficient uses",
+            ));
+        }
+    }
+}
 
 /// The system of a document of membranes; nothing where it is at fault.
 pub(super) fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: &mut Vec<Fault>) -> Option<Reactor> {
@@ -41,6 +67,7 @@ pub(super) fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: 
             return None;
         }
     };
+    check_diffusion(part, &system, faults);
     for kind in part.kinds.iter().map(|&kind| &kinds[kind]) {
         let (what, help) = if kind.rest.facets.is_empty() {
             ("has no surface", "give the type a mesh with facets")

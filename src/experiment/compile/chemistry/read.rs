@@ -69,7 +69,12 @@ fn set(document: &Document, name: &str, entry: &Entry, eml: &mut eml::Document, 
         };
         let quantity = &mut system.quantities[number as usize];
         let is_field = eml.fields.iter().any(|field| field.quantity == number);
-        let refused = if is_field {
+        let is_given = eml.membrane.as_ref().is_some_and(|membrane| {
+            eml::SURFACE.contains(&id.as_str()) || membrane.totals.iter().any(|total| total.quantity == number)
+        });
+        let refused = if is_given {
+            Some("it is taken from the membrane: set what it is taken of")
+        } else if is_field {
             Some("it is a field, which starts from a profile: set a parameter that its initial expression uses")
         } else if matches!(quantity.role, Role::Defined { .. }) {
             Some("its definition gives it: set what the definition uses")
