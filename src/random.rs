@@ -20,6 +20,8 @@ pub enum Purpose {
     Permutation = 3,
     /// Which cells are removed; the number of the change is that of the draw.
     Removal = 4,
+    /// Durations and directions of pseudopods.
+    Pseudopods = 5,
 }
 
 const ROUNDS: usize = 10;

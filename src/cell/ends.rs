@@ -40,6 +40,8 @@ pub enum Setting {
     MotilitySpeed,
     /// A component of a velocity added to the walk, µm/s.
     Bias(usize),
+    /// What tells pseudopods where to go and what to do.
+    Pseudopods(PodSetting),
     /// Factor of all elastic forces; 1 without a link.
     Stiffness,
     /// Factor of the strength with which the cell sticks; 1 without a link.
@@ -54,6 +56,17 @@ pub enum Setting {
     Atom(usize, usize),
     /// Amount of a field's substance that the cell releases in a second; negative: takes up.
     Secretion(String),
+}
+
+/// What chemistry may tell pseudopods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PodSetting {
+    /// A component of the cue.
+    Cue(usize),
+    /// How much the front is pushed, from 0 to 1.
+    Protrusion,
+    /// How much front and rear are drawn together, from 0 to 1.
+    Retraction,
 }
 
 /// What is sensed of a field.
@@ -89,9 +102,10 @@ pub const READABLE: [&str; 15] = [
 /// What can be set, as messages list it.
 pub fn settable() -> Vec<String> {
     let own = ["motility.speed", "motility.bias.x", "stiffness", "adhesion", "rest_volume", "rest_volume_ratio"];
+    let pods = ["pseudopods.cue.x", "pseudopods.protrusion", "pseudopods.retraction"];
     let forces = CONTROLLED.map(|handle| format!("{}[NAME]", handle.word));
     let last = ["atom[0].x", "secretion[FIELD]"].map(String::from);
-    own.map(String::from).into_iter().chain(forces).chain(last).collect()
+    own.into_iter().chain(pods).map(String::from).chain(forces).chain(last).collect()
 }
 
 /// The word of a handle of forces, by its number.
@@ -122,6 +136,9 @@ pub fn setting(path: &[Step]) -> Option<Setting> {
     Some(match words(path)[..] {
         [("motility", None), ("speed", None)] => Setting::MotilitySpeed,
         [("motility", None), ("bias", None), (axis, None)] => Setting::Bias(component(axis)?),
+        [("pseudopods", None), ("cue", None), (axis, None)] => Setting::Pseudopods(PodSetting::Cue(component(axis)?)),
+        [("pseudopods", None), ("protrusion", None)] => Setting::Pseudopods(PodSetting::Protrusion),
+        [("pseudopods", None), ("retraction", None)] => Setting::Pseudopods(PodSetting::Retraction),
         [("stiffness", None)] => Setting::Stiffness,
         [("adhesion", None)] => Setting::Adhesion,
         [("rest_volume", None)] => Setting::RestVolume,

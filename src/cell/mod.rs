@@ -6,11 +6,13 @@
 
 pub mod ends;
 pub mod motility;
+pub mod pseudopods;
 
 use serde::{Deserialize, Serialize};
 
 use crate::Vec3;
 use motility::{BrownianMotility, Walk};
+use pseudopods::{PodState, Pseudopods, Told};
 
 /// What a cell does by itself, step by step. It asks for a velocity, and the force that overcomes the drag of this velocity drives
 /// the cell.
@@ -20,6 +22,8 @@ pub enum Behaviour {
     Brownian(BrownianMotility),
     /// A velocity that chemistry sets.
     Bias,
+    /// Pseudopods: they ask for no velocity, but push and draw the cell's own atoms.
+    Pseudopods(Pseudopods),
 }
 
 /// What one cell remembers of a behaviour: part of the state.
@@ -29,6 +33,8 @@ pub enum BehaviourState {
     Brownian(Walk),
     /// Nothing.
     Bias,
+    /// Where its pseudopods are.
+    Pseudopods(PodState),
 }
 
 /// What behaviours of a cell depend on beside what they remember.
@@ -42,6 +48,8 @@ pub struct Circumstances {
     pub speed: Option<f64>,
     /// The velocity that is set, µm/s.
     pub bias: [f64; 3],
+    /// What its pseudopods are told.
+    pub pseudopods: Told,
 }
 
 impl Behaviour {
@@ -50,6 +58,7 @@ impl Behaviour {
         match self {
             Self::Brownian(motility) => BehaviourState::Brownian(motility.start(seed, cell)),
             Self::Bias => BehaviourState::Bias,
+            Self::Pseudopods(pods) => BehaviourState::Pseudopods(pods.start(seed, cell)),
         }
     }
 
@@ -58,6 +67,7 @@ impl Behaviour {
         match self {
             Self::Brownian(_) => matches!(state, BehaviourState::Brownian(_)),
             Self::Bias => matches!(state, BehaviourState::Bias),
+            Self::Pseudopods(_) => matches!(state, BehaviourState::Pseudopods(_)),
         }
     }
 
@@ -65,7 +75,7 @@ impl Behaviour {
     pub fn speed(&self) -> Option<f64> {
         match self {
             Self::Brownian(motility) => Some(motility.speed),
-            Self::Bias => None,
+            Self::Bias | Self::Pseudopods(_) => None,
         }
     }
 
@@ -87,6 +97,10 @@ impl Behaviour {
                 motility.advance(now.seed, now.cell, walk, dt, ended)
             }
             (Self::Bias, BehaviourState::Bias) => now.bias.into(),
+            (Self::Pseudopods(pods), BehaviourState::Pseudopods(state)) => {
+                pods.advance(now.seed, now.cell, &now.pseudopods, state, dt);
+                Vec3::zeros()
+            }
             (behaviour, state) => panic!("{behaviour:?} cannot go on from {state:?}"),
         }
     }
@@ -95,21 +109,32 @@ impl Behaviour {
 #[cfg(test)]
 mod tests {
     use super::motility::Space;
+    use super::pseudopods::{Cycle, Turning};
     use super::*;
 
     /// One of each; a new one must be added here, or the match does not compile.
     fn all() -> Vec<Behaviour> {
         let walk = BrownianMotility { speed: 0.2, persistence: 3.0, space: Space::Volume };
-        let all = vec![Behaviour::Brownian(walk), Behaviour::Bias];
+        let turning = Turning { split: 0.5, angle: 1.0, spread: 0.1, alternation: 0.7, space: Space::Plane };
+        let pods = Pseudopods {
+            pressure: 50.0,
+            least_cosine: 0.7,
+            contraction: 10.0,
+            release: 1.0,
+            cycle: Cycle { means: [1.0, 2.0, 3.0], variation: 0.5 },
+            turning,
+        };
+        let all = vec![Behaviour::Brownian(walk), Behaviour::Bias, Behaviour::Pseudopods(pods)];
         for behaviour in &all {
             match behaviour {
-                Behaviour::Brownian(_) | Behaviour::Bias => {}
+                Behaviour::Brownian(_) | Behaviour::Bias | Behaviour::Pseudopods(_) => {}
             }
         }
         all
     }
 
-    const NOW: Circumstances = Circumstances { seed: 5, cell: 7, speed: None, bias: [0.3, -0.1, 0.2] };
+    const NOW: Circumstances =
+        Circumstances { seed: 5, cell: 7, speed: None, bias: [0.3, -0.1, 0.2], pseudopods: Told::NOTHING };
 
     #[test]
     fn every_behaviour_remembers_its_own_and_nothing_else() {
@@ -126,7 +151,8 @@ mod tests {
             let (mut one, mut other) = (behaviour.start(5, 7), behaviour.start(5, 7));
             let first = behaviour.advance(0.0, &NOW, &mut one, |_, _| panic!("no run can end"));
             assert_eq!(one, other, "{behaviour:?}");
-            assert!(first.norm() > 0.0, "{behaviour:?} asks for something");
+            let pushes = matches!(behaviour, Behaviour::Pseudopods(_));
+            assert!(pushes != (first.norm() > 0.0), "{behaviour:?} asks for a velocity or pushes");
             for _ in 0..20 {
                 let velocities = [&mut one, &mut other].map(|state| behaviour.advance(1.7, &NOW, state, |_, _| ()));
                 assert_eq!(velocities[0], velocities[1], "{behaviour:?}");

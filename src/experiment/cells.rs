@@ -5,6 +5,7 @@ use super::mechanics::Mechanics;
 use super::motility::Motility;
 use super::placement::Placement;
 use super::population::{Added, Removed};
+use super::pseudopods::Pseudopods;
 use crate::units::{Angle, Length};
 use crate::values::{Colour, LengthUnit};
 use schemars::JsonSchema;
@@ -44,6 +45,9 @@ pub struct CellType {
     /// How the cells move by themselves.
     #[serde(default)]
     pub motility: Motility,
+    /// Pseudopods that push and draw the cell along what it sticks to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pseudopods: Option<Pseudopods>,
     /// Systems of equations that every cell has a copy of: names in `[chemistry]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub chemistry: Vec<String>,
@@ -63,6 +67,7 @@ impl CellType {
             mechanics,
             applied: Applied::default(),
             motility: Motility::default(),
+            pseudopods: None,
             chemistry: Vec::new(),
         }
     }

@@ -11,6 +11,7 @@ mod cells;
 mod chemistry;
 mod contact;
 mod measures;
+mod pseudopods;
 mod scene;
 
 pub(super) struct Check<'a> {
@@ -30,6 +31,7 @@ pub(super) fn check(document: &Document) -> Vec<Fault> {
         check.placements(&path, cell);
         check.volume(&path, cell);
         check.remembering_atoms(&path, cell);
+        check.pseudopods(&path, cell);
         check.applied(&path, &cell.applied);
         if let Some(turn) = &cell.orientation {
             check.direction(&format!("{path}.orientation.axis"), turn.axis);

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::chemistry::Control;
+use crate::cell::pseudopods::Told;
 use crate::mechanics::CONTROLLED;
 
 /// What links set for mechanics, one number a cell in the order of all cells. A list that no link writes is empty.
@@ -16,6 +17,11 @@ pub struct Controls {
     pub stiffness: Vec<f64>,
     /// Factor of the strength with which a cell sticks; empty without a link to one.
     pub adhesion: Vec<f64>,
+    /// Factor of the strength with which each atom of all cells sticks, in their order; empty where none is set. Behaviours set it where a
+    /// step ends.
+    pub adhesion_of_atoms: Vec<f64>,
+    /// What pseudopods are told, one a cell; empty without a link to one.
+    pub pseudopods: Vec<Told>,
     /// What is set of forces: for each handle of [`CONTROLLED`] one list for each such force of a kind, in its order.
     pub forces: Vec<Vec<Vec<f64>>>,
     /// Amount released per second, one list for each species secreted: those of the model first, then those of `secreted`.
@@ -37,6 +43,7 @@ impl Controls {
             Control::Bias(_) => self.bias.resize(cells, [0.0; 3]),
             Control::Stiffness => list(&mut self.stiffness, 1.0),
             Control::Adhesion => list(&mut self.adhesion, 1.0),
+            Control::Pseudopods(_) => self.pseudopods.resize(cells, Told::NOTHING),
             Control::Force(handle, number) => {
                 self.forces.resize(CONTROLLED.len(), Vec::new());
                 lists(&mut self.forces[handle], number, CONTROLLED[handle].unset);
@@ -52,6 +59,8 @@ impl Controls {
         self.bias.clone_from(&other.bias);
         self.stiffness.clone_from(&other.stiffness);
         self.adhesion.clone_from(&other.adhesion);
+        self.adhesion_of_atoms.clone_from(&other.adhesion_of_atoms);
+        self.pseudopods.clone_from(&other.pseudopods);
         self.forces.clone_from(&other.forces);
         self.secretion.clone_from(&other.secretion);
         self.secreted.clone_from(&other.secreted);
@@ -70,6 +79,24 @@ impl Controls {
     /// Factor of a cell's elastic forces.
     pub fn stiffness_of(&self, cell: usize) -> f64 {
         self.stiffness.get(cell).copied().unwrap_or(1.0)
+    }
+
+    /// What the pseudopods of a cell are told.
+    pub fn told_pseudopods(&self, cell: usize) -> Told {
+        self.pseudopods.get(cell).copied().unwrap_or(Told::NOTHING)
+    }
+
+    /// Factor of the strength with which an atom sticks, beside that of its cell.
+    pub fn adhesion_of_atom(&self, atom: u32) -> f64 {
+        self.adhesion_of_atoms.get(atom as usize).copied().unwrap_or(1.0)
+    }
+
+    /// The same at a point between atoms.
+    pub fn adhesion_between(&self, atoms: [u32; 3], weights: [f64; 3]) -> f64 {
+        if self.adhesion_of_atoms.is_empty() {
+            return 1.0;
+        }
+        atoms.iter().zip(weights).map(|(atom, weight)| weight * self.adhesion_of_atom(*atom)).sum()
     }
 
     /// Factor of the strength with which a cell sticks.

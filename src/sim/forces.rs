@@ -11,6 +11,7 @@ use super::model::Model;
 use super::state::{KindState, State};
 use super::thread_buffers::{ThreadBuffers, each_or_none};
 use super::workspace::{KindScratch, Workspace};
+use crate::Vec3;
 use crate::mechanics::control::Context;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::sum::{measure_elastic, measure_forces};
@@ -26,8 +27,17 @@ pub struct Forces<'a> {
     pub cells: &'a KindState,
     /// What chemistry sets.
     pub controls: &'a Controls,
-    /// Mean velocity that motility asks of every cell of the model, µm/s.
+    /// What acts on them beside what they are made of.
+    pub acting: Acting<'a>,
+}
+
+/// What acts on all cells of a model beside what they are made of.
+#[derive(Clone, Copy)]
+pub struct Acting<'a> {
+    /// Mean velocity that motility asks of every cell, µm/s.
     pub drive: &'a [[f64; 3]],
+    /// What pseudopods do to the atoms of all cells, pN; none in a model without them.
+    pub pushes: &'a [Vec3],
     /// What contacts do.
     pub contact: &'a ContactForces,
 }
@@ -53,7 +63,7 @@ impl Forces<'_> {
         (f, energy): (&mut [f64], &mut [f64]),
         spare: &mut [f64],
     ) {
-        let &Self { kind, cells, controls, drive, contact } = self;
+        let &Self { kind, cells, controls, acting: Acting { drive, pushes, contact } } = self;
         let numbers = cells.numbers_of_block(kind, block);
         let context = context(kind, controls, numbers.clone(), time);
         measure_forces(&kind.forces, &context, kind.lanes, x, f, energy);
@@ -61,6 +71,7 @@ impl Forces<'_> {
             add_drive(kind, &drive[numbers], f);
         }
         add_pressure(kind, time, x, rest, spare, f, energy);
+        add_to_atoms(kind, cells, block, pushes, f);
         add_contact_forces(kind, cells, block, contact, f);
     }
 }
@@ -78,30 +89,30 @@ pub fn sum_forces(model: &Model, time: f64, controls: &Controls, cells: &[KindSt
     for (w, now) in ws.kinds.iter_mut().zip(cells) {
         w.force.resize(now.positions.len(), 0.0);
     }
-    let Workspace { kinds, buffers, drive, contact, .. } = ws;
-    let contact = &contact.forces;
-    for_each_kind(model, time, (controls, drive, contact), cells, kinds, buffers, |w| (&mut w.force, &mut w.energy));
+    let Workspace { kinds, buffers, drive, pushes, contact, .. } = ws;
+    let acting = Acting { drive, pushes, contact: &contact.forces };
+    for_each_kind(model, time, (controls, acting), cells, kinds, buffers, |w| (&mut w.force, &mut w.energy));
 }
 
 /// Sets `energy` of every kind to the energy of every cell, pN·µm; contacts have none.
 pub fn measure_energy(model: &Model, time: f64, controls: &Controls, cells: &[KindState], ws: &mut Workspace) {
     let Workspace { kinds, buffers, drive, .. } = ws;
-    let none = ContactForces::default();
-    for_each_kind(model, time, (controls, drive, &none), cells, kinds, buffers, |w| (&mut [], &mut w.energy));
+    let acting = Acting { drive, pushes: &[], contact: &ContactForces::default() };
+    for_each_kind(model, time, (controls, acting), cells, kinds, buffers, |w| (&mut [], &mut w.energy));
 }
 
 /// Forces and energies of all kinds, written to what is lent of their scratch; forces that are not held are those of a block.
 fn for_each_kind(
     model: &Model,
     time: f64,
-    (controls, drive, contact): (&Controls, &[[f64; 3]], &ContactForces),
+    (controls, acting): (&Controls, Acting),
     cells: &[KindState],
     kinds: &mut [KindScratch],
     buffers: &ThreadBuffers,
     lent: impl Fn(&mut KindScratch) -> (&mut [f64], &mut [f64]),
 ) {
     for ((kind, now), w) in model.kinds.iter().zip(cells).zip(kinds) {
-        let forces = Forces { kind, cells: now, controls, drive, contact };
+        let forces = Forces { kind, cells: now, controls, acting };
         let (length, lanes) = (kind.block_len(), kind.lanes);
         let (force, energy) = lent(w);
         (now.positions.par_chunks_exact(length).zip(now.rest_volumes.par_chunks_exact(lanes)))
@@ -137,6 +148,18 @@ fn add_drive(kind: &Kind, drive: &[[f64; 3]], f: &mut [f64]) {
             for axis in 0..3 {
                 f[(3 * atom + axis) * kind.lanes + lane] += kind.drag * velocity[axis];
             }
+        }
+    }
+}
+
+/// Adds forces on the atoms of all cells to those of a block; where there are none nothing is added.
+fn add_to_atoms(kind: &Kind, cells: &KindState, block: usize, forces: &[Vec3], f: &mut [f64]) {
+    let Some(forces) = forces.get(cells.atoms(kind)) else { return };
+    for lane in 0..kind.lanes {
+        let cell = (block * kind.lanes + lane).min(cells.cells() - 1);
+        let own = &forces[cell * kind.atoms()..(cell + 1) * kind.atoms()];
+        for (atom, force) in own.iter().enumerate() {
+            (0..3).for_each(|axis| f[(3 * atom + axis) * kind.lanes + lane] += force[axis]);
         }
     }
 }

@@ -115,6 +115,11 @@ impl Kind {
         self.behaviours.iter().any(|behaviour| behaviour.speed().is_some())
     }
 
+    /// Whether its cells have pseudopods.
+    pub fn has_pseudopods(&self) -> bool {
+        self.behaviours.iter().any(|behaviour| matches!(behaviour, Behaviour::Pseudopods(_)))
+    }
+
     /// Whether links set a velocity of its cells.
     pub fn is_biased(&self) -> bool {
         self.behaviours.contains(&Behaviour::Bias)

@@ -22,6 +22,7 @@ pub mod population;
 pub mod population_trouble;
 mod pressure;
 pub mod projection;
+mod protrude;
 mod refresh;
 pub mod seeding;
 mod solver;

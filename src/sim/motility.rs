@@ -18,7 +18,8 @@ pub fn advance_behaviours(model: &Model, dt: f64, from: &State, to: &mut State, 
         }
         for (local, (cell, &id)) in begun.numbers().zip(&begun.ids).enumerate() {
             let (speed, bias) = (controls.speed_of(cell), controls.bias_of(cell));
-            let circumstances = Circumstances { seed: model.seed, cell: id, speed, bias };
+            let circumstances =
+                Circumstances { seed: model.seed, cell: id, speed, bias, pseudopods: controls.told_pseudopods(cell) };
             let mut velocity = Vec3::zeros();
             for (behaviour, states) in kind.behaviours.iter().zip(&mut now.behaviours) {
                 velocity += behaviour.advance(dt, &circumstances, &mut states[local], |duration, offset| {

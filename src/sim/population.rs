@@ -6,6 +6,7 @@ use super::contact::check_added;
 use super::kind::Kind;
 use super::model::{Change, Model, Removal};
 use super::population_trouble::PopulationTrouble;
+use super::protrude::release_rears;
 use super::seeding::seed;
 use super::state::{NewCell, State};
 use super::workspace::Workspace;
@@ -159,6 +160,7 @@ fn check_new(model: &Model, state: &State, number: usize, cells: &[NewCell]) -> 
 /// Counts the cells that there are now, and takes over what contacts carried; `bodies` are the numbers that those before have now.
 fn settle(model: &Model, before: &State, next: &mut State, bodies: &[Option<u32>]) {
     next.number_cells(model);
+    release_rears(model, next);
     if let Some(contact) = &model.contact {
         let [old, new] = [&before.kinds, &next.kinds].map(|cells| contact.scene_of(cells));
         next.contact = before.contact.renumbered(&old, &new, bodies);

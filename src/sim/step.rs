@@ -17,6 +17,7 @@ use super::model::Model;
 use super::motility::advance_behaviours;
 use super::motion::move_freely;
 use super::plan::{Estimate, Flaw, Halt, Plan, StepReport};
+use super::protrude::{find_grips, push_pseudopods, release_rears};
 use super::refresh::fit_stiffness;
 use super::state::State;
 use super::trouble::Trouble;
@@ -70,6 +71,7 @@ fn make_step(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) ->
     keep_contacts(model, from, to, ws);
     measure_velocities(model, plan.dt, from, to);
     advance_chemistry(model, plan.dt, from, to, ws)?;
+    release_rears(model, to);
     advance_clock(model, &plan, to);
     Ok(plan.report())
 }
@@ -81,6 +83,7 @@ fn prepare(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> R
     fit_stiffness(model, from, to, ws);
     locate_contacts(model, from, ws);
     check_depth(model, from, ws)?;
+    find_grips(model, from, ws);
     Ok(Plan::new(model, from, energy_before(model, from, ws)))
 }
 
@@ -89,6 +92,7 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     let (dt, end) = (plan.dt, from.time + plan.dt);
     carry_forces(model, from, ws);
     advance_behaviours(model, dt, from, to, ws);
+    push_pseudopods(model, from, to, ws);
     let error = move_freely(model, dt, from, to, ws);
     check_finite(model, end, to)?;
     plan.check_error(model, error)?;

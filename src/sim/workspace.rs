@@ -11,6 +11,7 @@ use super::projection::ProjectScratch;
 use super::solver::Solver;
 use super::state::State;
 use super::thread_buffers::ThreadBuffers;
+use crate::Vec3;
 use crate::mechanics::modes::Modes;
 use crate::mechanics::stiffness::StiffnessMatrix;
 
@@ -23,6 +24,10 @@ pub struct Workspace {
     pub next: State,
     /// Mean velocity that motility asks of every cell over the step, µm/s.
     pub drive: Vec<[f64; 3]>,
+    /// Forces with which pseudopods push and draw atoms, pN, in the order of cells; none in a model without them.
+    pub pushes: Vec<Vec3>,
+    /// How much each atom grips what its cell touches, pN; none in a model without pseudopods.
+    pub grips: Vec<f64>,
     /// Scratch of chemistry.
     pub chemistry: ChemistryScratch,
     /// Scratch of contacts.
@@ -179,6 +184,8 @@ impl Workspace {
             kinds: model.kinds.iter().map(|_| KindScratch::new()).collect(),
             next: State::default(),
             drive: Vec::new(),
+            pushes: Vec::new(),
+            grips: Vec::new(),
             chemistry: ChemistryScratch::new(model),
             contact: ContactScratch::default(),
             buffers: ThreadBuffers::default(),
@@ -202,6 +209,8 @@ impl Workspace {
         self.buffers.poison();
         self.kinds.iter_mut().for_each(KindScratch::poison);
         self.drive.fill([f64::NAN; 3]);
+        self.pushes.fill(Vec3::repeat(f64::NAN));
+        self.grips.fill(f64::NAN);
         self.next.poison();
     }
 }

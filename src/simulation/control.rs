@@ -20,6 +20,8 @@ impl Simulation {
     /// | `load[NAME]` | factor of a load | 1 |
     /// | `motility.speed` | speed of the Brownian walk | µm/s |
     /// | `motility.bias.x`, `.y`, `.z` | a velocity added to the walk | µm/s |
+    /// | `pseudopods.cue.x`, `.y`, `.z` | what makes directions of new pseudopods likelier | 1 |
+    /// | `pseudopods.protrusion`, `pseudopods.retraction` | how much they push and draw, 0 to 1, in place of their times | 1 |
     /// | `stiffness` | factor of all elastic forces | 1 |
     /// | `adhesion` | factor of the strength with which the cell sticks | 1 |
     /// | `rest_volume`, `rest_volume_ratio` | volume at rest, also over that of the mesh | µm³, 1 |
@@ -79,6 +81,9 @@ impl Simulation {
             Setting::MotilitySpeed if !kind.has_speed() => {
                 lacks("has no Brownian motility", "give it one, or set motility.bias.x")
             }
+            Setting::Pseudopods(_) if !kind.has_pseudopods() => {
+                lacks("has no pseudopods", "add `pseudopods = { … }` to the type")
+            }
             Setting::Adhesion if self.model.contact.is_none() => {
                 lacks("touches nothing in this experiment", "add a [contact] table with a strength")
             }
@@ -91,6 +96,7 @@ impl Simulation {
             ),
             Setting::MotilitySpeed => Ok(Control::MotilitySpeed),
             Setting::Bias(axis) => Ok(Control::Bias(axis)),
+            Setting::Pseudopods(what) => Ok(Control::Pseudopods(what)),
             Setting::Stiffness => Ok(Control::Stiffness),
             Setting::Adhesion => Ok(Control::Adhesion),
             Setting::RestVolume => Ok(Control::RestVolume),

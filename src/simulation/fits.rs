@@ -48,12 +48,13 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
     if !fresh.has_shape_of(&state.chemistry) {
         return mismatch("its systems or fields are others".to_owned());
     }
-    check_controls(model, state.cells(), &state.chemistry.controls)
+    check_controls(model, state, &state.chemistry.controls)
 }
 
 /// A list of controls is empty or has one number a cell, and what is secreted is known.
-fn check_controls(model: &Model, cells: usize, controls: &Controls) -> Result<(), SimulationError> {
-    let Controls { speed, bias, stiffness, adhesion, forces, secretion, secreted } = controls;
+fn check_controls(model: &Model, state: &State, controls: &Controls) -> Result<(), SimulationError> {
+    let Controls { speed, bias, stiffness, adhesion, adhesion_of_atoms, pseudopods, forces, secretion, secreted } =
+        controls;
     let fields = &model.chemistry.fields;
     let is_known = |&(field, species): &(usize, usize)| {
         fields.get(field).is_some_and(|field| species < field.system.species().len())
@@ -61,8 +62,13 @@ fn check_controls(model: &Model, cells: usize, controls: &Controls) -> Result<()
     if !secreted.iter().all(is_known) || secretion.len() != model.chemistry.secreted.len() + secreted.len() {
         return Err(SimulationError::Mismatch("its cells secrete something else".to_owned()));
     }
+    let (cells, atoms) = (state.cells(), state.atoms(model));
+    if ![0, atoms].contains(&adhesion_of_atoms.len()) {
+        let length = adhesion_of_atoms.len();
+        return Err(SimulationError::Mismatch(format!("adhesion is set of {length} atoms, not {atoms}")));
+    }
     let lists = [speed, stiffness, adhesion].into_iter().chain(forces.iter().flatten()).chain(secretion);
-    match lists.map(Vec::len).chain([bias.len()]).find(|length| ![0, cells].contains(length)) {
+    match lists.map(Vec::len).chain([bias.len(), pseudopods.len()]).find(|length| ![0, cells].contains(length)) {
         None => Ok(()),
         Some(length) => Err(SimulationError::Mismatch(format!("something is set of {length} cells, not {cells}"))),
     }

@@ -30,6 +30,7 @@ mesh = { shape = "icosphere", radius = "5 um", level = 1 }
 placement = { grid = [5, 1, 1], spacing = "10.3 um" }
 mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
 motility = { brownian = { speed = "20 um/min", persistence = "3 s" } }
+pseudopods = { pressure = "5 Pa", contraction = "10 pN", pause = "0.2 s", protrusion = "0.5 s", retraction = "0.4 s" }
 chemistry = ["own"]
 [cells.pulled]
 number = 2
@@ -77,12 +78,14 @@ fn driven(threads: usize) -> Simulation {
 }
 
 /// What a test makes a program set of the cells of [`everything`].
-const SET: [(usize, &str, f64); 8] = [
+const SET: [(usize, &str, f64); 10] = [
     (0, "motility.speed", 0.5),
     (1, "adhesion", 0.5),
     (2, "secretion[waste]", 3.0),
     (5, "motility.bias.y", -0.3),
     (5, "fibre[belt]", 0.4),
+    (0, "pseudopods.cue.x", 2.0),
+    (1, "pseudopods.protrusion", 0.4),
     (6, "load[pull]", 2.0),
     (6, "stiffness", 1.5),
     (6, "rest_volume_ratio", 1.05),

@@ -77,6 +77,16 @@ fn shape_memory_stretches_like_a_membrane_after_one_calibrated_number() {
 }
 
 #[test]
+fn four_cells_crawl_up_an_attractant() {
+    experiment_keeps_its_word("chemotaxis", "experiment.toml");
+}
+
+#[test]
+fn a_cell_crawls_by_pseudopods() {
+    experiment_keeps_its_word("motility", "experiment.toml");
+}
+
+#[test]
 fn two_thousand_cells_wander_as_furth_says() {
     experiment_keeps_its_word("random_walk", "experiment.toml");
 }

@@ -21,6 +21,7 @@ mod ordering;
 mod own_stiffness;
 mod own_stiffness_touching;
 mod population;
+mod pseudopods;
 mod soft_cells;
 mod sphere;
 mod stability_limits;

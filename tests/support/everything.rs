@@ -1,4 +1,4 @@
-//! A scene that has everything: two types, contacts that stick by bonds that close and open, walks that turn, a plane, loads, fibres, a field that cells secrete into
+//! A scene that has everything: two types, contacts that stick by bonds that close and open, walks that turn, pseudopods, a plane, loads, fibres, a field that cells secrete into
 //! and climb, systems with events, links both ways, an atom that is put somewhere.
 
 use pseudopod::experiment::{Compiled, Document, compile};
@@ -18,7 +18,7 @@ const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/
     <solver scheme="rk45" rtol="1e-6"/>
     <link from="field[c]" to="system.c"/><link from="field[c].gradient.x" to="system.gx"/>
     <link from="cell.speed" to="system.speed"/><link from="cell.contact_share" to="system.share"/>
-    <link from="system.gx" to="cell.motility.bias.x" gain="0.5"/><link from="system.w" to="cell.secretion[c]" gain="2"/>
+    <link from="system.gx" to="cell.motility.bias.x" gain="0.5"/><link from="system.gx" to="cell.pseudopods.cue.x" gain="20"/><link from="system.w" to="cell.secretion[c]" gain="2"/>
     <link from="system.u" to="cell.stiffness" transfer="1 + 0.2*tanh(value)"/>
     <link from="system.pulses" to="cell.adhesion" transfer="1 + 0.1*sin(value)"/>
     <link from="system.pulses" to="cell.load[push]" transfer="1 + 0.5*sin(value)"/>
@@ -56,6 +56,7 @@ mesh = { shape = "icosphere", radius = "5 um", level = 1 }
 placement = { at = [["0 um", "0 um", "5.02 um"], ["9.9 um", "0 um", "5.02 um"], ["0 um", "9.9 um", "5.02 um"]] }
 mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
 motility = { brownian = { speed = "2 um/min", persistence = "PERSISTENCE" } }
+pseudopods = { pressure = "5 Pa", contraction = "10 pN", pause = "0.1 s", protrusion = "0.4 s", retraction = "0.4 s" }
 loads = [{ name = "push", all = true, direction = [0, 0, -1], force = "4 pN" }]
 fibres = [{ name = "trunk", pairs = [[0, 20]], stiffness = "1 pN/um" }]
 chemistry = ["own", "skin"]

@@ -11,6 +11,7 @@ mod numbers;
 mod overlap;
 mod population;
 mod positions;
+mod pseudopods;
 mod select;
 mod spacing;
 mod start;
@@ -161,6 +162,8 @@ fn compile_kind(document: &Document, name: &str, cell: &CellType, surface: Built
     kind.held = held(document, &key, cell, &kind.rest, faults);
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
     kind.behaviours = cell.motility.behaviours();
+    let pods = pseudopods::pseudopods(document, &key, cell, &kind, faults);
+    kind.behaviours.extend(pods);
     kind
 }
 

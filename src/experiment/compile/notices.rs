@@ -10,7 +10,7 @@ use crate::mechanics::integrator::Method;
 use crate::mechanics::shape_modulus::energy_that_shape_bears;
 use crate::mechanics::sum::stiffness;
 use crate::sim::{Kind, Model};
-use crate::units::{Dimension, pretty};
+use crate::units::{Dimension, Stress, pretty};
 
 /// The widths of cells, µm: from the smallest bacterium to the largest egg of a frog and more.
 const WIDTHS: std::ops::RangeInclusive<f64> = 0.1..=1e4;
@@ -30,6 +30,7 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
     let Prepared { model, centres, .. } = prepared;
     let mut notices: Vec<String> = model.kinds.iter().filter_map(|kind| unusual_width(document, kind)).collect();
     notices.extend(model.kinds.iter().filter_map(|kind| unordered_skin(document, kind)));
+    notices.extend(model.kinds.iter().filter_map(|kind| pushes_off_nothing(document, kind)));
     if model.contact.is_some() {
         notices.extend(model.kinds.iter().filter_map(soft_walkers));
         notices.extend((0..model.kinds.len()).filter_map(|kind| spreading_shape(model, kind)));
@@ -43,6 +44,23 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
         notices.push(words.to_owned());
     }
     notices
+}
+
+/// That the pseudopods of a kind have nothing that resists sliding to push off from.
+fn pushes_off_nothing(document: &Document, kind: &Kind) -> Option<String> {
+    let grips = document.experiment.contact.as_ref().is_some_and(|contact| {
+        let resists =
+            |shear: Option<Stress>, strength: Option<Stress>| shear.or(strength).is_some_and(|it| it.value() > 0.0);
+        let between = contact.between.iter().any(|pair| resists(pair.shear_strength, pair.strength));
+        between || resists(contact.shear_strength, contact.strength) || contact.energy.is_some()
+    });
+    (kind.has_pseudopods() && !grips).then(|| {
+        let name = &kind.name;
+        format!(
+            "pseudopods of `{name}` push off nothing: a cell pushes forward what it grips backward, and stays where it is \
+             without a grip; give [contact] a `strength` and something to touch"
+        )
+    })
 }
 
 /// That cells of a kind are not of the size of cells: mostly a unit that was meant and not written.

@@ -1,6 +1,6 @@
 //! Chooses how the run steps and when it records.
 
-use super::super::{Document, Method as Text};
+use super::super::{Document, Method as Text, Pseudopods};
 use super::Schedule;
 use crate::error::{Error, Fault, Result, short};
 use crate::mechanics::integrator::{Integrator, Method, Order, StepSize};
@@ -26,8 +26,11 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
         Text::RungeKutta4 => Method::RungeKutta4,
     };
     let until = document.experiment.run.until.value();
+    let pods = document.experiment.cells.values().filter_map(|cell| cell.pseudopods.as_ref());
+    let cycle = pods.map(Pseudopods::shortest_cycle).fold(f64::INFINITY, f64::min);
+    let longest = text.max_step.map_or((HUNDREDTH * until).min(cycle), |step| step.value());
     if let Method::Implicit { order } = method {
-        let largest = text.max_step.map_or(HUNDREDTH * until, |step| step.value());
+        let largest = longest;
         let size = match (text.step, order) {
             (Some(step), _) => StepSize::Fixed(step.value()),
             (None, Order::Second) => StepSize::Adaptive { tolerance: text.tolerance, largest },
@@ -50,7 +53,7 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
         }
     }
     let Some(step) = text.step.map(|step| step.value()) else {
-        let largest = text.max_step.map_or(HUNDREDTH * until, |step| step.value()).min(SAFETY * limit.0);
+        let largest = longest.min(SAFETY * limit.0);
         // How far an atom may travel in a step is for contacts to say, and they say it within the run.
         let size = match document.experiment.contact {
             Some(_) => StepSize::Adaptive { tolerance: text.tolerance, largest },

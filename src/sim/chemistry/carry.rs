@@ -10,6 +10,7 @@ use super::links::{Control, Observation, Owner, Target};
 use super::measure::measure_cells;
 use super::observe::{observe, read_cell};
 use super::scratch::ChemistryScratch;
+use crate::cell::ends::PodSetting;
 use crate::equations::eml::LinkDescription;
 use crate::field::Sensed;
 use crate::mechanics::CONTROLLED;
@@ -139,6 +140,11 @@ pub fn missed(target: Target, value: f64) -> Option<&'static str> {
         Target::Cell(_, Control::MotilitySpeed | Control::Stiffness | Control::Adhesion) if value < 0.0 => {
             Some("a number not below 0")
         }
+        Target::Cell(_, Control::Pseudopods(PodSetting::Protrusion | PodSetting::Retraction))
+            if !(0.0..=1.0).contains(&value) =>
+        {
+            Some("a number from 0 to 1")
+        }
         Target::Cell(_, Control::Force(handle, _)) if !CONTROLLED[handle].allows(value) => {
             Some(CONTROLLED[handle].expected)
         }
@@ -153,6 +159,9 @@ pub fn set_control(model: &Model, cell: usize, control: Control, value: f64, sta
     match control {
         Control::MotilitySpeed => controls.speed[cell] = value,
         Control::Bias(axis) => controls.bias[cell][axis] = value,
+        Control::Pseudopods(PodSetting::Cue(axis)) => controls.pseudopods[cell].cue[axis] = value,
+        Control::Pseudopods(PodSetting::Protrusion) => controls.pseudopods[cell].protrusion = value,
+        Control::Pseudopods(PodSetting::Retraction) => controls.pseudopods[cell].retraction = value,
         Control::Stiffness => controls.stiffness[cell] = value,
         Control::Adhesion => controls.adhesion[cell] = value,
         Control::Force(handle, number) => controls.forces[handle][number][cell] = value,

@@ -1,6 +1,6 @@
 //! Links and what they read and set, as the Model holds them.
 
-use crate::cell::ends::{Reading, Sense};
+use crate::cell::ends::{PodSetting, Reading, Sense};
 use crate::equations::tree::{Expr, QuantityId};
 
 /// A link: a number goes from one end through the transfer to the other at each exchange.
@@ -184,6 +184,8 @@ pub enum Control {
     MotilitySpeed,
     /// A component of the velocity added to the walk, µm/s.
     Bias(usize),
+    /// What pseudopods are told.
+    Pseudopods(PodSetting),
     /// Factor of elastic forces.
     Stiffness,
     /// Factor of the strength of contacts.

@@ -3,6 +3,7 @@
 use super::super::controls::Controls;
 use super::model::{Chemistry, Members};
 use super::state::ChemistryState;
+use crate::cell::pseudopods::Told;
 use crate::mechanics::CONTROLLED;
 
 impl ChemistryState {
@@ -63,6 +64,9 @@ impl Controls {
         if !self.bias.is_empty() {
             self.bias.insert(at, [0.0; 3]);
         }
+        if !self.pseudopods.is_empty() {
+            self.pseudopods.insert(at, Told::NOTHING);
+        }
         for (lists, handle) in self.forces.iter_mut().zip(CONTROLLED) {
             lists.iter_mut().for_each(|list| list.insert(at, handle.unset));
         }
@@ -74,6 +78,7 @@ impl Controls {
         let many = self.forces.iter_mut().flatten().chain(&mut self.secretion);
         single.into_iter().chain(many).for_each(|list| retain(list, stays));
         retain(&mut self.bias, stays);
+        retain(&mut self.pseudopods, stays);
     }
 }
 

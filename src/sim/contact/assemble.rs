@@ -125,6 +125,10 @@ impl Written<'_> {
             let area = area / contacts_on_body(scene, found, number) as f64;
             let area = SHARE * area;
             let area = area * controls.adhesion_of(body) * controls.adhesion_of(other);
+            let [v, w] = contact.second_weights.map(f64::from);
+            let area = area
+                * controls.adhesion_of_atom(contact.atom)
+                * controls.adhesion_between([i, j, k], [1.0 - v - w, v, w]);
             let row = row(
                 Pairing::AtomOnFacet,
                 [contact.atom, i, j, k],
@@ -192,7 +196,7 @@ impl Written<'_> {
                 Some(_) => area_between(facing, contact.atom, Faced::Plane(contact.plane)),
                 None => model.areas[kind][(contact.atom - scene.bodies[body].first_atom) as usize],
             };
-            let area = area * controls.adhesion_of(body);
+            let area = area * controls.adhesion_of(body) * controls.adhesion_of_atom(contact.atom);
             let (force, stored) = same.map_or(([0.0; 3], 0.0), |bond| (bond.force, bond.stored));
             let row = row(
                 Pairing::AtomOnPlane,

@@ -32,7 +32,7 @@ pub fn write_rubbing(
         if friction == 0.0 {
             continue;
         }
-        let own = friction * this.area * controls.adhesion_of(body as usize);
+        let own = friction * this.area * controls.adhesion_of(body as usize) * controls.adhesion_of_atom(this.atom);
         let (atoms, coordinates, normal, pairing, friction) = match this.other {
             Faced::Body(other) => {
                 let corners = gather_corners(positions, this.facet);
@@ -40,7 +40,9 @@ pub fn write_rubbing(
                 let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).try_normalize(0.0);
                 let Some(normal) = normal else { continue };
                 let [i, j, k] = this.facet;
-                let friction = SHARE * own * controls.adhesion_of(other as usize);
+                let of_other = controls.adhesion_of(other as usize)
+                    * controls.adhesion_between([i, j, k], [1.0 - v - w, v, w].map(f64::from));
+                let friction = SHARE * own * of_other;
                 ([this.atom, i, j, k], [v, w], normal, Pairing::AtomOnFacet, friction)
             }
             Faced::Plane(plane) => {

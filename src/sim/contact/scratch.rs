@@ -102,7 +102,7 @@ impl ContactScratch {
     }
 
     /// Where the row of a contact stands, by the number of that contact.
-    pub(super) fn row_of(&self, number: usize) -> usize {
+    pub(in crate::sim) fn row_of(&self, number: usize) -> usize {
         if self.is_in_turns { self.mobility.turns.of_row(number) } else { number }
     }
 

@@ -64,14 +64,16 @@ fn relieve(model: &ContactScene, found: &Contacts, controls: &Controls, relief: 
         let (body, other) = (body_of(contact.atom), contact.body(scene) as usize);
         if body != other {
             let strength = model.strength_between(body, other);
-            let energy = SHARE * strength.energy * controls.adhesion_of(body) * controls.adhesion_of(other);
+            let of_atom = controls.adhesion_of_atom(contact.atom);
+            let energy = SHARE * strength.energy * of_atom * controls.adhesion_of(body) * controls.adhesion_of(other);
             let relief = &mut relief[contact.atom as usize];
             *relief = relief.max(energy);
         }
     }
     for contact in &found.planes {
         let body = body_of(contact.atom);
-        let energy = model.strength_on(body, contact.plane).energy * controls.adhesion_of(body);
+        let of_atom = controls.adhesion_of_atom(contact.atom);
+        let energy = model.strength_on(body, contact.plane).energy * of_atom * controls.adhesion_of(body);
         let relief = &mut relief[contact.atom as usize];
         *relief = relief.max(energy);
     }

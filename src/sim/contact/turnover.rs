@@ -101,5 +101,5 @@ fn bonds_around(contact: &ContactScene, controls: &Controls, this: &Facing) -> f
         Faced::Body(other) => SHARE * controls.adhesion_of(other as usize),
         Faced::Plane(_) => 1.0,
     };
-    density * this.area * controls.adhesion_of(body as usize) * of_other
+    density * this.area * controls.adhesion_of(body as usize) * controls.adhesion_of_atom(this.atom) * of_other
 }

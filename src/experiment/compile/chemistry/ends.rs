@@ -136,6 +136,7 @@ impl Ends<'_, '_> {
         let control = match setting {
             Setting::MotilitySpeed => Control::MotilitySpeed,
             Setting::Bias(axis) => Control::Bias(axis),
+            Setting::Pseudopods(what) => Control::Pseudopods(what),
             Setting::Stiffness => Control::Stiffness,
             Setting::Adhesion => Control::Adhesion,
             Setting::RestVolume => Control::RestVolume,
@@ -163,6 +164,9 @@ impl Ends<'_, '_> {
             let (lacking, help) = match setting {
                 Setting::MotilitySpeed if !kind.has_speed() => {
                     ("has no Brownian motility", "add `motility = { brownian = … }`, or set motility.bias")
+                }
+                Setting::Pseudopods(_) if !kind.has_pseudopods() => {
+                    ("has no pseudopods", "add `pseudopods = { … }` to the type")
                 }
                 Setting::Adhesion if !self.touching => {
                     ("touches nothing in this experiment", "add a [contact] table with a strength")

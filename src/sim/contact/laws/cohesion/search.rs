@@ -112,12 +112,22 @@ impl Seen<'_> {
                 for (number, weights) in points.iter().enumerate() {
                     if let Some(most) = self.strongest(body, (at(weights), n), (around, number), &mut first) {
                         let Attracted { strength, range, partner: other } = most;
+                        let strength = strength * self.adhesion_of(own, weights, other);
                         let spot = Spot { facet, point: (side * points.len() + number) as u32 };
                         found(spot, Patch { own, other, weights, share, strength: share * strength, range });
                     }
                 }
             }
         }
+    }
+
+    /// Factor of the strength between a point of a facet and what attracts it.
+    fn adhesion_of(&self, own: [u32; 3], weights: &[f64; 3], other: Partner) -> f64 {
+        let of_other = match other {
+            Partner::Facet(atoms, _) => self.controls.adhesion_between(atoms, [1.0 / 3.0; 3]),
+            Partner::Plane(_) => 1.0,
+        };
+        self.controls.adhesion_between(own, *weights) * of_other
     }
 
     /// Finds what of the facets near one of a body may attract a point of it, be it from behind where it `has_two` sides.

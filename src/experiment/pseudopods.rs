@@ -1,0 +1,118 @@
+//! Pseudopods: what documents say of them, and what it means.
+
+use crate::cell::Behaviour;
+use crate::cell::motility::Space;
+use crate::cell::pseudopods::{self as cell, Cycle, Turning};
+use crate::units::{Angle, Force, Stress, Time};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Pseudopods: the cell waits, pushes its surface out towards one side, and draws itself after while its rear lets go.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pseudopods {
+    /// Pressure on the surface at the axis of a pseudopod, outward.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub pressure: Stress,
+    /// Half the opening of the cone, seen from the middle of the cell, in which the surface is pushed; the pressure falls to 0 at its border.
+    #[serde(default = "default_half_angle")]
+    pub half_angle: Angle,
+    /// Tension with which front and rear are drawn together while the pseudopod retracts.
+    #[serde(default)]
+    #[schemars(extend("x-minimum" = 0))]
+    pub contraction: Force,
+    /// What of its adhesion the rear lets go meanwhile.
+    #[serde(default = "default_release")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub release: f64,
+    /// Mean time before the surface is pushed out again.
+    #[schemars(extend("x-minimum" = 0))]
+    pub pause: Time,
+    /// Mean time for which it is pushed.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub protrusion: Time,
+    /// Mean time for which front and rear are drawn together.
+    #[schemars(extend("x-minimum" = 0))]
+    pub retraction: Time,
+    /// How far these times vary, over their mean, both ways.
+    #[serde(default = "default_variation")]
+    #[schemars(range(min = 0.0, max = 0.9))]
+    pub variation: f64,
+    /// Share of pseudopods that split off from the last; the others start anew in any direction.
+    #[serde(default = "default_split")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub split: f64,
+    /// Angle between a pseudopod that splits off and the last.
+    #[serde(default = "default_angle")]
+    pub angle: Angle,
+    /// Standard deviation of that angle.
+    #[serde(default = "default_spread")]
+    pub spread: Angle,
+    /// Share of those that go to the other side than the last did.
+    #[serde(default = "default_alternation")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub alternation: f64,
+    /// Whether pseudopods lie in the plane of the substrate or anywhere in space.
+    #[serde(default)]
+    pub space: Space,
+}
+
+fn degrees(degrees: f64) -> Angle {
+    Angle::new(degrees.to_radians())
+}
+
+fn default_half_angle() -> Angle {
+    degrees(45.0)
+}
+
+const fn default_release() -> f64 {
+    1.0
+}
+
+const fn default_variation() -> f64 {
+    0.5
+}
+
+/// Of those that start off the last one, and how often they alternate: Bosgraaf and van Haastert 2009.
+const fn default_split() -> f64 {
+    0.7
+}
+
+fn default_angle() -> Angle {
+    degrees(60.0)
+}
+
+fn default_spread() -> Angle {
+    degrees(15.0)
+}
+
+const fn default_alternation() -> f64 {
+    0.75
+}
+
+impl Pseudopods {
+    /// The shortest that a cycle may be, s.
+    pub(super) fn shortest_cycle(&self) -> f64 {
+        let whole: f64 = [self.pause, self.protrusion, self.retraction].iter().map(|time| time.value()).sum();
+        (1.0 - self.variation) * whole
+    }
+
+    /// What cells do by themselves.
+    pub(super) fn behaviour(&self) -> Behaviour {
+        let times = [self.pause, self.protrusion, self.retraction];
+        Behaviour::Pseudopods(cell::Pseudopods {
+            pressure: self.pressure.value(),
+            least_cosine: self.half_angle.value().cos(),
+            contraction: self.contraction.value(),
+            release: self.release,
+            cycle: Cycle { means: times.map(|time| time.value()), variation: self.variation },
+            turning: Turning {
+                split: self.split,
+                angle: self.angle.value(),
+                spread: self.spread.value(),
+                alternation: self.alternation,
+                space: self.space,
+            },
+        })
+    }
+}

@@ -1,0 +1,58 @@
+//! What must hold of pseudopods beside other keys: a surface to push, contacts that grip, steps that no cycle fits into.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::Check;
+use crate::experiment::contact::ContactModel;
+use crate::experiment::{CellType, Pseudopods};
+
+impl Check<'_> {
+    pub(super) fn pseudopods(&mut self, path: &str, cell: &CellType) {
+        let Some(pods) = &cell.pseudopods else { return };
+        let path = format!("{path}.pseudopods");
+        if cell.mesh.is_open() {
+            let message = format!("`{path}` needs a closed mesh; a sheet or a triangle has no inside that pushes out");
+            self.fault(&path, "nothing to push from", message, "give a closed mesh, or remove the pseudopods");
+        }
+        let model = self.document.experiment.contact.as_ref().map(|contact| contact.model);
+        if let Some(ContactModel::Links | ContactModel::VirtualAdhesives | ContactModel::Penalty) = model {
+            let message =
+                format!("`{path}` needs contacts that say how much a cell grips, and `contact.model` has none");
+            self.fault("contact.model", "not with pseudopods", message, "take the model \"cohesion\" or \"adhesives\"");
+        }
+        self.angles_of_pseudopods(&path, pods);
+        self.steps_in_cycles(&path, pods);
+    }
+
+    fn angles_of_pseudopods(&mut self, path: &str, pods: &Pseudopods) {
+        for (key, angle, most, help) in [
+            ("half_angle", pods.half_angle, FRAC_PI_2, "give an angle above 0 deg, up to 90 deg"),
+            ("angle", pods.angle, PI, "give an angle above 0 deg, up to 180 deg"),
+        ] {
+            let path = format!("{path}.{key}");
+            // Written in degrees, the largest may be larger by round-off.
+            if !(angle.value() > 0.0 && angle.value() <= most * (1.0 + 1e-9)) {
+                self.fault(&path, "out of range", format!("`{path}` is no such angle"), help);
+            }
+        }
+        if pods.spread.value() < 0.0 {
+            let path = format!("{path}.spread");
+            self.fault(&path, "must not be below 0", format!("`{path}` is no deviation"), "give 0 deg or more");
+        }
+    }
+
+    /// Of a step that holds several pseudopods no one would be seen.
+    fn steps_in_cycles(&mut self, path: &str, pods: &Pseudopods) {
+        let integrator = &self.document.experiment.run.integrator;
+        let steps = [("step", integrator.step), ("max_step", integrator.max_step)];
+        for (key, step) in steps.into_iter().filter_map(|(key, step)| Some((key, step?))) {
+            if step.value() > pods.shortest_cycle() {
+                let at = format!("run.integrator.{key}");
+                let message =
+                    format!("`{at}` is longer than the shortest cycle of `{path}`, {:.3} s", pods.shortest_cycle());
+                let help = "let steps be shorter, or its times longer";
+                self.fault(&at, "longer than a cycle", message, help);
+            }
+        }
+    }
+}
