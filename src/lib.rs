@@ -21,6 +21,7 @@ pub mod experiment;
 pub mod field;
 pub mod geometry;
 pub mod mechanics;
+pub mod membrane;
 pub mod ode;
 pub mod output;
 #[cfg(feature = "pictures")]

@@ -34,6 +34,7 @@ pub fn read(source: Arc<Source>) -> Result<Read> {
         system: model.system.clone(),
         grid: None,
         fields: Vec::new(),
+        membrane: None,
         links: Vec::new(),
         solver: eml::SolverChoice::default(),
     };

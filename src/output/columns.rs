@@ -10,6 +10,7 @@ use super::cell_column::{CellColumn, CellSource};
 use super::column::{Column, Number, Numbers, PackedColumn, Plan, SMALL_ROWS, push_frames};
 use super::container::set_number;
 use super::fields::{FieldColumns, field_view_path};
+use super::membranes::ORDER;
 use super::pieces::{Pieces, has_frames};
 use super::population::{Population, Shared};
 use super::systems::{SystemScope, create_groups};
@@ -52,6 +53,8 @@ pub(super) struct Columns {
     population: Option<Population>,
     populations: usize,
     atom_vectors: Vec<(AtomVectors, PackedColumn)>,
+    /// Substances on membranes, in the order of the layout.
+    membranes: Vec<PackedColumn>,
     cells: Vec<(CellSource, CellColumn)>,
     blocks: Vec<(Shared, PackedColumn)>,
     /// Where the blocks of the last population begin.
@@ -127,6 +130,7 @@ impl Columns {
             set_number(&dataset, "order", order)?;
         }
         self.add_systems(file, start)?;
+        self.add_membranes(file, start)?;
         self.are_made = true;
         Ok(())
     }
@@ -217,6 +221,25 @@ impl Columns {
         Ok(())
     }
 
+    /// The datasets of substances on membranes; a frame begins where its positions do.
+    fn add_membranes(&mut self, file: &File, start: Start) -> hdf5::Result<()> {
+        for (order, membrane) in self.layout.membranes.iter().enumerate() {
+            let (path, description) = (membrane.path(), format!("Density of {} at the atoms.", membrane.name));
+            let plan = Plan { path: &path, number: Number::Float, unit: &membrane.unit, description: &description };
+            let column = match start {
+                Start::New(pieces) => PackedColumn::create(file, &plan, &[], pieces.atoms)?,
+                Start::Cut(ends) => PackedColumn::reopen(file, &path, Number::Float, &[], ends.atoms)?,
+            };
+            if let Start::New(_) = start {
+                let dataset = file.dataset(&path)?;
+                set_number(&dataset, ORDER, order as i64)?;
+            }
+            self.membranes.push(column);
+            link(file, "/VTKHDF/Steps/PointOffsets", &membrane.offsets())?;
+        }
+        Ok(())
+    }
+
     fn add_forces(&mut self, file: &File, start: Start) -> hdf5::Result<()> {
         self.forces = true;
         FORCE.iter().try_for_each(|entry| self.add(file, entry, start))
@@ -293,6 +316,9 @@ impl Columns {
         let atoms = self.atom_vectors.iter_mut();
         let mut large: Vec<(&mut PackedColumn, Numbers)> =
             atoms.map(|(value, column)| (column, Numbers::Floats(Cow::from(value(frame).as_flattened())))).collect();
+        for (values, column) in frame.membranes.iter().zip(&mut self.membranes) {
+            large.push((column, Numbers::Floats(Cow::from(values))));
+        }
         for (source, column) in &mut self.cells {
             if let CellColumn::Many(column) = column {
                 large.push((column, source.values(frame)));
@@ -338,6 +364,11 @@ impl Columns {
         let expected = (atoms, if self.forces { atoms } else { 0 }, cells, self.layout.scene_series.len());
         let found = (frame.positions.len(), frame.forces.len(), frame.records.len(), frame.scene.len());
         assert_eq!(found, expected, "positions, forces, cells and scene values of a frame must fit the layout");
+        let sizes = frame.membranes.iter().map(Vec::len);
+        assert!(
+            sizes.eq(self.layout.membranes.iter().map(|_| atoms)),
+            "substances on membranes of a frame must fit the layout"
+        );
         assert_eq!(frame.systems.len(), self.layout.systems.len(), "the systems of a frame must fit the layout");
         for (system, quantities) in self.layout.systems.iter().zip(&frame.systems) {
             let members = if system.scope == SystemScope::Scene { 1 } else { cells };
@@ -371,6 +402,9 @@ impl Columns {
         self.forgotten = self.frames + self.pieces;
         for (value, column) in std::mem::take(&mut self.atom_vectors) {
             self.atom_vectors.push((value, column.renewed(file)?));
+        }
+        for column in std::mem::take(&mut self.membranes) {
+            self.membranes.push(column.renewed(file)?);
         }
         for (source, column) in std::mem::take(&mut self.cells) {
             self.cells.push((source, column.renewed(file)?));

@@ -43,6 +43,7 @@ pub(super) fn check_layout(layout: &Layout) -> Result<()> {
     }
     let mut lists: Vec<(&str, Vec<&str>)> = vec![
         ("field", layout.fields.iter().map(|field| field.name.as_str()).collect()),
+        ("membrane", layout.membranes.iter().map(|membrane| membrane.name.as_str()).collect()),
         ("system", layout.systems.iter().map(|system| system.name.as_str()).collect()),
     ];
     lists.extend(layout.fields.iter().map(|field| ("species", field.species.iter().map(|s| s.0.as_str()).collect())));

@@ -51,6 +51,10 @@ pub fn describe(result: &ResultFile) -> Result<String> {
         };
         line("chemistry", format!("{} of {whose}: {}", system.name, described(&system.quantities)));
     }
+    if !layout.membranes.is_empty() {
+        let named: Vec<(String, String)> = layout.membranes.iter().map(|m| (m.name.clone(), m.unit.clone())).collect();
+        line("membranes", described(&named));
+    }
     line(
         "frames",
         format!(
@@ -124,6 +128,7 @@ pub fn to_json(result: &ResultFile) -> Result<Value> {
         "links": population.count(Part::Links),
         "fields": layout.fields.iter().map(field_json).collect::<Vec<_>>(),
         "chemistry": systems,
+        "membranes": layout.membranes.iter().map(|m| json!({ "name": m.name, "unit": m.unit })).collect::<Vec<_>>(),
         "planes": layout.planes.iter().map(|plane| &plane.0).collect::<Vec<_>>(),
         "frames": result.frames(),
         "time": { "first": times[0], "last": times[times.len() - 1], "unit": "s" },

@@ -126,6 +126,7 @@ pub(super) fn read_layout(file: &File) -> hdf5::Result<Layout> {
         planes: names.into_iter().zip(points.into_iter().zip(normals)).map(|(name, (p, n))| (name, p, n)).collect(),
         fields: super::fields::read_layouts(file)?,
         systems: super::systems::read_layouts(file)?,
+        membranes: super::membranes::read_layouts(file)?,
         contacts: file.link_exists("contacts"),
     })
 }

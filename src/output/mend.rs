@@ -92,6 +92,9 @@ fn growing(file: &File, folder: &str) -> hdf5::Result<Vec<String>> {
 }
 
 fn is_second_name(path: &str) -> bool {
+    if super::membranes::is_offsets(path) {
+        return true;
+    }
     let mut entries = CATALOGUE.iter().chain(CONTACT).chain(FORCE);
     entries.any(|entry| entry.path == path && matches!(entry.filled, Filled::Link(_)))
 }

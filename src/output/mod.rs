@@ -28,6 +28,7 @@ mod info;
 mod instant;
 mod layout_io;
 mod mark;
+mod membranes;
 mod mend;
 mod packing;
 mod pieces;
@@ -49,6 +50,7 @@ pub use fields::field_view_path;
 pub use header::{Header, Measure};
 pub use info::{describe, to_json};
 pub use instant::{SeriesInfo, SeriesScope};
+pub use membranes::MembraneLayout;
 pub use population::{Part, Population, Shared};
 pub use reader::{Ending, ResultFile};
 pub use systems::{SystemLayout, SystemScope};
@@ -68,6 +70,8 @@ pub struct Layout {
     pub fields: Vec<FieldLayout>,
     /// The systems of chemistry inside cells, and those of the scene.
     pub systems: Vec<SystemLayout>,
+    /// Substances on the membranes of cells.
+    pub membranes: Vec<MembraneLayout>,
     /// Whether the cells can touch, so that who touches whom is recorded.
     pub contacts: bool,
 }
@@ -83,6 +87,8 @@ pub struct Frame {
     pub cells: Vec<Cell>,
     /// Positions of all atoms, µm, cell after cell.
     pub positions: Vec<[f64; 3]>,
+    /// Densities of the substances of the layout, one number for each atom, NaN on cells without the system.
+    pub membranes: Vec<Vec<f64>>,
     /// Elastic and applied force on every atom, pN.
     pub forces: Vec<[f64; 3]>,
     /// What is recorded of each cell.

@@ -142,6 +142,26 @@ impl ResultFile {
         self.atom_vectors(path, frame).map(Some)
     }
 
+    /// Density of a substance on membranes, `SYSTEM.VARIABLE`, at all atoms in a frame: NaN on cells without the system; `None` if the
+    /// run recorded no such substance.
+    ///
+    /// # Errors
+    /// A damaged file.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    pub fn membrane(&self, name: &str, frame: usize) -> Result<Option<Vec<f64>>> {
+        assert!(frame < self.frames, "frame {frame} of {}", self.frames);
+        let Some(membrane) = self.layout.membranes.iter().find(|membrane| membrane.name == name) else {
+            return Ok(None);
+        };
+        let rows = self.census.atoms(frame);
+        if rows.is_empty() {
+            return Ok(Some(Vec::new()));
+        }
+        Ok(Some(self.read(&membrane.path(), |dataset| dataset.read_slice_1d::<f64, _>(rows))?.to_vec()))
+    }
+
     fn atom_vectors(&self, path: &str, frame: usize) -> Result<Vec<[f64; 3]>> {
         assert!(frame < self.frames, "frame {frame} of {}", self.frames);
         let rows = self.census.atoms(frame);

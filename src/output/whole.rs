@@ -198,6 +198,9 @@ impl Datasets {
         for (path, _) in of_cells {
             found.cells.push(file.dataset(path)?);
         }
+        for membrane in &layout.membranes {
+            found.atoms.push(file.dataset(&membrane.path())?);
+        }
         for system in &layout.systems {
             for (quantity, _) in &system.quantities {
                 let dataset = file.dataset(&system.path(quantity))?;

@@ -29,6 +29,7 @@ struct Shot {
 enum Shown {
     Type,
     Atoms(AtomQuantity),
+    Membrane(String),
     Cells(String),
 }
 
@@ -52,6 +53,10 @@ fn shown_of(result: &ResultFile, name: &str) -> Result<Shown> {
     if result.series_names().iter().any(|known| known == name) {
         return Ok(Shown::Cells(name.to_owned()));
     }
+    let membranes = &result.layout().membranes;
+    if membranes.iter().any(|membrane| membrane.name == name) {
+        return Ok(Shown::Membrane(name.to_owned()));
+    }
     match AtomQuantity::named(name) {
         Some(quantity) if quantity.is_in(result)? => Ok(Shown::Atoms(quantity)),
         Some(_) => {
@@ -65,6 +70,7 @@ fn shown_of(result: &ResultFile, name: &str) -> Result<Shown> {
                     names.push(quantity.to_owned());
                 }
             }
+            names.extend(membranes.iter().map(|membrane| membrane.name.clone()));
             names.extend(result.series_names());
             let fault = Fault::new(format!("nothing in {} is called `{name}`", result.path().display()));
             let near = names.iter().map(|other| (strsim::damerau_levenshtein(name, other), other)).min();
@@ -112,6 +118,9 @@ impl<'a> Stage<'a> {
         let values = match &self.shown {
             Shown::Type => Vec::new(),
             Shown::Atoms(quantity) => quantity.of_frame(self.result, frame, &positions)?,
+            Shown::Membrane(name) => {
+                self.result.membrane(name, frame)?.unwrap_or_else(|| vec![f64::NAN; positions.len()])
+            }
             Shown::Cells(name) => self.result.cell_values(name, frame)?,
         };
         let time = self.times[frame];
@@ -123,7 +132,7 @@ impl<'a> Stage<'a> {
     fn snapshot<'b>(&'b self, shot: &'b Shot) -> Snapshot<'b> {
         let values = match self.shown {
             Shown::Type => Values::Type,
-            Shown::Atoms(_) => Values::Atoms(&shot.values),
+            Shown::Atoms(_) | Shown::Membrane(_) => Values::Atoms(&shot.values),
             Shown::Cells(_) => Values::Cells(&shot.values),
         };
         let layout = self.result.layout();
@@ -146,6 +155,11 @@ fn look_of(result: &ResultFile, document: &Document, picture: &Picture, shown: &
     let label = match shown {
         Shown::Type => String::new(),
         Shown::Atoms(quantity) => quantity.label().to_owned(),
+        Shown::Membrane(name) => {
+            let unit =
+                result.layout().membranes.iter().find(|membrane| membrane.name == *name).map(|m| m.unit.as_str());
+            unit.filter(|unit| !unit.is_empty()).map_or(name.clone(), |unit| format!("{name} ({unit})"))
+        }
         Shown::Cells(name) => plots::label_of(result, name),
     };
     Look {

@@ -1,6 +1,7 @@
 //! Cells come and go between steps. Each change is a transaction: it is made in a copy of the state, which becomes the state when all
 //! is good.
 
+use super::chemistry::begin_membranes;
 use super::contact::check_added;
 use super::kind::Kind;
 use super::model::{Change, Model, Removal};
@@ -38,6 +39,8 @@ pub fn add_cells(
     next.next_id += cells.len() as u64;
     settle(model, state, &mut next, &bodies);
     check_added(model, &next, kind, cells.len())?;
+    ws.chemistry.suit(model, &next);
+    begin_membranes(model, &mut next, &mut ws.chemistry.membranes);
     commit(state, next, ws);
     Ok(ids)
 }

@@ -60,6 +60,9 @@ fn add_chemistry(hash: &mut Fnv, chemistry: &Chemistry) {
     for reactor in &chemistry.reactors {
         hash.value(&(&reactor.name, &reactor.program, &reactor.events, &reactor.members));
         hash.value(&(reactor.seconds, reactor.method, reactor.tolerances, reactor.exchange));
+        if let Some(membrane) = &reactor.membrane {
+            hash.value(&membrane.system);
+        }
     }
     for field in &chemistry.fields {
         hash.value(&(&field.name, field.system.equations(), field.system.grid(), field.system.species()));

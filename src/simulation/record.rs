@@ -1,7 +1,9 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
 use super::touch::Touch;
-use crate::output::{Cell, CellRecord, CellType, FieldLayout, Frame, Layout, SystemLayout, SystemScope};
+use crate::output::{
+    Cell, CellRecord, CellType, FieldLayout, Frame, Layout, MembraneLayout, SystemLayout, SystemScope,
+};
 use crate::recorded::contact_quantities;
 use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::find_contacts;
@@ -47,6 +49,10 @@ fn add_chemistry(model: &Model, layout: &mut Layout) {
         });
     }
     for reactor in &model.chemistry.reactors {
+        for (id, unit) in reactor.membrane.iter().flat_map(|membrane| &membrane.system.names) {
+            let name = format!("{}.{id}", reactor.name);
+            layout.membranes.push(MembraneLayout { name, unit: unit.clone() });
+        }
         layout.systems.push(SystemLayout {
             name: reactor.name.clone(),
             scope: match &reactor.members {
@@ -81,6 +87,22 @@ fn record_chemistry(model: &Model, state: &State, frame: &mut Frame) {
         });
         let values = values.collect();
         frame.systems.push(values);
+    }
+}
+
+/// Densities of all substances on membranes at this instant, atom after atom in the order of all cells.
+fn record_membranes(model: &Model, state: &State, frame: &mut Frame) {
+    for (reactor, surfaces) in model.chemistry.reactors.iter().zip(&state.chemistry.membranes) {
+        let (Some(membrane), Members::Kinds(own)) = (&reactor.membrane, &reactor.members) else { continue };
+        for variable in 0..membrane.system.variables() {
+            let mut values = vec![f64::NAN; frame.positions.len()];
+            for (&kind, cells) in own.iter().zip(&surfaces.kinds) {
+                let atoms = state.kinds[kind].atoms(&model.kinds[kind]);
+                let densities = (0..cells.cells()).flat_map(|cell| cells.values(cell, variable));
+                values[atoms].iter_mut().zip(densities).for_each(|(to, value)| *to = value);
+            }
+            frame.membranes.push(values);
+        }
     }
 }
 
@@ -181,5 +203,6 @@ fn frame_of(model: &Model, state: &State) -> Frame {
         });
     }
     record_chemistry(model, state, &mut frame);
+    record_membranes(model, state, &mut frame);
     frame
 }

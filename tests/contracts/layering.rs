@@ -17,16 +17,29 @@ const TABLE: &[(&str, &[&str])] = &[
     ("equations", &["xml"]),
     ("ode", &["equations"]),
     ("field", &["equations", "ode"]),
+    ("membrane", &["equations", "ode", "geometry"]),
     ("contact", &["geometry"]),
     ("cell", &["mechanics", "equations", "ode", "field", "geometry"]),
-    ("sim", &["cell", "mechanics", "equations", "ode", "field", "contact", "geometry"]),
+    ("sim", &["cell", "mechanics", "equations", "ode", "field", "membrane", "contact", "geometry"]),
     // The result file knows no simulator: it is given frames.
     ("output", &[]),
     // Numbers come from a finished file; what documents say of a measure stands beside how it is computed.
     ("analysis", &["values", "output", "cell", "contact", "geometry"]),
     (
         "experiment",
-        &["values", "analysis", "sim", "cell", "mechanics", "equations", "ode", "field", "contact", "geometry"],
+        &[
+            "values",
+            "analysis",
+            "sim",
+            "cell",
+            "mechanics",
+            "equations",
+            "ode",
+            "field",
+            "membrane",
+            "contact",
+            "geometry",
+        ],
     ),
     ("picture", &["xml", "output", "experiment", "analysis", "cell", "geometry", "run"]),
     // The door for programs: it records frames, and writes none.

@@ -137,6 +137,11 @@ fn a_brusselator_takes_its_wavelength() {
 }
 
 #[test]
+fn a_cell_finds_a_front_and_turns_it() {
+    experiment_keeps_its_word("polarity", "experiment.toml");
+}
+
+#[test]
 fn twenty_five_cells_become_one_aggregate() {
     experiment_keeps_its_word("aggregation", "experiment.toml");
 }

@@ -14,6 +14,7 @@ mod forces;
 mod friction;
 mod glossary;
 mod inertial;
+mod membranes;
 mod modulus;
 mod motility;
 mod ordering;

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use pseudopod::output::{
-    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter, SystemLayout, SystemScope,
-    Touching,
+    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, MembraneLayout, Overwrite, ResultWriter,
+    SystemLayout, SystemScope, Touching,
 };
 
 /// Corners of an octahedron.
@@ -112,7 +112,8 @@ pub fn lineage() -> Vec<Vec<Cell>> {
     ]
 }
 
-/// The same cells with two fields, one of them on the substrate, a system in the cells of the first type and one of the scene.
+/// The same cells with two fields, one of them on the substrate, a system in the cells of the first type, two substances on their
+/// membranes, and a system of the scene.
 pub fn layout_with_fields() -> Layout {
     let named = |name: &str| (name.to_string(), "uM".to_string());
     let flat = FieldLayout {
@@ -135,7 +136,9 @@ pub fn layout_with_fields() -> Layout {
         quantities: vec![named("U"), ("cells".into(), "1".into())],
     };
     let clock = SystemLayout { name: "clock".into(), scope: SystemScope::Scene, quantities: vec![named("tick")] };
-    Layout { fields: vec![flat, block], systems: vec![brain, clock], ..layout() }
+    let on_membrane = |name: &str| MembraneLayout { name: format!("brain.{name}"), unit: "1/um^2".into() };
+    let membranes = vec![on_membrane("b"), on_membrane("a")];
+    Layout { membranes, fields: vec![flat, block], systems: vec![brain, clock], ..layout() }
 }
 
 /// The frame of this number with values that differ from place to place, from species to species and from frame to frame.
@@ -156,7 +159,15 @@ pub fn frame_with_fields(cells: &[Cell], number: usize) -> Frame {
         };
         (0..system.quantities.len()).map(in_all).collect()
     };
+    let of_membrane = |variable: usize| -> Vec<f64> {
+        let of_cell = |cell: &Cell| {
+            let (own, id) = (cell.kind == 0, cell.id as usize);
+            (0..6).map(move |atom| if own { value(variable, 10 * id + atom) } else { f64::NAN })
+        };
+        cells.iter().flat_map(of_cell).collect()
+    };
     Frame {
+        membranes: (0..layout.membranes.len()).map(of_membrane).collect(),
         fields: layout.fields.iter().map(of_field).collect(),
         systems: layout.systems.iter().map(of_system).collect(),
         ..frame(cells, number)

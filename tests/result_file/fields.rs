@@ -57,6 +57,29 @@ fn quantities_come_back_exactly_and_are_series_like_others() {
     assert!(table.lines().next().unwrap().contains("brain.U (uM)"), "{table}");
 }
 
+/// Whether two lists hold the same bits.
+fn same(one: &[f64], other: &[f64]) -> bool {
+    one.iter().map(|value| value.to_bits()).eq(other.iter().map(|value| value.to_bits()))
+}
+
+#[test]
+fn what_is_on_membranes_comes_back_exactly_whatever_cells_there_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.vtkhdf");
+    let mut writer = ResultWriter::create(&path, &example::header(), &layout(), Overwrite::Refuse).unwrap();
+    let lists = example::lineage();
+    lists.iter().enumerate().for_each(|(number, cells)| writer.append(&frame(cells, number)).unwrap());
+    writer.finish(1.0).unwrap();
+    let result = ResultFile::open(&path).unwrap();
+    for (number, cells) in lists.iter().enumerate() {
+        let expected = frame(cells, number);
+        for (name, values) in ["brain.b", "brain.a"].iter().zip(&expected.membranes) {
+            assert!(same(&result.membrane(name, number).unwrap().unwrap(), values), "{name} of frame {number}");
+        }
+    }
+    assert_eq!(result.membrane("brain.c", 0).unwrap(), None);
+}
+
 #[test]
 fn a_resumed_file_goes_on_after_the_checkpoint() {
     let folder = tempfile::tempdir().unwrap();
@@ -71,6 +94,10 @@ fn a_resumed_file_goes_on_after_the_checkpoint() {
     write(&plain, 2, 12).finish(1.0).unwrap();
     let (resumed, whole) = (ResultFile::open(&path).unwrap(), ResultFile::open(&plain).unwrap());
     for number in 0..12 {
+        for membrane in &layout.membranes {
+            let values = |result: &ResultFile| result.membrane(&membrane.name, number).unwrap().unwrap();
+            assert!(same(&values(&resumed), &values(&whole)), "frame {number}");
+        }
         for field in &layout.fields {
             for (name, _) in &field.species {
                 let values = |result: &ResultFile| result.field_frame(&field.name, name, number).unwrap();

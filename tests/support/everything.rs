@@ -25,6 +25,14 @@ const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/
     <link from="system.pulses" to="cell.fibre[trunk]" transfer="0.5 + 0.3*sin(value)"/>
     <link from="system.clock" to="cell.rest_volume_ratio" transfer="1 + 0.001*value"/></eml>"#;
 
+/// What is on the membranes of all.
+const SKIN: &str = r#"<eml name="skin" level="membrane"><input id="c" default="0"/>
+    <variable id="a" initial="1 + 0.05*x" diffusion="0.5" rate="0.3*inside - a*(0.2 + 0.1*a) + 0.02*c"/>
+    <variable id="h" initial="0.1" rate="a - h"/>
+    <variable id="inside" initial="2" level="cell" rate="(lost - 0.3*inside*area)/volume"/>
+    <integral id="lost">0.2*a</integral><mean id="front">a*x</mean>
+    <link from="field[c]" to="system.c"/></eml>"#;
+
 /// What the ball has: it moves one of its atoms.
 const PIN: &str = r#"<eml name="pin" level="cell"><variable id="t" initial="0" rate="1"/><input id="seen" default="0"/>
     <define id="wanted">BEGIN - 0.02*t</define>
@@ -51,14 +59,14 @@ motility = { brownian = { speed = "2 um/min", persistence = "PERSISTENCE" } }
 pseudopods = { pressure = "5 Pa", contraction = "10 pN", pause = "0.1 s", protrusion = "0.4 s", retraction = "0.4 s" }
 loads = [{ name = "push", all = true, direction = [0, 0, -1], force = "4 pN" }]
 fibres = [{ name = "trunk", pairs = [[0, 20]], stiffness = "1 pN/um" }]
-chemistry = ["own"]
+chemistry = ["own", "skin"]
 
 [cells.ball]
 mesh = { shape = "icosphere", radius = "4 um", level = 1 }
 placement = { at = [["9 um", "9 um", "4.02 um"]] }
 mechanics = { drag = "15 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
 loads = [{ name = "press", all = true, direction = [-0.7, -0.7, -0.2], force = [["0 s", "8 pN"], ["3.05 s", "9 pN"]] }]
-chemistry = ["pin"]
+chemistry = ["pin", "skin"]
 
 [[planes]]
 name = "floor"
@@ -77,6 +85,8 @@ document = "own.eml"
 document = "pin.eml"
 [chemistry.whole]
 document = "whole.eml"
+[chemistry.skin]
+document = "skin.eml"
 "#;
 
 /// Model and start, with steps of one size ("0.05 s") or as long as the error allows; walks last this long at a mean ("0.3 s").
@@ -84,7 +94,7 @@ pub fn everything(step: Option<&str>, persistence: &str) -> (Model, State) {
     let folder = tempfile::tempdir().unwrap();
     // Where the atom of the ball begins.
     let pin = PIN.replace("BEGIN", &format!("{}", 9.0 + icosphere(4.0, 1).positions[4].y));
-    for (name, eml) in [("field", FIELD), ("own", OWN), ("pin", &pin), ("whole", WHOLE)] {
+    for (name, eml) in [("field", FIELD), ("own", OWN), ("pin", &pin), ("whole", WHOLE), ("skin", SKIN)] {
         std::fs::write(folder.path().join(format!("{name}.eml")), eml).unwrap();
     }
     let integrator = step.map_or("max_step = \"0.1 s\"".to_owned(), |step| format!("step = \"{step}\""));

@@ -3,7 +3,7 @@
 use super::read::read;
 use crate::cli::report::{Form, Report, path_text};
 use crate::equations::Read;
-use crate::equations::eml::{Level, SCHEMES};
+use crate::equations::eml::{Level, SCHEMES, SURFACE};
 use crate::equations::tree::{Quantity, Role};
 use crate::error::{Error, Result};
 use serde_json::{Value, json};
@@ -86,11 +86,7 @@ fn describe(path: &Path, read: &Read) -> String {
 /// A document for scripts.
 fn object(path: &Path, read: &Read) -> Value {
     let document = &read.document;
-    let level = match document.level {
-        Level::Scene => "scene",
-        Level::Cell => "cell",
-        Level::Field => "field",
-    };
+    let level = document.level.name();
     let mut object = json!({
         "path": path_text(path),
         "name": document.name,
@@ -117,26 +113,49 @@ fn whose(level: Level) -> &'static str {
         Level::Scene => "one system for the scene",
         Level::Cell => "one system for each cell",
         Level::Field => "fields",
+        Level::Membrane => "one system on each membrane",
     }
 }
 
 /// The identifiers of a document by what they stand for.
-fn kinds(read: &Read) -> [(&'static str, Vec<&str>); 6] {
+fn kinds(read: &Read) -> Vec<(&'static str, Vec<&str>)> {
     let (system, fields) = (&read.document.system, &read.document.fields);
     let is_field = |quantity: &Quantity| fields.iter().any(|field| field.id == quantity.id);
+    let id = |number: u32| system.quantities[number as usize].id.as_str();
+    let (mut surface, mut sums) = (Vec::new(), Vec::new());
+    if let Some(membrane) = &read.document.membrane {
+        surface.extend(membrane.surface.iter().map(|variable| id(variable.quantity)));
+        sums.extend(membrane.totals.iter().map(|total| id(total.quantity)));
+    }
     let of = |wanted: &dyn Fn(&Quantity) -> bool| {
         system.quantities.iter().filter(|quantity| wanted(quantity)).map(|quantity| quantity.id.as_str()).collect()
     };
-    // The position in a field is nobody's input.
-    let position = |quantity: &Quantity| !fields.is_empty() && ["x", "y", "z"].contains(&quantity.id.as_str());
-    [
+    // The position in a field is nobody's input, nor is what a membrane gives.
+    let given: &[&str] = match read.document.level {
+        Level::Field => &SURFACE[..3],
+        Level::Membrane => &SURFACE,
+        Level::Scene | Level::Cell => &[],
+    };
+    let position = |quantity: &Quantity| given.contains(&quantity.id.as_str()) || sums.contains(&quantity.id.as_str());
+    let is_surface = |quantity: &Quantity| surface.contains(&quantity.id.as_str());
+    let mut kinds = vec![
         ("fields", fields.iter().map(|field| field.id.as_str()).collect()),
-        ("variables", of(&|quantity| matches!(quantity.role, Role::Variable { .. }) && !is_field(quantity))),
+        (
+            "variables",
+            of(&|quantity| {
+                matches!(quantity.role, Role::Variable { .. }) && !is_field(quantity) && !is_surface(quantity)
+            }),
+        ),
         ("parameters", of(&|quantity| matches!(quantity.role, Role::Parameter))),
         ("definitions", of(&|quantity| matches!(quantity.role, Role::Defined { .. }))),
         ("inputs", of(&|quantity| matches!(quantity.role, Role::Input) && !position(quantity))),
         ("events", system.events.iter().map(|event| event.id.as_str()).collect()),
-    ]
+    ];
+    if read.document.membrane.is_some() {
+        kinds.insert(0, ("membrane", surface));
+        kinds.push(("sums", sums));
+    }
+    kinds
 }
 
 /// How the document asks to be solved.

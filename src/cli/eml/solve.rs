@@ -24,6 +24,10 @@ pub fn run(args: &SolveArgs) -> Result<Report> {
         let fault = Fault::new(format!("{} is a document of fields, which spread in space", args.document.display()));
         return Err(Error::input(fault.help("give it to an experiment, under [chemistry.NAME], and run that")));
     }
+    if read.document.membrane.is_some() {
+        let fault = Fault::new(format!("{} is a document of membranes, which need surfaces", args.document.display()));
+        return Err(Error::input(fault.help("give it to an experiment, under [chemistry.NAME], and run that")));
+    }
     let mut faults = Vec::new();
     let points = points(args, &mut faults);
     let columns = columns(&args.columns, &read, &mut faults);

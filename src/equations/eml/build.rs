@@ -3,7 +3,6 @@
 use super::circles::circles;
 use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
-use super::document::Level;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
 use crate::equations::tree::{Expr, Quantity, QuantityId, Role, System};
@@ -131,6 +130,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             let own = self.unit_of(&id);
             let (role, initial) = match element.kind.name {
                 "parameter" => (Some(Role::Parameter), self.value(element, "value", Use::Fixed, &id)),
+                "mean" | "integral" => (Some(Role::Input), Some(Expr::Number(0.0))),
                 "input" => (Some(Role::Input), self.value(element, "default", Use::Fixed, &id)),
                 "define" => {
                     let what = format!("the definition of `{id}`");
@@ -160,19 +160,16 @@ impl<'a, 'd> Builder<'a, 'd> {
             });
             locations.push(self.context.location(element.location("id"), "declared here"));
         }
-        if self.known.level == Level::Field {
-            for name in POSITION {
-                let unit = self.known.length_text.clone();
-                let (role, initial) = (Role::Input, Expr::Number(0.0));
-                quantities.push(Quantity {
-                    id: name.to_owned(),
-                    name: format!("position {name}"),
-                    role,
-                    initial,
-                    unit,
-                });
-                locations.push(self.context.location(root.at.clone(), "the position"));
-            }
+        for (name, unit) in self.known.given.clone() {
+            let is_position = POSITION.contains(&name);
+            quantities.push(Quantity {
+                id: name.to_owned(),
+                name: if is_position { format!("position {name}") } else { format!("{name} of the cell") },
+                role: Role::Input,
+                initial: Expr::Number(if is_position { 0.0 } else { 1.0 }),
+                unit: if is_position { self.known.length_text.clone() } else { unit.text() },
+            });
+            locations.push(self.context.location(root.at.clone(), "given here"));
         }
         (quantities, locations)
     }

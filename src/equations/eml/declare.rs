@@ -8,9 +8,11 @@ use crate::equations::tree::{Expr, QuantityId};
 use std::collections::{BTreeMap, HashMap};
 
 /// Elements whose identifier names a quantity.
-const QUANTITIES: [&str; 5] = ["parameter", "variable", "define", "input", "field"];
+const QUANTITIES: [&str; 7] = ["parameter", "variable", "define", "input", "field", "mean", "integral"];
 /// The position in a field.
 pub(super) const POSITION: [&str; 3] = ["x", "y", "z"];
+/// What is given on the surface of a cell: the position from its centre, and area and volume of the cell.
+pub const SURFACE: [&str; 5] = ["x", "y", "z", "area", "volume"];
 
 /// A quantity and the element that declares it.
 pub(super) struct Declared<'a> {
@@ -30,6 +32,8 @@ pub(super) struct Declarations<'a> {
     /// Unit of length of the grid.
     pub(super) length_text: String,
     pub(super) length: Unit,
+    /// Quantities that every document of this level has, behind those that it declares, with their units.
+    pub(super) given: Vec<(&'static str, Unit)>,
     /// Whether the document has any unit; in one without, time and position have none either.
     measured: bool,
 }
@@ -59,6 +63,11 @@ impl<'a> Declarations<'a> {
 /// Tells a trouble of an expression at its location in the document.
 pub(super) fn tell(context: &mut Context, text: &Text, trouble: &Trouble) {
     context.fault(text.location(&trouble.at), &trouble.message, &trouble.label, &trouble.help);
+}
+
+/// A fault at an attribute of an element.
+pub(super) fn tell_at(context: &mut Context, at: &Element, attribute: &str, message: &str, label: &str, help: &str) {
+    context.fault(at.location(attribute), message, label, help);
 }
 
 /// Reads the unit in an attribute.
@@ -92,6 +101,7 @@ pub(super) fn declare<'a>(context: &mut Context, root: &'a Element) -> Declarati
         time_text,
         time,
         length_text,
+        given: given(level, &length),
         length,
         measured: root.attribute("time_unit").is_some()
             || root.children.iter().any(|child| child.attribute("unit").is_some()),
@@ -100,8 +110,8 @@ pub(super) fn declare<'a>(context: &mut Context, root: &'a Element) -> Declarati
     for element in root.children.iter().filter(|child| child.attribute("id").is_some()) {
         let id = element.word("id");
         let quantity = QUANTITIES.contains(&element.kind.name);
-        let position = level == Level::Field && POSITION.contains(&id.as_str());
-        if !usable(context, element, &id, position) || !unique(context, element, &id, &mut lines) || !quantity {
+        let taken = found.given.iter().any(|(name, _)| *name == id).then_some(level);
+        if !usable(context, element, &id, taken) || !unique(context, element, &id, &mut lines) || !quantity {
             continue;
         }
         if let Some(unit) = unit(context, element, "unit") {
@@ -110,16 +120,27 @@ pub(super) fn declare<'a>(context: &mut Context, root: &'a Element) -> Declarati
         found.scope.quantities.insert(id.clone(), found.quantities.len() as QuantityId);
         found.quantities.push(Declared { id, element });
     }
-    if level == Level::Field {
-        for (index, name) in POSITION.iter().enumerate() {
-            found.scope.quantities.insert((*name).to_owned(), (found.quantities.len() + index) as QuantityId);
-            if found.measured {
-                found.units.insert((*name).to_owned(), found.length.clone());
-            }
+    for (index, (name, unit)) in found.given.iter().enumerate() {
+        found.scope.quantities.insert((*name).to_owned(), (found.quantities.len() + index) as QuantityId);
+        if found.measured {
+            found.units.insert((*name).to_owned(), unit.clone());
         }
     }
     functions(context, root, &mut found.scope);
     found
+}
+
+/// What every document of a level is given.
+fn given(level: Level, length: &Unit) -> Vec<(&'static str, Unit)> {
+    let position = POSITION.map(|name| (name, length.clone()));
+    match level {
+        Level::Scene | Level::Cell => Vec::new(),
+        Level::Field => position.to_vec(),
+        Level::Membrane => {
+            let more = [(SURFACE[3], length.to_the(2.0)), (SURFACE[4], length.to_the(3.0))];
+            position.into_iter().chain(more).collect()
+        }
+    }
 }
 
 fn level(context: &mut Context, root: &Element) -> Level {
@@ -128,34 +149,40 @@ fn level(context: &mut Context, root: &Element) -> Level {
         "scene" => Level::Scene,
         "cell" => Level::Cell,
         "field" => Level::Field,
+        "membrane" => Level::Membrane,
         "" if has_fields => Level::Field,
         "" => Level::Scene,
         other => {
             let message = format!("there is no level \"{other}\"");
-            context.fault(root.location("level"), &message, "unknown level", "write \"scene\", \"cell\" or \"field\"");
+            context.fault(
+                root.location("level"),
+                &message,
+                "unknown level",
+                "write \"scene\", \"cell\", \"field\" or \"membrane\"",
+            );
             return if has_fields { Level::Field } else { Level::Scene };
         }
     };
     // What a document of fields may not hold, and the other way round.
     let (misplaced, help): (&[&str], &str) = match level {
-        Level::Field => {
-            (&["variable", "event"], "a document of fields has <field>s; one that does not spread has diffusion=\"0\"")
-        }
-        _ => (&["field", "grid"], "write level=\"field\" for a document of fields, and join it by <link>s"),
+        Level::Field => (
+            &["variable", "event", "mean", "integral"],
+            "a document of fields has <field>s; one that does not spread has diffusion=\"0\"",
+        ),
+        Level::Membrane => (
+            &["field", "grid", "event"],
+            "a document of membranes has <variable>s; give fields and events documents of their own",
+        ),
+        _ => (
+            &["field", "grid", "mean", "integral"],
+            "write level=\"field\" for a document of fields, level=\"membrane\" for one of surfaces, and join it by <link>s",
+        ),
     };
     for element in root.children.iter().filter(|child| misplaced.contains(&child.kind.name)) {
-        let message = format!("<{}> cannot stand in a document of level {}", element.kind.name, name_of(level));
+        let message = format!("<{}> cannot stand in a document of level {}", element.kind.name, level.name());
         context.fault(element.at.clone(), &message, "not at this level", help);
     }
     level
-}
-
-fn name_of(level: Level) -> &'static str {
-    match level {
-        Level::Scene => "scene",
-        Level::Cell => "cell",
-        Level::Field => "field",
-    }
 }
 
 /// A unit that must measure the same as a base unit.
@@ -173,7 +200,7 @@ fn base_unit(context: &mut Context, element: &Element, attribute: &str, usual: &
 }
 
 /// Whether a word can be an identifier here.
-fn usable(context: &mut Context, element: &Element, id: &str, position: bool) -> bool {
+fn usable(context: &mut Context, element: &Element, id: &str, taken: Option<Level>) -> bool {
     let (message, help) = if !is_identifier(id) {
         (format!("\"{id}\" is no identifier"), "write letters, digits and _, beginning with a letter")
     } else if is_reserved(id) {
@@ -181,8 +208,13 @@ fn usable(context: &mut Context, element: &Element, id: &str, position: bool) ->
             format!("`{id}` means something in every expression"),
             "choose another identifier, such as one with a _ at its end",
         )
-    } else if position {
-        (format!("`{id}` is the position in a field"), "choose another identifier")
+    } else if let Some(level) = taken {
+        let what = match (level, POSITION.contains(&id)) {
+            (Level::Field, _) => "the position in a field",
+            (_, true) => "the position on the surface",
+            (_, false) => "of the whole cell",
+        };
+        (format!("`{id}` is {what}"), "choose another identifier")
     } else {
         return true;
     };

@@ -24,6 +24,8 @@ pub struct Document {
     pub grid: Option<GridDescription>,
     /// The fields.
     pub fields: Vec<FieldDescription>,
+    /// What a document of membranes says beside its equations.
+    pub membrane: Option<MembraneDescription>,
     /// What joins the system to the model.
     pub links: Vec<LinkDescription>,
     /// How it asks to be solved.
@@ -39,6 +41,66 @@ pub enum Level {
     Cell,
     /// Fields: one at each point.
     Field,
+    /// One on each atom of the surfaces of cells, and what it exchanges with inside.
+    Membrane,
+}
+
+impl Level {
+    /// As documents write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scene => "scene",
+            Self::Cell => "cell",
+            Self::Field => "field",
+            Self::Membrane => "membrane",
+        }
+    }
+}
+
+/// What a document of membranes says beside its equations. Its variables live on the surface or, as pools, once in each cell; the
+/// position on the surface is given by inputs `x`, `y`, `z`, area and volume of the cell by inputs `area` and `volume`, and what is
+/// summed over the surface is an input, too.
+#[derive(Debug, Clone, Default)]
+pub struct MembraneDescription {
+    /// Variables on the surface.
+    pub surface: Vec<SurfaceVariable>,
+    /// What is summed over the surface, in the order of its quantities.
+    pub totals: Vec<Total>,
+    /// Of each quantity, whether it differs from atom to atom.
+    pub local: Vec<bool>,
+}
+
+/// A variable on the surface.
+#[derive(Debug, Clone)]
+pub struct SurfaceVariable {
+    /// Its variable in the system.
+    pub quantity: QuantityId,
+    /// Diffusion coefficient in µm² per unit of time, an expression of parameters.
+    pub diffusion: Expr,
+    /// Where it is declared.
+    pub location: Location,
+}
+
+/// A number that is taken from the whole surface of a cell.
+#[derive(Debug, Clone)]
+pub struct Total {
+    /// The input that has it.
+    pub quantity: QuantityId,
+    /// How it is taken.
+    pub taken: Taken,
+    /// Of what.
+    pub integrand: Expr,
+    /// Where it is declared.
+    pub location: Location,
+}
+
+/// How a number is taken from a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Taken {
+    /// The mean over the area.
+    Mean,
+    /// The integral over the area, µm² times the unit of what is summed.
+    Integral,
 }
 
 /// How a document asks to be solved; what it leaves open is decided by the experiment.

@@ -61,8 +61,9 @@ impl Builder<'_, '_> {
             (_, Root::System(number)) => {
                 let Some(target) = self.known.quantities.get(*number as usize) else { return };
                 if target.element.kind.name != "input" {
-                    let message =
-                        format!("a link cannot set `{}`, which is a <{}>", target.id, target.element.kind.name);
+                    let name = target.element.kind.name;
+                    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+                    let message = format!("a link cannot set `{}`, which is {article} <{name}>", target.id);
                     let help = format!("declare <input id=\"{}\" default=\"…\"/> and use it in an equation", target.id);
                     self.context.fault(element.location("to"), &message, "set from outside", &help);
                 }

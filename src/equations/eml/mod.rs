@@ -1,5 +1,5 @@
 //! EML, the Equations Markup Language: an XML text that describes a system of differential equations, or fields that
-//! diffuse and react, and the links that join them to cells.
+//! diffuse and react, in space or on the surfaces of cells, and the links that join them to cells.
 //!
 //! [`read`] turns a text into a [`Document`] or tells every fault in it at its location. Numbers stay as the document
 //! writes them; where quantities have units, these are checked through every expression. The book has the language in
@@ -13,15 +13,17 @@ mod document;
 mod events;
 mod fields;
 mod links;
+mod membrane;
 mod solver;
 mod start;
 mod vocabulary;
 mod write;
 mod xml;
 
+pub use declare::SURFACE;
 pub use document::{
-    Document, Endpoint, FieldDescription, GridDescription, Index, Level, LinkDescription, Profile, Root, SIDES, Scheme,
-    SolverChoice, Step, Wall,
+    Document, Endpoint, FieldDescription, GridDescription, Index, Level, LinkDescription, MembraneDescription, Profile,
+    Root, SIDES, Scheme, SolverChoice, Step, SurfaceVariable, Taken, Total, Wall,
 };
 pub use links::{read_end, read_transfer};
 pub use solver::SCHEMES;
@@ -53,15 +55,19 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     let events = builder.events(&root);
     let grid = builder.grid(&root);
     let mut fields = builder.fields(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
+    let mut membrane = builder.membrane(&root);
     let links = builder.links(&root);
     let solver = builder.solver(&root);
     let system = System { name: root.word("name"), quantities, events };
     builder.check_values(&system);
     builder.finish_fields(&mut fields, &system);
+    if let Some(membrane) = &mut membrane {
+        builder.finish_membrane(membrane, &system);
+    }
     let (level, time_unit, seconds) = (builder.known.level, builder.known.time_text.clone(), builder.known.time.size());
     if !context.is_clean() {
         return Err(context.error());
     }
     let name = root.word("name");
-    Ok(Document { name, level, time_unit, seconds, system, locations, grid, fields, links, solver })
+    Ok(Document { name, level, time_unit, seconds, system, locations, grid, fields, membrane, links, solver })
 }

@@ -46,6 +46,9 @@ impl Builder<'_, '_> {
                 "write \"rk4\", \"rk45\", \"rk65\" or, for stiff reactions, \"rosenbrock\", or leave the scheme out";
             self.context.fault(element.location("scheme"), &message, "this scheme", help);
         }
+        if self.known.level == Level::Membrane {
+            self.refuse_of_membrane(element);
+        }
         if let (Some(step), Some(inner)) = (choice.step, choice.inner_step)
             && inner > step
         {
@@ -53,5 +56,18 @@ impl Builder<'_, '_> {
             self.context.fault(element.location("inner_step"), &message, "too long", "let it be a part of `step`");
         }
         choice
+    }
+
+    /// What a document of membranes cannot ask for.
+    fn refuse_of_membrane(&mut self, element: &Element) {
+        let words = [
+            ("scheme", "membranes have a scheme of their own: it takes diffusion implicitly and finds its step"),
+            ("step", "membranes exchange numbers with the cell in every step of the run"),
+        ];
+        for (name, why) in words.into_iter().filter(|(name, _)| element.attribute(name).is_some()) {
+            let message = format!("`{name}` has no meaning in a document of level membrane");
+            let help = format!("remove it: {why}; rtol, atol and inner_step (the longest step) can be set");
+            self.context.fault(element.location(name), &message, "not used", &help);
+        }
     }
 }

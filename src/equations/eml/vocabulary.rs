@@ -26,19 +26,34 @@ const fn kind(
 }
 
 /// What stands at the top of a document.
-const PARTS: [&str; 11] =
-    ["parameter", "variable", "equation", "define", "function", "input", "event", "solver", "grid", "field", "link"];
+const PARTS: [&str; 13] = [
+    "parameter",
+    "variable",
+    "equation",
+    "define",
+    "function",
+    "input",
+    "mean",
+    "integral",
+    "event",
+    "solver",
+    "grid",
+    "field",
+    "link",
+];
 
 /// All elements.
 #[rustfmt::skip] // a table
-pub const ELEMENTS: [Kind; 15] = [
+pub const ELEMENTS: [Kind; 17] = [
     kind("eml", &["name"], &["level", "time_unit"], &PARTS, false),
     kind("parameter", &["id", "value"], &["name", "unit"], &[], false),
-    kind("variable", &["id", "initial"], &["name", "rate", "unit"], &[], false),
+    kind("variable", &["id", "initial"], &["diffusion", "level", "name", "rate", "unit"], &[], false),
     kind("equation", &["of"], &[], &[], true),
     kind("define", &["id"], &["name", "unit"], &[], true),
     kind("function", &["args", "id"], &[], &[], true),
     kind("input", &["default", "id"], &["name", "unit"], &[], false),
+    kind("mean", &["id"], &["name", "unit"], &[], true),
+    kind("integral", &["id"], &["name", "unit"], &[], true),
     kind("event", &["when"], &["at_start", "delay", "id", "persistent", "priority", "values_from"], &["set"], false),
     kind("set", &["id"], &[], &[], true),
     kind("solver", &[], &["atol", "inner_step", "rtol", "scheme", "step"], &[], false),

@@ -1,6 +1,7 @@
 //! What chemistry means: compiled systems, fields and links. Nothing here changes during a run.
 
 use super::links::{Link, Observations};
+use super::membrane::Membrane;
 use crate::equations::program::Program;
 use crate::equations::tree::QuantityId;
 use crate::field::{FieldSystem, Stepping};
@@ -38,6 +39,8 @@ pub struct Reactor {
     pub program: Program,
     /// Its events; empty where it has none.
     pub events: EventPlan,
+    /// What of it lives on the membranes of its cells; its own equations are those of their insides.
+    pub membrane: Option<Membrane>,
     /// Who has it.
     pub members: Members,
     /// Seconds in the system's unit of time.

@@ -7,6 +7,7 @@ use super::observed::Observed;
 use super::state::ChemistryState;
 use crate::Vec3;
 use crate::field::{Fields, Sensed};
+use crate::membrane::MembraneScratch;
 use crate::ode::PopulationScratch;
 
 /// What the stages of chemistry need beside the state.
@@ -20,6 +21,8 @@ pub struct ChemistryScratch {
     pub(super) sensed: Vec<Vec<Sensed>>,
     /// Buffers of the systems.
     pub(super) populations: Vec<PopulationScratch>,
+    /// Buffers of their membranes.
+    pub(in super::super) membranes: Vec<MembraneScratch>,
     /// What links read.
     pub(super) observed: Observed,
     /// Positions of atoms, what is sensed at them, and amounts released at them.
@@ -39,6 +42,7 @@ impl ChemistryScratch {
         Self {
             fields: fields.collect(),
             populations: chemistry.reactors.iter().map(|_| PopulationScratch::default()).collect(),
+            membranes: chemistry.reactors.iter().map(|_| MembraneScratch::default()).collect(),
             sensed: vec![Vec::new(); chemistry.sensed.len()],
             ..Self::default()
         }

@@ -11,7 +11,9 @@ use super::super::workspace::Workspace;
 use super::carry::carry_links;
 use super::census::cell_of_member;
 use super::exchange::is_due;
+use super::membranes::{advance_membrane, begin_membranes};
 use super::model::Reactor;
+use super::scratch::ChemistryScratch;
 use crate::error::Error;
 use crate::ode::{Eventful, OdeTrouble, PopulationScratch};
 
@@ -22,6 +24,7 @@ pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> 
     ws.suit(model, state);
     // Links read what touches; no step has looked for it yet.
     locate_contacts(model, state, ws);
+    begin_membranes(model, state, &mut ws.chemistry.membranes);
     ws.chemistry.exchange_values(&mut state.chemistry, time);
     carry_links(model, time, true, state, ws)?;
     // What events change at the start goes through the links at once, so that the start shows it.
@@ -48,7 +51,7 @@ pub fn advance_chemistry(
     }
     let (start, end) = (from.time, from.time + dt);
     ws.chemistry.exchange_values(&mut to.chemistry, start);
-    advance_systems(model, end, to, &mut ws.chemistry.populations)?;
+    advance_systems(model, end, from, to, &mut ws.chemistry)?;
     deposit_secretion(model, dt, to, ws);
     advance_fields(model, dt, to, ws)?;
     carry_links(model, end, false, to, ws)?;
@@ -64,17 +67,25 @@ pub fn advance_chemistry(
 fn advance_systems(
     model: &Model,
     end: f64,
+    before: &State,
     state: &mut State,
-    scratch: &mut [PopulationScratch],
+    scratch: &mut ChemistryScratch,
 ) -> Result<(), Trouble> {
+    let ChemistryScratch { populations: scratch, membranes, .. } = scratch;
     for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
         let chemistry = &mut state.chemistry;
         let from = chemistry.times[number];
         if !is_due(reactor, end) || from >= end {
             continue;
         }
-        let population = &mut chemistry.populations[number];
         let window = (from / reactor.seconds, end / reactor.seconds);
+        if let Some(membrane) = &reactor.membrane {
+            let advanced = advance_membrane((number, reactor), membrane, window, before, state, &mut membranes[number]);
+            advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?;
+            state.chemistry.times[number] = end;
+            continue;
+        }
+        let population = &mut chemistry.populations[number];
         let advanced = match reactor.events.is_empty() {
             true => population.advance(&reactor.program, window.0, window.1, &reactor.tolerances, &mut scratch[number]),
             false => {

@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::super::controls::Controls;
 use super::super::model::Model;
-use super::model::Reactor;
+use super::model::{Members, Reactor};
 use crate::field::Fields;
+use crate::membrane::{MembraneCells, MembraneState};
 use crate::ode::{EventMemory, Population};
 
 /// Everything of chemistry that changes.
@@ -15,6 +16,8 @@ pub struct ChemistryState {
     pub populations: Vec<Population>,
     /// What each member of a system knows of its events, one list a system; empty where a system has none.
     pub events: Vec<Vec<EventMemory>>,
+    /// What is on the membranes of cells, one entry a system; empty where it has none.
+    pub membranes: Vec<MembraneState>,
     /// Time that each system has reached, s.
     pub times: Vec<f64>,
     /// One entry a document of fields.
@@ -47,6 +50,10 @@ impl ChemistryState {
             true => Vec::new(),
             false => vec![reactor.events.before_start(); members(reactor)],
         };
+        let membrane = |reactor: &Reactor| match (&reactor.membrane, &reactor.members) {
+            (Some(membrane), Members::Kinds(own)) => membrane.state(own, &model.kinds, cells),
+            _ => MembraneState::default(),
+        };
         let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
             values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
             pace: fields.pace(),
@@ -55,6 +62,7 @@ impl ChemistryState {
         Self {
             populations: populations.collect(),
             events: reactors.iter().map(events).collect(),
+            membranes: reactors.iter().map(membrane).collect(),
             times: vec![0.0; reactors.len()],
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
             controls: controls_of(model, cells.iter().sum()),
@@ -66,6 +74,9 @@ impl ChemistryState {
     pub fn copy_from(&mut self, other: &Self) {
         copy_each(&mut self.populations, &other.populations, Population::copy_from);
         copy_each(&mut self.events, &other.events, |to, from| copy_each(to, from, EventMemory::copy_from));
+        copy_each(&mut self.membranes, &other.membranes, |to, from| {
+            copy_each(&mut to.kinds, &from.kinds, MembraneCells::copy_from);
+        });
         self.times.clone_from(&other.times);
         if self.fields.len() != other.fields.len() {
             self.fields.clone_from(&other.fields);
@@ -83,6 +94,7 @@ impl ChemistryState {
     pub fn poison(&mut self) {
         self.populations.clear();
         self.events.clear();
+        self.membranes.clear();
         self.times.fill(f64::NAN);
         for field in &mut self.fields {
             field.values.fill(f64::NAN);
@@ -97,7 +109,12 @@ impl ChemistryState {
         let knows = |a: &EventMemory, b: &EventMemory| a.has_shape_of(b);
         let events =
             |a: &[EventMemory], b: &[EventMemory]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| knows(a, b));
+        let surfaces = |a: &MembraneState, b: &MembraneState| {
+            a.kinds.len() == b.kinds.len() && a.kinds.iter().zip(&b.kinds).all(|(a, b)| a.has_shape_of(b))
+        };
         self.populations.len() == other.populations.len()
+            && self.membranes.len() == other.membranes.len()
+            && self.membranes.iter().zip(&other.membranes).all(|(a, b)| surfaces(a, b))
             && self.events.len() == other.events.len()
             && self.fields.len() == other.fields.len()
             && self.populations.iter().zip(&other.populations).all(|(a, b)| cells(a, b))

@@ -19,6 +19,9 @@ impl ChemistryState {
             let Some(at) = kinds.iter().position(|&other| other == kind) else { continue };
             let member = kinds[..at].iter().map(|&kind| cells[kind]).sum::<usize>() + local;
             self.populations[number].insert_default(&reactor.program, member);
+            if reactor.membrane.is_some() {
+                self.membranes[number].kinds[at].insert(local);
+            }
             if !reactor.events.is_empty() {
                 self.events[number].insert(member, reactor.events.before_start());
             }
@@ -41,6 +44,9 @@ impl ChemistryState {
             let stays: Vec<bool> = kinds.iter().flat_map(|&kind| all(kind)).map(|(kind, at)| keep(kind, at)).collect();
             self.populations[number].retain(|member| stays[member]);
             retain(&mut self.events[number], &stays);
+            for (surfaces, &kind) in self.membranes[number].kinds.iter_mut().zip(kinds) {
+                surfaces.retain(|local| keep(kind, local));
+            }
         }
         let stays: Vec<bool> = (0..cells.len()).flat_map(all).map(|(kind, at)| keep(kind, at)).collect();
         self.controls.retain_cells(&stays);

@@ -3,8 +3,8 @@
 mod fixed;
 mod names;
 
-use super::declare::POSITION;
-use super::document::{Document, FieldDescription, Level, LinkDescription, Profile, SIDES, Wall};
+use super::declare::{POSITION, SURFACE};
+use super::document::{Document, FieldDescription, Level, LinkDescription, Profile, SIDES, Taken, Wall};
 use super::solver::SCHEMES;
 use crate::equations::expression;
 use crate::equations::program::initial_values;
@@ -70,6 +70,7 @@ impl<'a> Writer<'a> {
             Level::Scene => "",
             Level::Cell => " level=\"cell\"",
             Level::Field => " level=\"field\"",
+            Level::Membrane => " level=\"membrane\"",
         };
         let seconds = document.time_unit == "s" && !self.measured;
         let unit = if seconds { String::new() } else { attribute("time_unit", &document.time_unit) };
@@ -104,7 +105,12 @@ impl<'a> Writer<'a> {
     fn quantity(&mut self, number: QuantityId) {
         let document = self.document;
         let quantity = &document.system.quantities[number as usize];
-        if document.level == Level::Field && POSITION.contains(&quantity.id.as_str()) {
+        let is_given = match document.level {
+            Level::Field => POSITION.contains(&quantity.id.as_str()),
+            Level::Membrane => SURFACE.contains(&quantity.id.as_str()),
+            Level::Scene | Level::Cell => false,
+        };
+        if is_given {
             return;
         }
         let id = self.names.quantities[number as usize].clone();
@@ -122,6 +128,18 @@ impl<'a> Writer<'a> {
         if let Role::Defined { rule } = &quantity.role {
             let rule = self.expression(rule);
             return self.line(format_args!("  <define{head}{tail}>{rule}</define>"));
+        }
+        if let Some(membrane) = &document.membrane {
+            if let Some(total) = membrane.totals.iter().find(|total| total.quantity == number) {
+                let element = if total.taken == Taken::Mean { "mean" } else { "integral" };
+                let integrand = self.expression(&total.integrand);
+                return self.line(format_args!("  <{element}{head}{tail}>{integrand}</{element}>"));
+            }
+            match membrane.surface.iter().find(|variable| variable.quantity == number) {
+                Some(variable) => tail.push_str(&attribute("diffusion", &self.expression(&variable.diffusion))),
+                None if matches!(quantity.role, Role::Variable { .. }) => tail.push_str(&attribute("level", "cell")),
+                None => {}
+            }
         }
         let initial = self.initial(number);
         let zero = Expr::Number(0.0);

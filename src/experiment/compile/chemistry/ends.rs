@@ -227,6 +227,9 @@ impl Ends<'_, '_> {
             let message = format!("the system `{name}` has no quantity `{id}`");
             return Err(within(&end.location, &label, message, "name a quantity that its document declares"));
         };
+        if part.is_local(quantity) {
+            return Err(super::links::differs(end));
+        }
         let has = |kind: &usize| part.kinds.contains(kind);
         match whose {
             None if !part.kinds.is_empty() => {

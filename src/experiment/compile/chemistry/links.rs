@@ -136,6 +136,12 @@ fn link(ends: &mut Ends, description: &LinkDescription) -> Result<Link, Fault> {
             uses.push(quantity);
         }
     });
+    if let Some(used) = uses.iter().find(|used| ends.part.is_local(**used)) {
+        let id = &ends.part.document.system.quantities[*used as usize].id;
+        let message = format!("the transfer uses `{id}`, which differs from atom to atom");
+        let help = "use a <mean> or an <integral> of it";
+        return Err(within(&description.location, "on the membrane", message, help));
+    }
     ends.check_grid(description, &from, &to)?;
     let text = format!("of `{}` from {} to {}", ends.part.name, description.from.text, description.to.text);
     let (transfer, gain) = (description.transfer.clone(), description.gain);
@@ -236,6 +242,13 @@ fn fault_of(document: &Document, key: &str, trouble: &Trouble) -> Fault {
     fault.at(location)
 }
 
+/// An end that is another number at each atom.
+pub(super) fn differs(end: &Endpoint) -> Fault {
+    let message = format!("{} differs from atom to atom, and a link carries one number of a cell", end.text);
+    let help = "link from a <mean> or an <integral> of it";
+    within(&end.location, "on the membrane", message, help)
+}
+
 impl Ends<'_, '_> {
     /// Whose link it is.
     pub(super) fn owner(&self) -> Owner {
@@ -245,6 +258,7 @@ impl Ends<'_, '_> {
     /// Where a number comes from.
     fn source(&mut self, end: &Endpoint) -> Result<crate::sim::chemistry::Source, Fault> {
         match &end.root {
+            Root::System(quantity) if self.part.is_local(*quantity) => Err(differs(end)),
             Root::System(quantity) if !self.part.is_field() => Ok(crate::sim::chemistry::Source::Own(*quantity)),
             Root::System(_) => Err(within(
                 &end.location,
@@ -259,6 +273,10 @@ impl Ends<'_, '_> {
     /// Where a number goes.
     fn target(&mut self, end: &Endpoint) -> Result<Target, Fault> {
         let Root::System(quantity) = end.root else { return self.set(end) };
+        if self.part.is_given(quantity) {
+            let message = format!("{} cannot be set by a link: it is taken from the membrane", end.text);
+            return Err(within(&end.location, "not an input", message, "link to an <input>"));
+        }
         let location = if self.part.is_field() {
             let id = &self.part.document.system.quantities[quantity as usize].id;
             let inputs = self.chemistry.fields[self.part.number].system.inputs();

@@ -2,15 +2,16 @@
 
 mod ends;
 mod links;
+mod membrane;
 mod names;
 mod order;
 mod profile;
 mod read;
 
 use super::super::{Chemistry as Entry, Document, Scheme};
-use crate::equations::eml;
+use crate::equations::eml::{self, Level};
 use crate::equations::program::{Program, initial_values};
-use crate::equations::tree::Role;
+use crate::equations::tree::{QuantityId, Role};
 use crate::error::{Error, Fault, Location};
 use crate::field::{FieldSystem, Fields, Placing};
 use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Tolerances, assigned_parameters, too_large};
@@ -36,6 +37,18 @@ struct Part<'a> {
 impl Part<'_> {
     fn is_field(&self) -> bool {
         !self.document.fields.is_empty()
+    }
+
+    /// Whether a quantity differs from atom to atom of a membrane.
+    fn is_local(&self, quantity: QuantityId) -> bool {
+        self.document.membrane.as_ref().is_some_and(|membrane| membrane.local[quantity as usize])
+    }
+
+    /// Whether a quantity is given by a membrane: a measure of the cell, or a sum over its surface.
+    fn is_given(&self, quantity: QuantityId) -> bool {
+        let Some(membrane) = &self.document.membrane else { return false };
+        let id = self.document.system.quantities[quantity as usize].id.as_str();
+        eml::SURFACE.contains(&id) || membrane.totals.iter().any(|total| total.quantity == quantity)
     }
 
     /// The key of the experiment that says something of it.
@@ -77,7 +90,10 @@ pub fn chemistry(
     }
     links::open_linked_parameters(&mut parts);
     for part in parts.iter().filter(|part| !part.is_field()) {
-        chemistry.reactors.extend(reactor(document, part, faults));
+        chemistry.reactors.extend(match part.document.level {
+            Level::Membrane => membrane::reactor(document, part, kinds, faults),
+            _ => reactor(document, part, faults),
+        });
     }
     // Ends of links name systems and fields by their numbers, which stand only when all are there.
     if faults.len() == before {
@@ -139,6 +155,7 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         name: part.name.to_owned(),
         program,
         events,
+        membrane: None,
         members,
         seconds: eml.seconds,
         method,

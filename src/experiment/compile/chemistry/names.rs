@@ -29,6 +29,13 @@ fn series(chemistry: &Chemistry, path: &str, text: &str) -> Option<(String, Faul
         let is_there = reactor.program.names.iter().any(|name| name == quantity);
         return match known().any(|id| id == quantity) {
             true => None,
+            false if reactor.membrane.as_ref().is_some_and(|membrane| membrane.system.variable(quantity).is_some()) => {
+                let fault =
+                    Fault::new(format!("`{path}`: `{quantity}` of `{system}` is on the membrane, one number an atom"));
+                let help =
+                    format!("take a <mean> or <integral> of it in the document; series are {}", words::all_of(known()));
+                Some(("one number an atom".into(), fault.help(help)))
+            }
             false if is_there => {
                 let fault =
                     Fault::new(format!("`{path}`: `{quantity}` of `{system}` keeps its value and is not recorded"));

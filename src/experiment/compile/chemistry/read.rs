@@ -69,7 +69,12 @@ fn set(document: &Document, name: &str, entry: &Entry, eml: &mut eml::Document, 
         };
         let quantity = &mut system.quantities[number as usize];
         let is_field = eml.fields.iter().any(|field| field.quantity == number);
-        let refused = if is_field {
+        let is_given = eml.membrane.as_ref().is_some_and(|membrane| {
+            eml::SURFACE.contains(&id.as_str()) || membrane.totals.iter().any(|total| total.quantity == number)
+        });
+        let refused = if is_given {
+            Some("it is taken from the membrane: set what it is taken of")
+        } else if is_field {
             Some("it is a field, which starts from a profile: set a parameter that its initial expression uses")
         } else if matches!(quantity.role, Role::Defined { .. }) {
             Some("its definition gives it: set what the definition uses")
@@ -95,6 +100,11 @@ fn check_level(document: &Document, name: &str, eml: &eml::Document, owners: &[u
         let fault = Fault::new(format!("`{name}` is a document of fields, which cells cannot have"))
             .help(format!("remove \"{name}\" from the types' `chemistry`; cells sense a field through links"));
         faults.push(at(document, &format!("chemistry.{name}.document"), "fields", fault));
+    }
+    if eml.level == Level::Membrane && owners.is_empty() {
+        let fault = Fault::new(format!("`{name}` is of membranes (level=\"membrane\"), but no type of cells has it"))
+            .help(format!("add `chemistry = [\"{name}\"]` to a type of cells"));
+        faults.push(at(document, &format!("chemistry.{name}.document"), "no type has it", fault));
     }
     if eml.level == Level::Cell && owners.is_empty() {
         let fault = Fault::new(format!("`{name}` is a system of cells (level=\"cell\"), but no type of cells has it"))

@@ -1,0 +1,207 @@
+//! The compiled equations on a block of cells: one pass over the atoms, eight numbers side by side (eight cells of a block, or eight
+//! atoms of a cell that stands alone).
+
+use std::ops::Range;
+
+use super::shape;
+use super::system::{MembraneSystem, Slot};
+use crate::equations::eml::Taken;
+use crate::equations::program::code::Code;
+use crate::equations::program::{Lanes, Program, run};
+
+/// Numbers side by side.
+pub const WIDTH: usize = 8;
+
+/// Register files of the three programs.
+#[derive(Debug, Default)]
+pub struct Registers {
+    /// The programs that they were made for.
+    key: Option<[u64; 3]>,
+    surface: Vec<Lanes<WIDTH>>,
+    inside: Vec<Lanes<WIDTH>>,
+    start: Vec<Lanes<WIDTH>>,
+}
+
+impl Registers {
+    pub fn suit(&mut self, system: &MembraneSystem) {
+        let key = Some([system.surface.mark, system.inside.mark, system.start.mark]);
+        if self.key != key {
+            (self.surface, self.inside, self.start) =
+                (system.surface.file(), system.inside.file(), system.start.file());
+            self.key = key;
+        }
+        // Constants stand where no code writes; they are set anew since other numbers may be poisoned.
+        system.surface.set_constants(&mut self.surface);
+        system.inside.set_constants(&mut self.inside);
+        system.start.set_constants(&mut self.start);
+    }
+
+    pub fn poison(&mut self) {
+        for file in [&mut self.surface, &mut self.inside, &mut self.start] {
+            file.fill([f64::NAN; WIDTH]);
+        }
+    }
+}
+
+/// What is the same for all atoms of a cell.
+pub struct Cell<'a, const L: usize> {
+    pub time: [f64; L],
+    pub pools: &'a [[f64; L]],
+    pub area: [f64; L],
+    pub volume: [f64; L],
+}
+
+/// One number of each lane for each of eight: as they are, or that of the only cell for all its atoms.
+#[inline(always)]
+fn spread<const L: usize>(value: &[f64; L]) -> Lanes<WIDTH> {
+    std::array::from_fn(|l| value[l % L])
+}
+
+/// Fills what all atoms of a cell share.
+#[inline(always)]
+fn fill<const L: usize>(
+    program: &Program,
+    slots: &[Slot],
+    cell: &Cell<L>,
+    open: &[[f64; L]],
+    file: &mut [Lanes<WIDTH>],
+) {
+    file[0] = spread(&cell.time);
+    for (register, slot) in file[program.first_open()..].iter_mut().zip(slots) {
+        match *slot {
+            Slot::Position(_) => {}
+            Slot::Pool(pool) => *register = spread(&cell.pools[pool]),
+            Slot::Open(number) => *register = spread(&open[number]),
+            Slot::Area => *register = spread(&cell.area),
+            Slot::Volume => *register = spread(&cell.volume),
+        }
+    }
+}
+
+/// Runs a code for all atoms, and shows the registers after each group: which numbers of a row they belong to.
+#[inline(always)]
+fn sweep<const L: usize>(
+    (program, code, slots): (&Program, &Code, &[Slot]),
+    y: &[[f64; L]],
+    coordinates: &[[f64; L]],
+    file: &mut [Lanes<WIDTH>],
+    mut each: impl FnMut(Range<usize>, &[Lanes<WIDTH>]),
+) {
+    let (y, x) = (y.as_flattened(), coordinates.as_flattened());
+    let length = x.len() / 3;
+    for first in (0..length).step_by(WIDTH) {
+        let count = WIDTH.min(length - first);
+        for (variable, register) in file[1..=program.size()].iter_mut().enumerate() {
+            register[..count].copy_from_slice(&y[variable * length + first..][..count]);
+        }
+        for (register, slot) in file[program.first_open()..].iter_mut().zip(slots) {
+            if let Slot::Position(axis) = *slot {
+                register[..count].copy_from_slice(&x[axis * length + first..][..count]);
+            }
+        }
+        run(code, file);
+        each(first..first + count, file);
+    }
+}
+
+/// Works out what is summed over the surface, eq. (surface.4), and puts it among what is open of the inside.
+#[inline(always)]
+pub fn sum<const L: usize>(
+    system: &MembraneSystem,
+    cell: &Cell<L>,
+    [y, areas, coordinates]: [&[[f64; L]]; 3],
+    open: &mut [[f64; L]],
+    registers: &mut Registers,
+) {
+    open[system.measures[0]] = cell.area;
+    open[system.measures[1]] = cell.volume;
+    if system.sums.is_empty() {
+        return;
+    }
+    for sum in &system.sums {
+        open[sum.open] = [0.0; L];
+    }
+    let (program, code) = (&system.surface, &system.surface.further[0]);
+    fill(program, &system.slots, cell, open, &mut registers.surface);
+    let areas = areas.as_flattened();
+    sweep((program, code, &system.slots), y, coordinates, &mut registers.surface, |numbers, file| {
+        for (sum, &output) in system.sums.iter().zip(&code.outputs) {
+            let total = &mut open[sum.open];
+            // Numbers of a group are eight cells, or eight atoms of one: added in the order of the atoms either way.
+            for (value, number) in file[output as usize].iter().zip(numbers.clone()) {
+                total[number % L] += areas[number] * value;
+            }
+        }
+    });
+    for sum in system.sums.iter().filter(|sum| sum.taken == Taken::Mean) {
+        for l in 0..L {
+            open[sum.open][l] /= cell.area[l];
+        }
+    }
+}
+
+/// Rates of change of all variables on the surface, `[variable][atom]`, and of the pools.
+#[inline(always)]
+pub fn rates<const L: usize>(
+    system: &MembraneSystem,
+    cell: &Cell<L>,
+    (y, coordinates): (&[[f64; L]], &[[f64; L]]),
+    open: &[[f64; L]],
+    registers: &mut Registers,
+    (surface, pools): (&mut [[f64; L]], &mut [[f64; L]]),
+) {
+    let (program, code) = (&system.surface, &system.surface.rates);
+    fill(program, &system.slots, cell, open, &mut registers.surface);
+    let (rates, length) = (surface.as_flattened_mut(), coordinates.len() / 3 * L);
+    sweep((program, code, &system.slots), y, coordinates, &mut registers.surface, |numbers, file| {
+        for (variable, &output) in code.outputs.iter().enumerate() {
+            let row = &mut rates[variable * length..][..length][numbers.clone()];
+            row.copy_from_slice(&file[output as usize][..row.len()]);
+        }
+    });
+    if pools.is_empty() {
+        return;
+    }
+    let (program, file) = (&system.inside, &mut registers.inside);
+    file[0] = spread(&cell.time);
+    for (register, value) in file[1..].iter_mut().zip(cell.pools.iter().chain(open)) {
+        *register = spread(value);
+    }
+    run(&program.rates, file);
+    for (rate, &output) in pools.iter_mut().zip(&program.rates.outputs) {
+        rate.copy_from_slice(&file[output as usize][..L]);
+    }
+}
+
+/// The values of all variables at the start: on the surface `[variable][atom]`, and of the pools.
+#[inline(always)]
+pub fn start<const L: usize>(
+    system: &MembraneSystem,
+    cell: &Cell<L>,
+    coordinates: &[[f64; L]],
+    open: &[[f64; L]],
+    registers: &mut Registers,
+    (surface, pools): (&mut [[f64; L]], &mut [[f64; L]]),
+) {
+    let (program, code) = (&system.start, &system.start.further[0]);
+    fill(program, &system.start_slots, cell, open, &mut registers.start);
+    let (values, length) = (surface.as_flattened_mut(), coordinates.len() / 3 * L);
+    let count = system.variables();
+    sweep((program, code, &system.start_slots), &[], coordinates, &mut registers.start, |numbers, file| {
+        for (variable, &output) in code.outputs[..count].iter().enumerate() {
+            let row = &mut values[variable * length..][..length][numbers.clone()];
+            row.copy_from_slice(&file[output as usize][..row.len()]);
+        }
+        if numbers.start == 0 {
+            for (pool, &output) in pools.iter_mut().zip(&code.outputs[count..]) {
+                pool.copy_from_slice(&file[output as usize][..L]);
+            }
+        }
+    });
+}
+
+/// Area and volume of the cells of a block.
+#[inline(always)]
+pub fn measures<const L: usize>(mesh: &super::SurfaceMesh, x: &[[f64; L]], areas: &[[f64; L]]) -> ([f64; L], [f64; L]) {
+    (shape::total(areas), shape::volume(mesh, x))
+}
