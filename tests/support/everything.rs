@@ -56,7 +56,7 @@ mesh = { shape = "icosphere", radius = "5 um", level = 1 }
 placement = { at = [["0 um", "0 um", "5.02 um"], ["9.9 um", "0 um", "5.02 um"], ["0 um", "9.9 um", "5.02 um"]] }
 mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
 motility = { brownian = { speed = "2 um/min", persistence = "PERSISTENCE" } }
-pseudopods = { pressure = "5 Pa", contraction = "10 pN", pause = "0.1 s", protrusion = "0.4 s", retraction = "0.4 s" }
+pseudopods = { pressure = "0.5 Pa", contraction = "1 pN", pause = "0.1 s", protrusion = "0.4 s", retraction = "0.4 s" }
 loads = [{ name = "push", all = true, direction = [0, 0, -1], force = "4 pN" }]
 fibres = [{ name = "trunk", pairs = [[0, 20]], stiffness = "1 pN/um" }]
 chemistry = ["own", "skin"]
