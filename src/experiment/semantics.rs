@@ -38,6 +38,7 @@ pub(super) fn check(document: &Document) -> Vec<Fault> {
         }
     }
     check.chemistry();
+    check.grips();
     check.scene();
     check.contact();
     check.measures();

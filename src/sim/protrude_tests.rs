@@ -52,8 +52,8 @@ fn a_cell_pushes_itself_with_neither_sum_nor_torque_wherever_it_grips() {
             let did = Activity { direction: [0.6, 0.8, 0.0], protrusion, retraction };
             positions.push(&PODS, &did, &grips, &mut forces);
             let [sum, torque] = sum_and_torque(&positions, &forces);
-            // Round-off of some hundred terms, over the worst condition: two atoms of 162 hold what all turn about.
-            assert!(sum < 1e-13 && torque < 1e-12, "{words}, {protrusion} {retraction}: {sum} {torque}");
+            // Round-off of some hundred terms; where one atom grips the terms that cancel are a hundred times as large, as little leaks to others.
+            assert!(sum < 1e-12 && torque < 1e-12, "{words}, {protrusion} {retraction}: {sum} {torque}");
             assert!(forces.iter().any(|force| force.norm() > 1e-3), "{words}: something is pushed");
         }
     }
@@ -64,17 +64,17 @@ fn what_grips_bears_what_is_pushed_in_proportion() {
     let (kind, now) = cell();
     let positions = Positions { kind: &kind, now: &now, cell: 0 };
     let centre = positions.centre();
-    let grips: Vec<f64> = positions.all().map(|x| if x.z < centre.z - 3.0 { 2.0 } else { 0.0 }).collect();
+    let grips: Vec<f64> = positions.all().map(|x| if x.z < centre.z - 4.0 { 2.0 } else { 0.0 }).collect();
     let did = Activity { direction: [1.0, 0.0, 0.0], protrusion: 1.0, retraction: 0.0 };
     let mut forces = vec![Vec3::zeros(); kind.atoms()];
     positions.push(&PODS, &did, &grips, &mut forces);
     let held: Vec3 = forces.iter().zip(&grips).filter(|(_, grip)| **grip > 0.0).map(|(force, _)| force).sum();
-    let pushed: Vec3 =
-        forces.iter().zip(positions.all()).filter(|(_, x)| (x - centre).x > 3.0).map(|(force, _)| force).sum();
+    let in_front = |atom: usize| positions.share(&PODS, atom, (&centre, &Vec3::x())) > 0.0;
+    let pushed: Vec3 = (0..kind.atoms()).filter(|atom| in_front(*atom)).map(|atom| forces[atom]).sum();
     assert!(pushed.x > 100.0, "the front is pushed with {pushed}");
-    // All but what leaks to atoms that do not grip.
+    // All but the hundredth that leaks to atoms that do not grip; these have the longest levers, and bear a part of the torque.
     let share = -held.x / pushed.x;
-    assert!((0.95..=1.05).contains(&share), "{share}");
+    assert!((0.9..=1.05).contains(&share), "{share}");
 }
 
 #[test]

@@ -14,14 +14,21 @@ impl Check<'_> {
             let message = format!("`{path}` needs a closed mesh; a sheet or a triangle has no inside that pushes out");
             self.fault(&path, "nothing to push from", message, "give a closed mesh, or remove the pseudopods");
         }
-        let model = self.document.experiment.contact.as_ref().map(|contact| contact.model);
+        self.angles_of_pseudopods(&path, pods);
+        self.steps_in_cycles(&path, pods);
+    }
+
+    /// Only some models of contact say what an atom bears along a surface.
+    pub(super) fn grips(&mut self) {
+        let experiment = &self.document.experiment;
+        let Some((name, _)) = experiment.cells.iter().find(|(_, cell)| cell.pseudopods.is_some()) else { return };
+        let (path, model) =
+            (format!("cells.{name}.pseudopods"), experiment.contact.as_ref().map(|contact| contact.model));
         if let Some(ContactModel::Links | ContactModel::VirtualAdhesives | ContactModel::Penalty) = model {
             let message =
                 format!("`{path}` needs contacts that say how much a cell grips, and `contact.model` has none");
             self.fault("contact.model", "not with pseudopods", message, "take the model \"cohesion\" or \"adhesives\"");
         }
-        self.angles_of_pseudopods(&path, pods);
-        self.steps_in_cycles(&path, pods);
     }
 
     fn angles_of_pseudopods(&mut self, path: &str, pods: &Pseudopods) {
