@@ -10,7 +10,7 @@ use crate::geometry::{Surface, area, sheet};
 fn sheared() -> Surface {
     let mut surface = sheet(8.0, 8.0, 8, 8);
     for (atom, p) in surface.positions.iter_mut().enumerate() {
-        let shift = [0.25 * (3.1 * atom as f64).sin(), 0.2 * (1.7 * atom as f64).cos()];
+        let shift = [0.1 * (3.1 * atom as f64).sin(), 0.08 * (1.7 * atom as f64).cos()];
         *p = Vec3::new(p.x + 1.5 * p.y + shift[0], p.y + shift[1], 0.0);
     }
     surface
