@@ -6,10 +6,13 @@ use super::solve::{Gradients, Matrix, outflow, solve};
 use crate::Vec3;
 use crate::geometry::{Surface, area, sheet};
 
-/// A flat sheet, sheared until its diagonals are longer than the sides that they should cut: of each facet one angle is obtuse.
+/// A flat sheet, sheared until most facets have an obtuse angle, with atoms that stand where no symmetry helps.
 fn sheared() -> Surface {
     let mut surface = sheet(8.0, 8.0, 8, 8);
-    surface.positions.iter_mut().for_each(|p| *p = Vec3::new(p.x + 1.5 * p.y, p.y, 0.0));
+    for (atom, p) in surface.positions.iter_mut().enumerate() {
+        let shift = [0.1 * (3.1 * atom as f64).sin(), 0.08 * (1.7 * atom as f64).cos()];
+        *p = Vec3::new(p.x + 1.5 * p.y + shift[0], p.y + shift[1], 0.0);
+    }
     surface
 }
 
@@ -69,7 +72,8 @@ fn linear_systems_with_negative_weights_are_solved() {
         assert_eq!(solve(&matrix, &right, &mut y, &[1e-12], &mut work), [true], "factor {factor}");
         let wrong = |i: usize| areas[i][0] * (y[i][0] - right[i][0]) + factor * outflow(&mesh, &weights, &y, i)[0];
         let worst = (0..mesh.atoms).map(|i| (wrong(i) / areas[i][0]).abs()).fold(0.0, f64::max);
-        // The residual that is worked out anew, not the one that the rounds carry along: round-off grows with the factor.
-        assert!(worst < 1e-11 + 1e-15 * factor, "factor {factor}: {worst}");
+        // The residual that is worked out anew, not the one that the rounds carry along: each of some fifty rounds leaves a round-off of
+        // 2e-16 times the factor.
+        assert!(worst < 1e-11 + 1e-14 * factor, "factor {factor}: {worst}");
     }
 }

@@ -228,7 +228,7 @@ impl Ends<'_, '_> {
             return Err(within(&end.location, &label, message, "name a quantity that its document declares"));
         };
         if part.is_local(quantity) {
-            return Err(super::links::differs(end));
+            return Err(differs(end));
         }
         let has = |kind: &usize| part.kinds.contains(kind);
         match whose {
@@ -405,4 +405,11 @@ pub(super) fn kind_of_cell(counts: &[usize], cell: u64) -> Option<usize> {
         Some(*end)
     });
     ends.enumerate().find(|(_, end)| cell < *end).map(|(kind, _)| kind)
+}
+
+/// An end that is another number at each atom.
+pub(super) fn differs(end: &Endpoint) -> Fault {
+    let message = format!("{} differs from atom to atom, and a link carries one number of a cell", end.text);
+    let help = "link from a <mean> or an <integral> of it";
+    within(&end.location, "on the membrane", message, help)
 }

@@ -1,7 +1,7 @@
 //! Links: those in the documents of equations and those that the experiment adds, joined to the model.
 
 use super::super::super::{ChemistryLink, Document};
-use super::ends::{Ends, Side, kind_of_cell};
+use super::ends::{Ends, Side, differs, kind_of_cell};
 use super::order::order;
 use super::{Part, at, within};
 use crate::equations::eml::{self, Endpoint, LinkDescription, Root};
@@ -240,13 +240,6 @@ fn fault_of(document: &Document, key: &str, trouble: &Trouble) -> Fault {
         location.length = trouble.at.len();
     }
     fault.at(location)
-}
-
-/// An end that is another number at each atom.
-pub(super) fn differs(end: &Endpoint) -> Fault {
-    let message = format!("{} differs from atom to atom, and a link carries one number of a cell", end.text);
-    let help = "link from a <mean> or an <integral> of it";
-    within(&end.location, "on the membrane", message, help)
 }
 
 impl Ends<'_, '_> {
