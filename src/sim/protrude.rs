@@ -40,7 +40,10 @@ pub fn find_grips(model: &Model, from: &State, ws: &mut Workspace) {
     let Workspace { contact, grips, .. } = ws;
     grips.clear();
     grips.resize(from.atoms(model), 0.0);
-    add_grips(contact, grips);
+    // Scratch of contacts may hold those of another model.
+    if model.contact.is_some() {
+        add_grips(contact, grips);
+    }
 }
 
 /// Adds what contacts bear, in the order in which they were found, however they are swept.
