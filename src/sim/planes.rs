@@ -287,7 +287,9 @@ fn reach(scene: &Scene, target: f64, from: usize, s: &mut TouchScratch) {
         column[3 * atom..3 * atom + 3].copy_from_slice(scene.model.planes[*p].normal.as_slice());
     }
     match scene.system {
-        System::Shared(_) => copies.solve(scene, &c.x, columns),
+        System::Shared(_) => copies.solve(kind, &scene.system, &c.x, columns),
+        // The factor of a cell that stands alone serves many right sides at a time, too.
+        System::Own { lanes: (1, _), .. } => copies.solve(kind, &scene.system.of_all_lanes(), &c.x, columns),
         System::Own { .. } => {
             for array in [&mut c.spare, &mut c.spare2] {
                 array.resize(size, 0.0);
@@ -310,7 +312,7 @@ fn reach(scene: &Scene, target: f64, from: usize, s: &mut TouchScratch) {
 
 impl Copies {
     /// Solves for columns of a cell whose atoms are at `x`, as many at a time as there are lanes, which takes about as long as one alone.
-    fn solve(&mut self, scene: &Scene, x: &[f64], columns: &mut [f64]) {
+    fn solve(&mut self, kind: &Kind, system: &System, x: &[f64], columns: &mut [f64]) {
         let size = x.len();
         self.x.clear();
         self.x.extend(x.iter().flat_map(|value| [*value; LANES]));
@@ -323,7 +325,7 @@ impl Copies {
                 self.columns.chunks_exact_mut(LANES).zip(column).for_each(|(row, value)| row[lane] = *value);
             }
             let Self { x, columns: together, spare, spare2 } = self;
-            solve_block(scene.kind, LANES, &scene.system, x, together, spare, spare2);
+            solve_block(kind, LANES, system, x, together, spare, spare2);
             for (lane, column) in columns.chunks_exact_mut(size).enumerate() {
                 self.columns.chunks_exact(LANES).zip(column).for_each(|(row, value)| *value = row[lane]);
             }

@@ -95,6 +95,16 @@ impl System<'_> {
         }
     }
 
+    /// The same for all cells of the block.
+    pub fn of_all_lanes(self) -> Self {
+        match self {
+            Self::Shared(_) => self,
+            Self::Own { mobility, tangent, factor, lanes } => {
+                Self::Own { mobility, tangent, factor, lanes: (lanes.0, None) }
+            }
+        }
+    }
+
     /// Takes out of an error what the stiff shapes of a cell have by being stiff, eq. (step.9); scratch has the same size.
     pub fn filter(&self, kind: &Kind, x: &[f64], error: &mut [f64], rigid: &mut [f64], scratch: &mut [f64]) {
         let mobility = self.mobility();
