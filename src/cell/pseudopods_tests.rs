@@ -57,14 +57,23 @@ fn pseudopods_split_off_at_the_angle_and_to_the_other_side_as_often_as_is_said()
 
 #[test]
 fn a_cue_makes_directions_likelier_by_its_exponential() {
-    // Without splits and for a weak cue the mean cosine to the cue is that of e^(c cos), I1(c)/I0(c), up to what eight candidates lack.
     let pods = Pseudopods { turning: Turning { split: 0.0, ..PODS.turning }, ..PODS };
     let told = Told { cue: [0.5, 0.0, 0.0], ..Told::NOTHING };
     let all = run(&pods, &told, 10_000);
     let mean = all.iter().map(|(direction, _)| direction.x).sum::<f64>() / all.len() as f64;
-    // I1(0.5)/I0(0.5) = 0.2424; of N candidates that are drawn first the mean is lower by a part of order 1/N.
-    assert!((mean - 0.2424 * (1.0 - 1.0 / CANDIDATES as f64)).abs() < 0.03, "{mean}");
+    // What the chances of eq. (pseudopods.1) make of as many even directions, from numbers of its own.
+    let mut stream = Stream::new(9, Purpose::Placement, 0, 0);
+    let expected = (0..50_000).map(|_| {
+        let cosines = [(); CANDIDATES].map(|()| (std::f64::consts::TAU * stream.uniform_pair()[0]).cos());
+        let weights = cosines.map(|cosine| (0.5 * cosine).exp());
+        cosines.iter().zip(weights).map(|(cosine, weight)| cosine * weight).sum::<f64>() / weights.iter().sum::<f64>()
+    });
+    let expected = expected.sum::<f64>() / 50_000.0;
+    // A cosine deviates by 0.7: three standard errors of the mean of 10 000 are 0.021, those of the expectation 0.004.
+    assert!((mean - expected).abs() < 0.022, "{mean} for {expected}");
+    assert!(expected > 0.15, "the cue is seen: {expected}");
     let none = run(&pods, &Told::NOTHING, 10_000);
+    // x + y deviates by 1.
     let mean = none.iter().map(|(direction, _)| direction.sum()).sum::<f64>() / none.len() as f64;
     assert!(mean.abs() < 0.03, "{mean}");
 }

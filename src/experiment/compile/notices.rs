@@ -1,6 +1,6 @@
 //! What is worth a word before a run though nothing is wrong: sizes that no cell has, cells that nothing keeps apart.
 
-use super::super::{Document, Mesh};
+use super::super::{CellType, Document, Mesh};
 use super::{Prepared, bonds};
 use crate::Vec3;
 use crate::cell::Behaviour;
@@ -48,17 +48,25 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
 
 /// That the pseudopods of a kind have nothing that resists sliding to push off from.
 fn pushes_off_nothing(document: &Document, kind: &Kind) -> Option<String> {
-    let grips = document.experiment.contact.as_ref().is_some_and(|contact| {
-        let resists =
-            |shear: Option<Stress>, strength: Option<Stress>| shear.or(strength).is_some_and(|it| it.value() > 0.0);
-        let between = contact.between.iter().any(|pair| resists(pair.shear_strength, pair.strength));
-        between || resists(contact.shear_strength, contact.strength) || contact.energy.is_some()
+    let experiment = &document.experiment;
+    let others = experiment.cells.values().map(CellType::most).sum::<usize>() > 1;
+    let grips = experiment.contact.as_ref().is_some_and(|contact| {
+        // Where only an energy or a range is given, a strength follows from it, and surfaces resist sliding by that.
+        let resists = |shear: Option<Stress>, strength: Option<Stress>, energy: bool| {
+            shear.or(strength).map_or(energy, |it| it.value() > 0.0)
+        };
+        let mut pairs = contact.between.iter().filter(|pair| pair.types.contains(&kind.name));
+        // Nothing sticks to a plane unless the table says so; cells stick to each other by what is said of all.
+        pairs.any(|pair| pair.friction.is_some() || resists(pair.shear_strength, pair.strength, pair.energy.is_some()))
+            || others
+                && (contact.friction.is_some()
+                    || resists(contact.shear_strength, contact.strength, contact.energy.is_some()))
     });
     (kind.has_pseudopods() && !grips).then(|| {
         let name = &kind.name;
         format!(
             "pseudopods of `{name}` push off nothing: a cell pushes forward what it grips backward, and stays where it is \
-             without a grip; give [contact] a `strength` and something to touch"
+             without a grip; add [[contact.between]] with `types = [\"{name}\", …]`, a plane or another type, and a `shear_strength`"
         )
     })
 }

@@ -33,13 +33,18 @@ impl Check<'_> {
 
     fn angles_of_pseudopods(&mut self, path: &str, pods: &Pseudopods) {
         for (key, angle, most, help) in [
-            ("half_angle", pods.half_angle, FRAC_PI_2, "give an angle above 0 deg, up to 90 deg"),
-            ("angle", pods.angle, PI, "give an angle above 0 deg, up to 180 deg"),
+            (
+                "half_angle",
+                pods.half_angle,
+                FRAC_PI_2,
+                "half the opening of the front is above 0 deg, up to 90 deg; 45 deg is usual",
+            ),
+            ("angle", pods.angle, PI, "an angle between two pseudopods is above 0 deg, up to 180 deg; 60 deg is usual"),
         ] {
             let path = format!("{path}.{key}");
             // Written in degrees, the largest may be larger by round-off.
             if !(angle.value() > 0.0 && angle.value() <= most * (1.0 + 1e-9)) {
-                self.fault(&path, "out of range", format!("`{path}` is no such angle"), help);
+                self.fault(&path, "out of range", format!("`{path}` is {:.4} deg", angle.value().to_degrees()), help);
             }
         }
         if pods.spread.value() < 0.0 {
