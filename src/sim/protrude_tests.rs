@@ -81,7 +81,7 @@ fn what_grips_bears_what_is_pushed_in_proportion() {
 fn the_pressure_is_that_on_the_area_of_the_front() {
     let rest = icosphere(5.0, 3);
     let kind = Kind::new("cell", rest.clone(), Vec::new());
-    let now = KindState::new(&kind, &[rest.positions.clone()], 0, Inertia::OverDamped, 1);
+    let now = KindState::new(&kind, std::slice::from_ref(&rest.positions), 0, Inertia::OverDamped, 1);
     let positions = Positions { kind: &kind, now: &now, cell: 0 };
     let (centre, direction) = (positions.centre(), Vec3::x());
     // The rear bears the reaction.
