@@ -56,6 +56,36 @@ pub enum Setting {
     Atom(usize, usize),
     /// Amount of a field's substance that the cell releases in a second; negative: takes up.
     Secretion(String),
+    /// Something of every atom.
+    Atoms(AtomSetting),
+}
+
+/// What differs from atom to atom of a cell and can be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AtomReading {
+    /// A component of the outward unit normal, eq. (coupling.2).
+    Normal(usize),
+    /// Mean curvature, per µm, eq. (coupling.3).
+    Curvature,
+    /// (A − A₀)/A₀ of the area of the atom, A₀ that of the mesh at rest.
+    AreaStrain,
+    /// 1 where the atom is near another cell, as it is recorded, and else 0.
+    InContact,
+    /// 1 where the atom stands on a plane, and else 0.
+    OnPlane,
+}
+
+/// What chemistry can set of atoms.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum AtomSetting {
+    /// Pressure along the outward normal, pN/µm².
+    Protrusion,
+    /// Tension of the surface, beside that of the type, pN/µm.
+    Tension,
+    /// Factor of the strength with which the atom sticks.
+    Adhesion,
+    /// Amount of a field's substance that is released in a second and on a µm²; negative: taken up.
+    Secretion(String),
 }
 
 /// What chemistry may tell pseudopods.
@@ -81,7 +111,7 @@ pub enum Sense {
 }
 
 /// What can be read, as messages list it.
-pub const READABLE: [&str; 15] = [
+pub const READABLE: [&str; 21] = [
     "position.x",
     "atom[0].x",
     "velocity.x",
@@ -97,6 +127,12 @@ pub const READABLE: [&str; 15] = [
     "field[NAME].gradient.x",
     "field[NAME].steepness",
     "chemistry[NAME].ID",
+    "atoms.normal.x",
+    "atoms.curvature",
+    "atoms.area_strain",
+    "atoms.in_contact",
+    "atoms.on_plane",
+    "atoms.field[NAME]",
 ];
 
 /// What can be set, as messages list it.
@@ -105,7 +141,8 @@ pub fn settable() -> Vec<String> {
     let pods = ["pseudopods.cue.x", "pseudopods.protrusion", "pseudopods.retraction"];
     let forces = CONTROLLED.map(|handle| format!("{}[NAME]", handle.word));
     let last = ["atom[0].x", "secretion[FIELD]"].map(String::from);
-    own.into_iter().chain(pods).map(String::from).chain(forces).chain(last).collect()
+    let atoms = ["protrusion", "tension", "adhesion", "secretion[FIELD]"].map(|word| format!("atoms.{word}"));
+    own.into_iter().chain(pods).map(String::from).chain(forces).chain(last).chain(atoms).collect()
 }
 
 /// The word of a handle of forces, by its number.
@@ -131,6 +168,18 @@ pub fn reading(path: &[Step]) -> Option<Reading> {
     })
 }
 
+/// The meaning of the words behind `cell.atoms.`, if they can be read from the cell alone.
+pub fn atom_reading(path: &[Step]) -> Option<AtomReading> {
+    Some(match words(path)[..] {
+        [("normal", None), (axis, None)] => AtomReading::Normal(component(axis)?),
+        [("curvature", None)] => AtomReading::Curvature,
+        [("area_strain", None)] => AtomReading::AreaStrain,
+        [("in_contact", None)] => AtomReading::InContact,
+        [("on_plane", None)] => AtomReading::OnPlane,
+        _ => return None,
+    })
+}
+
 /// The meaning of the words behind `cell.`, if they can be set.
 pub fn setting(path: &[Step]) -> Option<Setting> {
     Some(match words(path)[..] {
@@ -145,6 +194,12 @@ pub fn setting(path: &[Step]) -> Option<Setting> {
         [("rest_volume_ratio", None)] => Setting::RestVolumeRatio,
         [("atom", Some(Index::Number(atom))), (axis, None)] => Setting::Atom(*atom, component(axis)?),
         [("secretion", Some(Index::Name(name)))] => Setting::Secretion(name.clone()),
+        [("atoms", None), ("protrusion", None)] => Setting::Atoms(AtomSetting::Protrusion),
+        [("atoms", None), ("tension", None)] => Setting::Atoms(AtomSetting::Tension),
+        [("atoms", None), ("adhesion", None)] => Setting::Atoms(AtomSetting::Adhesion),
+        [("atoms", None), ("secretion", Some(Index::Name(name)))] => {
+            Setting::Atoms(AtomSetting::Secretion(name.clone()))
+        }
         [(word, Some(Index::Name(name)))] => {
             Setting::Force(CONTROLLED.iter().position(|handle| handle.word == word)?, name.clone())
         }
@@ -195,8 +250,10 @@ mod tests {
         for text in settable() {
             assert!(setting(&path(&text)).is_some(), "{text} can be set");
         }
-        for text in READABLE.into_iter().filter(|text| !text.starts_with("field") && !text.starts_with("chemistry")) {
-            assert!(reading(&path(text)).is_some(), "{text} can be read");
+        let elsewhere = |text: &&str| text.contains("field") || text.starts_with("chemistry");
+        for text in READABLE.into_iter().filter(|text| !elsewhere(text)) {
+            let of_atoms = text.strip_prefix("atoms.").map(|text| atom_reading(&path(text)).is_some());
+            assert!(of_atoms.unwrap_or_else(|| reading(&path(text)).is_some()), "{text} can be read");
         }
         assert_eq!(sense(&path("gradient.y")), Some(Sense::Gradient(1)));
         assert_eq!(reading(&path("volume.x")), None);

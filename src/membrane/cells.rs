@@ -11,7 +11,7 @@ use super::scratch::{MembraneScratch, ThreadWork, Work};
 use super::start::begin;
 use super::state::MembraneCells;
 use super::system::MembraneSystem;
-use super::window::{Part, advance};
+use super::window::{Part, advance, display};
 use crate::ode::Population;
 
 /// The shapes of the cells of a kind where a step begins and where it ends: positions `[block][atom][axis][lane]`, µm.
@@ -39,6 +39,8 @@ enum Task {
     Begin(f64),
     /// From one time to another.
     Advance(f64, f64),
+    /// An expression that is shown, by its number, is worked out at this time.
+    Show(usize, f64),
 }
 
 impl MembraneSystem {
@@ -74,6 +76,27 @@ impl MembraneSystem {
         self.each_block(cells, inside, shapes, Task::Advance(from, until), scratch)
     }
 
+    /// Works out an expression that is shown at all atoms of the cells where they stand, and hands over the number of each atom of each cell in
+    /// turn.
+    pub fn show(
+        &self,
+        cells: &mut MembraneCells,
+        (population, first): (&mut Population, usize),
+        (mesh, positions): (&SurfaceMesh, &[f64]),
+        (number, time): (usize, f64),
+        scratch: &mut MembraneScratch,
+        mut take: impl FnMut(usize, &mut dyn Iterator<Item = f64>),
+    ) {
+        let shapes = Shapes { mesh, from: positions, to: positions };
+        // Nothing fails where nothing moves.
+        let _ = self.each_block(cells, (population, first), &shapes, Task::Show(number, time), scratch);
+        let (atoms, lanes) = (cells.atoms, cells.lanes);
+        for cell in 0..cells.cells {
+            let block = &scratch.shown[cell / lanes * atoms * lanes..];
+            take(cell, &mut (0..atoms).map(|atom| block[atom * lanes + cell % lanes]));
+        }
+    }
+
     fn each_block(
         &self,
         cells: &mut MembraneCells,
@@ -85,18 +108,21 @@ impl MembraneSystem {
         if cells.cells == 0 {
             return Ok(());
         }
-        let MembraneScratch { threads, inside, failures } = scratch;
+        let MembraneScratch { threads, inside, shown, failures } = scratch;
+        shown.resize(cells.areas.len(), 0.0);
         threads.resize_with(rayon::current_num_threads().max(threads.len()), Mutex::default);
         gather(cells, population, first, self.numbers(), inside);
         failures.clear();
         failures.resize(cells.blocks(), None);
         let shared = Shared { shapes, task, threads };
         if cells.lanes == 1 {
-            self.blocks::<1>(cells, (inside, failures), &shared, |work| &mut work.one);
+            self.blocks::<1>(cells, (inside, shown, failures), &shared, |work| &mut work.one);
         } else {
-            self.blocks::<8>(cells, (inside, failures), &shared, |work| &mut work.eight);
+            self.blocks::<8>(cells, (inside, shown, failures), &shared, |work| &mut work.eight);
         }
-        scatter(cells, population, first, self.numbers(), inside);
+        if !matches!(task, Task::Show(..)) {
+            scatter(cells, population, first, self.numbers(), inside);
+        }
         let failed = failures.iter().enumerate().find_map(|(block, failure)| Some((block, failure.as_ref()?)));
         failed.map_or(Ok(()), |(block, failure)| {
             let cell = block * cells.lanes + failure.lane;
@@ -112,27 +138,29 @@ impl MembraneSystem {
     fn blocks<const L: usize>(
         &self,
         cells: &mut MembraneCells,
-        (inside, failures): (&mut [f64], &mut [Option<Failure>]),
+        (inside, shown, failures): (&mut [f64], &mut [f64], &mut [Option<Failure>]),
         &Shared { shapes, task, threads }: &Shared,
         of_lanes: impl Fn(&mut ThreadWork) -> &mut Option<Box<Work<L>>> + Sync,
     ) {
         let (atoms, all, count) = (shapes.mesh.atoms, self.numbers(), cells.cells);
-        let (values, areas) = (L * self.variables() * atoms, L * atoms);
+        let (values, areas, length) = (L * self.variables() * atoms, L * atoms, L * self.given.len() * atoms);
+        let given = &cells.given;
         let parts = cells.values.par_chunks_mut(values).zip(cells.areas.par_chunks_mut(areas));
         let parts = parts.zip(cells.volumes.par_chunks_mut(L)).zip(cells.steps.par_chunks_mut(L));
-        let parts = parts.zip(inside.par_chunks_mut(L * (all.0 + all.1))).zip(failures.par_iter_mut());
-        parts.enumerate().for_each(|(block, (((((values, areas), volume), steps), inside), failure))| {
+        let parts = parts.zip(inside.par_chunks_mut(L * (all.0 + all.1))).zip(shown.par_chunks_mut(areas));
+        let parts = parts.zip(failures.par_iter_mut());
+        parts.enumerate().for_each(|(block, ((((((values, areas), volume), steps), inside), shown), failure))| {
             let work = &threads[rayon::current_thread_index().unwrap_or(0)];
             let mut work = work.lock().unwrap_or_else(PoisonError::into_inner);
             let work = of_lanes(&mut work).get_or_insert_with(Box::default);
             work.suit(self, shapes.mesh);
-            let length = 3 * atoms * L;
-            let own = block * length..(block + 1) * length;
+            let own = block * 3 * areas.len()..(block + 1) * 3 * areas.len();
             *failure = Arch::new().dispatch(Block {
                 system: self,
                 mesh: shapes.mesh,
                 part: Part {
                     values: lanes_mut(values),
+                    given: given[block * length..(block + 1) * length].as_chunks().0,
                     areas: lanes_mut(areas),
                     volume: &mut lanes_mut(volume)[0],
                     steps: &mut lanes_mut(steps)[0],
@@ -141,6 +169,7 @@ impl MembraneSystem {
                 },
                 shapes: (shapes.from[own.clone()].as_chunks().0, shapes.to[own].as_chunks().0),
                 task,
+                shown: lanes_mut(shown),
                 work,
             });
         });
@@ -158,6 +187,7 @@ struct Block<'a, const L: usize> {
     part: Part<'a, L>,
     shapes: (&'a [[f64; L]], &'a [[f64; L]]),
     task: Task,
+    shown: &'a mut [[f64; L]],
     work: &'a mut Work<L>,
 }
 
@@ -165,10 +195,14 @@ impl<const L: usize> WithSimd for Block<'_, L> {
     type Output = Option<Failure>;
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let Self { system, mesh, mut part, shapes, task, work } = self;
+        let Self { system, mesh, mut part, shapes, task, shown, work } = self;
         match task {
             Task::Begin(time) => {
                 begin(system, mesh, &mut part, shapes.1, time, work);
+                None
+            }
+            Task::Show(number, time) => {
+                display(system, mesh, (&part, shown), shapes.1, (number, time), work);
                 None
             }
             Task::Advance(from, until) => advance(system, mesh, &mut part, shapes, (from, until), work),

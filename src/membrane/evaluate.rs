@@ -69,7 +69,7 @@ fn fill<const L: usize>(
     file[0] = spread(&cell.time);
     for (register, slot) in file[program.first_open()..].iter_mut().zip(slots) {
         match *slot {
-            Slot::Position(_) => {}
+            Slot::Position(_) | Slot::Given(_) => {}
             Slot::Pool(pool) => *register = spread(&cell.pools[pool]),
             Slot::Open(number) => *register = spread(&open[number]),
             Slot::Area => *register = spread(&cell.area),
@@ -78,16 +78,26 @@ fn fill<const L: usize>(
     }
 }
 
+/// What differs from atom to atom, one number an atom: `[variable][atom]`, `[axis][atom]`, `[number][atom]`.
+#[derive(Clone, Copy)]
+pub struct Atoms<'a, const L: usize> {
+    /// Densities of the variables.
+    pub y: &'a [[f64; L]],
+    /// Positions from the centre, µm.
+    pub coordinates: &'a [[f64; L]],
+    /// What is set from outside.
+    pub given: &'a [[f64; L]],
+}
+
 /// Runs a code for all atoms, and shows the registers after each group: which numbers of a row they belong to.
 #[inline(always)]
 fn sweep<const L: usize>(
     (program, code, slots): (&Program, &Code, &[Slot]),
-    y: &[[f64; L]],
-    coordinates: &[[f64; L]],
+    atoms: Atoms<L>,
     file: &mut [Lanes<WIDTH>],
     mut each: impl FnMut(Range<usize>, &[Lanes<WIDTH>]),
 ) {
-    let (y, x) = (y.as_flattened(), coordinates.as_flattened());
+    let (y, x, given) = (atoms.y.as_flattened(), atoms.coordinates.as_flattened(), atoms.given.as_flattened());
     let length = x.len() / 3;
     for first in (0..length).step_by(WIDTH) {
         let count = WIDTH.min(length - first);
@@ -95,9 +105,12 @@ fn sweep<const L: usize>(
             register[..count].copy_from_slice(&y[variable * length + first..][..count]);
         }
         for (register, slot) in file[program.first_open()..].iter_mut().zip(slots) {
-            if let Slot::Position(axis) = *slot {
-                register[..count].copy_from_slice(&x[axis * length + first..][..count]);
-            }
+            let (rows, number) = match *slot {
+                Slot::Position(axis) => (x, axis),
+                Slot::Given(number) => (given, number),
+                _ => continue,
+            };
+            register[..count].copy_from_slice(&rows[number * length + first..][..count]);
         }
         run(code, file);
         each(first..first + count, file);
@@ -109,7 +122,7 @@ fn sweep<const L: usize>(
 pub fn sum<const L: usize>(
     system: &MembraneSystem,
     cell: &Cell<L>,
-    [y, areas, coordinates]: [&[[f64; L]]; 3],
+    (atoms, areas): (Atoms<L>, &[[f64; L]]),
     open: &mut [[f64; L]],
     registers: &mut Registers,
 ) {
@@ -124,7 +137,7 @@ pub fn sum<const L: usize>(
     let (program, code) = (&system.surface, &system.surface.further[0]);
     fill(program, &system.slots, cell, open, &mut registers.surface);
     let areas = areas.as_flattened();
-    sweep((program, code, &system.slots), y, coordinates, &mut registers.surface, |numbers, file| {
+    sweep((program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
         for (sum, &output) in system.sums.iter().zip(&code.outputs) {
             let total = &mut open[sum.open];
             // Numbers of a group are eight cells, or eight atoms of one: added in the order of the atoms either way.
@@ -145,15 +158,15 @@ pub fn sum<const L: usize>(
 pub fn rates<const L: usize>(
     system: &MembraneSystem,
     cell: &Cell<L>,
-    (y, coordinates): (&[[f64; L]], &[[f64; L]]),
+    atoms: Atoms<L>,
     open: &[[f64; L]],
     registers: &mut Registers,
     (surface, pools): (&mut [[f64; L]], &mut [[f64; L]]),
 ) {
     let (program, code) = (&system.surface, &system.surface.rates);
     fill(program, &system.slots, cell, open, &mut registers.surface);
-    let (rates, length) = (surface.as_flattened_mut(), coordinates.len() / 3 * L);
-    sweep((program, code, &system.slots), y, coordinates, &mut registers.surface, |numbers, file| {
+    let (rates, length) = (surface.as_flattened_mut(), atoms.coordinates.len() / 3 * L);
+    sweep((program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
         for (variable, &output) in code.outputs.iter().enumerate() {
             let row = &mut rates[variable * length..][..length][numbers.clone()];
             row.copy_from_slice(&file[output as usize][..row.len()]);
@@ -173,21 +186,40 @@ pub fn rates<const L: usize>(
     }
 }
 
+/// An expression that is shown, at all atoms.
+#[inline(always)]
+pub fn show<const L: usize>(
+    system: &MembraneSystem,
+    cell: &Cell<L>,
+    (number, atoms): (usize, Atoms<L>),
+    open: &[[f64; L]],
+    registers: &mut Registers,
+    shown: &mut [[f64; L]],
+) {
+    let (program, code) = (&system.surface, &system.surface.further[1 + number]);
+    fill(program, &system.slots, cell, open, &mut registers.surface);
+    let (shown, output) = (shown.as_flattened_mut(), code.outputs[0] as usize);
+    sweep((program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
+        let row = &mut shown[numbers];
+        row.copy_from_slice(&file[output][..row.len()]);
+    });
+}
+
 /// The values of all variables at the start: on the surface `[variable][atom]`, and of the pools.
 #[inline(always)]
 pub fn start<const L: usize>(
     system: &MembraneSystem,
     cell: &Cell<L>,
-    coordinates: &[[f64; L]],
+    atoms: Atoms<L>,
     open: &[[f64; L]],
     registers: &mut Registers,
     (surface, pools): (&mut [[f64; L]], &mut [[f64; L]]),
 ) {
     let (program, code) = (&system.start, &system.start.further[0]);
     fill(program, &system.start_slots, cell, open, &mut registers.start);
-    let (values, length) = (surface.as_flattened_mut(), coordinates.len() / 3 * L);
+    let (values, length) = (surface.as_flattened_mut(), atoms.coordinates.len() / 3 * L);
     let count = system.variables();
-    sweep((program, code, &system.start_slots), &[], coordinates, &mut registers.start, |numbers, file| {
+    sweep((program, code, &system.start_slots), atoms, &mut registers.start, |numbers, file| {
         for (variable, &output) in code.outputs[..count].iter().enumerate() {
             let row = &mut values[variable * length..][..length][numbers.clone()];
             row.copy_from_slice(&file[output as usize][..row.len()]);

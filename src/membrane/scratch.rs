@@ -15,6 +15,8 @@ pub struct MembraneScratch {
     pub(super) threads: Vec<Mutex<ThreadWork>>,
     /// Pools, then what is open of the inside: `[block][number][lane]`.
     pub(super) inside: Vec<f64>,
+    /// What is shown of atoms: `[block][atom][lane]`.
+    pub(super) shown: Vec<f64>,
     /// What went wrong in each block.
     pub(super) failures: Vec<Option<Failure>>,
 }
@@ -30,6 +32,7 @@ impl MembraneScratch {
     /// Writes NaN over all numbers: a step must not notice.
     pub fn poison(&mut self) {
         self.inside.fill(f64::NAN);
+        self.shown.fill(f64::NAN);
         for own in &mut self.threads {
             let own = own.get_mut().unwrap_or_else(PoisonError::into_inner);
             own.one.iter_mut().for_each(|work| work.poison());
@@ -52,6 +55,8 @@ pub(super) struct Work<const L: usize> {
     pub x: Vec<[f64; L]>,
     /// The same from the centre of the surface, `[axis][atom]`.
     pub coordinates: Vec<[f64; L]>,
+    /// What is set of atoms from outside.
+    pub given: Vec<[f64; L]>,
     /// Areas of atoms, and weights of edges.
     pub areas: Vec<[f64; L]>,
     pub weights: Vec<[f64; L]>,
@@ -85,6 +90,7 @@ impl<const L: usize> Work<L> {
         let suit = |array: &mut Vec<[f64; L]>, length: usize| array.resize(length, [0.0; L]);
         suit(&mut self.x, 3 * atoms);
         suit(&mut self.coordinates, 3 * atoms);
+        suit(&mut self.given, system.given.len() * atoms);
         suit(&mut self.areas, atoms);
         suit(&mut self.weights, mesh.edges);
         for array in [&mut self.y, &mut self.next, &mut self.stage] {
@@ -108,6 +114,7 @@ impl<const L: usize> Work<L> {
         for array in [
             &mut self.x,
             &mut self.coordinates,
+            &mut self.given,
             &mut self.areas,
             &mut self.weights,
             &mut self.y,

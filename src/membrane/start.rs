@@ -1,6 +1,6 @@
 //! Where membranes start, and what is summed over them where they stand.
 
-use super::evaluate::{Cell, measures, start, sum};
+use super::evaluate::{Atoms, Cell, measures, start, sum};
 use super::mesh::SurfaceMesh;
 use super::scratch::Work;
 use super::shape::{areas, coordinates};
@@ -26,7 +26,8 @@ pub fn begin<const L: usize>(
     work.pools.copy_from_slice(&part.inside[..pools]);
     let Work { next, pools_next, open, registers, .. } = work;
     let cell = Cell { time: [time; L], pools: &work.pools, area, volume };
-    start(system, &cell, &work.coordinates, open, registers, (next, pools_next));
+    let atoms = Atoms { y: &[], coordinates: &work.coordinates, given: part.given };
+    start(system, &cell, atoms, open, registers, (next, pools_next));
     for l in (0..L).filter(|l| fresh[*l]) {
         part.values.iter_mut().zip(&*next).for_each(|(value, start)| value[l] = start[l]);
         part.areas.iter_mut().zip(&work.areas).for_each(|(area, own)| area[l] = own[l]);
@@ -34,7 +35,7 @@ pub fn begin<const L: usize>(
         part.volume[l] = volume[l];
     }
     let cell = Cell { time: [time; L], pools: &work.pools, area, volume };
-    sum(system, &cell, [part.values, &work.areas, &work.coordinates], open, registers);
+    sum(system, &cell, (Atoms { y: part.values, ..atoms }, &work.areas), open, registers);
     for l in (0..L).filter(|l| fresh[*l]) {
         part.inside.iter_mut().zip(work.pools.iter().chain(&*open)).for_each(|(to, value)| to[l] = value[l]);
     }

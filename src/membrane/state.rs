@@ -18,6 +18,10 @@ pub struct MembraneCells {
     pub(super) cells: usize,
     /// Densities: `[block][variable][atom][lane]`.
     pub(super) values: Vec<f64>,
+    /// What is set of atoms from outside, in its unit: `[block][number][atom][lane]`.
+    pub(super) given: Vec<f64>,
+    /// What each of these is until it is set.
+    pub(super) defaults: Vec<f64>,
     /// The areas of the atoms that these belong to, µm²: `[block][atom][lane]`; 0 where a cell has not started.
     pub(super) areas: Vec<f64>,
     /// The volumes of the cells that the pools belong to, µm³: `[block][lane]`.
@@ -27,10 +31,11 @@ pub struct MembraneCells {
 }
 
 impl MembraneCells {
-    /// So many cells that have not started.
-    pub fn new(lanes: usize, atoms: usize, variables: usize, cells: usize) -> Self {
-        let mut new = Self { lanes, atoms, variables, cells, ..Self::default() };
+    /// So many cells that have not started; `defaults` are what is set of atoms from outside until it is.
+    pub fn new(lanes: usize, atoms: usize, variables: usize, cells: usize, defaults: Vec<f64>) -> Self {
+        let mut new = Self { lanes, atoms, variables, cells, defaults, ..Self::default() };
         new.suit_blocks();
+        (0..cells).for_each(|cell| new.give_defaults(cell));
         new
     }
 
@@ -46,6 +51,7 @@ impl MembraneCells {
     fn suit_blocks(&mut self) {
         let lanes = self.blocks() * self.lanes;
         self.values.resize(lanes * self.variables * self.atoms, 0.0);
+        self.given.resize(lanes * self.defaults.len() * self.atoms, 0.0);
         self.areas.resize(lanes * self.atoms, 0.0);
         self.volumes.resize(lanes, 0.0);
         self.steps.resize(lanes, 0.0);
@@ -84,6 +90,22 @@ impl MembraneCells {
         self.steps[cell] = 0.0;
     }
 
+    /// Sets what is given of an atom of a cell from outside.
+    ///
+    /// # Panics
+    /// When there is no such cell, number or atom.
+    pub fn give(&mut self, cell: usize, number: usize, atom: usize, value: f64) {
+        assert!(cell < self.cells && number < self.defaults.len() && atom < self.atoms, "no such cell, number or atom");
+        let (block, lane) = (cell / self.lanes, cell % self.lanes);
+        self.given[((block * self.defaults.len() + number) * self.atoms + atom) * self.lanes + lane] = value;
+    }
+
+    fn give_defaults(&mut self, cell: usize) {
+        for number in 0..self.defaults.len() {
+            (0..self.atoms).for_each(|atom| self.give(cell, number, atom, self.defaults[number]));
+        }
+    }
+
     /// The area that a value at an atom belongs to, µm².
     pub fn area(&self, cell: usize, atom: usize) -> f64 {
         self.areas[(cell / self.lanes * self.atoms + atom) * self.lanes + cell % self.lanes]
@@ -94,9 +116,10 @@ impl MembraneCells {
         (0..self.atoms).map(|atom| self.area(cell, atom) * self.value(cell, variable, atom)).sum()
     }
 
-    /// Whether another has as many cells, variables, atoms and lanes.
+    /// Whether another has as many cells, variables, given numbers, atoms and lanes.
     pub fn has_shape_of(&self, other: &Self) -> bool {
-        (self.lanes, self.atoms, self.variables, self.cells) == (other.lanes, other.atoms, other.variables, other.cells)
+        let shape = |of: &Self| [of.lanes, of.atoms, of.variables, of.cells, of.defaults.len()];
+        shape(self) == shape(other)
     }
 
     /// Adds a cell that has not started, before the one with this number.
@@ -107,6 +130,7 @@ impl MembraneCells {
             self.copy(cell - 1, cell);
         }
         self.clear(at);
+        self.give_defaults(at);
     }
 
     /// Keeps some cells, in their order.
@@ -125,8 +149,8 @@ impl MembraneCells {
 
     /// Shows each array with how many numbers of it a cell has, and where a cell's numbers stand in it.
     fn each(&mut self, mut change: impl FnMut(&mut [f64], usize)) {
-        let rows = [self.variables * self.atoms, self.atoms, 1, 1];
-        let arrays = [&mut self.values, &mut self.areas, &mut self.volumes, &mut self.steps];
+        let rows = [self.variables * self.atoms, self.defaults.len() * self.atoms, self.atoms, 1, 1];
+        let arrays = [&mut self.values, &mut self.given, &mut self.areas, &mut self.volumes, &mut self.steps];
         arrays.into_iter().zip(rows).for_each(|(array, rows)| change(array, rows));
     }
 
@@ -146,6 +170,8 @@ impl MembraneCells {
     pub fn copy_from(&mut self, other: &Self) {
         (self.lanes, self.atoms, self.variables, self.cells) = (other.lanes, other.atoms, other.variables, other.cells);
         self.values.clone_from(&other.values);
+        self.given.clone_from(&other.given);
+        self.defaults.clone_from(&other.defaults);
         self.areas.clone_from(&other.areas);
         self.volumes.clone_from(&other.volumes);
         self.steps.clone_from(&other.steps);

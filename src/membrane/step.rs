@@ -1,6 +1,6 @@
 //! One step of reactions, diffusion and exchange together, eq. (surface.5) and (surface.6).
 
-use super::evaluate::{Cell, rates, sum};
+use super::evaluate::{Atoms, Cell, rates, sum};
 use super::mesh::SurfaceMesh;
 use super::scratch::Work;
 use super::shape::total;
@@ -145,11 +145,13 @@ fn react_stage<const L: usize>(
     for l in 0..L {
         now[l] += C[stage] * step[l];
     }
-    let Work { stage: values, coordinates, areas, open, registers, explicit, pool_rates, pools_stage, .. } = work;
+    let Work { stage: values, coordinates, given, areas, open, registers, explicit, pool_rates, pools_stage, .. } =
+        work;
     let cell = Cell { time: now, pools: pools_stage, area: work.area[0], volume: work.volume[0] };
-    sum(system, &cell, [values, areas, coordinates], open, registers);
+    let atoms = Atoms { y: values, coordinates, given };
+    sum(system, &cell, (atoms, areas), open, registers);
     let to = (&mut explicit[stage * all..(stage + 1) * all], &mut pool_rates[stage * pools..(stage + 1) * pools]);
-    rates(system, &cell, (values, coordinates), open, registers, to);
+    rates(system, &cell, atoms, open, registers, to);
 }
 
 /// Where a variable is at the end of the step. Returns its error over what is allowed.

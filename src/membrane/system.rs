@@ -43,6 +43,8 @@ pub(super) enum Slot {
     Pool(usize),
     /// What is set of the inside from outside, by its number.
     Open(usize),
+    /// What is set of an atom from outside, by its number.
+    Given(usize),
     /// Area of the cell.
     Area,
     /// Volume of the cell.
@@ -60,7 +62,7 @@ pub(super) struct Sum {
 /// inputs, in the population of the inside.
 #[derive(Debug, Clone)]
 pub struct MembraneSystem {
-    /// Rates on the surface; the only further group are the integrands of the sums.
+    /// Rates on the surface; further groups are the integrands of the sums, and what is shown of atoms, each in one of its own.
     pub(super) surface: Program,
     /// The pools, with the sums, area, volume and the inputs of the document open.
     pub(super) inside: Program,
@@ -73,6 +75,8 @@ pub struct MembraneSystem {
     pub(super) sums: Vec<Sum>,
     /// Diffusion coefficients of the variables on the surface, µm² per unit of time.
     pub(super) diffusion: Vec<f64>,
+    /// What is set of atoms from outside: the quantity, and what it is until it is set.
+    pub(super) given: Vec<(QuantityId, f64)>,
     /// Of each variable on the surface identifier and unit.
     pub names: Vec<(String, String)>,
     /// How windows are cut.
@@ -82,14 +86,14 @@ pub struct MembraneSystem {
 }
 
 impl MembraneSystem {
-    /// Compiles a document of membranes.
+    /// Compiles a document of membranes; `shown` are expressions of its quantities that [`Self::show`] works out at all atoms.
     ///
     /// # Errors
     /// The identifiers along a circle of definitions or initial values.
     ///
     /// # Panics
     /// When the document is of another level.
-    pub fn new(document: &Document, stepping: MembraneStepping) -> Result<Self, Vec<String>> {
+    pub fn new(document: &Document, stepping: MembraneStepping, shown: &[Expr]) -> Result<Self, Vec<String>> {
         let membrane = document.membrane.as_ref().expect("a document of membranes");
         let system = &document.system;
         let on_surface: Vec<QuantityId> = membrane.surface.iter().map(|variable| variable.quantity).collect();
@@ -97,12 +101,17 @@ impl MembraneSystem {
         let (surface, inside, start) = (outer(system, &pools), inner(system, &membrane.local), beginning(system));
         let integrands: Vec<Expr> = membrane.totals.iter().map(|total| total.integrand.clone()).collect();
         let variables: Vec<Expr> = on_surface.iter().chain(&pools).map(|number| Expr::Quantity(*number)).collect();
-        let surface = Program::with(&surface, 0.0, &[], &[integrands])?;
+        let groups: Vec<Vec<Expr>> =
+            [integrands].into_iter().chain(shown.iter().map(|one| vec![one.clone()])).collect();
+        let surface = Program::with(&surface, 0.0, &[], &groups)?;
         let inside = Program::with(&inside, 0.0, &[], &[])?;
         let start = Program::with(&start, 0.0, &[], &[variables])?;
         let open = |id: &str| system.find(id).and_then(|quantity| inside.open_index(quantity)).unwrap_or(usize::MAX);
         let slot = |quantity: &QuantityId| -> Slot {
             let id = system.quantities[*quantity as usize].id.as_str();
+            if let Some(given) = membrane.given.iter().position(|given| given == quantity) {
+                return Slot::Given(given);
+            }
             match (SURFACE.iter().position(|known| *known == id), pools.iter().position(|pool| pool == quantity)) {
                 (Some(axis @ 0..3), _) => Slot::Position(axis),
                 (Some(3), _) => Slot::Area,
@@ -124,6 +133,7 @@ impl MembraneSystem {
             expression.each_quantity(&mut |used| uses_volume |= Some(used) == volume);
         }
         let values = &surface.initial;
+        let given = membrane.given.iter().map(|number| (*number, values[*number as usize])).collect();
         Ok(Self {
             slots: surface.open.iter().map(slot).collect(),
             start_slots: start.open.iter().map(slot).collect(),
@@ -134,6 +144,7 @@ impl MembraneSystem {
             diffusion: (membrane.surface.iter())
                 .map(|variable| variable.diffusion.evaluate(0.0, &|number| values[number as usize]))
                 .collect(),
+            given,
             names: (on_surface.iter())
                 .map(|number| &system.quantities[*number as usize])
                 .map(|quantity| (quantity.id.clone(), quantity.unit.clone()))
@@ -159,6 +170,24 @@ impl MembraneSystem {
     /// How many variables live on the surface.
     pub fn variables(&self) -> usize {
         self.names.len()
+    }
+
+    /// What each input that differs from atom to atom is until it is set.
+    pub fn defaults(&self) -> Vec<f64> {
+        self.given.iter().map(|(_, default)| *default).collect()
+    }
+
+    /// The number among these of a quantity.
+    pub fn given_number(&self, quantity: QuantityId) -> Option<usize> {
+        self.given.iter().position(|(given, _)| *given == quantity)
+    }
+
+    /// The quantity with one of these numbers.
+    ///
+    /// # Panics
+    /// When there is none.
+    pub fn given_quantity(&self, number: usize) -> QuantityId {
+        self.given[number].0
     }
 
     /// The number of a variable on the surface.

@@ -1,6 +1,6 @@
 //! A block of cells through a step of mechanics: each lane with steps of its own.
 
-use super::evaluate::{Cell, measures, sum};
+use super::evaluate::{Atoms, Cell, measures, show, sum};
 use super::failure::Failure;
 use super::mesh::SurfaceMesh;
 use super::scratch::Work;
@@ -22,6 +22,7 @@ const MOST_STEPS: usize = 1_000_000;
 /// The part of the state that belongs to a block.
 pub struct Part<'a, const L: usize> {
     pub values: &'a mut [[f64; L]],
+    pub given: &'a [[f64; L]],
     pub areas: &'a mut [[f64; L]],
     pub volume: &'a mut [f64; L],
     pub steps: &'a mut [f64; L],
@@ -52,6 +53,7 @@ pub fn advance<const L: usize>(
     (work.area[0], work.volume[0]) = measures(mesh, &work.x, &work.areas);
     work.pools.copy_from_slice(&part.inside[..pools]);
     work.open.copy_from_slice(&part.inside[pools..]);
+    work.given.copy_from_slice(part.given);
     // What is there stays when the surface stretches, eq. (surface.3): half of the change before, half after.
     let ratio = |now: &[f64; L], then: &[f64; L]| -> [f64; L] { std::array::from_fn(|l| then[l] / now[l]) };
     for (row, y) in part.values.chunks_exact(mesh.atoms).zip(work.y.chunks_exact_mut(mesh.atoms)) {
@@ -166,7 +168,8 @@ fn finish<const L: usize>(
     coordinates(to, part.areas, &mut work.coordinates);
     *part.volume = volume;
     let cell = Cell { time: [end; L], pools: &work.pools, area, volume };
-    sum(system, &cell, [&work.y, part.areas, &work.coordinates], &mut work.open, &mut work.registers);
+    let atoms = Atoms { y: &work.y, coordinates: &work.coordinates, given: part.given };
+    sum(system, &cell, (atoms, part.areas), &mut work.open, &mut work.registers);
     part.inside[..pools].copy_from_slice(&work.pools);
     part.inside[pools..].copy_from_slice(&work.open);
     // Lanes without a cell hold zeros.
@@ -174,4 +177,23 @@ fn finish<const L: usize>(
         (part.volume[l], part.steps[l]) = (0.0, 0.0);
         part.areas.iter_mut().for_each(|area| area[l] = 0.0);
     }
+}
+
+/// Works out an expression that is shown at all atoms of the cells of a block where they stand.
+#[inline(always)]
+pub fn display<const L: usize>(
+    system: &MembraneSystem,
+    mesh: &SurfaceMesh,
+    (part, shown): (&Part<L>, &mut [[f64; L]]),
+    x: &[[f64; L]],
+    (number, time): (usize, f64),
+    work: &mut Work<L>,
+) {
+    let (pools, open) = part.inside.split_at(system.inside.size());
+    areas(mesh, x, &mut work.areas);
+    coordinates(x, &work.areas, &mut work.coordinates);
+    let (area, volume) = measures(mesh, x, &work.areas);
+    let cell = Cell { time: [time; L], pools, area, volume };
+    let atoms = Atoms { y: part.values, coordinates: &work.coordinates, given: part.given };
+    show(system, &cell, (number, atoms), open, &mut work.registers, shown);
 }

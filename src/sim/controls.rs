@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::atom_controls::AtomControls;
 use super::chemistry::Control;
 use crate::cell::pseudopods::Told;
 use crate::mechanics::CONTROLLED;
@@ -20,6 +21,8 @@ pub struct Controls {
     /// Factor of the strength with which each atom of all cells sticks, in their order; empty where none is set. Behaviours set it where a
     /// step ends.
     pub adhesion_of_atoms: Vec<f64>,
+    /// What links set of atoms, one entry a kind; empty without such a link.
+    pub of_atoms: Vec<AtomControls>,
     /// What pseudopods are told, one a cell; empty without a link to one.
     pub pseudopods: Vec<Told>,
     /// What is set of forces: for each handle of [`CONTROLLED`] one list for each such force of a kind, in its order.
@@ -49,7 +52,8 @@ impl Controls {
                 lists(&mut self.forces[handle], number, CONTROLLED[handle].unset);
             }
             Control::Secretion(channel) => lists(&mut self.secretion, channel, 0.0),
-            Control::RestVolume | Control::RestVolumeRatio | Control::Atom(..) => {}
+            // What is set of atoms is admitted kind by kind.
+            Control::RestVolume | Control::RestVolumeRatio | Control::Atom(..) | Control::Atoms(_) => {}
         }
     }
 
@@ -60,6 +64,9 @@ impl Controls {
         self.stiffness.clone_from(&other.stiffness);
         self.adhesion.clone_from(&other.adhesion);
         self.adhesion_of_atoms.clone_from(&other.adhesion_of_atoms);
+        self.of_atoms.truncate(other.of_atoms.len());
+        self.of_atoms.iter_mut().zip(&other.of_atoms).for_each(|(to, from)| to.copy_from(from));
+        self.of_atoms.extend_from_slice(&other.of_atoms[self.of_atoms.len()..]);
         self.pseudopods.clone_from(&other.pseudopods);
         self.forces.clone_from(&other.forces);
         self.secretion.clone_from(&other.secretion);

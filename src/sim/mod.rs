@@ -1,5 +1,6 @@
 //! The simulator: model, state, workspace and the step. It knows no files, formats or clocks.
 
+mod atom_controls;
 pub mod chemistry;
 pub mod constraints;
 pub mod contact;
@@ -25,6 +26,7 @@ pub mod projection;
 mod protrude;
 mod refresh;
 pub mod seeding;
+mod skeleton;
 mod solver;
 pub mod state;
 mod step;

@@ -33,7 +33,7 @@ pub fn add_cells(
     let mut counts = state.counts();
     for (cell, &id) in cells.iter().zip(&ids) {
         next.kinds[kind].push(model, &model.kinds[kind], id, cell);
-        next.chemistry.insert_cell(&model.chemistry, &counts, kind, counts[kind]);
+        next.chemistry.insert_cell(model, &counts, kind, counts[kind]);
         counts[kind] += 1;
     }
     next.next_id += cells.len() as u64;
@@ -73,7 +73,7 @@ pub fn remove_cells(
             now.retain(kind, |cell| !goes[cell]);
         }
     }
-    next.chemistry.retain_cells(&model.chemistry, &counts, |kind, cell| !goes[kind][cell]);
+    next.chemistry.retain_cells(model, &counts, |kind, cell| !goes[kind][cell]);
     settle(model, state, &mut next, &bodies);
     commit(state, next, ws);
     Ok(())

@@ -94,6 +94,7 @@ impl Simulation {
                 "has atoms that move by forces",
                 "pull them by a load or by fibres; positions are imposed by a link of the document",
             ),
+            Setting::Atoms(_) => lacks("has atoms of which only chemistry sets it", "let a link of a document set it"),
             Setting::MotilitySpeed => Ok(Control::MotilitySpeed),
             Setting::Bias(axis) => Ok(Control::Bias(axis)),
             Setting::Pseudopods(what) => Ok(Control::Pseudopods(what)),

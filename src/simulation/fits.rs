@@ -53,8 +53,18 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
 
 /// A list of controls is empty or has one number a cell, and what is secreted is known.
 fn check_controls(model: &Model, state: &State, controls: &Controls) -> Result<(), SimulationError> {
-    let Controls { speed, bias, stiffness, adhesion, adhesion_of_atoms, pseudopods, forces, secretion, secreted } =
-        controls;
+    let Controls {
+        speed,
+        bias,
+        stiffness,
+        adhesion,
+        adhesion_of_atoms,
+        of_atoms,
+        pseudopods,
+        forces,
+        secretion,
+        secreted,
+    } = controls;
     let fields = &model.chemistry.fields;
     let is_known = |&(field, species): &(usize, usize)| {
         fields.get(field).is_some_and(|field| species < field.system.species().len())
@@ -66,6 +76,12 @@ fn check_controls(model: &Model, state: &State, controls: &Controls) -> Result<(
     if ![0, atoms].contains(&adhesion_of_atoms.len()) {
         let length = adhesion_of_atoms.len();
         return Err(SimulationError::Mismatch(format!("adhesion is set of {length} atoms, not {atoms}")));
+    }
+    let numbers = |kind: usize| state.kinds[kind].cells() * model.kinds[kind].atoms();
+    let kinds = model.kinds.len();
+    if ![0, kinds].contains(&of_atoms.len()) || !of_atoms.iter().enumerate().all(|(kind, own)| own.fits(numbers(kind)))
+    {
+        return Err(SimulationError::Mismatch("something is set of atoms of other cells".to_owned()));
     }
     let lists = [speed, stiffness, adhesion].into_iter().chain(forces.iter().flatten()).chain(secretion);
     match lists.map(Vec::len).chain([bias.len(), pseudopods.len()]).find(|length| ![0, cells].contains(length)) {

@@ -227,21 +227,21 @@ fn what_chemistry_knows_of_a_cell_comes_and_goes_with_it() {
         mechanics = { drag = \"20 pN s/um\", shape_memory = { shape_modulus = \"10 pN/um\" } }\nchemistry = [\"own\"]\n";
     let mut scene = scene(&[("field", field), ("own", own)], &(one_cell("2 s", "0.25 s") + some + other));
     scene.run();
-    let chemistry = &scene.compiled.model.chemistry;
+    let model = &scene.compiled.model;
     let before = &scene.state().chemistry;
     for (kind, local, cell) in [(0, 0, 0), (0, 3, 3), (1, 1, 4), (1, 2, 5)] {
         let mut after = before.clone();
-        after.insert_cell(chemistry, &[3, 2], kind, local);
+        after.insert_cell(model, &[3, 2], kind, local);
         assert_eq!((after.populations[0].cells(), after.events[0].len(), after.controls.bias.len()), (6, 6, 6));
         let new = (after.populations[0].state(cell, 0), after.controls.stiffness[cell], after.controls.bias[cell]);
         assert_eq!((new, after.controls.secretion[0][cell]), ((2.0, 1.0, [0.0; 3]), 0.0), "as at the start");
         let mut cells = [3, 2];
         cells[kind] += 1;
-        after.retain_cells(chemistry, &cells, |other, at| (other, at) != (kind, local));
+        after.retain_cells(model, &cells, |other, at| (other, at) != (kind, local));
         assert_eq!(after, *before, "cell {local} of kind {kind}");
     }
     let mut fewer = before.clone();
-    fewer.retain_cells(chemistry, &[3, 2], |kind, local| kind == 1 || local == 1);
+    fewer.retain_cells(model, &[3, 2], |kind, local| kind == 1 || local == 1);
     assert_eq!(
         fewer.events[0],
         [before.events[0][1].clone(), before.events[0][3].clone(), before.events[0][4].clone()]

@@ -1,6 +1,7 @@
 //! Cells move, stick and feel chemistry as the equations of the book say.
 
 mod areas;
+mod atoms;
 mod bonds;
 mod cohesion;
 mod contact;

@@ -64,6 +64,8 @@ impl Level {
 pub struct MembraneDescription {
     /// Variables on the surface.
     pub surface: Vec<SurfaceVariable>,
+    /// Inputs that differ from atom to atom.
+    pub given: Vec<QuantityId>,
     /// What is summed over the surface, in the order of its quantities.
     pub totals: Vec<Total>,
     /// Of each quantity, whether it differs from atom to atom.

@@ -15,7 +15,7 @@ impl Builder<'_, '_> {
     pub(super) fn membrane(&mut self, root: &Element) -> Option<MembraneDescription> {
         let elements = |name: &'static str| root.all(name).filter(|element| element.attribute("id").is_some());
         if self.known.level != Level::Membrane {
-            for element in elements("variable") {
+            for element in elements("variable").chain(elements("input")) {
                 for name in ["diffusion", "level"].into_iter().filter(|name| element.attribute(name).is_some()) {
                     let message = format!("`{name}` cannot stand in a document of level {}", self.known.level.name());
                     let help = "variables spread along the surface of a cell in a document of level=\"membrane\"; what spreads in \
@@ -41,7 +41,8 @@ impl Builder<'_, '_> {
         let totals = totals.chain(elements("integral").map(|element| (element, Taken::Integral)));
         let mut totals: Vec<Total> = totals.filter_map(|(element, taken)| self.total(element, taken)).collect();
         totals.sort_by_key(|total| total.quantity);
-        Some(MembraneDescription { surface, totals, local: Vec::new() })
+        let given = elements("input").filter_map(|element| self.given_at_atoms(element)).collect();
+        Some(MembraneDescription { surface, given, totals, local: Vec::new() })
     }
 
     fn surface_variable(&mut self, element: &Element) -> Option<SurfaceVariable> {
@@ -62,6 +63,14 @@ impl Builder<'_, '_> {
             diffusion: diffusion.unwrap_or(Expr::Number(0.0)),
             location: self.context.location(element.location("id"), "the variable"),
         })
+    }
+
+    /// An input that differs from atom to atom.
+    fn given_at_atoms(&mut self, element: &Element) -> Option<QuantityId> {
+        match self.choice(element, "level", &["cell", "membrane"]) {
+            1 => self.find(&element.word("id")),
+            _ => None,
+        }
     }
 
     fn total(&mut self, element: &Element, taken: Taken) -> Option<Total> {
@@ -163,6 +172,9 @@ fn local(membrane: &MembraneDescription, system: &System) -> Vec<bool> {
     let mut local = vec![false; system.quantities.len()];
     for variable in &membrane.surface {
         local[variable.quantity as usize] = true;
+    }
+    for given in &membrane.given {
+        local[*given as usize] = true;
     }
     for (number, quantity) in system.quantities.iter().enumerate() {
         local[number] |= quantity.role == Role::Input && SURFACE[..3].contains(&quantity.id.as_str());

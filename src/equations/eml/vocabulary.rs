@@ -51,7 +51,7 @@ pub const ELEMENTS: [Kind; 17] = [
     kind("equation", &["of"], &[], &[], true),
     kind("define", &["id"], &["name", "unit"], &[], true),
     kind("function", &["args", "id"], &[], &[], true),
-    kind("input", &["default", "id"], &["name", "unit"], &[], false),
+    kind("input", &["default", "id"], &["level", "name", "unit"], &[], false),
     kind("mean", &["id"], &["name", "unit"], &[], true),
     kind("integral", &["id"], &["name", "unit"], &[], true),
     kind("event", &["when"], &["at_start", "delay", "id", "persistent", "priority", "values_from"], &["set"], false),

@@ -183,6 +183,22 @@ impl Expr {
         }
     }
 
+    /// The same with an expression in the place of a quantity.
+    pub fn replaced(&self, quantity: QuantityId, by: &Self) -> Self {
+        let of = |part: &Self| part.replaced(quantity, by);
+        let boxed = |part: &Self| Box::new(of(part));
+        match self {
+            Self::Quantity(number) if *number == quantity => by.clone(),
+            Self::Number(_) | Self::Time | Self::Quantity(_) => self.clone(),
+            Self::Unary(function, a) => Self::Unary(*function, boxed(a)),
+            Self::Binary(function, a, b) => Self::Binary(*function, boxed(a), boxed(b)),
+            Self::Piecewise { branches, otherwise } => Self::Piecewise {
+                branches: branches.iter().map(|(condition, value)| (of(condition), of(value))).collect(),
+                otherwise: boxed(otherwise),
+            },
+        }
+    }
+
     /// The value, computed directly: the oracle of the compiled programs. `value` gives the value of a quantity.
     pub fn evaluate(&self, time: f64, value: &impl Fn(QuantityId) -> f64) -> f64 {
         match self {

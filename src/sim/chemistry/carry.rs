@@ -4,10 +4,12 @@ use super::super::model::Model;
 use super::super::state::{State, index, vector};
 use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
+use super::atoms::{carry_atoms, set_all};
 use super::census::{cell_of_member, cells_of, member_of_cell, names_nobody};
 use super::exchange::is_due;
-use super::links::{Control, Observation, Owner, Target};
+use super::links::{AtomControl, Control, Observation, Owner, Source, Target};
 use super::measure::measure_cells;
+use super::model::Members;
 use super::observe::{observe, read_cell};
 use super::scratch::ChemistryScratch;
 use crate::cell::ends::PodSetting;
@@ -28,8 +30,8 @@ pub(super) fn carry_links(
     ws: &mut Workspace,
 ) -> Result<(), Trouble> {
     let chemistry = &model.chemistry;
+    let contact = chemistry.reads_contact().then(|| ws.contact.scene(model, &state.kinds)).flatten();
     if chemistry.measures_cells {
-        let contact = ws.contact.scene(model, &state.kinds);
         measure_cells(model, state, contact.as_ref(), &ws.contact.found.atoms, &mut ws.chemistry.cells);
     }
     sense_fields(model, state, &mut ws.chemistry);
@@ -39,8 +41,14 @@ pub(super) fn carry_links(
             Owner::Reactor(number) => start || is_due(&chemistry.reactors[number], time),
             Owner::Field(_) => true,
         };
-        if due {
-            carry(model, number, time, state, &mut ws.chemistry)?;
+        match link.from {
+            _ if !due => {}
+            Source::Atoms(source) => {
+                let touching = (contact.as_ref().map(|contact| &*contact.scene), &ws.contact.found.atoms[..]);
+                observe(model, number, time, state, &mut ws.chemistry);
+                carry_atoms(model, (number, source), time, state, &mut ws.chemistry, touching)?;
+            }
+            _ => carry(model, number, time, state, &mut ws.chemistry)?,
         }
     }
     Ok(())
@@ -117,6 +125,8 @@ fn carry(
             (Target::Own(open), Owner::Reactor(number)) => {
                 state.chemistry.populations[number].set_open(member, open, carried);
             }
+            (Target::Given(given), Owner::Reactor(number)) => give(model, (number, member), given, carried, state),
+            (Target::Given(_), Owner::Field(_)) => {}
             (Target::Own(input), Owner::Field(field)) => state.chemistry.fields[field].inputs[input] = carried,
             (Target::Cell(whose, control), _) => {
                 for cell in cells_of(state, whose, own) {
@@ -131,6 +141,16 @@ fn carry(
     Ok(())
 }
 
+/// Gives one number to all atoms of a member of a system on membranes.
+fn give(model: &Model, (number, member): (usize, usize), given: usize, value: f64, state: &mut State) {
+    let Some(cell) = cell_of_member(&state.kinds, &model.chemistry.reactors[number].members, member) else { return };
+    let (kind, local) = state.kind_of(cell);
+    let Members::Kinds(kinds) = &model.chemistry.reactors[number].members else { return };
+    let at = kinds.iter().position(|&other| other == kind).unwrap_or(0);
+    let cells = &mut state.chemistry.membranes[number].kinds[at];
+    (0..model.kinds[kind].atoms()).for_each(|atom| cells.give(local, given, atom, value));
+}
+
 /// What a target expects, if it cannot be set to a number.
 pub fn missed(target: Target, value: f64) -> Option<&'static str> {
     if !value.is_finite() {
@@ -138,6 +158,9 @@ pub fn missed(target: Target, value: f64) -> Option<&'static str> {
     }
     match target {
         Target::Cell(_, Control::MotilitySpeed | Control::Stiffness | Control::Adhesion) if value < 0.0 => {
+            Some("a number not below 0")
+        }
+        Target::Cell(_, Control::Atoms(what)) if value < 0.0 && !matches!(what, AtomControl::Secretion(_)) => {
             Some("a number not below 0")
         }
         Target::Cell(_, Control::Pseudopods(PodSetting::Protrusion | PodSetting::Retraction))
@@ -166,6 +189,7 @@ pub fn set_control(model: &Model, cell: usize, control: Control, value: f64, sta
         Control::Adhesion => controls.adhesion[cell] = value,
         Control::Force(handle, number) => controls.forces[handle][number][cell] = value,
         Control::Secretion(channel) => controls.secretion[channel][cell] = value,
+        Control::Atoms(control) => set_all(model, cell, control, value, state),
         Control::RestVolume | Control::RestVolumeRatio => {
             let (kind, local) = state.kind_of(cell);
             let unit = if control == Control::RestVolume { 1.0 } else { model.chemistry.rest[kind][0] };

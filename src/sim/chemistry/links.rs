@@ -1,6 +1,6 @@
 //! Links and what they read and set, as the Model holds them.
 
-use crate::cell::ends::{PodSetting, Reading, Sense};
+use crate::cell::ends::{AtomReading, PodSetting, Reading, Sense};
 use crate::equations::tree::{Expr, QuantityId};
 
 /// A link: a number goes from one end through the transfer to the other at each exchange.
@@ -18,6 +18,8 @@ pub struct Link {
     pub transfer: Expr,
     /// Quantities of the owner that the transfer uses.
     pub uses: Vec<QuantityId>,
+    /// Quantities of the owner on which the number depends: those, and what is worked out at atoms.
+    pub needs: Vec<QuantityId>,
     /// Factor of the transfer.
     pub gain: f64,
 }
@@ -59,6 +61,19 @@ pub enum Source {
     Whole(usize, usize, Whole),
     /// A quantity of another system: (reactor, quantity, whose copy); the scene's only one for systems of the scene.
     Other(usize, QuantityId, Whose),
+    /// A number of each atom of the cell that has the system, for what differs from atom to atom.
+    Atoms(AtAtoms),
+}
+
+/// Where numbers of atoms come from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AtAtoms {
+    /// An expression that the membrane of the owner shows, transfer and gain included.
+    Shown(usize),
+    /// The shape of the cell and what it touches.
+    Read(AtomReading),
+    /// A field: (field, species, what).
+    Sensed(usize, usize, Sense),
 }
 
 impl Source {
@@ -68,7 +83,7 @@ impl Source {
             Self::Cell(whose, _) | Self::Sensed(whose, ..) | Self::AtAtom(whose, ..) | Self::Other(.., whose) => {
                 Some(whose)
             }
-            Self::Own(_) | Self::Time | Self::Whole(..) => None,
+            Self::Own(_) | Self::Time | Self::Whole(..) | Self::Atoms(_) => None,
         }
     }
 }
@@ -129,6 +144,7 @@ impl Observations {
                 (Source::Cell(Whose::Own, _) | Source::Sensed(Whose::Own, ..) | Source::AtAtom(Whose::Own, ..), _) => {
                     Observation::Cell
                 }
+                (Source::Atoms(_), _) => Observation::Cell,
                 _ => Observation::Shared(position_of(&mut all.shared, link.from)),
             };
             all.links.push(LinkObservations { quantities, from });
@@ -163,6 +179,8 @@ pub enum Whole {
 pub enum Target {
     /// An open quantity of the owner: its index among the inputs.
     Own(usize),
+    /// An input of the owner that differs from atom to atom: its number among these.
+    Given(usize),
     /// Something that mechanics reads of a cell.
     Cell(Whose, Control),
 }
@@ -171,9 +189,14 @@ impl Target {
     /// What it sets of cells; none where it sets a quantity of its owner.
     pub fn control(&self) -> Option<Control> {
         match *self {
-            Self::Own(_) => None,
+            Self::Own(_) | Self::Given(_) => None,
             Self::Cell(_, control) => Some(control),
         }
+    }
+
+    /// Whether it has a number for each atom.
+    pub fn is_at_atoms(&self) -> bool {
+        matches!(self, Self::Given(_) | Self::Cell(_, Control::Atoms(_)))
     }
 }
 
@@ -200,5 +223,20 @@ pub enum Control {
     /// A component of an atom's position, µm.
     Atom(usize, usize),
     /// Amount released per second into a channel of [`Chemistry::secreted`].
+    Secretion(usize),
+    /// Something of every atom.
+    Atoms(AtomControl),
+}
+
+/// What mechanics reads of atoms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AtomControl {
+    /// Pressure along the outward normal, pN/µm².
+    Protrusion,
+    /// Tension of the surface, beside that of the type, pN/µm.
+    Tension,
+    /// Factor of the strength of contacts.
+    Adhesion,
+    /// Amount released per second and µm² into a channel of [`Chemistry::secreted`].
     Secretion(usize),
 }

@@ -84,8 +84,18 @@ pub(super) fn measure_cells(
     }
 }
 
+/// Whether an atom of a kind stands on a plane.
+pub(super) fn is_on_plane(model: &Model, kind: &Kind, atom: &Vec3) -> bool {
+    model.planes.iter().any(|plane| (atom - plane.point).dot(&plane.normal) < TOUCHING * kind.edge)
+}
+
 /// The number of the first atom of a cell among all, and the contacts of its atoms.
-fn near_cell<'a>(kind: &Kind, now: &KindState, found: &'a [AtomContact], cell: usize) -> (u32, &'a [AtomContact]) {
+pub(super) fn near_cell<'a>(
+    kind: &Kind,
+    now: &KindState,
+    found: &'a [AtomContact],
+    cell: usize,
+) -> (u32, &'a [AtomContact]) {
     let begin = |cell: usize| (now.first_atom + cell * kind.atoms()) as u32;
     let of_cell = [begin(cell), begin(cell + 1)].map(|atom| found.partition_point(|contact| contact.atom < atom));
     (begin(cell), &found[of_cell[0]..of_cell[1]])
@@ -99,8 +109,7 @@ fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(
     for atom in 0..kind.atoms() {
         let p = position(atom);
         (low, high, sum) = (low.inf(&p), high.sup(&p), sum + (p - base));
-        let touches = |plane: &super::super::Plane| (p - plane.point).dot(&plane.normal) < TOUCHING * kind.edge;
-        on_planes += usize::from(model.planes.iter().any(touches));
+        on_planes += usize::from(is_on_plane(model, kind, &p));
         near_cells += usize::from(is_near(atom as u32));
     }
     let (mut area, mut volume, mut moment) = (0.0, 0.0, Vec3::zeros());

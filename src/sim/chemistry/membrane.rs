@@ -23,7 +23,7 @@ impl Membrane {
     pub(super) fn state(&self, own: &[usize], kinds: &[Kind], cells: &[usize]) -> MembraneState {
         let one = |&kind: &usize| {
             let (lanes, atoms) = (kinds[kind].lanes, kinds[kind].atoms());
-            MembraneCells::new(lanes, atoms, self.system.variables(), cells[kind])
+            MembraneCells::new(lanes, atoms, self.system.variables(), cells[kind], self.system.defaults())
         };
         MembraneState { kinds: own.iter().map(one).collect() }
     }

@@ -4,6 +4,7 @@
 //! and then the links carry numbers both ways, as they are at the end of the step. Within a step what comes through
 //! links stands still.
 
+mod atoms;
 mod carry;
 mod census;
 mod exchange;
@@ -17,12 +18,16 @@ mod observed;
 mod scratch;
 mod stages;
 mod state;
+mod surface;
 mod turnover;
 
 pub use carry::{missed, set_control};
 pub use census::member_cells;
 pub use exchange::next_exchange;
-pub use links::{Control, Link, LinkObservations, Observation, Observations, Owner, Source, Target, Whole, Whose};
+pub use links::{
+    AtAtoms, AtomControl, Control, Link, LinkObservations, Observation, Observations, Owner, Source, Target, Whole,
+    Whose,
+};
 pub use membrane::Membrane;
 pub use membranes::begin_membranes;
 pub use model::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};

@@ -1,7 +1,8 @@
 //! What chemistry means: compiled systems, fields and links. Nothing here changes during a run.
 
-use super::links::{Link, Observations};
+use super::links::{AtAtoms, Link, Observations, Source};
 use super::membrane::Membrane;
+use crate::cell::ends::AtomReading;
 use crate::equations::program::Program;
 use crate::equations::tree::QuantityId;
 use crate::field::{FieldSystem, Stepping};
@@ -118,6 +119,12 @@ impl Chemistry {
         let of_cells = |number: usize| self.reactors[number].members != Members::Scene;
         self.observations = Observations::of(&links, of_cells);
         self.links = links;
+    }
+
+    /// Whether some link reads what touches.
+    pub fn reads_contact(&self) -> bool {
+        let at_atoms = |link: &Link| matches!(link.from, Source::Atoms(AtAtoms::Read(AtomReading::InContact)));
+        self.measures_cells || self.links.iter().any(at_atoms)
     }
 
     /// Whether there is nothing to do.

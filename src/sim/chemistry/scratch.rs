@@ -5,6 +5,7 @@ use super::super::state::State;
 use super::measure::CellNumbers;
 use super::observed::Observed;
 use super::state::ChemistryState;
+use super::surface::AtomShapes;
 use crate::Vec3;
 use crate::field::{Fields, Sensed};
 use crate::membrane::MembraneScratch;
@@ -29,6 +30,10 @@ pub struct ChemistryScratch {
     pub(super) positions: Vec<Vec3>,
     pub(super) senses: Vec<Sensed>,
     pub(super) amounts: Vec<f64>,
+    /// What a link carries at the atoms of a kind; the shape of a cell at its atoms, and their areas at rest, µm².
+    pub(super) at_atoms: Vec<f64>,
+    pub(super) shapes: AtomShapes,
+    pub(super) rest_areas: Vec<f64>,
 }
 
 impl ChemistryScratch {

@@ -53,6 +53,7 @@ pub fn advance_chemistry(
     ws.chemistry.exchange_values(&mut to.chemistry, start);
     advance_systems(model, end, from, to, &mut ws.chemistry)?;
     deposit_secretion(model, dt, to, ws);
+    deposit_at_atoms(model, dt, to, ws);
     advance_fields(model, dt, to, ws)?;
     carry_links(model, end, false, to, ws)?;
     ws.chemistry.exchange_values(&mut to.chemistry, end);
@@ -150,6 +151,28 @@ fn deposit_secretion(model: &Model, dt: f64, state: &State, ws: &mut Workspace) 
                 }
             }
             scratch.fields[field].deposit_all(species, &scratch.positions, &scratch.amounts);
+        }
+    }
+}
+
+/// Releases into the fields what atoms secrete in a step, each on its own area.
+fn deposit_at_atoms(model: &Model, dt: f64, state: &State, ws: &mut Workspace) {
+    let scratch = &mut ws.chemistry;
+    let of_kinds = model.kinds.iter().zip(&state.kinds).zip(&state.chemistry.controls.of_atoms);
+    for ((kind, now), controls) in of_kinds {
+        let atoms = kind.atoms();
+        for (channel, rates) in controls.secretion.iter().enumerate().filter(|(_, rates)| !rates.is_empty()) {
+            let (field, species) = model.chemistry.secreted[channel];
+            for cell in 0..now.cells() {
+                let ChemistryScratch { positions, amounts, shapes, fields, .. } = scratch;
+                positions.clear();
+                positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
+                shapes.take(&kind.rest.facets, positions);
+                amounts.clear();
+                let own = &rates[cell * atoms..(cell + 1) * atoms];
+                amounts.extend(own.iter().zip(&shapes.areas).map(|(rate, area)| rate * area * dt));
+                fields[field].deposit_all(species, positions, amounts);
+            }
         }
     }
 }

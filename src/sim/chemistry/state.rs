@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::super::atom_controls::AtomControls;
 use super::super::controls::Controls;
 use super::super::model::Model;
+use super::links::{Control, Owner, Target, Whose};
 use super::model::{Members, Reactor};
 use crate::field::Fields;
 use crate::membrane::{MembraneCells, MembraneState};
@@ -65,7 +67,7 @@ impl ChemistryState {
             membranes: reactors.iter().map(membrane).collect(),
             times: vec![0.0; reactors.len()],
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
-            controls: controls_of(model, cells.iter().sum()),
+            controls: controls_of(model, cells),
             carried: false,
         }
     }
@@ -131,10 +133,32 @@ fn copy_each<T: Clone>(to: &mut Vec<T>, from: &[T], copy: impl Fn(&mut T, &T)) {
 }
 
 /// The lists that the links of a model write, at numbers that change nothing.
-fn controls_of(model: &Model, cells: usize) -> Controls {
+fn controls_of(model: &Model, counts: &[usize]) -> Controls {
+    let cells = counts.iter().sum();
     let secretion = vec![vec![0.0; cells]; model.chemistry.secreted.len()];
     let mut controls = Controls { secretion, ..Controls::default() };
     let set = model.chemistry.links.iter().filter_map(|link| link.to.control());
     set.for_each(|control| controls.admit(control, cells));
+    admit_atoms(model, counts, &mut controls);
     controls
+}
+
+/// Makes the lists that links write at atoms, where there are none.
+pub(super) fn admit_atoms(model: &Model, counts: &[usize], controls: &mut Controls) {
+    for link in &model.chemistry.links {
+        let Target::Cell(whose, Control::Atoms(control)) = link.to else { continue };
+        controls.of_atoms.resize_with(model.kinds.len(), AtomControls::default);
+        let kinds = match (whose, link.owner) {
+            (Whose::Kind(kind), _) => vec![kind],
+            (Whose::Own, Owner::Reactor(number)) => match &model.chemistry.reactors[number].members {
+                Members::Kinds(kinds) => kinds.clone(),
+                Members::Scene => Vec::new(),
+            },
+            // The kind of a single cell is found when it is set.
+            _ => (0..model.kinds.len()).collect(),
+        };
+        for kind in kinds {
+            controls.of_atoms[kind].admit(control, counts[kind] * model.kinds[kind].atoms());
+        }
+    }
 }

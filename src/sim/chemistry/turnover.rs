@@ -1,8 +1,9 @@
 //! Cells come and go between steps: what chemistry knows of each comes and goes with it, and stands in the order of the cells.
 
 use super::super::controls::Controls;
-use super::model::{Chemistry, Members};
-use super::state::ChemistryState;
+use super::super::model::Model;
+use super::model::Members;
+use super::state::{ChemistryState, admit_atoms};
 use crate::cell::pseudopods::Told;
 use crate::mechanics::CONTROLLED;
 
@@ -12,7 +13,8 @@ impl ChemistryState {
     ///
     /// # Panics
     /// When there is no such kind, or it has fewer cells.
-    pub fn insert_cell(&mut self, chemistry: &Chemistry, cells: &[usize], kind: usize, local: usize) {
+    pub fn insert_cell(&mut self, model: &Model, cells: &[usize], kind: usize, local: usize) {
+        let chemistry = &model.chemistry;
         assert!(local <= cells[kind], "before cell {local} of {}", cells[kind]);
         for (number, reactor) in chemistry.reactors.iter().enumerate() {
             let Members::Kinds(kinds) = &reactor.members else { continue };
@@ -34,12 +36,17 @@ impl ChemistryState {
             .iter()
             .filter_map(|link| link.to.control())
             .for_each(|control| self.controls.admit(control, all));
+        if let Some(of_atoms) = self.controls.of_atoms.get_mut(kind) {
+            of_atoms.insert_cell(model.kinds[kind].atoms(), local);
+            let counts: Vec<usize> = cells.iter().enumerate().map(|(at, &n)| n + usize::from(at == kind)).collect();
+            admit_atoms(model, &counts, &mut self.controls);
+        }
     }
 
     /// Cells go: those of which `keep` (of a kind, and a number among its cells) says no. `cells` says how many each kind has before.
-    pub fn retain_cells(&mut self, chemistry: &Chemistry, cells: &[usize], keep: impl Fn(usize, usize) -> bool) {
+    pub fn retain_cells(&mut self, model: &Model, cells: &[usize], keep: impl Fn(usize, usize) -> bool) {
         let all = |kind: usize| (0..cells[kind]).map(move |local| (kind, local));
-        for (number, reactor) in chemistry.reactors.iter().enumerate() {
+        for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
             let Members::Kinds(kinds) = &reactor.members else { continue };
             let stays: Vec<bool> = kinds.iter().flat_map(|&kind| all(kind)).map(|(kind, at)| keep(kind, at)).collect();
             self.populations[number].retain(|member| stays[member]);
@@ -50,6 +57,9 @@ impl ChemistryState {
         }
         let stays: Vec<bool> = (0..cells.len()).flat_map(all).map(|(kind, at)| keep(kind, at)).collect();
         self.controls.retain_cells(&stays);
+        for (number, (of_atoms, kind)) in self.controls.of_atoms.iter_mut().zip(&model.kinds).enumerate() {
+            of_atoms.retain_cells(kind.atoms(), |local| keep(number, local));
+        }
     }
 }
 

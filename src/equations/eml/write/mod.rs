@@ -138,6 +138,7 @@ impl<'a> Writer<'a> {
             match membrane.surface.iter().find(|variable| variable.quantity == number) {
                 Some(variable) => tail.push_str(&attribute("diffusion", &self.expression(&variable.diffusion))),
                 None if matches!(quantity.role, Role::Variable { .. }) => tail.push_str(&attribute("level", "cell")),
+                None if membrane.given.contains(&number) => tail.push_str(&attribute("level", "membrane")),
                 None => {}
             }
         }

@@ -1,14 +1,14 @@
 //! The meaning of a link's ends in this experiment: which cells, which atom, which field.
 
 use super::{Part, within};
-use crate::cell::ends::{self, Reading, Sense, Setting};
+use crate::cell::ends::{self, AtomSetting, Reading, Sense, Setting};
 use crate::equations::eml::{Endpoint, Index, LinkDescription, Root, Step};
 use crate::error::words;
 use crate::error::{Fault, short};
 use crate::mechanics::CONTROLLED;
 use crate::mechanics::control::Handle;
 use crate::sim::Kind;
-use crate::sim::chemistry::{Chemistry, Control, Source, Target, Whole, Whose};
+use crate::sim::chemistry::{AtAtoms, AtomControl, Chemistry, Control, Source, Target, Whole, Whose};
 
 /// Which end of a link is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,6 +86,7 @@ impl Ends<'_, '_> {
 
     fn read_cell(&mut self, end: &Endpoint, whose: Whose) -> Result<Source, Fault> {
         match parts_of(&end.path)[..] {
+            [("atoms", None), ..] => return self.read_atoms(end, whose),
             [("field", Some(index)), ..] => {
                 let (field, species) = self.species(end, index)?;
                 let sense = ends::sense(&end.path[1..]).ok_or_else(|| unknown_of_field(end))?;
@@ -143,17 +144,49 @@ impl Ends<'_, '_> {
             Setting::RestVolumeRatio => Control::RestVolumeRatio,
             Setting::Atom(atom, axis) => Control::Atom(atom, axis),
             Setting::Force(handle, name) => Control::Force(handle, self.numbered(end, whose, handle, &name)?),
-            Setting::Secretion(name) => {
-                let channel = self.species(end, &Index::Name(name))?;
-                let secreted = &mut self.chemistry.secreted;
-                let known = secreted.iter().position(|one| *one == channel);
-                Control::Secretion(known.unwrap_or_else(|| {
-                    secreted.push(channel);
-                    secreted.len() - 1
-                }))
-            }
+            Setting::Secretion(name) => Control::Secretion(self.secreted(end, name)?),
+            Setting::Atoms(what) => Control::Atoms(match what {
+                AtomSetting::Protrusion => AtomControl::Protrusion,
+                AtomSetting::Tension => AtomControl::Tension,
+                AtomSetting::Adhesion => AtomControl::Adhesion,
+                AtomSetting::Secretion(name) => AtomControl::Secretion(self.secreted(end, name)?),
+            }),
         };
         Ok(Target::Cell(whose, control))
+    }
+
+    /// The channel into which cells secrete a species.
+    fn secreted(&mut self, end: &Endpoint, name: String) -> Result<usize, Fault> {
+        let channel = self.species(end, &Index::Name(name))?;
+        let secreted = &mut self.chemistry.secreted;
+        let known = secreted.iter().position(|one| *one == channel);
+        Ok(known.unwrap_or_else(|| {
+            secreted.push(channel);
+            secreted.len() - 1
+        }))
+    }
+
+    /// What differs from atom to atom, for a system that has a number for each.
+    fn read_atoms(&mut self, end: &Endpoint, whose: Whose) -> Result<Source, Fault> {
+        if whose != Whose::Own || self.part.document.membrane.is_none() {
+            let message =
+                format!("{} has a number for each atom, which only a membrane of the cell takes up", end.text);
+            let help = "link it to an <input level=\"membrane\"> of a document of level=\"membrane\" that the type has";
+            return Err(within(&end.location, "of atoms", message, help));
+        }
+        if let [_, ("field", Some(index)), ..] = parts_of(&end.path)[..] {
+            let index = index.clone();
+            let (field, species) = self.species(end, &index)?;
+            let sense = ends::sense(&end.path[2..]).ok_or_else(|| unknown_of_field(end))?;
+            return Ok(Source::Atoms(AtAtoms::Sensed(field, species, sense)));
+        }
+        let Some(reading) = ends::atom_reading(&end.path[1..]) else {
+            let known = || ends::READABLE.into_iter().filter(|word| word.starts_with("atoms."));
+            let message = format!("atoms have nothing to read that is called `{}`", end.text);
+            let help = format!("there is {}", words::all_of(known()));
+            return Err(within(&end.location, &meant(end, known()), message, help));
+        };
+        Ok(Source::Atoms(AtAtoms::Read(reading)))
     }
 
     /// Whether all cells concerned have what is set.
@@ -168,7 +201,10 @@ impl Ends<'_, '_> {
                 Setting::Pseudopods(_) if !kind.has_pseudopods() => {
                     ("has no pseudopods", "add `pseudopods = { … }` to the type")
                 }
-                Setting::Adhesion if !self.touching => {
+                Setting::Atoms(_) if kind.rest.facets.is_empty() => {
+                    ("has no surface", "give the type a mesh with facets")
+                }
+                Setting::Adhesion | Setting::Atoms(AtomSetting::Adhesion) if !self.touching => {
                     ("touches nothing in this experiment", "add a [contact] table with a strength")
                 }
                 Setting::RestVolume | Setting::RestVolumeRatio if free => {
@@ -324,7 +360,8 @@ impl Ends<'_, '_> {
         let (whose, field, location) = match (*from, *to) {
             (Source::Sensed(whose, channel, _), _) => (whose, self.chemistry.sensed[channel].0, &link.from.location),
             (Source::AtAtom(whose, _, field, ..), _) => (whose, field, &link.from.location),
-            (_, Target::Cell(whose, Control::Secretion(channel))) => {
+            (Source::Atoms(AtAtoms::Sensed(field, ..)), _) => (Whose::Own, field, &link.from.location),
+            (_, Target::Cell(whose, Control::Secretion(channel) | Control::Atoms(AtomControl::Secretion(channel)))) => {
                 (whose, self.chemistry.secreted[channel].0, &link.to.location)
             }
             _ => return Ok(()),

@@ -3,14 +3,14 @@
 use super::super::super::{ChemistryLink, Document};
 use super::ends::{Ends, Side, differs, kind_of_cell};
 use super::order::order;
-use super::{Part, at, within};
+use super::{Part, at, membrane, within};
 use crate::equations::eml::{self, Endpoint, LinkDescription, Root};
 use crate::equations::expression::Trouble;
-use crate::equations::tree::{Event, Expr, Role, System};
+use crate::equations::tree::{Binary, Event, Expr, QuantityId, Role, System};
 use crate::error::{Fault, Location};
 use crate::ode::assigned_parameters;
 use crate::sim::Kind;
-use crate::sim::chemistry::{Chemistry, Control, Link, Owner, Target};
+use crate::sim::chemistry::{AtAtoms, Chemistry, Control, Link, Owner, Source, Target};
 
 /// Parameters that a link of the experiment sets become inputs; those that events set do not.
 pub(super) fn open_linked_parameters(parts: &mut [Part]) {
@@ -41,16 +41,20 @@ pub(super) fn links(
     let before = faults.len();
     let mut links: Vec<(Link, Location)> = Vec::new();
     for part in parts {
+        let mut shown = Vec::new();
         let described = part.document.links.iter().map(|link| (link.clone(), Ok(link.location.clone())));
         let own: Vec<_> = described.chain(outside(document, part, faults)).collect();
         for (description, location) in own {
             let location = location.unwrap_or_else(|key| nowhere(document, &key));
             let touching = document.experiment.contact.is_some();
             let mut ends = Ends { parts, part, kinds, counts, chemistry, touching };
-            match link(&mut ends, &description) {
+            match link(&mut ends, &mut shown, &description) {
                 Ok(link) => links.push((link, location)),
                 Err(fault) => faults.push(fault),
             }
+        }
+        if !shown.is_empty() {
+            membrane::show(part, chemistry, &shown);
         }
     }
     if faults.len() > before {
@@ -83,7 +87,7 @@ fn nowhere(document: &Document, key: &str) -> Location {
 
 /// What links do to the model as a whole.
 fn act(link: &Link, chemistry: &mut Chemistry, counts: &[usize], kinds: &mut [Kind]) {
-    if let crate::sim::chemistry::Source::Cell(_, reading) = link.from {
+    if let Source::Cell(_, reading) = link.from {
         chemistry.measures_cells |= !matches!(reading, crate::cell::ends::Reading::Atom(..));
     }
     let Target::Cell(whose, control) = link.to else { return };
@@ -123,19 +127,23 @@ fn link_kinds(
     }
 }
 
-fn link(ends: &mut Ends, description: &LinkDescription) -> Result<Link, Fault> {
+/// A link; what membranes have to work out at atoms for it is put to what is shown.
+fn link(ends: &mut Ends, shown: &mut Vec<Expr>, description: &LinkDescription) -> Result<Link, Fault> {
     let owner = ends.owner();
-    let from = ends.source(&description.from)?;
-    let to = ends.target(&description.to)?;
-    let mut uses = Vec::new();
-    if let crate::sim::chemistry::Source::Own(quantity) = from {
-        uses.push(quantity);
-    }
+    let (from, to, source) = joined(ends, shown.len(), description)?;
+    let mut needs: Vec<QuantityId> = source.into_iter().collect();
     description.transfer.each_quantity(&mut |quantity| {
-        if quantity != LinkDescription::VALUE && !uses.contains(&quantity) {
-            uses.push(quantity);
+        if quantity != LinkDescription::VALUE && !needs.contains(&quantity) {
+            needs.push(quantity);
         }
     });
+    if let (Source::Atoms(AtAtoms::Shown(_)), Some(quantity)) = (from, source) {
+        shown.push(carried(description, quantity));
+    }
+    let uses = match from {
+        Source::Atoms(AtAtoms::Shown(_)) => Vec::new(),
+        _ => needs.clone(),
+    };
     if let Some(used) = uses.iter().find(|used| ends.part.is_local(**used)) {
         let id = &ends.part.document.system.quantities[*used as usize].id;
         let message = format!("the transfer uses `{id}`, which differs from atom to atom");
@@ -145,7 +153,48 @@ fn link(ends: &mut Ends, description: &LinkDescription) -> Result<Link, Fault> {
     ends.check_grid(description, &from, &to)?;
     let text = format!("of `{}` from {} to {}", ends.part.name, description.from.text, description.to.text);
     let (transfer, gain) = (description.transfer.clone(), description.gain);
-    Ok(Link { text, owner, from, to, transfer, uses, gain })
+    Ok(Link { text, owner, from, to, transfer, uses, needs, gain })
+}
+
+/// The two ends of a link, and the quantity of the system that it reads.
+fn joined(
+    ends: &mut Ends,
+    shown: usize,
+    description: &LinkDescription,
+) -> Result<(Source, Target, Option<QuantityId>), Fault> {
+    let local = match description.from.root {
+        Root::System(quantity) => ends.part.is_local(quantity).then_some(quantity),
+        _ => None,
+    };
+    if let Some(quantity) = local {
+        let to = ends.target(&description.to)?;
+        return match to.is_at_atoms() {
+            true => Ok((Source::Atoms(AtAtoms::Shown(shown)), to, Some(quantity))),
+            false => Err(differs(&description.from)),
+        };
+    }
+    let from = ends.source(&description.from)?;
+    let to = ends.target(&description.to)?;
+    if let (Source::Atoms(_), false) = (from, to.is_at_atoms()) {
+        let message = format!("{} has a number for each atom, {} one", description.from.text, description.to.text);
+        let help = "declare the <input> with level=\"membrane\"; a <mean> or an <integral> makes one number of it";
+        return Err(within(&description.to.location, "one number", message, help));
+    }
+    let source = match from {
+        Source::Own(quantity) => Some(quantity),
+        _ => None,
+    };
+    Ok((from, to, source))
+}
+
+/// What a link carries of a quantity, its transfer and gain included.
+fn carried(description: &LinkDescription, quantity: QuantityId) -> Expr {
+    let value = Expr::Quantity(quantity);
+    let transfer = description.transfer.replaced(LinkDescription::VALUE, &value);
+    if description.gain == 1.0 {
+        return transfer;
+    }
+    Expr::Binary(Binary::Mul, Box::new(Expr::Number(description.gain)), Box::new(transfer))
 }
 
 type Located = (LinkDescription, Result<Location, String>);
@@ -249,10 +298,10 @@ impl Ends<'_, '_> {
     }
 
     /// Where a number comes from.
-    fn source(&mut self, end: &Endpoint) -> Result<crate::sim::chemistry::Source, Fault> {
+    fn source(&mut self, end: &Endpoint) -> Result<Source, Fault> {
         match &end.root {
             Root::System(quantity) if self.part.is_local(*quantity) => Err(differs(end)),
-            Root::System(quantity) if !self.part.is_field() => Ok(crate::sim::chemistry::Source::Own(*quantity)),
+            Root::System(quantity) if !self.part.is_field() => Ok(Source::Own(*quantity)),
             Root::System(_) => Err(within(
                 &end.location,
                 "of fields",
@@ -261,6 +310,12 @@ impl Ends<'_, '_> {
             )),
             _ => self.read(end, Side::From),
         }
+    }
+
+    /// An input of a membrane that differs from atom to atom.
+    fn given(&self, quantity: QuantityId) -> Option<Target> {
+        let reactor = self.chemistry.reactors.get(self.part.number).filter(|_| !self.part.is_field())?;
+        reactor.membrane.as_ref()?.system.given_number(quantity).map(Target::Given)
     }
 
     /// Where a number goes.
@@ -277,7 +332,8 @@ impl Ends<'_, '_> {
         } else {
             self.chemistry.reactors[self.part.number].program.open_index(quantity)
         };
-        location.map(Target::Own).ok_or_else(|| {
+        let given = self.given(quantity);
+        given.or(location.map(Target::Own)).ok_or_else(|| {
             let message = format!("{} cannot be set by a link", end.text);
             within(&end.location, "not an input", message, "link to an <input>")
         })

@@ -2,12 +2,12 @@
 
 use super::super::super::Document;
 use super::{Part, at, within};
-use crate::equations::tree::Role;
+use crate::equations::tree::{Expr, Role};
 use crate::error::Fault;
 use crate::membrane::{MembraneStepping, MembraneSystem};
 use crate::ode::{EventPlan, Method, Tolerances};
 use crate::sim::Kind;
-use crate::sim::chemistry::{Members, Membrane, Reactor};
+use crate::sim::chemistry::{Chemistry, Members, Membrane, Reactor};
 
 /// Tolerances of a step where neither document says any: relative and absolute.
 const TOLERANCE: (f64, f64) = (1e-4, 1e-7);
@@ -58,7 +58,7 @@ pub(super) fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: 
         Some(step) => MembraneStepping::Longest { step, relative, absolute },
         None => MembraneStepping::Adaptive { relative, absolute },
     };
-    let system = match MembraneSystem::new(eml, stepping) {
+    let system = match MembraneSystem::new(eml, stepping, &[]) {
         Ok(system) => system,
         Err(circle) => {
             let message = format!("`{}` has a circle of definitions: {}", part.name, circle.join(" → "));
@@ -100,4 +100,15 @@ pub(super) fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: 
         exchange: None,
         recorded: quantities.map(|(number, q)| (number, q.id.clone(), q.unit.clone())).collect(),
     })
+}
+
+/// Lets a membrane work out expressions of its quantities at all atoms.
+pub(super) fn show(part: &Part, chemistry: &mut Chemistry, shown: &[Expr]) {
+    let Some(membrane) = chemistry.reactors.get_mut(part.number).and_then(|reactor| reactor.membrane.as_mut()) else {
+        return;
+    };
+    // What had no circle of definitions has none with expressions of the same quantities.
+    if let Ok(system) = MembraneSystem::new(&part.document, membrane.system.stepping, shown) {
+        membrane.system = system;
+    }
 }

@@ -28,13 +28,17 @@ pub(super) fn order(links: &[Link], systems: &[&System], reactors: &[Reactor]) -
 fn before(link: &Link, links: &[Link], systems: &[&System], reactors: &[Reactor]) -> Vec<usize> {
     let mut used: Vec<(usize, QuantityId)> = Vec::new();
     if let Owner::Reactor(number) = link.owner {
-        link.uses.iter().for_each(|&quantity| inputs(systems[number], quantity, number, &mut used));
+        link.needs.iter().for_each(|&quantity| inputs(systems[number], quantity, number, &mut used));
     }
     if let Source::Other(number, quantity, _) = link.from {
         inputs(systems[number], quantity, number, &mut used);
     }
     let feeds = |other: &Link| match (other.owner, other.to, link.from) {
         (Owner::Reactor(number), Target::Own(open), _) => used.contains(&(number, reactors[number].program.open[open])),
+        (Owner::Reactor(number), Target::Given(given), _) => {
+            let membrane = reactors[number].membrane.as_ref();
+            membrane.is_some_and(|membrane| used.contains(&(number, membrane.system.given_quantity(given))))
+        }
         (_, Target::Cell(_, Control::Atom(atom, axis)), Source::Cell(_, Reading::Atom(read, along))) => {
             (atom, axis) == (read, along)
         }

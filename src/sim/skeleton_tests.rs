@@ -115,3 +115,57 @@ fn the_rear_lets_go_and_the_front_holds() {
         assert!(along > -0.5 || (factor - 0.2).abs() < 1e-12);
     }
 }
+
+#[test]
+fn pressures_at_atoms_have_neither_sum_nor_torque_and_push_out_what_they_press() {
+    let (kind, now) = cell();
+    let positions = Positions { kind: &kind, now: &now, cell: 0 };
+    let pressures: Vec<f64> = (0..kind.atoms()).map(|atom| ((atom * 7) % 5) as f64).collect();
+    let grips: Vec<f64> = (0..kind.atoms()).map(|atom| ((atom * 3) % 4) as f64).collect();
+    let mut forces = vec![Vec3::zeros(); kind.atoms()];
+    positions.press(&pressures, &grips, &mut forces);
+    let [sum, torque] = sum_and_torque(&positions, &forces);
+    assert!(sum < 1e-12 && torque < 1e-12, "{sum} {torque}");
+    // One pressure everywhere on a closed surface is balanced by itself: nothing is left to be borne, whatever grips.
+    let mut even = vec![Vec3::zeros(); kind.atoms()];
+    positions.press(&vec![2.0; kind.atoms()], &grips, &mut even);
+    let mut areas = vec![Vec3::zeros(); kind.atoms()];
+    for facet in &kind.rest.facets {
+        let [a, b, c] = facet.map(|atom| positions.of(atom as usize));
+        facet.iter().for_each(|atom| areas[*atom as usize] += (b - a).cross(&(c - a)) / 6.0);
+    }
+    for (force, area) in even.iter().zip(&areas) {
+        assert!((force - 2.0 * area).norm() < 1e-12 * areas.len() as f64, "{force} instead of {}", 2.0 * area);
+    }
+}
+
+#[test]
+fn tension_at_atoms_is_the_gradient_of_its_energy() {
+    let (kind, now) = cell();
+    let tensions: Vec<f64> = (0..kind.atoms()).map(|atom| 1.0 + ((atom * 5) % 7) as f64).collect();
+    let energy = |now: &KindState| -> f64 {
+        let positions = Positions { kind: &kind, now, cell: 0 };
+        let of = |facet: &[u32; 3]| {
+            let [a, b, c] = facet.map(|atom| positions.of(atom as usize));
+            let tension = facet.iter().map(|atom| tensions[*atom as usize]).sum::<f64>() / 3.0;
+            tension * 0.5 * (b - a).cross(&(c - a)).norm()
+        };
+        kind.rest.facets.iter().map(of).sum()
+    };
+    let positions = Positions { kind: &kind, now: &now, cell: 0 };
+    let mut forces = vec![Vec3::zeros(); kind.atoms()];
+    positions.tighten(&tensions, &mut forces);
+    let [sum, torque] = sum_and_torque(&positions, &forces);
+    assert!(sum < 1e-12 && torque < 1e-12, "{sum} {torque}");
+    let step = 1e-5;
+    for (atom, axis) in [(0, 0), (17, 1), (90, 2), (161, 0)] {
+        let moved = |by: f64| {
+            let mut now = now.clone();
+            now.positions[crate::sim::state::index(&kind, 0, atom, axis)] += by;
+            energy(&now)
+        };
+        let slope = (moved(step) - moved(-step)) / (2.0 * step);
+        // Central differences err by the square of the step, and by round-off of the energy over it.
+        assert!((forces[atom][axis] + slope).abs() < 1e-6, "{} and {}", forces[atom][axis], -slope);
+    }
+}
