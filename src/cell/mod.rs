@@ -118,6 +118,7 @@ mod tests {
         let turning = Turning { split: 0.5, angle: 1.0, spread: 0.1, alternation: 0.7, space: Space::Plane };
         let pods = Pseudopods {
             pressure: 50.0,
+            reach: f64::INFINITY,
             least_cosine: 0.7,
             contraction: 10.0,
             release: 1.0,

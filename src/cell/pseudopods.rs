@@ -21,6 +21,8 @@ pub struct Pseudopods {
     pub pressure: f64,
     /// Cosine of half the opening of the cone in which the surface is pushed.
     pub least_cosine: f64,
+    /// How far the front gets ahead of a ball of the cell's volume until no pressure is left, µm; infinity where it stays.
+    pub reach: f64,
     /// Tension between front and rear while a pseudopod retracts, pN.
     pub contraction: f64,
     /// What of its adhesion the rear lets go meanwhile, from 0 to 1.

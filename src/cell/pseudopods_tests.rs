@@ -2,6 +2,7 @@ use super::*;
 
 const PODS: Pseudopods = Pseudopods {
     pressure: 50.0,
+    reach: f64::INFINITY,
     least_cosine: 0.7,
     contraction: 10.0,
     release: 1.0,

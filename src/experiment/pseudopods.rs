@@ -3,7 +3,7 @@
 use crate::cell::Behaviour;
 use crate::cell::motility::Space;
 use crate::cell::pseudopods::{self as cell, Cycle, Turning};
-use crate::units::{Angle, Force, Stress, Time};
+use crate::units::{Angle, Force, Length, Stress, Time};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +17,10 @@ pub struct Pseudopods {
     /// Half the opening of the cone, seen from the middle of the cell, in which the surface is pushed; the pressure falls to 0 at its border.
     #[serde(default = "default_half_angle")]
     pub half_angle: Angle,
+    /// How far the front may get ahead of where the surface of a ball with the cell's volume would be: there the pressure is gone. Without it
+    /// the pressure stays.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub reach: Option<Length>,
     /// Tension with which front and rear are drawn together while the pseudopod retracts.
     #[serde(default)]
     #[schemars(extend("x-minimum" = 0))]
@@ -103,6 +107,7 @@ impl Pseudopods {
         Behaviour::Pseudopods(cell::Pseudopods {
             pressure: self.pressure.value(),
             least_cosine: self.half_angle.value().cos(),
+            reach: self.reach.map_or(f64::INFINITY, |reach| reach.value()),
             contraction: self.contraction.value(),
             release: self.release,
             cycle: Cycle { means: times.map(|time| time.value()), variation: self.variation },

@@ -35,7 +35,7 @@ impl MembraneCells {
     pub fn new(lanes: usize, atoms: usize, variables: usize, cells: usize, defaults: Vec<f64>) -> Self {
         let mut new = Self { lanes, atoms, variables, cells, defaults, ..Self::default() };
         new.suit_blocks();
-        (0..cells).for_each(|cell| new.give_defaults(cell));
+        (0..cells).for_each(|cell| new.reset_given(cell));
         new
     }
 
@@ -94,15 +94,15 @@ impl MembraneCells {
     ///
     /// # Panics
     /// When there is no such cell, number or atom.
-    pub fn give(&mut self, cell: usize, number: usize, atom: usize, value: f64) {
+    pub fn set_given(&mut self, cell: usize, number: usize, atom: usize, value: f64) {
         assert!(cell < self.cells && number < self.defaults.len() && atom < self.atoms, "no such cell, number or atom");
         let (block, lane) = (cell / self.lanes, cell % self.lanes);
         self.given[((block * self.defaults.len() + number) * self.atoms + atom) * self.lanes + lane] = value;
     }
 
-    fn give_defaults(&mut self, cell: usize) {
+    fn reset_given(&mut self, cell: usize) {
         for number in 0..self.defaults.len() {
-            (0..self.atoms).for_each(|atom| self.give(cell, number, atom, self.defaults[number]));
+            (0..self.atoms).for_each(|atom| self.set_given(cell, number, atom, self.defaults[number]));
         }
     }
 
@@ -130,7 +130,7 @@ impl MembraneCells {
             self.copy(cell - 1, cell);
         }
         self.clear(at);
-        self.give_defaults(at);
+        self.reset_given(at);
     }
 
     /// Keeps some cells, in their order.

@@ -60,7 +60,28 @@ impl Positions<'_> {
         forces: &mut [Vec3],
     ) {
         let share = |atom: usize| self.share(pods, atom, (centre, direction));
-        self.push_out(activity * pods.pressure, share, centre, grips, forces);
+        let left = self.left_of_reach(pods, (centre, direction));
+        if left > 0.0 {
+            self.push_out(activity * pods.pressure * left, share, centre, grips, forces);
+        }
+    }
+
+    /// What of the pressure is left where the front is, eq. (pseudopods.8).
+    fn left_of_reach(&self, pods: &Pseudopods, (centre, direction): (&Vec3, &Vec3)) -> f64 {
+        if pods.reach == f64::INFINITY {
+            return 1.0;
+        }
+        let (mut whole, mut ahead) = (0.0, 0.0);
+        for (atom, x) in self.all().enumerate() {
+            let share = self.share(pods, atom, (centre, direction));
+            whole += share;
+            ahead += share * (x - centre).dot(direction);
+        }
+        if whole == 0.0 {
+            return 1.0;
+        }
+        let radius = (self.kind.rest_volume() * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
+        (1.0 - (ahead / whole - radius) / pods.reach).clamp(0.0, 1.0)
     }
 
     /// Pushes atoms out with pressures of their own, pN/µm², and what grips back, eq. (pseudopods.4).
@@ -92,7 +113,9 @@ impl Positions<'_> {
         }
         let held: f64 = grips.iter().sum();
         let mean = if held > 0.0 { LEAK * held / self.kind.atoms() as f64 } else { 1.0 };
-        let weight = |atom: usize| grips[atom] + mean * (1.0 - share(atom));
+        // Where all are pushed alike and nothing grips, all bear alike.
+        let none = held == 0.0 && (0..self.kind.atoms()).all(|atom| share(atom) == 1.0);
+        let weight = |atom: usize| if none { 1.0 } else { grips[atom] + mean * (1.0 - share(atom)) };
         answer((0..self.kind.atoms()).map(|atom| (weight(atom), self.of(atom) - centre)), (sum, torque), forces);
     }
 

@@ -6,6 +6,7 @@ use crate::sim::state::Inertia;
 
 const PODS: Pseudopods = Pseudopods {
     pressure: 40.0,
+    reach: f64::INFINITY,
     least_cosine: 0.7,
     contraction: 100.0,
     release: 0.8,
@@ -127,15 +128,18 @@ fn pressures_at_atoms_have_neither_sum_nor_torque_and_push_out_what_they_press()
     let [sum, torque] = sum_and_torque(&positions, &forces);
     assert!(sum < 1e-12 && torque < 1e-12, "{sum} {torque}");
     // One pressure everywhere on a closed surface is balanced by itself: nothing is left to be borne, whatever grips.
-    let mut even = vec![Vec3::zeros(); kind.atoms()];
-    positions.press(&vec![2.0; kind.atoms()], &grips, &mut even);
+    let nothing = vec![0.0; kind.atoms()];
     let mut areas = vec![Vec3::zeros(); kind.atoms()];
     for facet in &kind.rest.facets {
         let [a, b, c] = facet.map(|atom| positions.of(atom as usize));
         facet.iter().for_each(|atom| areas[*atom as usize] += (b - a).cross(&(c - a)) / 6.0);
     }
-    for (force, area) in even.iter().zip(&areas) {
-        assert!((force - 2.0 * area).norm() < 1e-12 * areas.len() as f64, "{force} instead of {}", 2.0 * area);
+    for grips in [&grips, &nothing] {
+        let mut even = vec![Vec3::zeros(); kind.atoms()];
+        positions.press(&vec![2.0; kind.atoms()], grips, &mut even);
+        for (force, area) in even.iter().zip(&areas) {
+            assert!((force - 2.0 * area).norm() < 1e-12 * areas.len() as f64, "{force} instead of {}", 2.0 * area);
+        }
     }
 }
 
@@ -168,4 +172,29 @@ fn tension_at_atoms_is_the_gradient_of_its_energy() {
         // Central differences err by the square of the step, and by round-off of the energy over it.
         assert!((forces[atom][axis] + slope).abs() < 1e-6, "{} and {}", forces[atom][axis], -slope);
     }
+}
+
+#[test]
+fn a_front_pushes_less_the_farther_it_is_ahead() {
+    let rest = icosphere(5.0, 3);
+    let kind = Kind::new("cell", rest.clone(), Vec::new());
+    let pods = Pseudopods { reach: 4.0, ..PODS };
+    let pushed = |stretch: f64, pods: &Pseudopods| -> f64 {
+        // Drawn out along x, with the same volume.
+        let across = stretch.sqrt().recip();
+        let drawn: Vec<Vec3> =
+            rest.positions.iter().map(|x| Vec3::new(stretch * x.x, across * x.y, across * x.z)).collect();
+        let now = KindState::new(&kind, std::slice::from_ref(&drawn), 0, Inertia::OverDamped, 1);
+        let mut forces = vec![Vec3::zeros(); kind.atoms()];
+        // Where nothing grips, what is in front bears the less the more it belongs to it: the axis nothing.
+        let did = Activity { direction: [1.0, 0.0, 0.0], protrusion: 1.0, retraction: 0.0 };
+        Positions { kind: &kind, now: &now, cell: 0 }.push(pods, &did, &vec![0.0; kind.atoms()], &mut forces);
+        forces.iter().map(|force| force.norm()).sum()
+    };
+    let of = |stretch: f64| pushed(stretch, &pods) / pushed(stretch, &PODS);
+    assert_eq!(of(1.0), 1.0, "a ball is not yet ahead of itself");
+    // The front's middle lies at 0.9 of the longest half axis: 2.2 um ahead of 5, then beyond 4.
+    let half = of(1.6);
+    assert!((0.3..0.6).contains(&half), "{half}");
+    assert_eq!(of(2.2), 0.0);
 }

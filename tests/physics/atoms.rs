@@ -55,11 +55,11 @@ fn an_atom_reads_the_field_and_the_shape_where_it_is() {
     );
     let (scene, found) = read("normal.z", "1 + value");
     for (x, found) in atoms(&scene, 0).iter().zip(&found) {
-        // An icosphere's normals lie within half a degree of the radii: 0.01 of 3.
-        assert!((found - 3.0 * (1.0 + x.z / 5.0)).abs() < 0.03, "{found} at {x}");
+        // An icosphere's normals lie within a degree of the radii at this level: 0.02 of 3.
+        assert!((found - 3.0 * (1.0 + x.z / 5.0)).abs() < 0.06, "{found} at {x}");
     }
     let (_, found) = read("curvature", "value");
-    assert!(found.iter().all(|found| (found - 3.0 / 5.0).abs() < 0.04), "{found:?}");
+    assert!(found.iter().all(|found| (found - 3.0 / 5.0).abs() < 0.02), "{found:?}");
     let (_, found) = read("area_strain", "1 + value");
     assert!(found.iter().all(|found| (found - 3.0).abs() < 1e-9), "{found:?}");
 }
@@ -70,7 +70,7 @@ fn an_atom_knows_what_it_touches() {
         <variable id="a" initial="0" rate="0"/><define id="both">near + 10*low</define>
         <link from="cell.atoms.in_contact" to="system.near"/><link from="cell.atoms.on_plane" to="system.low"/>
         <link from="system.both" to="cell.atoms.protrusion" gain="0.001"/></eml>"#;
-    let planes = "placement = { at = [[\"0 um\", \"0 um\", \"5 um\"], [\"9.9 um\", \"0 um\", \"5 um\"]] }\n[[planes]]\nname = \"floor\"\npoint = [\"0 um\", \"0 um\", \"0 um\"]\n\
+    let planes = "placement = { at = [[\"0 um\", \"0 um\", \"5 um\"], [\"10.02 um\", \"0 um\", \"5 um\"]] }\n[[planes]]\nname = \"floor\"\npoint = [\"0 um\", \"0 um\", \"0 um\"]\n\
         normal = [0, 0, 1]\n[contact]\nstrength = \"1 Pa\"\nmodel = \"adhesives\"\n";
     let text = ball(ROUND, planes).replace("placement = { at = [[\"10 um\", \"0 um\", \"0 um\"]] }\n", "");
     let mut scene = scene(&[("own", own)], &text);
@@ -93,7 +93,8 @@ fn an_atom_knows_what_it_touches() {
 
 #[test]
 fn a_tension_that_chemistry_sets_everywhere_is_that_of_the_type() {
-    let own = r#"<eml name="own" level="membrane"><variable id="t" initial="6" rate="0"/><link from="system.t" to="cell.atoms.tension"/></eml>"#;
+    let own = r#"<eml name="own" level="membrane"><variable id="t" initial="6" rate="0"/><define id="even">6 + 0*t</define>
+        <link from="system.even" to="cell.atoms.tension"/></eml>"#;
     // First order with small steps: the two differ by how far they are implicit alone.
     let run = |own: &str, tension: &str, step: &str| {
         let soft = format!(
@@ -134,7 +135,7 @@ fn what_atoms_secrete_is_their_area_times_their_rate() {
 #[test]
 fn what_is_set_of_atoms_comes_and_goes_with_their_cell() {
     let own = r#"<eml name="own" level="membrane"><input id="s" default="7" level="membrane"/><variable id="a" initial="1 + 0.1*x" rate="0"/>
-        <define id="p">a + 0*s</define><link from="system.p" to="cell.atoms.protrusion"/><link from="system.a" to="cell.atoms.tension"/></eml>"#;
+        <define id="p">a + 0*s</define><link from="system.p" to="cell.atoms.protrusion" gain="1e-6"/><link from="system.a" to="cell.atoms.tension" gain="1e-6"/></eml>"#;
     let some = "placement = { at = [[\"-30 um\", \"0 um\", \"0 um\"], [\"0 um\", \"0 um\", \"0 um\"], [\"30 um\", \"0 um\", \"0 um\"]] }\n";
     let text = ball(ROUND, some).replace("placement = { at = [[\"10 um\", \"0 um\", \"0 um\"]] }\n", "");
     let mut scene = scene(&[("own", own)], &text);
@@ -157,7 +158,11 @@ fn what_is_set_of_atoms_comes_and_goes_with_their_cell() {
     assert!(controls.protrusion[2 * each..].iter().chain(&controls.tension[2 * each..]).all(|value| *value == 0.0));
     scene.step().unwrap();
     let (first, last) = (&pressures(&scene)[..each], &pressures(&scene)[2 * each..]);
-    assert!(first.iter().zip(last).all(|(a, b)| (a - b).abs() < 1e-9), "the new cell does as those that were there");
+    // But for what a millionth of a pressure has done to the shape of the first.
+    assert!(
+        first.iter().zip(last).all(|(a, b)| (a - b).abs() < 1e-3 * a),
+        "the new cell does as those that were there"
+    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::super::model::Model;
 use super::super::state::{State, vector};
 use super::super::trouble::Trouble;
-use super::carry::missed;
+use super::expected::missed;
 use super::links::{AtAtoms, AtomControl, Control, Owner, Source, Target};
 use super::measure::{is_on_plane, near_cell};
 use super::model::Members;
@@ -69,7 +69,7 @@ pub(super) fn carry_atoms(
     Ok(())
 }
 
-/// What a membrane shows of its atoms, transfer and gain included.
+/// What a membrane shows of its atoms, transfer included.
 fn show(
     model: &Model,
     AtKind { reactor: number, at, first, .. }: AtKind,
@@ -151,7 +151,7 @@ fn sense_at_atoms(
     }
 }
 
-/// Makes of what was read what is carried; what a membrane shows is that already.
+/// Makes of what was read what is carried; what a membrane shows has the transfer in it already.
 fn transfer(
     model: &Model,
     AtKind { link: number, reactor, kind, first, .. }: AtKind,
@@ -161,6 +161,7 @@ fn transfer(
 ) {
     let (link, seen) = (&model.chemistry.links[number], &model.chemistry.observations.links[number]);
     if matches!(link.from, Source::Atoms(AtAtoms::Shown(_))) {
+        numbers.iter_mut().for_each(|value| *value *= link.gain);
         return;
     }
     let (atoms, seconds) = (model.kinds[kind].atoms(), model.chemistry.reactors[reactor].seconds);
@@ -191,7 +192,7 @@ fn put(model: &Model, here: AtKind, numbers: &[f64], state: &mut State) {
         Target::Given(given) => {
             let cells = &mut state.chemistry.membranes[here.reactor].kinds[here.at];
             for (index, value) in numbers.iter().enumerate() {
-                cells.give(index / atoms, given, index % atoms, *value);
+                cells.set_given(index / atoms, given, index % atoms, *value);
             }
         }
         Target::Cell(_, Control::Atoms(control)) => {

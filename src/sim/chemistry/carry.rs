@@ -7,7 +7,8 @@ use super::super::workspace::Workspace;
 use super::atoms::{carry_atoms, set_all};
 use super::census::{cell_of_member, cells_of, member_of_cell, names_nobody};
 use super::exchange::is_due;
-use super::links::{AtomControl, Control, Observation, Owner, Source, Target};
+use super::expected::missed;
+use super::links::{Control, Observation, Owner, Source, Target};
 use super::measure::measure_cells;
 use super::model::Members;
 use super::observe::{observe, read_cell};
@@ -15,7 +16,6 @@ use super::scratch::ChemistryScratch;
 use crate::cell::ends::PodSetting;
 use crate::equations::eml::LinkDescription;
 use crate::field::Sensed;
-use crate::mechanics::CONTROLLED;
 
 /// Carries the numbers of all links whose system exchanges with the model at `time`.
 /// The values of the fields must be with their solvers. At the start every system exchanges.
@@ -125,7 +125,9 @@ fn carry(
             (Target::Own(open), Owner::Reactor(number)) => {
                 state.chemistry.populations[number].set_open(member, open, carried);
             }
-            (Target::Given(given), Owner::Reactor(number)) => give(model, (number, member), given, carried, state),
+            (Target::Given(given), Owner::Reactor(number)) => {
+                set_at_all_atoms(model, (number, member), given, carried, state)
+            }
             (Target::Given(_), Owner::Field(_)) => {}
             (Target::Own(input), Owner::Field(field)) => state.chemistry.fields[field].inputs[input] = carried,
             (Target::Cell(whose, control), _) => {
@@ -141,39 +143,14 @@ fn carry(
     Ok(())
 }
 
-/// Gives one number to all atoms of a member of a system on membranes.
-fn give(model: &Model, (number, member): (usize, usize), given: usize, value: f64, state: &mut State) {
+/// Carries one number to all atoms of a member of a system on membranes.
+fn set_at_all_atoms(model: &Model, (number, member): (usize, usize), given: usize, value: f64, state: &mut State) {
     let Some(cell) = cell_of_member(&state.kinds, &model.chemistry.reactors[number].members, member) else { return };
     let (kind, local) = state.kind_of(cell);
     let Members::Kinds(kinds) = &model.chemistry.reactors[number].members else { return };
     let at = kinds.iter().position(|&other| other == kind).unwrap_or(0);
     let cells = &mut state.chemistry.membranes[number].kinds[at];
-    (0..model.kinds[kind].atoms()).for_each(|atom| cells.give(local, given, atom, value));
-}
-
-/// What a target expects, if it cannot be set to a number.
-pub fn missed(target: Target, value: f64) -> Option<&'static str> {
-    if !value.is_finite() {
-        return Some("a finite number");
-    }
-    match target {
-        Target::Cell(_, Control::MotilitySpeed | Control::Stiffness | Control::Adhesion) if value < 0.0 => {
-            Some("a number not below 0")
-        }
-        Target::Cell(_, Control::Atoms(what)) if value < 0.0 && !matches!(what, AtomControl::Secretion(_)) => {
-            Some("a number not below 0")
-        }
-        Target::Cell(_, Control::Pseudopods(PodSetting::Protrusion | PodSetting::Retraction))
-            if !(0.0..=1.0).contains(&value) =>
-        {
-            Some("a number from 0 to 1")
-        }
-        Target::Cell(_, Control::Force(handle, _)) if !CONTROLLED[handle].allows(value) => {
-            Some(CONTROLLED[handle].expected)
-        }
-        Target::Cell(_, Control::RestVolume | Control::RestVolumeRatio) if value <= 0.0 => Some("a number above 0"),
-        _ => None,
-    }
+    (0..model.kinds[kind].atoms()).for_each(|atom| cells.set_given(local, given, atom, value));
 }
 
 /// Sets what mechanics reads of a cell.

@@ -68,7 +68,7 @@ pub enum Source {
 /// Where numbers of atoms come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AtAtoms {
-    /// An expression that the membrane of the owner shows, transfer and gain included.
+    /// An expression that the membrane of the owner shows, transfer included.
     Shown(usize),
     /// The shape of the cell and what it touches.
     Read(AtomReading),

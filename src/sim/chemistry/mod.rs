@@ -8,6 +8,7 @@ mod atoms;
 mod carry;
 mod census;
 mod exchange;
+mod expected;
 mod links;
 mod measure;
 mod membrane;
@@ -21,9 +22,10 @@ mod state;
 mod surface;
 mod turnover;
 
-pub use carry::{missed, set_control};
+pub use carry::set_control;
 pub use census::member_cells;
 pub use exchange::next_exchange;
+pub use expected::missed;
 pub use links::{
     AtAtoms, AtomControl, Control, Link, LinkObservations, Observation, Observations, Owner, Source, Target, Whole,
     Whose,

@@ -6,7 +6,7 @@ use super::order::order;
 use super::{Part, at, membrane, within};
 use crate::equations::eml::{self, Endpoint, LinkDescription, Root};
 use crate::equations::expression::Trouble;
-use crate::equations::tree::{Binary, Event, Expr, QuantityId, Role, System};
+use crate::equations::tree::{Event, Expr, QuantityId, Role, System};
 use crate::error::{Fault, Location};
 use crate::ode::assigned_parameters;
 use crate::sim::Kind;
@@ -187,14 +187,9 @@ fn joined(
     Ok((from, to, source))
 }
 
-/// What a link carries of a quantity, its transfer and gain included.
+/// What the transfer of a link makes of a quantity.
 fn carried(description: &LinkDescription, quantity: QuantityId) -> Expr {
-    let value = Expr::Quantity(quantity);
-    let transfer = description.transfer.replaced(LinkDescription::VALUE, &value);
-    if description.gain == 1.0 {
-        return transfer;
-    }
-    Expr::Binary(Binary::Mul, Box::new(Expr::Number(description.gain)), Box::new(transfer))
+    description.transfer.replaced(LinkDescription::VALUE, &Expr::Quantity(quantity))
 }
 
 type Located = (LinkDescription, Result<Location, String>);
