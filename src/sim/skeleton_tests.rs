@@ -193,8 +193,16 @@ fn a_front_pushes_less_the_farther_it_is_ahead() {
     };
     let of = |stretch: f64| pushed(stretch, &pods) / pushed(stretch, &PODS);
     assert_eq!(of(1.0), 1.0, "a ball is not yet ahead of itself");
-    // The front's middle lies at 0.9 of the longest half axis: 2.2 um ahead of 5, then beyond 4.
-    let half = of(1.6);
-    assert!((0.3..0.6).contains(&half), "{half}");
-    assert_eq!(of(2.2), 0.0);
+    for stretch in [1.6, 2.2] {
+        // The front's middle by the midpoint rule over the latitudes of the ball that was drawn out.
+        let rings = (0..10_000).map(|ring| -1.0 + (f64::from(ring) + 0.5) / 5_000.0);
+        let (whole, ahead) = rings.fold((0.0, 0.0), |(whole, ahead), sine| {
+            let (x, across) = (5.0 * stretch * sine, 5.0 * ((1.0 - sine * sine) / stretch).sqrt());
+            let share = ((x / x.hypot(across) - PODS.least_cosine) / (1.0 - PODS.least_cosine)).max(0.0);
+            (whole + share, ahead + share * x)
+        });
+        let expected = 1.0 - (ahead / whole - 5.0) / pods.reach;
+        assert!((of(stretch) - expected).abs() < 0.01, "{} for {expected}", of(stretch));
+    }
+    assert_eq!(of(3.2), 0.0);
 }
