@@ -11,6 +11,7 @@ mod field_value;
 mod finished;
 mod fit;
 mod forward_index;
+mod fronts;
 mod gaps;
 mod msd_deviation;
 mod msd_exponent;
@@ -42,6 +43,7 @@ pub use field_value::FieldValue;
 pub use finished::Finished;
 pub use fit::Fit;
 pub use forward_index::{ForwardIndex, ForwardPart};
+pub use fronts::{FrontStatistic, Fronts};
 pub use gaps::{GapStatistic, Gaps};
 pub use msd_deviation::MsdDeviation;
 pub use msd_exponent::MsdExponent;
@@ -148,6 +150,9 @@ pub enum MeasureKind {
     /// How much cells of a type touch each other beyond chance: the segregation index, from below 0 (mixed) to 1 (apart),
     /// or what permutations of the types say of it.
     Segregation(Segregation),
+    /// How regions of the surface where a substance on membranes is above a threshold come and go: how many begin, per second and cell, or another
+    /// number of them.
+    Fronts(Fronts),
     /// What the cells of the largest aggregate leave empty between them: the radius of the largest ball that fits there, µm, or the
     /// part of the inside that no cell fills.
     Gaps(Gaps),
@@ -172,9 +177,8 @@ impl MeasureKind {
             Self::Distance(distance) => distance.series(),
             Self::Period(period) => period.series(),
             Self::WaveSpeed(wave) => wave.series(),
-            Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) | Self::Gaps(_) => {
-                Vec::new()
-            }
+            Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) => Vec::new(),
+            Self::Fronts(_) | Self::Gaps(_) => Vec::new(),
         };
         names.into_iter().filter(|name| *name != "time").collect()
     }
@@ -199,6 +203,7 @@ impl MeasureKind {
             Self::WaveSpeed(wave) => wave.check(at),
             Self::Wavelength(pattern) => pattern.check(at),
             Self::Segregation(segregation) => segregation.check(at),
+            Self::Fronts(fronts) => fronts.check(at),
             Self::Gaps(gaps) => gaps.check(at),
             Self::SphereShear(_) | Self::TableRms(_) | Self::TableRatio(_) | Self::RunLengthP(_) => {}
         }
@@ -234,6 +239,7 @@ impl MeasureKind {
             Self::WaveSpeed(wave) => wave.evaluate(run),
             Self::Wavelength(pattern) => pattern.evaluate(run),
             Self::Segregation(segregation) => segregation.evaluate(run),
+            Self::Fronts(fronts) => fronts.evaluate(run),
             Self::Gaps(gaps) => gaps.evaluate(run),
         }
     }
