@@ -157,7 +157,8 @@ mod tests {
 
     /// Densities of spots of 30° around directions.
     fn spots(positions: &[Vec3], directions: &[Vec3]) -> Vec<f64> {
-        let near = |x: &Vec3| directions.iter().any(|direction| x.normalize().dot(direction) > 30_f64.to_radians().cos());
+        let near =
+            |x: &Vec3| directions.iter().any(|direction| x.normalize().dot(direction) > 30_f64.to_radians().cos());
         positions.iter().map(|x| if near(x) { 1.0 } else { 0.0 }).collect()
     }
 

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Vec3;
 use motility::{BrownianMotility, Walk};
-use pseudopods::{PodState, Pseudopods, Told};
+use pseudopods::{EndedPseudopod, PodState, Pseudopods, Told};
 
 /// What a cell does by itself, step by step. It asks for a velocity, and the force that overcomes the drag of this velocity drives
 /// the cell.
@@ -35,6 +35,15 @@ pub enum BehaviourState {
     Bias,
     /// Where its pseudopods are.
     Pseudopods(PodState),
+}
+
+/// What came to an end in a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ended {
+    /// A motility run that lasted so long, s.
+    Run(f64),
+    /// A pseudopod's protrusion.
+    Pseudopod(EndedPseudopod),
 }
 
 /// What behaviours of a cell depend on beside what they remember.
@@ -79,8 +88,8 @@ impl Behaviour {
         }
     }
 
-    /// Goes on by `dt` (s) and returns the mean velocity that it asks for meanwhile, µm/s. `ended(duration, offset)` is told of every
-    /// run that ends, `offset` seconds after the start. At `dt` zero the velocity of the moment is returned and nothing changes.
+    /// Goes on by `dt` (s) and returns the mean velocity that it asks for meanwhile, µm/s. `ended(what, offset)` is told of what
+    /// ends, `offset` seconds after the start. At `dt` zero the velocity of the moment is returned and nothing changes.
     ///
     /// # Panics
     /// When the state is of another behaviour; see [`Behaviour::owns`].
@@ -89,16 +98,18 @@ impl Behaviour {
         dt: f64,
         now: &Circumstances,
         state: &mut BehaviourState,
-        ended: impl FnMut(f64, f64),
+        mut ended: impl FnMut(Ended, f64),
     ) -> Vec3 {
         match (self, state) {
             (Self::Brownian(motility), BehaviourState::Brownian(walk)) => {
                 let motility = BrownianMotility { speed: now.speed.unwrap_or(motility.speed), ..*motility };
-                motility.advance(now.seed, now.cell, walk, dt, ended)
+                motility.advance(now.seed, now.cell, walk, dt, |duration, offset| ended(Ended::Run(duration), offset))
             }
             (Self::Bias, BehaviourState::Bias) => now.bias.into(),
             (Self::Pseudopods(pods), BehaviourState::Pseudopods(state)) => {
-                pods.advance(now.seed, now.cell, &now.pseudopods, state, dt);
+                pods.advance(now.seed, now.cell, &now.pseudopods, state, dt, |pod, offset| {
+                    ended(Ended::Pseudopod(pod), offset);
+                });
                 Vec3::zeros()
             }
             (behaviour, state) => panic!("{behaviour:?} cannot go on from {state:?}"),
@@ -150,7 +161,7 @@ mod tests {
     fn no_time_changes_nothing_and_the_same_cell_does_the_same() {
         for behaviour in all() {
             let (mut one, mut other) = (behaviour.start(5, 7), behaviour.start(5, 7));
-            let first = behaviour.advance(0.0, &NOW, &mut one, |_, _| panic!("no run can end"));
+            let first = behaviour.advance(0.0, &NOW, &mut one, |_, _| panic!("nothing can end"));
             assert_eq!(one, other, "{behaviour:?}");
             let pushes = matches!(behaviour, Behaviour::Pseudopods(_));
             assert!(pushes != (first.norm() > 0.0), "{behaviour:?} asks for a velocity or pushes");

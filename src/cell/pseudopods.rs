@@ -100,6 +100,19 @@ pub struct Activity {
     pub retraction: f64,
 }
 
+/// A pseudopod that has been pushed out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EndedPseudopod {
+    /// How long it was pushed, s.
+    pub lifetime: f64,
+    /// Unit vector to which it pointed.
+    pub direction: [f64; 3],
+    /// Angle from the one before, rad; none of the first of a cell.
+    pub turn: Option<f64>,
+    /// The side to which it split off from the one before: 1 left, -1 right, 0 where it started anew.
+    pub side: i8,
+}
+
 /// Where the pseudopods of one cell are.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PodState {
@@ -113,6 +126,10 @@ pub struct PodState {
     pub side: i8,
     /// Pseudopods so far.
     pub number: u32,
+    /// How long the present one has been pushed, s.
+    pub age: f64,
+    /// Angle between the present one, or the last, and the one before, rad; none of the first.
+    pub turn: Option<f64>,
     /// Draws made so far.
     pub draws: u64,
     /// What was done in the last step: by the pseudopod there was, and by one that began.
@@ -139,6 +156,12 @@ impl PodState {
             None => f64::from(u8::from(self.phase == Phase::Retraction)),
         }
     }
+
+    /// What is told of the present pseudopod when its protrusion ends.
+    fn end(&mut self) -> EndedPseudopod {
+        let lifetime = std::mem::take(&mut self.age);
+        EndedPseudopod { lifetime, direction: self.direction, turn: self.turn, side: self.side }
+    }
 }
 
 impl Pseudopods {
@@ -153,13 +176,24 @@ impl Pseudopods {
             direction: anywhere(self.turning.space, angle, height).into(),
             side: 0,
             number: 0,
+            age: 0.0,
+            turn: None,
             draws: stream.draw,
             did: Default::default(),
         }
     }
 
-    /// Goes on by `dt` (s); at zero nothing changes.
-    pub fn advance(&self, seed: u64, cell: u64, told: &Told, state: &mut PodState, dt: f64) {
+    /// Goes on by `dt` (s); at zero nothing changes. `ended(pseudopod, offset)` is told of every one whose protrusion ends, `offset` seconds
+    /// after the start.
+    pub fn advance(
+        &self,
+        seed: u64,
+        cell: u64,
+        told: &Told,
+        state: &mut PodState,
+        dt: f64,
+        mut ended: impl FnMut(EndedPseudopod, f64),
+    ) {
         if dt <= 0.0 {
             return;
         }
@@ -170,10 +204,13 @@ impl Pseudopods {
                 (_, true) => Phase::Retraction,
                 _ => Phase::Pause,
             };
-            if phase == Phase::Protrusion && state.phase != phase {
-                self.begin(seed, cell, told, state);
+            match (state.phase == Phase::Protrusion, phase == Phase::Protrusion) {
+                (false, true) => self.begin(seed, cell, told, state),
+                (true, false) => ended(state.end(), 0.0),
+                _ => {}
             }
             state.phase = phase;
+            state.age += if phase == Phase::Protrusion { dt } else { 0.0 };
             state.did[0] = Activity { direction: state.direction, protrusion, retraction };
             return;
         }
@@ -183,13 +220,19 @@ impl Pseudopods {
             let did = &mut state.did[one];
             match state.phase {
                 Phase::Pause => {}
-                Phase::Protrusion => did.protrusion += part / dt,
+                Phase::Protrusion => {
+                    did.protrusion += part / dt;
+                    state.age += part;
+                }
                 Phase::Retraction => did.retraction += part / dt,
             }
             state.left -= part;
             left -= part;
             if state.left > 0.0 || left <= 0.0 {
                 return;
+            }
+            if state.phase == Phase::Protrusion {
+                ended(state.end(), dt - left);
             }
             state.phase = state.phase.next();
             let mut stream = Stream::new(seed, Purpose::Pseudopods, cell as u32, state.draws);
@@ -218,6 +261,8 @@ impl Pseudopods {
                 (most, state.direction, state.side) = (worth, direction.into(), side);
             }
         }
+        let cosine = last.dot(&Vec3::from(state.direction)).clamp(-1.0, 1.0);
+        state.turn = (state.number > 0).then(|| cosine.acos());
         state.number += 1;
         state.draws = stream.draw;
     }

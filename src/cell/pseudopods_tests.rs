@@ -15,7 +15,7 @@ fn run(pods: &Pseudopods, told: &Told, count: u32) -> Vec<(Vec3, i8)> {
     let (mut state, mut all) = (pods.start(3, 4), Vec::new());
     while state.number < count {
         let before = state.number;
-        pods.advance(3, 4, told, &mut state, 0.1);
+        pods.advance(3, 4, told, &mut state, 0.1, |_, _| ());
         if state.number > before {
             all.push((Vec3::from(state.direction), state.side));
         }
@@ -29,7 +29,7 @@ fn shares_of_time_are_those_of_the_mean_durations_whatever_the_step() {
         let (mut state, mut shares) = (PODS.start(1, 2), [0.0; 2]);
         let steps = (20_000.0 / dt) as u32;
         for _ in 0..steps {
-            PODS.advance(1, 2, &Told::NOTHING, &mut state, dt);
+            PODS.advance(1, 2, &Told::NOTHING, &mut state, dt, |_, _| ());
             for did in state.did {
                 shares[0] += did.protrusion / f64::from(steps);
                 shares[1] += did.retraction / f64::from(steps);
@@ -90,7 +90,7 @@ fn what_chemistry_tells_takes_the_place_of_the_times() {
         (told(0.0, 0.4), Phase::Retraction, 1),
         (told(0.1, 0.0), Phase::Protrusion, 2),
     ] {
-        PODS.advance(1, 2, &said, &mut state, 7.0);
+        PODS.advance(1, 2, &said, &mut state, 7.0, |_, _| ());
         assert_eq!((state.phase, state.number), (phase, number), "{said:?}");
         let [did, other] = state.did;
         let expected = said.activities().expect("both are told");
@@ -110,4 +110,42 @@ fn directions_in_space_are_unit_vectors_at_the_angle() {
         assert!((pair[0].0.dot(&pair[1].0) - 1.0_f64.cos()).abs() < 1e-12);
     }
     assert!(all.iter().any(|(direction, _)| direction.z.abs() > 0.5));
+}
+
+#[test]
+fn every_pseudopod_that_ends_is_told_with_its_time_and_its_turn_whatever_the_step() {
+    let told = |dt: f64| {
+        let (mut state, mut all, mut pushed) = (PODS.start(1, 2), Vec::new(), 0.0);
+        for step in 0..(400.0 / dt) as u32 {
+            let begin = f64::from(step) * dt;
+            PODS.advance(1, 2, &Told::NOTHING, &mut state, dt, |pod, offset| all.push((begin + offset, pod)));
+            pushed += state.did.iter().map(|did| did.protrusion * dt).sum::<f64>();
+        }
+        let lasted = all.iter().map(|(_, pod)| pod.lifetime).sum::<f64>() + state.age;
+        assert!((lasted - pushed).abs() < 1e-9, "{lasted} and {pushed}");
+        assert_eq!(all.len(), state.number as usize - usize::from(state.phase == Phase::Protrusion));
+        all
+    };
+    let (fine, coarse) = (told(0.125), told(0.5));
+    assert_eq!(fine.len(), coarse.len());
+    assert!(fine.len() > 30);
+    for (one, other) in fine.iter().zip(&coarse) {
+        assert!((one.0 - other.0).abs() < 1e-9 && (one.1.lifetime - other.1.lifetime).abs() < 1e-9);
+        assert_eq!((one.1.direction, one.1.side), (other.1.direction, other.1.side));
+    }
+    assert_eq!(fine[0].1.turn, None);
+    for pair in fine.windows(2) {
+        let angle = Vec3::from(pair[0].1.direction).angle(&Vec3::from(pair[1].1.direction));
+        assert!((pair[1].1.turn.unwrap() - angle).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_pseudopod_that_chemistry_pushes_is_told_when_chemistry_lets_it_go() {
+    let (mut state, mut all) = (PODS.start(1, 2), Vec::new());
+    for (step, protrusion) in [0.0, 0.5, 1.0, 0.5, 0.0, 0.0, 1.0, 0.0].into_iter().enumerate() {
+        let said = Told { protrusion, ..Told::NOTHING };
+        PODS.advance(1, 2, &said, &mut state, 2.0, |pod, offset| all.push((2.0 * step as f64 + offset, pod.lifetime)));
+    }
+    assert_eq!(all, [(8.0, 6.0), (14.0, 2.0)]);
 }

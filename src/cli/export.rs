@@ -55,6 +55,8 @@ pub enum TableKind {
     Biotracks,
     /// A row per motility run that ended.
     Runs,
+    /// A row per pseudopod whose protrusion ended: how long it was pushed, where it pointed, and how far that was from the one before.
+    Pseudopods,
     /// A row per measure of the experiment.
     Summary,
     /// A row per frame and pair of cells that touch, or cell that touches a plane, with the area.
@@ -151,6 +153,7 @@ fn table_of(args: &ExportArgs) -> Option<Table> {
         TableKind::Series => Table::Series(args.series.clone()),
         TableKind::Tracks => Table::Tracks,
         TableKind::Runs => Table::Runs,
+        TableKind::Pseudopods => Table::Pseudopods,
         TableKind::Summary => Table::Summary,
         TableKind::Contacts => Table::Contacts,
         TableKind::Aggregates | TableKind::Biotracks => return None,

@@ -100,6 +100,8 @@ impl Instant<'_> {
 pub enum List {
     /// Motility runs that ended.
     Runs,
+    /// Pseudopods whose protrusion ended.
+    Pseudopods,
     /// Pairs of cells that touch.
     Pairs,
     /// Cells that touch a plane.
@@ -108,12 +110,13 @@ pub enum List {
 
 impl List {
     /// All lists, each at its number.
-    pub const ALL: [Self; 3] = [Self::Runs, Self::Pairs, Self::OnPlanes];
+    pub const ALL: [Self; 4] = [Self::Runs, Self::Pseudopods, Self::Pairs, Self::OnPlanes];
 
     /// Rows of a frame.
     pub fn rows(self, frame: &Frame) -> usize {
         match self {
             Self::Runs => frame.runs.len(),
+            Self::Pseudopods => frame.pseudopods.len(),
             Self::Pairs => frame.pairs.len(),
             Self::OnPlanes => frame.on_planes.len(),
         }
@@ -123,6 +126,7 @@ impl List {
     pub fn counter(self) -> &'static str {
         match self {
             Self::Runs => "/events/run_count",
+            Self::Pseudopods => "/events/pseudopod_count",
             Self::Pairs => "/contacts/pair_count",
             Self::OnPlanes => "/contacts/plane_count",
         }
@@ -132,6 +136,7 @@ impl List {
     pub fn column(self) -> &'static str {
         match self {
             Self::Runs => "/events/runs/cell",
+            Self::Pseudopods => "/events/pseudopods/cell",
             Self::Pairs => "/contacts/pairs/area",
             Self::OnPlanes => "/contacts/planes/area",
         }
@@ -214,6 +219,15 @@ pub const CATALOGUE: &[Entry] = &[
     row("/events/runs/cell", "1", "run", RowInteger(List::Runs, |f, i| f.runs[i].0.cast_signed()), "Id of the cell whose motility run ended."),
     row("/events/runs/end_time", "s", "run", RowFloat(List::Runs, |f, i| f.runs[i].1), "When the motility run ended."),
     row("/events/runs/duration", "s", "run", RowFloat(List::Runs, |f, i| f.runs[i].2), "How long the motility run lasted."),
+    row("/events/pseudopod_count", "1", "frame", Counter(|i| i.rows[List::Pseudopods as usize] as i64), "Pseudopods whose protrusion ended up to a frame."),
+    row("/events/pseudopods/cell", "1", "pseudopod", RowInteger(List::Pseudopods, |f, i| f.pseudopods[i].cell.cast_signed()), "Id of the cell whose pseudopod's protrusion ended."),
+    row("/events/pseudopods/end_time", "s", "pseudopod", RowFloat(List::Pseudopods, |f, i| f.pseudopods[i].end), "When the protrusion ended."),
+    row("/events/pseudopods/lifetime", "s", "pseudopod", RowFloat(List::Pseudopods, |f, i| f.pseudopods[i].lifetime), "How long it lasted."),
+    row("/events/pseudopods/direction_x", "1", "pseudopod", RowFloat(List::Pseudopods, |f, i| f.pseudopods[i].direction[0]), "Where the pseudopod pointed: x of a unit vector."),
+    row("/events/pseudopods/direction_y", "1", "pseudopod", RowFloat(List::Pseudopods, |f, i| f.pseudopods[i].direction[1]), "y of it."),
+    row("/events/pseudopods/direction_z", "1", "pseudopod", RowFloat(List::Pseudopods, |f, i| f.pseudopods[i].direction[2]), "z of it."),
+    row("/events/pseudopods/turn", "deg", "pseudopod", RowFloat(List::Pseudopods, |f, i| f.pseudopods[i].turn), "Angle from the pseudopod before; NaN of the first of a cell."),
+    row("/events/pseudopods/side", "1", "pseudopod", RowInteger(List::Pseudopods, |f, i| i64::from(f.pseudopods[i].side)), "Side to which it split off from the one before: 1 left, -1 right; 0 where it started anew."),
     row("/scene/<name>", "of the series", "frame", Filled::Scene, "A series of the scene as a whole."),
     row("/provenance/experiment", "1", "1", OnceTexts, "The experiment document, verbatim."),
     row("/provenance/equation_files", "1", "document", OnceTexts, "Documents of equations, as the experiment names them."),

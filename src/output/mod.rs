@@ -76,6 +76,23 @@ pub struct Layout {
     pub contacts: bool,
 }
 
+/// A pseudopod whose protrusion ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PseudopodEvent {
+    /// Id of the cell.
+    pub cell: u64,
+    /// When it ended, s.
+    pub end: f64,
+    /// How long it was pushed, s.
+    pub lifetime: f64,
+    /// Unit vector to which it pointed.
+    pub direction: [f64; 3],
+    /// Angle from the one before, degrees; NaN of the first of a cell.
+    pub turn: f64,
+    /// The side to which it split off from the one before: 1 left, -1 right, 0 where it started anew.
+    pub side: i8,
+}
+
 /// What is recorded at one instant. Its arrays follow its own list of cells, which may differ from frame to frame.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Frame {
@@ -97,6 +114,8 @@ pub struct Frame {
     pub scene: Vec<f64>,
     /// Motility runs that ended since the frame before: (id of the cell, end time s, duration s).
     pub runs: Vec<(u64, f64, f64)>,
+    /// Pseudopods whose protrusion ended since the frame before.
+    pub pseudopods: Vec<PseudopodEvent>,
     /// Pairs of cells that touch, the smaller id first, in ascending order.
     pub pairs: Vec<Touching>,
     /// Cells that touch planes, in ascending order of cell, then plane.

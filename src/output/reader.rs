@@ -6,7 +6,6 @@ use std::sync::OnceLock;
 
 use hdf5::{Dataset, File};
 
-use super::Layout;
 use super::catalogue::{FORCE, List, Run};
 use super::census::Census;
 use super::contacts;
@@ -15,6 +14,7 @@ use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
 use super::systems::SystemScope;
 use super::whole::whole_frames;
+use super::{Layout, PseudopodEvent};
 use crate::error::{Error, Fault, Result};
 use crate::recorded::{CONTACTS, cell_label, cell_series, cell_unit};
 
@@ -245,6 +245,36 @@ impl ResultFile {
         let ends = self.read("/events/runs/end_time", |dataset| dataset.read_slice_1d::<f64, _>(0..count))?;
         let durations = self.read("/events/runs/duration", |dataset| dataset.read_slice_1d::<f64, _>(0..count))?;
         Ok((0..count).map(|i| (u64::try_from(cells[i]).unwrap_or(u64::MAX), ends[i], durations[i])).collect())
+    }
+
+    /// Pseudopods whose protrusion ended up to the last frame; none in a file of before they were recorded.
+    ///
+    /// # Errors
+    /// A damaged file.
+    pub fn pseudopods(&self) -> Result<Vec<PseudopodEvent>> {
+        // Files of earlier versions have no such list.
+        if self.file.dataset(List::Pseudopods.counter()).is_err() {
+            return Ok(Vec::new());
+        }
+        let count = self.rows_of(List::Pseudopods, 0..self.frames)?.end;
+        let integers = |name: &str| {
+            self.read(&format!("/events/pseudopods/{name}"), |dataset| dataset.read_slice_1d::<i64, _>(0..count))
+        };
+        let numbers = |name: &str| {
+            self.read(&format!("/events/pseudopods/{name}"), |dataset| dataset.read_slice_1d::<f64, _>(0..count))
+        };
+        let [cells, sides] = [integers("cell")?, integers("side")?];
+        let [ends, lifetimes, turns] = [numbers("end_time")?, numbers("lifetime")?, numbers("turn")?];
+        let directions = [numbers("direction_x")?, numbers("direction_y")?, numbers("direction_z")?];
+        let event = |row: usize| PseudopodEvent {
+            cell: u64::try_from(cells[row]).unwrap_or(u64::MAX),
+            end: ends[row],
+            lifetime: lifetimes[row],
+            direction: [0, 1, 2].map(|axis| directions[axis][row]),
+            turn: turns[row],
+            side: sides[row].signum() as i8,
+        };
+        Ok((0..count).map(event).collect())
     }
 
     /// The rows that a list has in some frames.

@@ -16,6 +16,8 @@ pub enum Table {
     Tracks,
     /// A row per motility run that ended: cell, end (s), duration (s).
     Runs,
+    /// A row per pseudopod whose protrusion ended: cell, end (s), how long it was pushed (s), direction, angle from the one before (degrees), side.
+    Pseudopods,
     /// A row per measure of the experiment.
     Summary,
     /// A row per frame and pair of cells that touch, or cell that touches a plane, with the area.
@@ -56,6 +58,7 @@ pub fn table_text(result: &ResultFile, table: &Table) -> Result<String> {
         Table::Series(names) => series(result, names),
         Table::Tracks => tracks(result),
         Table::Runs => runs(result),
+        Table::Pseudopods => pseudopods(result),
         Table::Summary => summary(result),
         Table::Contacts => contacts(result),
     }
@@ -135,6 +138,15 @@ fn runs(result: &ResultFile) -> Result<String> {
     let mut text = String::from("cell,end time (s),duration (s)\n");
     for (cell, end, duration) in result.runs()? {
         text.push_str(&format!("{cell},{end},{duration}\n"));
+    }
+    Ok(text)
+}
+
+fn pseudopods(result: &ResultFile) -> Result<String> {
+    let mut text = String::from("cell,end time (s),lifetime (s),direction x,direction y,direction z,turn (deg),side\n");
+    for pod in result.pseudopods()? {
+        let [x, y, z] = pod.direction;
+        text.push_str(&format!("{},{},{},{x},{y},{z},{},{}\n", pod.cell, pod.end, pod.lifetime, pod.turn, pod.side));
     }
     Ok(text)
 }

@@ -9,6 +9,7 @@ use super::contact::ContactState;
 use super::kind::Kind;
 use super::model::Model;
 use crate::Vec3;
+use crate::cell::pseudopods::EndedPseudopod;
 use crate::cell::{Behaviour, BehaviourState};
 
 /// Everything that changes and is needed to go on.
@@ -28,6 +29,8 @@ pub struct State {
     pub kinds: Vec<KindState>,
     /// Motility runs that ended and are not recorded yet: (id of the cell, end s, duration s).
     pub ended_runs: Vec<(u64, f64, f64)>,
+    /// Pseudopods whose protrusion ended and that are not recorded yet: id of the cell, end (s), what it was.
+    pub ended_pseudopods: Vec<(u64, f64, EndedPseudopod)>,
     /// Systems and fields; empty in a model without chemistry.
     pub chemistry: ChemistryState,
     /// What contacts carry; empty in a model without contacts.
@@ -332,6 +335,7 @@ impl State {
         (self.next_id, self.changes) = (u64::MAX, usize::MAX);
         self.kinds.iter_mut().for_each(KindState::poison);
         self.ended_runs.clear();
+        self.ended_pseudopods.clear();
         self.chemistry.poison();
         self.contact = ContactState::default();
     }

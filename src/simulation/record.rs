@@ -1,8 +1,9 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
 use super::touch::Touch;
+use crate::cell::pseudopods::EndedPseudopod;
 use crate::output::{
-    Cell, CellRecord, CellType, FieldLayout, Frame, Layout, MembraneLayout, SystemLayout, SystemScope,
+    Cell, CellRecord, CellType, FieldLayout, Frame, Layout, MembraneLayout, PseudopodEvent, SystemLayout, SystemScope,
 };
 use crate::recorded::contact_quantities;
 use crate::sim::chemistry::{Members, member_cells};
@@ -137,7 +138,7 @@ impl Recorder {
         Self { force_scratch: Some(Workspace::new(model)), ..self }
     }
 
-    /// The frame of this instant; takes the ended runs from the state, since they are recorded now.
+    /// The frame of this instant; takes the ended runs and pseudopods from the state, since they are recorded now.
     pub fn record(&mut self, model: &Model, state: &mut State, ws: &mut Workspace, dt: f64) -> Frame {
         // Contacts depend on positions alone: the pairs that steps keep lead to them at once.
         let is_there = ws.contact.suit(model, state);
@@ -148,10 +149,19 @@ impl Recorder {
         if is_there {
             self.touch.swap_detector(&mut ws.contact.detector);
         }
-        Frame { runs: std::mem::take(&mut state.ended_runs), ..frame }
+        let pod = |(cell, end, pod): (u64, f64, EndedPseudopod)| PseudopodEvent {
+            cell,
+            end,
+            lifetime: pod.lifetime,
+            direction: pod.direction,
+            turn: pod.turn.map_or(f64::NAN, f64::to_degrees),
+            side: pod.side,
+        };
+        let pseudopods = std::mem::take(&mut state.ended_pseudopods).into_iter().map(pod).collect();
+        Frame { runs: std::mem::take(&mut state.ended_runs), pseudopods, ..frame }
     }
 
-    /// The frame of this instant without the runs that ended; `dt` is the size of the last step, s.
+    /// The frame of this instant without the runs and pseudopods that ended; `dt` is the size of the last step, s.
     pub fn look(&mut self, model: &Model, state: &State, ws: &Workspace, dt: f64) -> Frame {
         let mut frame = frame_of(model, state);
         let at = |&(_, kind, number): &(String, usize, usize)| model.kinds[kind].loads().nth(number);

@@ -2,8 +2,8 @@
 
 use super::declared::Declared;
 use super::finished::Finished;
-use crate::Vec3;
-use crate::analysis::fronts::{Follower, Front, chance_of_at_least, turn};
+use super::successive::{Successive, SuccessiveStatistic, upward};
+use crate::analysis::fronts::{Follower, Front};
 use crate::error::{Error, Fault, Result, words};
 use crate::output::ResultFile;
 use crate::units::Time;
@@ -33,51 +33,7 @@ pub struct Fronts {
     pub axis: [f64; 3],
     /// Which number.
     #[serde(default)]
-    pub statistic: FrontStatistic,
-}
-
-fn upward() -> [f64; 3] {
-    [0.0, 0.0, 1.0]
-}
-
-/// Which number of fronts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(inline)]
-pub enum FrontStatistic {
-    /// How many begin, per second and cell.
-    #[default]
-    Rate,
-    /// How many a cell has at once, mean over time and cells.
-    AtOnce,
-    /// The median time that they last, s, of those that begin and end in time.
-    Lifetime,
-    /// The median angle around the axis between one that begins and the one that began before it, degrees from 0 to 180.
-    Angle,
-    /// The part that begins out of another front.
-    SplitShare,
-    /// The part of turns that go to the other side than the turn before.
-    Alternation,
-    /// The probability that so many or more turns go to the other side if both sides were as likely.
-    AlternationP,
-}
-
-/// What is known of the fronts of all cells.
-#[derive(Debug, Default)]
-struct Seen {
-    /// Time over which each cell was followed, summed, s.
-    followed: f64,
-    /// Time that each front lasted, summed, s.
-    lasted: f64,
-    began: usize,
-    split: usize,
-    /// How long fronts lasted that began and ended in time, s.
-    lifetimes: Vec<f64>,
-    /// Angles between successive fronts, degrees, without sign.
-    angles: Vec<f64>,
-    /// Turns after another turn, and how many of them went to the other side.
-    turns: usize,
-    alternating: usize,
+    pub statistic: SuccessiveStatistic,
 }
 
 impl Fronts {
@@ -103,7 +59,7 @@ impl Fronts {
             self.from.is_none_or(|from| time >= from.value()) && self.to.is_none_or(|to| time <= to.value())
         };
         let frames: Vec<usize> = (0..times.len()).filter(|frame| within(times[*frame])).collect();
-        let mut seen = Seen::default();
+        let mut seen = Successive::new(self.axis);
         for (fronts, cell_frames) in self.follow(file, &frames)? {
             let of_cell: Vec<f64> = cell_frames.iter().map(|frame| times[*frame]).collect();
             self.add(&mut seen, &fronts, &of_cell);
@@ -135,7 +91,7 @@ impl Fronts {
     }
 
     /// Counts the fronts of one cell, which was there at these times.
-    fn add(&self, seen: &mut Seen, fronts: &[Front], times: &[f64]) {
+    fn add(&self, seen: &mut Successive, fronts: &[Front], times: &[f64]) {
         let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return };
         seen.followed += last - first;
         // A front is there from the middle before the first frame that shows it to the middle after the last.
@@ -155,19 +111,8 @@ impl Fronts {
                 seen.lifetimes.push(life(front));
             }
         }
-        let axis = Vec3::from(self.axis).normalize();
-        let mut before: Option<f64> = None;
-        for pair in counted.windows(2) {
-            let turned = turn(pair[0].direction_at(pair[1].begin), &pair[1].directions[0], &axis);
-            if let Some(turned) = turned {
-                seen.angles.push(turned.abs().to_degrees());
-                if let Some(before) = before {
-                    seen.turns += 1;
-                    seen.alternating += usize::from(before.signum() != turned.signum());
-                }
-            }
-            before = turned;
-        }
+        let turns = counted.windows(2).map(|pair| (*pair[0].direction_at(pair[1].begin), pair[1].directions[0]));
+        seen.add_turns(turns);
     }
 
     fn missing(&self, file: &ResultFile) -> Error {
@@ -177,32 +122,6 @@ impl Fronts {
             true => "the run has no chemistry of membranes".to_owned(),
             false => format!("on its membranes are {}", words::all_of(names)),
         }))
-    }
-}
-
-impl Seen {
-    fn number(self, statistic: FrontStatistic) -> f64 {
-        let share = |part: usize, of: usize| if of == 0 { f64::NAN } else { part as f64 / of as f64 };
-        match statistic {
-            FrontStatistic::Rate => self.began as f64 / self.followed,
-            FrontStatistic::AtOnce => self.lasted / self.followed,
-            FrontStatistic::Lifetime => median(self.lifetimes),
-            FrontStatistic::Angle => median(self.angles),
-            FrontStatistic::SplitShare => share(self.split, self.began),
-            FrontStatistic::Alternation => share(self.alternating, self.turns),
-            FrontStatistic::AlternationP if self.turns == 0 => f64::NAN,
-            FrontStatistic::AlternationP => chance_of_at_least(self.alternating, self.turns),
-        }
-    }
-}
-
-/// The median; NaN of none.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    match values.len() {
-        0 => f64::NAN,
-        number if number.is_multiple_of(2) => 0.5 * (values[number / 2 - 1] + values[number / 2]),
-        number => values[number / 2],
     }
 }
 

@@ -17,12 +17,14 @@ mod msd_deviation;
 mod msd_exponent;
 mod period;
 mod persistence;
+mod pseudopods;
 mod rayleigh;
 mod reduction;
 mod run_length;
 mod segregation;
 mod sphere_fit;
 mod statistic;
+mod successive;
 #[cfg(test)]
 mod test_recordings;
 #[cfg(test)]
@@ -43,18 +45,20 @@ pub use field_value::FieldValue;
 pub use finished::Finished;
 pub use fit::Fit;
 pub use forward_index::{ForwardIndex, ForwardPart};
-pub use fronts::{FrontStatistic, Fronts};
+pub use fronts::Fronts;
 pub use gaps::{GapStatistic, Gaps};
 pub use msd_deviation::MsdDeviation;
 pub use msd_exponent::MsdExponent;
 pub use period::Period;
 pub use persistence::{Persistence, PersistenceStatistic};
+pub use pseudopods::PseudopodTurns;
 pub use rayleigh::{Rayleigh, RayleighStatistic};
 pub use reduction::Reduction;
 pub use run_length::RunLength;
 pub use segregation::{Segregation, SegregationStatistic};
 pub use sphere_fit::SphereFit;
 pub use statistic::Statistic;
+pub use successive::SuccessiveStatistic;
 pub use track_average::TrackAverage;
 pub use value::Value;
 pub use velocity_correlation::VelocityCorrelation;
@@ -150,6 +154,8 @@ pub enum MeasureKind {
     /// How much cells of a type touch each other beyond chance: the segregation index, from below 0 (mixed) to 1 (apart),
     /// or what permutations of the types say of it.
     Segregation(Segregation),
+    /// How the pseudopods of `[cells.NAME.pseudopods]` follow each other: how many, per second and cell, or another number of them.
+    Pseudopods(PseudopodTurns),
     /// How regions of the surface where a substance on membranes is above a threshold come and go: how many begin, per second and cell, or another
     /// number of them.
     Fronts(Fronts),
@@ -178,7 +184,7 @@ impl MeasureKind {
             Self::Period(period) => period.series(),
             Self::WaveSpeed(wave) => wave.series(),
             Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) => Vec::new(),
-            Self::Fronts(_) | Self::Gaps(_) => Vec::new(),
+            Self::Fronts(_) | Self::Gaps(_) | Self::Pseudopods(_) => Vec::new(),
         };
         names.into_iter().filter(|name| *name != "time").collect()
     }
@@ -203,6 +209,7 @@ impl MeasureKind {
             Self::WaveSpeed(wave) => wave.check(at),
             Self::Wavelength(pattern) => pattern.check(at),
             Self::Segregation(segregation) => segregation.check(at),
+            Self::Pseudopods(pods) => pods.check(at),
             Self::Fronts(fronts) => fronts.check(at),
             Self::Gaps(gaps) => gaps.check(at),
             Self::SphereShear(_) | Self::TableRms(_) | Self::TableRatio(_) | Self::RunLengthP(_) => {}
@@ -239,6 +246,7 @@ impl MeasureKind {
             Self::WaveSpeed(wave) => wave.evaluate(run),
             Self::Wavelength(pattern) => pattern.evaluate(run),
             Self::Segregation(segregation) => segregation.evaluate(run),
+            Self::Pseudopods(pods) => pods.evaluate(run),
             Self::Fronts(fronts) => fronts.evaluate(run),
             Self::Gaps(gaps) => gaps.evaluate(run),
         }
