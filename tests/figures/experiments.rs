@@ -40,7 +40,9 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 3] = [
+const SHOWN: [(&str, &str, &str); 5] = [
+    ("chemotaxis/experiment.toml", "result.png", "chemotaxis.png"),
+    ("chemotaxis/experiment.toml", "result.tracks.png", "chemotaxis_tracks.png"),
     ("optical_tweezers/red_cell.toml", "result.png", "red_cell.png"),
     ("optical_tweezers/red_cell.toml", "result.force_diameter.png", "force_diameter.png"),
     ("sphere_under_gravity/experiment.toml", "result.png", "spheres.png"),
