@@ -4,6 +4,10 @@
 //! answer on every machine, with any number of threads and after any resume. Key = seed, counter = (draw, cell and
 //! purpose), eq. (random.1).
 
+mod normals;
+
+pub use normals::Normals;
+
 use std::convert::Infallible;
 
 use rand::TryRng;
@@ -22,6 +26,8 @@ pub enum Purpose {
     Removal = 4,
     /// Durations and directions of pseudopods.
     Pseudopods = 5,
+    /// Noise in equations; see [`Normals`].
+    Noise = 6,
     /// Which cells are drawn for an interval by the bootstrap; the number of the draw stands for the cell. Numbers of analysis begin with 100.
     Bootstrap = 100,
 }
@@ -31,19 +37,27 @@ const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 
 /// Philox4x32-10: four numbers for a counter under a key.
-pub fn philox(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
+pub fn philox(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
+    philox_lanes(counter.map(|word| [word]), key).map(|[word]| word)
+}
+
+/// The same for several counters side by side.
+#[inline(always)]
+fn philox_lanes<const L: usize>(mut counter: [[u32; L]; 4], mut key: [u32; 2]) -> [[u32; L]; 4] {
     for round in 0..ROUNDS {
         if round > 0 {
             key = [key[0].wrapping_add(WEYL[0]), key[1].wrapping_add(WEYL[1])];
         }
-        let first = u64::from(counter[0]) * u64::from(MULTIPLIERS[0]);
-        let second = u64::from(counter[2]) * u64::from(MULTIPLIERS[1]);
-        counter = [
-            (second >> 32) as u32 ^ counter[1] ^ key[0],
-            second as u32,
-            (first >> 32) as u32 ^ counter[3] ^ key[1],
-            first as u32,
-        ];
+        let mut next = [[0; L]; 4];
+        for l in 0..L {
+            let first = u64::from(counter[0][l]) * u64::from(MULTIPLIERS[0]);
+            let second = u64::from(counter[2][l]) * u64::from(MULTIPLIERS[1]);
+            next[0][l] = (second >> 32) as u32 ^ counter[1][l] ^ key[0];
+            next[1][l] = second as u32;
+            next[2][l] = (first >> 32) as u32 ^ counter[3][l] ^ key[1];
+            next[3][l] = first as u32;
+        }
+        counter = next;
     }
     counter
 }

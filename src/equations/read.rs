@@ -35,6 +35,7 @@ pub fn read(source: Arc<Source>) -> Result<Read> {
         grid: None,
         fields: Vec::new(),
         membrane: None,
+        noise: Vec::new(),
         links: Vec::new(),
         solver: eml::SolverChoice::default(),
     };

@@ -33,6 +33,10 @@ pub struct Chemistry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub inner_step: Option<Time>,
+    /// Time between two kicks of noise; otherwise as the document says, else every step, or exchange of a system that has any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub noise_step: Option<Time>,
     /// Time between two exchanges of numbers with cells and fields; otherwise as the document says, else every step.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]

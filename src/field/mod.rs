@@ -12,6 +12,7 @@ pub mod grid;
 mod layout;
 mod limit;
 mod lines;
+mod noise;
 mod positions;
 mod profiles;
 mod react;

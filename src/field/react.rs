@@ -4,8 +4,10 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelI
 
 use super::grid::Grid;
 use super::reactor_scratch::ReactorScratch;
+use super::rows::ROW;
 use super::species::Species;
 use crate::equations::Range;
+use crate::equations::program::Lanes;
 
 /// Points that react at a time; a multiple of every processor's lanes.
 pub const POINTS: usize = 256;
@@ -24,6 +26,8 @@ pub struct Chunk<'a> {
     pub dt: f64,
     /// What the reactions of a document work in; nobody else has it while the chunk is.
     pub(super) scratch: &'a mut Option<Box<ReactorScratch>>,
+    /// Registers of what noise works in.
+    pub(super) kicks: &'a mut Vec<Lanes<ROW>>,
 }
 
 /// What the boxes of one part of a grid need while they react.
@@ -32,18 +36,20 @@ pub struct PartScratch {
     /// The values of a chunk.
     values: Vec<f64>,
     reactor: Option<Box<ReactorScratch>>,
+    kicks: Vec<Lanes<ROW>>,
 }
 
 impl PartScratch {
     /// Scratch for so many species.
     pub fn new(species: usize) -> Self {
-        Self { values: vec![0.0; species * POINTS], reactor: None }
+        Self { values: vec![0.0; species * POINTS], reactor: None, kicks: Vec::new() }
     }
 
     /// Writes NaN over all numbers.
     pub fn poison(&mut self) {
         self.values.fill(f64::NAN);
         self.reactor = None;
+        self.kicks.fill([f64::NAN; ROW]);
     }
 }
 
@@ -75,7 +81,7 @@ pub fn react(
     let (len, count) = (grid.len(), parts.len());
     let chunks = len.div_ceil(POINTS);
     let shared = super::shared::Shared::new(values);
-    let work = |(part, PartScratch { values, reactor }): (usize, &mut PartScratch)| {
+    let work = |(part, PartScratch { values, reactor, kicks }): (usize, &mut PartScratch)| {
         for chunk in part * chunks / count..(part + 1) * chunks / count {
             let first = chunk * POINTS;
             let points = POINTS.min(len - first);
@@ -86,7 +92,7 @@ pub fn react(
                 to[..points].copy_from_slice(from);
                 to[points..].fill(from[points - 1]);
             }
-            function(&mut Chunk { values: &mut values[..], points, first, time, dt, scratch: &mut *reactor });
+            function(&mut Chunk { values: &mut values[..], points, first, time, dt, scratch: &mut *reactor, kicks });
             for (s, from) in values.chunks_exact(POINTS).enumerate() {
                 let floor = if species[s].range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };
                 for (to, from) in row(s).iter_mut().zip(from) {

@@ -39,6 +39,9 @@ const CALM: f64 = 0.08;
 /// Above this error the next step is checked too.
 const WATCH: f64 = 0.5;
 
+/// What to do about values that are not finite after a step.
+const UNBOUND: &str = "its reactions grow without bound; check their signs and rates, or take smaller steps";
+
 /// Whether a step with this error, in tolerances, must be taken again; one that is not a number must.
 fn too_large(error: f64) -> bool {
     error.is_nan() || error > 1.0
@@ -70,7 +73,7 @@ impl Fields {
             }
             Stepping::Adaptive { relative, absolute } => self.adapt(window, [relative, absolute], reactions),
         };
-        let report = report.and_then(|report| self.check_finite().map(|()| report));
+        let report = report.and_then(|report| self.check_finite(UNBOUND).map(|()| report));
         if report.is_err() {
             self.values.copy_from_slice(&start);
             self.set_pace(pace);
@@ -206,13 +209,14 @@ impl Fields {
         self.values.iter().fold(true, |fine, value| fine & (value.abs() < f64::INFINITY))
     }
 
-    fn check_finite(&self) -> Result<()> {
+    /// Tells the first value that is not finite, with what to do.
+    pub(super) fn check_finite(&self, help: &str) -> Result<()> {
         let bad = if self.is_finite() { None } else { self.values.iter().position(|value| !value.is_finite()) };
         let Some(at) = bad else { return Ok(()) };
         let (name, point) = self.told(at);
         Err(Error::Numbers {
             message: format!("field '{name}' is {} at {point} µm and t = {} s", self.values[at], short(self.time)),
-            help: "its reactions grow without bound; check their signs and rates, or take smaller steps".into(),
+            help: help.into(),
             kept: None,
         })
     }

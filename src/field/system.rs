@@ -7,6 +7,7 @@ use super::course::Course;
 use super::grid::Grid;
 use super::layout::{Placing, describe, layout, unit};
 use super::lines;
+use super::noise::Noise;
 use super::profiles::profiles;
 use super::reactor::Reactor;
 use super::scales::{POSITION, Scales, in_circle};
@@ -17,6 +18,7 @@ use crate::equations::eml;
 use crate::equations::program::initial_values;
 use crate::equations::tree::{QuantityId, Role, System};
 use crate::error::{Error, Fault, Location, Result};
+use crate::ode::{Kick, Numbers};
 
 /// Gives the values of a profile that lies in a file, its `scale` included: one for each box of the grid, x fastest.
 pub type LoadProfile<'a> = dyn Fn(&eml::Profile, &Grid) -> Result<Vec<f64>> + 'a;
@@ -34,6 +36,8 @@ pub struct FieldSystem {
     inputs: Vec<(String, f64)>,
     /// None where nothing reacts.
     reactor: Option<Reactor>,
+    /// None where there is no noise.
+    noise: Option<Noise>,
     scales: Scales,
 }
 
@@ -98,6 +102,7 @@ impl FieldSystem {
             grid,
             species,
             reactor,
+            noise: Noise::new(document, scales)?,
             scales,
         })
     }
@@ -105,6 +110,11 @@ impl FieldSystem {
     /// The grid, in µm.
     pub fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// What the fields are kicked by, to be looked at as a whole; none where there is no noise.
+    pub fn noise(&self) -> Option<&impl std::fmt::Debug> {
+        self.noise.as_ref()
     }
 
     /// The document's name.
@@ -208,7 +218,25 @@ impl FieldSystem {
         })
     }
 
-    /// The same by the method of lines: the differential equations of all boxes at once, handed to the engine's
+    /// Kicks the fields by noise at the time that they have reached, eq. (noise.4). The inputs are those of [`Self::advance`], the time that the
+    /// kick stands for is in s.
+    ///
+    /// # Errors
+    /// Values that are not finite then: the message names document, field, time and position.
+    ///
+    /// # Panics
+    /// As [`Self::advance`].
+    pub fn kick(&self, fields: &mut Fields, inputs: &[f64], kick: Kick, numbers: Numbers) -> Result<()> {
+        assert_eq!(inputs.len(), self.inputs.len(), "one number for each input of '{}'", self.name);
+        assert_eq!(fields.species().len(), self.species.len(), "the fields of '{}'", self.name);
+        let Some(noise) = &self.noise else { return Ok(()) };
+        noise.kick(fields, inputs, kick, numbers);
+        fields
+            .check_finite("its noise is no number there; check it for roots of what is negative")
+            .map_err(|error| self.named(error))
+    }
+
+    /// What [`Self::advance`] does by the method of lines, without noise: the differential equations of all boxes at once, handed to the engine's
     /// explicit method of order 5. For small grids, as the measure of [`Self::advance`].
     ///
     /// # Errors

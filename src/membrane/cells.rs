@@ -6,6 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::failure::{Failure, MembraneTrouble};
+use super::kick::Course;
 use super::mesh::SurfaceMesh;
 use super::scratch::{MembraneScratch, ThreadWork, Work};
 use super::start::begin;
@@ -28,17 +29,17 @@ pub struct Shapes<'a> {
 /// What all blocks share.
 struct Shared<'a> {
     shapes: &'a Shapes<'a>,
-    task: Task,
+    task: Task<'a>,
     threads: &'a [Mutex<ThreadWork>],
 }
 
 /// What is done to a block.
-#[derive(Clone, Copy, PartialEq)]
-enum Task {
+#[derive(Clone, Copy)]
+enum Task<'a> {
     /// Cells that have not started do, at this time, and sums are worked out.
     Begin(f64),
-    /// From one time to another.
-    Advance(f64, f64),
+    /// Through a window of time.
+    Advance(Course<'a>),
     /// An expression that is shown, by its number, is worked out at this time.
     Show(usize, f64),
 }
@@ -60,7 +61,7 @@ impl MembraneSystem {
     }
 
     /// Moves all cells of a kind through a window of the document's time while their surfaces go from one shape to another, eq.
-    /// (surface.1) to (surface.6). Nothing is allocated after the first window with the same scratch, and no result depends on the
+    /// (surface.1) to (surface.6), kicked by noise. Nothing is allocated after the first window with the same scratch, and no result depends on the
     /// number of threads or on the other cells.
     ///
     /// # Errors
@@ -70,10 +71,10 @@ impl MembraneSystem {
         cells: &mut MembraneCells,
         inside: (&mut Population, usize),
         shapes: &Shapes,
-        (from, until): (f64, f64),
+        course: Course,
         scratch: &mut MembraneScratch,
     ) -> Result<(), MembraneTrouble> {
-        self.each_block(cells, inside, shapes, Task::Advance(from, until), scratch)
+        self.each_block(cells, inside, shapes, Task::Advance(course), scratch)
     }
 
     /// Works out an expression that is shown at all atoms of the cells where they stand, and hands over the number of each atom of each cell in
@@ -169,6 +170,7 @@ impl MembraneSystem {
                 },
                 shapes: (shapes.from[own.clone()].as_chunks().0, shapes.to[own].as_chunks().0),
                 task,
+                number: block,
                 shown: lanes_mut(shown),
                 work,
             });
@@ -186,7 +188,8 @@ struct Block<'a, const L: usize> {
     mesh: &'a SurfaceMesh,
     part: Part<'a, L>,
     shapes: (&'a [[f64; L]], &'a [[f64; L]]),
-    task: Task,
+    task: Task<'a>,
+    number: usize,
     shown: &'a mut [[f64; L]],
     work: &'a mut Work<L>,
 }
@@ -195,7 +198,7 @@ impl<const L: usize> WithSimd for Block<'_, L> {
     type Output = Option<Failure>;
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let Self { system, mesh, mut part, shapes, task, shown, work } = self;
+        let Self { system, mesh, mut part, shapes, task, number: block, shown, work } = self;
         match task {
             Task::Begin(time) => {
                 begin(system, mesh, &mut part, shapes.1, time, work);
@@ -205,7 +208,7 @@ impl<const L: usize> WithSimd for Block<'_, L> {
                 display(system, mesh, (&part, shown), shapes.1, (number, time), work);
                 None
             }
-            Task::Advance(from, until) => advance(system, mesh, &mut part, shapes, (from, until), work),
+            Task::Advance(course) => advance(system, mesh, &mut part, shapes, (&course, block), work),
         }
     }
 }

@@ -186,6 +186,41 @@ pub fn rates<const L: usize>(
     }
 }
 
+/// Strengths of noise, of each variable that has it at all atoms, `[variable][atom]`, and of each such pool.
+#[inline(always)]
+pub fn strengths<const L: usize>(
+    system: &MembraneSystem,
+    cell: &Cell<L>,
+    atoms: Atoms<L>,
+    open: &[[f64; L]],
+    registers: &mut Registers,
+    (surface, pools): (&mut [[f64; L]], &mut [[f64; L]]),
+) {
+    let (program, code) = (&system.surface, &system.surface.further[1]);
+    fill(program, &system.slots, cell, open, &mut registers.surface);
+    let (strengths, length) = (surface.as_flattened_mut(), atoms.coordinates.len() / 3 * L);
+    if !code.outputs.is_empty() {
+        sweep((program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
+            for (variable, &output) in code.outputs.iter().enumerate() {
+                let row = &mut strengths[variable * length..][..length][numbers.clone()];
+                row.copy_from_slice(&file[output as usize][..row.len()]);
+            }
+        });
+    }
+    let (code, file) = (&system.inside.further[0], &mut registers.inside);
+    if code.outputs.is_empty() {
+        return;
+    }
+    file[0] = spread(&cell.time);
+    for (register, value) in file[1..].iter_mut().zip(cell.pools.iter().chain(open)) {
+        *register = spread(value);
+    }
+    run(code, file);
+    for (strength, &output) in pools.iter_mut().zip(&code.outputs) {
+        strength.copy_from_slice(&file[output as usize][..L]);
+    }
+}
+
 /// An expression that is shown, at all atoms.
 #[inline(always)]
 pub fn show<const L: usize>(
@@ -196,7 +231,7 @@ pub fn show<const L: usize>(
     registers: &mut Registers,
     shown: &mut [[f64; L]],
 ) {
-    let (program, code) = (&system.surface, &system.surface.further[1 + number]);
+    let (program, code) = (&system.surface, &system.surface.further[2 + number]);
     fill(program, &system.slots, cell, open, &mut registers.surface);
     let (shown, output) = (shown.as_flattened_mut(), code.outputs[0] as usize);
     sweep((program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {

@@ -6,6 +6,7 @@
 mod cells;
 mod evaluate;
 mod failure;
+mod kick;
 mod mesh;
 mod scratch;
 mod shape;
@@ -21,6 +22,7 @@ mod window;
 
 pub use cells::Shapes;
 pub use failure::MembraneTrouble;
+pub use kick::Course;
 pub use mesh::SurfaceMesh;
 pub use scratch::MembraneScratch;
 pub use state::{MembraneCells, MembraneState};

@@ -62,9 +62,10 @@ pub(super) struct Sum {
 /// inputs, in the population of the inside.
 #[derive(Debug, Clone)]
 pub struct MembraneSystem {
-    /// Rates on the surface; further groups are the integrands of the sums, and what is shown of atoms, each in one of its own.
+    /// Rates on the surface; further groups are the integrands of the sums, the strengths of noise, and what is shown of atoms, each in one of
+    /// its own.
     pub(super) surface: Program,
-    /// The pools, with the sums, area, volume and the inputs of the document open.
+    /// The pools, with the sums, area, volume and the inputs of the document open; the only further group are the strengths of noise.
     pub(super) inside: Program,
     /// All variables at the start: what its only further group says, those of the surface first.
     pub(super) start: Program,
@@ -75,6 +76,8 @@ pub struct MembraneSystem {
     pub(super) sums: Vec<Sum>,
     /// Diffusion coefficients of the variables on the surface, µm² per unit of time.
     pub(super) diffusion: Vec<f64>,
+    /// The variables on the surface, and the pools, that have noise.
+    pub(super) noisy: [Vec<usize>; 2],
     /// What is set of atoms from outside: the quantity, and what it is until it is set.
     pub(super) given: Vec<(QuantityId, f64)>,
     /// Of each variable on the surface identifier and unit.
@@ -101,10 +104,12 @@ impl MembraneSystem {
         let (surface, inside, start) = (outer(system, &pools), inner(system, &membrane.local), beginning(system));
         let integrands: Vec<Expr> = membrane.totals.iter().map(|total| total.integrand.clone()).collect();
         let variables: Vec<Expr> = on_surface.iter().chain(&pools).map(|number| Expr::Quantity(*number)).collect();
+        let (noisy, strengths) = noise(document, &on_surface);
+        let (strengths, of_pools) = strengths;
         let groups: Vec<Vec<Expr>> =
-            [integrands].into_iter().chain(shown.iter().map(|one| vec![one.clone()])).collect();
+            [integrands, strengths].into_iter().chain(shown.iter().map(|one| vec![one.clone()])).collect();
         let surface = Program::with(&surface, 0.0, &[], &groups)?;
-        let inside = Program::with(&inside, 0.0, &[], &[])?;
+        let inside = Program::with(&inside, 0.0, &[], &[of_pools])?;
         let start = Program::with(&start, 0.0, &[], &[variables])?;
         let open = |id: &str| system.find(id).and_then(|quantity| inside.open_index(quantity)).unwrap_or(usize::MAX);
         let slot = |quantity: &QuantityId| -> Slot {
@@ -129,7 +134,8 @@ impl MembraneSystem {
             own.into_iter().chain([&quantity.initial])
         });
         let mut uses_volume = false;
-        for expression in expressions.chain(membrane.totals.iter().map(|total| &total.integrand)) {
+        let integrands = membrane.totals.iter().map(|total| &total.integrand);
+        for expression in expressions.chain(integrands).chain(document.noise.iter().map(|noise| &noise.strength)) {
             expression.each_quantity(&mut |used| uses_volume |= Some(used) == volume);
         }
         let values = &surface.initial;
@@ -144,6 +150,7 @@ impl MembraneSystem {
             diffusion: (membrane.surface.iter())
                 .map(|variable| variable.diffusion.evaluate(0.0, &|number| values[number as usize]))
                 .collect(),
+            noisy,
             given,
             names: (on_surface.iter())
                 .map(|number| &system.quantities[*number as usize])
@@ -200,6 +207,19 @@ impl MembraneSystem {
         let local = document.membrane.as_ref().is_some_and(|membrane| membrane.local[quantity as usize]);
         !local && !SURFACE.contains(&document.system.quantities[quantity as usize].id.as_str())
     }
+}
+
+/// The variables on the surface and the pools that have noise, by their numbers, and its strengths.
+fn noise(document: &Document, on_surface: &[QuantityId]) -> ([Vec<usize>; 2], (Vec<Expr>, Vec<Expr>)) {
+    let pools: Vec<QuantityId> =
+        document.system.variables().into_iter().filter(|variable| !on_surface.contains(variable)).collect();
+    let of = |variables: &[QuantityId]| -> (Vec<usize>, Vec<Expr>) {
+        let number = |quantity| variables.iter().position(|variable| *variable == quantity);
+        let noise = document.noise.iter();
+        noise.filter_map(|noise| Some((number(noise.quantity)?, noise.strength.clone()))).unzip()
+    };
+    let ((surface, strengths), (pools, of_pools)) = (of(on_surface), of(&pools));
+    ([surface, pools], (strengths, of_pools))
 }
 
 /// The system as an atom of the surface sees it: pools are given.

@@ -2,6 +2,7 @@
 
 use super::evaluate::{Atoms, Cell, measures, show, sum};
 use super::failure::Failure;
+use super::kick::{Course, kick};
 use super::mesh::SurfaceMesh;
 use super::scratch::Work;
 use super::shape::{areas, areas_and_weights, coordinates};
@@ -32,14 +33,14 @@ pub struct Part<'a, const L: usize> {
     pub cells: usize,
 }
 
-/// Moves the cells of a block from one shape to another in the document's time.
+/// Moves the cells of a block from one shape to another in a window of the document's time.
 #[inline(always)]
 pub fn advance<const L: usize>(
     system: &MembraneSystem,
     mesh: &SurfaceMesh,
     part: &mut Part<L>,
     (from, to): (&[[f64; L]], &[[f64; L]]),
-    (begin, end): (f64, f64),
+    (window, block): (&Course, usize),
     work: &mut Work<L>,
 ) -> Option<Failure> {
     let pools = system.inside.size();
@@ -66,12 +67,23 @@ pub fn advance<const L: usize>(
         let share = ratio(&work.volume[0], part.volume);
         work.pools.iter_mut().for_each(|pool| (0..L).for_each(|l| pool[l] *= share[l]));
     }
-    let failure = course(system, mesh, part, (begin, end), work);
-    finish(system, mesh, part, to, end, work);
+    let mut failure = None;
+    let mut substeps = window.substeps;
+    while failure.is_none()
+        && let Some(substep) = substeps.next()
+    {
+        if let Some(one) = substep.kick {
+            kick(system, (window, block), (&substep, one), work);
+        }
+        if substep.length > 0.0 {
+            failure = course(system, mesh, part, (substep.begin, substep.end), work);
+        }
+    }
+    finish(system, mesh, part, to, window.substeps.until(), work);
     failure
 }
 
-/// Steps until every lane has reached the end of the window.
+/// Steps until every lane has reached the end of a part of the window.
 #[inline(always)]
 fn course<const L: usize>(
     system: &MembraneSystem,

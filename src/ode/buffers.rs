@@ -11,6 +11,7 @@ use super::scratch::Scratch;
 use super::stepper::StepperBuffers;
 use super::{Method, OdeTrouble, Work};
 use crate::equations::program::{LANES, Lanes, Program};
+use crate::random::Normals;
 
 /// Scratch of a population. No result depends on what is in it: it may be poisoned, made anew or used for another population at any
 /// time. It is cheapest when the same population uses it window after window.
@@ -29,6 +30,9 @@ pub struct PopulationScratch {
     pub(super) kept: Vec<Lanes<LANES>>,
     /// Registers for looking at quantities.
     pub(super) file: Vec<Lanes<LANES>>,
+    /// Registers for strengths of noise, and whose numbers kick the variables.
+    pub(super) kicks: Vec<Lanes<LANES>>,
+    pub(super) normals: Vec<Normals>,
 }
 
 /// What one thread works in.
@@ -74,7 +78,9 @@ impl PopulationScratch {
     pub(super) fn suit(&mut self, program: &Program, method: Method, blocks: usize) {
         let key = Some((program.mark, method.is_implicit()));
         if self.key != key {
-            *self = Self { key, ..Self::default() };
+            // Noise, which comes first in a window, brings a program of its own.
+            let (kicks, normals) = (std::mem::take(&mut self.kicks), std::mem::take(&mut self.normals));
+            *self = Self { key, kicks, normals, ..Self::default() };
         }
         if self.file.is_empty() {
             self.file = program.file();

@@ -19,12 +19,14 @@ mod memory;
 #[cfg(feature = "diffsol")]
 mod multistep;
 mod narrow;
+mod noise;
 mod population;
 mod rosenbrock;
 mod scheme;
 pub(crate) mod scratch;
 mod solve;
 mod stepper;
+mod substeps;
 pub mod tableau;
 mod wide;
 
@@ -33,9 +35,11 @@ pub use control::Tolerances;
 pub use eventful::Eventful;
 pub use events::{EventPlan, assigned_parameters};
 pub use memory::EventMemory;
+pub use noise::{Noise, Numbers};
 pub use population::{BlockView, LANES, Population};
 pub use scheme::Scheme;
 pub use solve::{Solution, SolveOptions, solve, solve_each};
+pub use substeps::{Kick, Pace, Substep, Substeps};
 
 use serde::{Deserialize, Serialize};
 

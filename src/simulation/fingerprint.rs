@@ -60,6 +60,7 @@ fn add_chemistry(hash: &mut Fnv, chemistry: &Chemistry) {
     for reactor in &chemistry.reactors {
         hash.value(&(&reactor.name, &reactor.program, &reactor.events, &reactor.members));
         hash.value(&(reactor.seconds, reactor.method, reactor.tolerances, reactor.exchange));
+        hash.value(&(&reactor.noise, reactor.pace));
         if let Some(membrane) = &reactor.membrane {
             hash.value(&membrane.system);
         }
@@ -67,6 +68,7 @@ fn add_chemistry(hash: &mut Fnv, chemistry: &Chemistry) {
     for field in &chemistry.fields {
         hash.value(&(&field.name, field.system.equations(), field.system.grid(), field.system.species()));
         hash.value(&(field.system.inputs(), field.stepping, &field.constants));
+        hash.value(&(field.system.noise(), field.pace));
     }
     chemistry.links.iter().for_each(|link| hash.value(link));
 }

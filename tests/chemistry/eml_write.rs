@@ -125,6 +125,24 @@ fn events_and_awkward_texts_read_back_the_same() {
 }
 
 #[test]
+fn noise_reads_back_the_same() {
+    let membrane = r#"<eml name="m" level="membrane"><parameter id="q" value="2"/>
+        <variable id="a" initial="1" diffusion="0.1" rate="-a" noise="sqrt(2*q)*a"/>
+        <variable id="c" level="cell" initial="1" rate="0" noise="piecewise(0, q lt 1, 2)"/><solver noise_step="0.05"/></eml>"#;
+    let field = r#"<eml name="f"><grid dimension="2" spacing="1"/>
+        <field id="c" range="free" initial="0" noise="0.1*x"/></eml>"#;
+    for text in [membrane, field] {
+        let document = read_text("text", text.to_owned()).document;
+        let again = read_text("text again", eml::write(&document, "").text).document;
+        let noise = |document: &eml::Document| -> Vec<_> {
+            document.noise.iter().map(|noise| (noise.quantity, noise.strength.clone())).collect()
+        };
+        assert!(!noise(&document).is_empty());
+        assert_eq!((noise(&again), again.solver), (noise(&document), document.solver));
+    }
+}
+
+#[test]
 fn units_of_numbers_cost_the_units_of_the_text_and_not_its_meaning() {
     let text = r#"<eml name="m"><variable id="c" unit="uM" initial="1" rate="-0.1 [1/s]*c"/></eml>"#;
     let document = read_text("text", text.to_owned()).document;

@@ -10,6 +10,7 @@ mod engine_stiff;
 mod field_system;
 mod fields;
 mod fields_analytic;
+mod noise;
 mod sbml;
 mod sbml_features;
 mod xml;

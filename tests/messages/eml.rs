@@ -86,3 +86,17 @@ fn implicit_schemes_refuse_systems_whose_matrices_would_not_fit() {
     std::fs::write(folder.path().join("big.toml"), format!("{experiment}scheme = \"rk45\"\n")).unwrap();
     assert_eq!(told(&["check", "big.toml"]), (Some(0), String::new()));
 }
+
+#[test]
+fn single_solves_refuse_noise() {
+    let _turn = take_turn();
+    let folder = tempfile::tempdir().unwrap();
+    let text = "<eml name=\"noisy\">\n<variable id=\"x\" initial=\"1\" rate=\"-x\" noise=\"0.1\"/>\n</eml>\n";
+    std::fs::write(folder.path().join("noisy.eml"), text).unwrap();
+    let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_pseudopod"));
+    let out = program.args(["eml", "solve", "noisy.eml", "--until", "1"]).current_dir(folder.path()).output().unwrap();
+    let words = String::from_utf8(out.stderr).unwrap();
+    assert_eq!(out.status.code(), Some(2));
+    assert!(words.contains("noisy.eml has noise, which single solves do not have"), "{words}");
+    assert!(words.contains("noisy.eml:2") && words.contains("noise=\"0.1\""), "{words}");
+}

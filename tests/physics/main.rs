@@ -18,6 +18,7 @@ mod inertial;
 mod membranes;
 mod modulus;
 mod motility;
+mod noise;
 mod ordering;
 mod own_stiffness;
 mod own_stiffness_touching;

@@ -1,5 +1,5 @@
 //! A scene that has everything: two types, contacts that stick by bonds that close and open, walks that turn, pseudopods, a plane, loads, fibres, a field that cells secrete into
-//! and climb, systems with events, links both ways, membranes that sense and push at every atom, an atom that is put somewhere.
+//! and climb, noise at all levels, systems with events, links both ways, membranes that sense and push at every atom, an atom that is put somewhere.
 
 use pseudopod::experiment::{Compiled, Document, compile};
 use pseudopod::geometry::icosphere;
@@ -7,15 +7,16 @@ use pseudopod::sim::{Model, State, Workspace, begin_chemistry, step};
 
 /// The field.
 const FIELD: &str = r#"<eml name="field"><grid dimension="2" spacing="4" origin="-40 -40" size="80 80"/>
-    <field id="c" diffusion="30" decay="0.1" initial="2 + 0.02*x"><reaction>-0.02*c^2</reaction></field></eml>"#;
+    <field id="c" diffusion="30" decay="0.1" initial="2 + 0.02*x"><reaction>-0.02*c^2</reaction></field>
+    <field id="n" range="free" diffusion="30" decay="0.1" initial="0" noise="0.1 + 0.01*c"/></eml>"#;
 
 /// What each walker has.
 const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/><input id="c" default="0"/><input id="gx" default="0"/>
     <input id="speed" default="0"/><input id="share" default="0"/>
-    <variable id="u" initial="1" rate="c - k*u"/><variable id="w" initial="0" rate="u - w"/>
+    <variable id="u" initial="1" rate="c - k*u" noise="0.02*u"/><variable id="w" initial="0" rate="u - w"/>
     <variable id="clock" initial="0" rate="1"/><variable id="pulses" initial="0" rate="0"/>
     <event id="pulse" when="clock ge 0.35"><set id="clock">0</set><set id="pulses">pulses + 1</set></event>
-    <solver scheme="rk45" rtol="1e-6"/>
+    <solver scheme="rk45" rtol="1e-6" noise_step="0.03"/>
     <link from="field[c]" to="system.c"/><link from="field[c].gradient.x" to="system.gx"/>
     <link from="cell.speed" to="system.speed"/><link from="cell.contact_share" to="system.share"/>
     <link from="system.gx" to="cell.motility.bias.x" gain="0.5"/><link from="system.gx" to="cell.pseudopods.cue.x" gain="20"/><link from="system.w" to="cell.secretion[c]" gain="2"/>
@@ -29,9 +30,9 @@ const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/
 const SKIN: &str = r#"<eml name="skin" level="membrane"><input id="c" default="0"/>
     <input id="here" default="0" level="membrane"/><input id="up" default="0" level="membrane"/><input id="bent" default="0" level="membrane"/>
     <input id="wide" default="0" level="membrane"/><input id="near" default="0" level="membrane"/><input id="low" default="0" level="membrane"/>
-    <variable id="a" initial="1 + 0.05*x" diffusion="0.5" rate="0.3*inside - a*(0.2 + 0.1*a) + 0.01*(c + here) + 0.02*(near + low + up*bent + wide)"/>
+    <variable id="a" initial="1 + 0.05*x" diffusion="0.5" rate="0.3*inside - a*(0.2 + 0.1*a) + 0.01*(c + here) + 0.02*(near + low + up*bent + wide)" noise="0.01*a"/>
     <variable id="h" initial="0.1" rate="a - h"/>
-    <variable id="inside" initial="2" level="cell" rate="(lost - 0.3*inside*area)/volume"/>
+    <variable id="inside" initial="2" level="cell" rate="(lost - 0.3*inside*area)/volume" noise="0.01*front"/>
     <integral id="lost">0.2*a</integral><mean id="front">a*x</mean>
     <define id="push">0.05*max(a - low, 0)</define>
     <link from="field[c]" to="system.c"/><link from="cell.atoms.field[c]" to="system.here"/><link from="cell.atoms.normal.z" to="system.up"/>
@@ -46,7 +47,7 @@ const PIN: &str = r#"<eml name="pin" level="cell"><variable id="t" initial="0" r
     <link from="cell.position.x" to="system.seen"/><link from="system.wanted" to="cell.atom[4].y"/></eml>"#;
 
 /// What the scene has.
-const WHOLE: &str = r#"<eml name="whole"><input id="mean" default="0"/><variable id="sum" initial="0" rate="mean"/>
+const WHOLE: &str = r#"<eml name="whole"><input id="mean" default="0"/><variable id="sum" initial="0" rate="mean" noise="0.1"/>
     <link from="type[walker].chemistry[own].u" to="system.mean"/></eml>"#;
 
 const TEXT: &str = r#"

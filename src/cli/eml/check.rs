@@ -169,6 +169,7 @@ fn solver(read: &Read) -> Vec<(&'static str, Value)> {
         ("atol", number(choice.atol)),
         ("step", number(choice.step)),
         ("inner_step", number(choice.inner_step)),
+        ("noise_step", number(choice.noise_step)),
     ];
     all.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
 }

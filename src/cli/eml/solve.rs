@@ -28,6 +28,11 @@ pub fn run(args: &SolveArgs) -> Result<Report> {
         let fault = Fault::new(format!("{} is a document of membranes, which need surfaces", args.document.display()));
         return Err(Error::input(fault.help("give it to an experiment, under [chemistry.NAME], and run that")));
     }
+    if let Some(noise) = read.document.noise.first() {
+        let fault = Fault::new(format!("{} has noise, which single solves do not have", args.document.display()));
+        let help = "give it to an experiment, under [chemistry.NAME], and run that; or take `noise` out";
+        return Err(Error::input(fault.at(noise.location.clone()).help(help)));
+    }
     let mut faults = Vec::new();
     let points = points(args, &mut faults);
     let columns = columns(&args.columns, &read, &mut faults);

@@ -26,6 +26,8 @@ pub struct Document {
     pub fields: Vec<FieldDescription>,
     /// What a document of membranes says beside its equations.
     pub membrane: Option<MembraneDescription>,
+    /// The variables, pools and fields with noise.
+    pub noise: Vec<NoiseDescription>,
     /// What joins the system to the model.
     pub links: Vec<LinkDescription>,
     /// How it asks to be solved.
@@ -105,6 +107,18 @@ pub enum Taken {
     Integral,
 }
 
+/// The noise of a variable, eq. (noise.1).
+#[derive(Debug, Clone)]
+pub struct NoiseDescription {
+    /// The variable.
+    pub quantity: QuantityId,
+    /// Its strength: of a variable of the scene or of a cell in its unit per root of the unit of time, on a surface times µm, in a field times the unit of
+    /// length of the grid (flat) or that to the power 3/2.
+    pub strength: Expr,
+    /// Where it is written.
+    pub location: Location,
+}
+
 /// How a document asks to be solved; what it leaves open is decided by the experiment.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SolverChoice {
@@ -118,6 +132,8 @@ pub struct SolverChoice {
     pub step: Option<f64>,
     /// Step of a scheme with a fixed step, in the unit of time.
     pub inner_step: Option<f64>,
+    /// Time between two kicks of noise, in the unit of time.
+    pub noise_step: Option<f64>,
 }
 
 /// A scheme.

@@ -8,7 +8,7 @@ use crate::equations::expression::Unit;
 use crate::equations::tree::{Expr, QuantityId, Role, System};
 
 /// Words for where a quantity lives.
-const ON_SURFACE: &str = "differs from atom to atom";
+pub(super) const ON_SURFACE: &str = "differs from atom to atom";
 
 impl Builder<'_, '_> {
     /// What a document of membranes says beside its equations.
@@ -136,12 +136,12 @@ impl Builder<'_, '_> {
     }
 }
 
-fn micrometre() -> Unit {
+pub(super) fn micrometre() -> Unit {
     Unit::read("um").unwrap_or_else(|_| Unit::plain())
 }
 
 /// The first quantity of an expression of which something holds.
-fn first(expr: &Expr, holds: &impl Fn(QuantityId) -> bool) -> Option<QuantityId> {
+pub(super) fn first(expr: &Expr, holds: &impl Fn(QuantityId) -> bool) -> Option<QuantityId> {
     let mut found = None;
     expr.each_quantity(&mut |used| {
         if found.is_none() && holds(used) {

@@ -14,6 +14,7 @@ mod events;
 mod fields;
 mod links;
 mod membrane;
+mod noise;
 mod solver;
 mod start;
 mod vocabulary;
@@ -22,8 +23,8 @@ mod xml;
 
 pub use declare::SURFACE;
 pub use document::{
-    Document, Endpoint, FieldDescription, GridDescription, Index, Level, LinkDescription, MembraneDescription, Profile,
-    Root, SIDES, Scheme, SolverChoice, Step, SurfaceVariable, Taken, Total, Wall,
+    Document, Endpoint, FieldDescription, GridDescription, Index, Level, LinkDescription, MembraneDescription,
+    NoiseDescription, Profile, Root, SIDES, Scheme, SolverChoice, Step, SurfaceVariable, Taken, Total, Wall,
 };
 pub use links::{read_end, read_transfer};
 pub use solver::SCHEMES;
@@ -56,18 +57,21 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     let grid = builder.grid(&root);
     let mut fields = builder.fields(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
     let mut membrane = builder.membrane(&root);
+    let noise = builder.noise(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
     let links = builder.links(&root);
     let solver = builder.solver(&root);
+    builder.check_noise(&root, &noise);
     let system = System { name: root.word("name"), quantities, events };
     builder.check_values(&system);
     builder.finish_fields(&mut fields, &system);
     if let Some(membrane) = &mut membrane {
         builder.finish_membrane(membrane, &system);
+        builder.check_noise_of_pools(membrane, &noise);
     }
     let (level, time_unit, seconds) = (builder.known.level, builder.known.time_text.clone(), builder.known.time.size());
     if !context.is_clean() {
         return Err(context.error());
     }
     let name = root.word("name");
-    Ok(Document { name, level, time_unit, seconds, system, locations, grid, fields, membrane, links, solver })
+    Ok(Document { name, level, time_unit, seconds, system, locations, grid, fields, membrane, noise, links, solver })
 }

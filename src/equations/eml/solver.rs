@@ -32,6 +32,7 @@ impl Builder<'_, '_> {
             atol: self.positive(element, "atol"),
             step: self.positive(element, "step"),
             inner_step: self.positive(element, "inner_step"),
+            noise_step: self.positive(element, "noise_step"),
         };
         let fixed = matches!(scheme, Some(Scheme::Rk4 | Scheme::Euler));
         if fixed && element.attribute("inner_step").is_none() {
@@ -66,7 +67,7 @@ impl Builder<'_, '_> {
         ];
         for (name, why) in words.into_iter().filter(|(name, _)| element.attribute(name).is_some()) {
             let message = format!("`{name}` has no meaning in a document of level membrane");
-            let help = format!("remove it: {why}; rtol, atol and inner_step (the longest step) can be set");
+            let help = format!("remove it: {why}; rtol, atol, inner_step (the longest step) and noise_step can be set");
             self.context.fault(element.location(name), &message, "not used", &help);
         }
     }

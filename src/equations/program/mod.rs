@@ -158,10 +158,20 @@ impl Program {
         }
     }
 
+    /// Makes a file of registers long enough, and sets its constants.
+    pub fn suit<const L: usize>(&self, file: &mut Vec<Lanes<L>>) {
+        file.resize(self.registers(), [0.0; L]);
+        self.set_constants(file);
+    }
+
+    /// How many registers every code of the program fits in.
+    fn registers(&self) -> usize {
+        self.registers.max(1 + self.variables.len() + self.open.len() + self.constants.len())
+    }
+
     /// A file of registers with the constants set and the slots at their initial values.
     pub fn file<const L: usize>(&self) -> Vec<Lanes<L>> {
-        let mut file =
-            vec![[0.0; L]; self.registers.max(1 + self.variables.len() + self.open.len() + self.constants.len())];
+        let mut file = vec![[0.0; L]; self.registers()];
         let slots = self.variables.iter().chain(&self.open).map(|&quantity| self.initial[quantity as usize]);
         for (register, value) in file[1..].iter_mut().zip(slots.chain(self.constants.iter().copied())) {
             *register = [value; L];

@@ -5,8 +5,8 @@ use super::super::state::State;
 use super::membrane::Membrane;
 use super::model::{Members, Reactor};
 use super::state::ChemistryState;
-use crate::membrane::{MembraneScratch, Shapes};
-use crate::ode::OdeTrouble;
+use crate::membrane::{Course, MembraneScratch, Shapes};
+use crate::ode::{Numbers, OdeTrouble, Substeps};
 
 /// Gives the membranes of cells that have not started their first values, and works out what is summed over these.
 pub fn begin_membranes(model: &Model, state: &mut State, scratch: &mut [MembraneScratch]) {
@@ -25,11 +25,11 @@ pub fn begin_membranes(model: &Model, state: &mut State, scratch: &mut [Membrane
     }
 }
 
-/// Moves the membranes of a system through the step that leads from one state to another.
+/// Moves the membranes of a system through the window of the step that leads from one state to another.
 pub(super) fn advance_membrane(
     (number, reactor): (usize, &Reactor),
     membrane: &Membrane,
-    window: (f64, f64),
+    (substeps, numbers): (Substeps, Numbers),
     from: &State,
     to: &mut State,
     scratch: &mut MembraneScratch,
@@ -42,7 +42,8 @@ pub(super) fn advance_membrane(
         let shapes =
             Shapes { mesh: &membrane.meshes[at], from: &from.kinds[kind].positions, to: &kinds[kind].positions };
         let inside = (&mut chemistry.populations[number], first);
-        membrane.system.advance(cells, inside, &shapes, window, scratch).map_err(|trouble| OdeTrouble {
+        let course = Course { substeps, numbers, ids: &kinds[kind].ids };
+        membrane.system.advance(cells, inside, &shapes, course, scratch).map_err(|trouble| OdeTrouble {
             system: reactor.name.clone(),
             cell: Some(first + trouble.cell),
             time: trouble.time,

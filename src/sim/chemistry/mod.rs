@@ -16,6 +16,7 @@ mod membranes;
 mod model;
 mod observe;
 mod observed;
+mod populations;
 mod scratch;
 mod stages;
 mod state;

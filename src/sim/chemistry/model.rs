@@ -6,7 +6,7 @@ use crate::cell::ends::AtomReading;
 use crate::equations::program::Program;
 use crate::equations::tree::QuantityId;
 use crate::field::{FieldSystem, Stepping};
-use crate::ode::{EventPlan, Method, Tolerances};
+use crate::ode::{EventPlan, Method, Noise, Pace, Tolerances};
 
 /// All chemistry of a model; empty lists where there is none.
 #[derive(Debug, Clone, Default)]
@@ -40,6 +40,10 @@ pub struct Reactor {
     pub program: Program,
     /// Its events; empty where it has none.
     pub events: EventPlan,
+    /// Its noise, but for what of it lives on membranes; none where it has none.
+    pub noise: Option<Noise>,
+    /// How often noise kicks, in the system's unit of time.
+    pub pace: Pace,
     /// What of it lives on the membranes of its cells; its own equations are those of their insides.
     pub membrane: Option<Membrane>,
     /// Who has it.
@@ -84,6 +88,8 @@ pub struct FieldReactor {
     pub system: FieldSystem,
     /// How a step of the model is cut into steps of the fields.
     pub stepping: FieldStepping,
+    /// How often noise kicks, s.
+    pub pace: Pace,
     /// Values of the system's quantities at the start, for transfers.
     pub constants: Vec<f64>,
 }

@@ -13,9 +13,10 @@ use super::census::cell_of_member;
 use super::exchange::is_due;
 use super::membranes::{advance_membrane, begin_membranes};
 use super::model::Reactor;
+use super::populations::{advance_population, eventful};
 use super::scratch::ChemistryScratch;
 use crate::error::Error;
-use crate::ode::{Eventful, OdeTrouble, PopulationScratch};
+use crate::ode::{Numbers, OdeTrouble, PopulationScratch, Substeps};
 
 /// Lets the links carry the numbers of the start, and executes the events of the start, in `state`; after an error that holds
 /// anything.
@@ -54,7 +55,7 @@ pub fn advance_chemistry(
     advance_systems(model, end, from, to, &mut ws.chemistry)?;
     deposit_secretion(model, dt, to, ws);
     deposit_at_atoms(model, dt, to, ws);
-    advance_fields(model, dt, to, ws)?;
+    advance_fields(model, (start, dt), to, ws)?;
     carry_links(model, end, false, to, ws)?;
     ws.chemistry.exchange_values(&mut to.chemistry, end);
     impose(model, end, to, ws)?;
@@ -74,28 +75,26 @@ fn advance_systems(
 ) -> Result<(), Trouble> {
     let ChemistryScratch { populations: scratch, membranes, .. } = scratch;
     for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
-        let chemistry = &mut state.chemistry;
-        let from = chemistry.times[number];
+        let from = state.chemistry.times[number];
         if !is_due(reactor, end) || from >= end {
             continue;
         }
-        let window = (from / reactor.seconds, end / reactor.seconds);
-        if let Some(membrane) = &reactor.membrane {
-            let advanced = advance_membrane((number, reactor), membrane, window, before, state, &mut membranes[number]);
-            advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?;
-            state.chemistry.times[number] = end;
-            continue;
-        }
-        let population = &mut chemistry.populations[number];
-        let advanced = match reactor.events.is_empty() {
-            true => population.advance(&reactor.program, window.0, window.1, &reactor.tolerances, &mut scratch[number]),
-            false => {
-                let (events, scratch) = (&mut chemistry.events[number], &mut scratch[number]);
-                eventful(model, reactor).advance(population, events, window.0, window.1, scratch)
+        let (begin, until) = (from / reactor.seconds, end / reactor.seconds);
+        let substeps = Substeps::between(reactor.pace, state.chemistry.kicks[number], begin, until);
+        let advanced = match &reactor.membrane {
+            Some(membrane) => {
+                let numbers = Numbers { seed: model.seed, system: &reactor.name };
+                let scratch = &mut membranes[number];
+                advance_membrane((number, reactor), membrane, (substeps, numbers), before, state, scratch)
+            }
+            None => {
+                let State { kinds, chemistry, .. } = &mut *state;
+                advance_population(model, (number, reactor), substeps, (kinds, chemistry), &mut scratch[number])
             }
         };
         advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?;
         state.chemistry.times[number] = end;
+        state.chemistry.kicks[number] = substeps.kicks_at_end();
     }
     Ok(())
 }
@@ -111,12 +110,6 @@ fn begin_events(model: &Model, state: &mut State, scratch: &mut [PopulationScrat
         any |= advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?.events > 0;
     }
     Ok(any)
-}
-
-/// A system with events, as it is advanced in a run.
-fn eventful<'a>(model: &Model, reactor: &'a Reactor) -> Eventful<'a> {
-    let span = model.until / reactor.seconds;
-    Eventful { program: &reactor.program, plan: &reactor.events, tolerances: reactor.tolerances, span }
 }
 
 /// Which cell of which type, when and in which variable.
@@ -177,17 +170,31 @@ fn deposit_at_atoms(model: &Model, dt: f64, state: &State, ws: &mut Workspace) {
     }
 }
 
-/// Diffusion, decay and reactions of all fields.
-fn advance_fields(model: &Model, dt: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+/// Noise, diffusion, decay and reactions of all fields.
+fn advance_fields(
+    model: &Model,
+    (start, dt): (f64, f64),
+    state: &mut State,
+    ws: &mut Workspace,
+) -> Result<(), Trouble> {
+    let trouble = |error: Error| match error {
+        Error::Numbers { message, .. } => Trouble::Field { message },
+        error => Trouble::Field { message: error.to_string() },
+    };
     for ((reactor, fields), now) in
         model.chemistry.fields.iter().zip(&mut ws.chemistry.fields).zip(&mut state.chemistry.fields)
     {
         fields.set_pace(now.pace);
-        match reactor.system.advance(fields, dt, &now.inputs, reactor.stepping.of(dt)) {
-            Ok(_) => now.pace = fields.pace(),
-            Err(Error::Numbers { message, .. }) => return Err(Trouble::Field { message }),
-            Err(error) => return Err(Trouble::Field { message: error.to_string() }),
+        let numbers = Numbers { seed: model.seed, system: &reactor.name };
+        let substeps = Substeps::new(reactor.pace, now.kicks, start, dt);
+        for part in substeps {
+            if let Some(kick) = part.kick {
+                reactor.system.kick(fields, &now.inputs, kick, numbers).map_err(trouble)?;
+            }
+            let stepping = reactor.stepping.of(part.length);
+            reactor.system.advance(fields, part.length, &now.inputs, stepping).map_err(trouble)?;
         }
+        (now.pace, now.kicks) = (fields.pace(), substeps.kicks_at_end());
     }
     Ok(())
 }

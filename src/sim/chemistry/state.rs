@@ -22,6 +22,8 @@ pub struct ChemistryState {
     pub membranes: Vec<MembraneState>,
     /// Time that each system has reached, s.
     pub times: Vec<f64>,
+    /// How often noise has kicked each system.
+    pub kicks: Vec<u64>,
     /// One entry a document of fields.
     pub fields: Vec<FieldState>,
     /// What links set for mechanics.
@@ -39,6 +41,8 @@ pub struct FieldState {
     pub pace: (u32, u32),
     /// Values of the document's inputs.
     pub inputs: Vec<f64>,
+    /// How often noise has kicked them.
+    pub kicks: u64,
 }
 
 impl ChemistryState {
@@ -60,12 +64,14 @@ impl ChemistryState {
             values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
             pace: fields.pace(),
             inputs: reactor.system.inputs().iter().map(|(_, value)| *value).collect(),
+            kicks: 0,
         };
         Self {
             populations: populations.collect(),
             events: reactors.iter().map(events).collect(),
             membranes: reactors.iter().map(membrane).collect(),
             times: vec![0.0; reactors.len()],
+            kicks: vec![0; reactors.len()],
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
             controls: controls_of(model, cells),
             carried: false,
@@ -80,13 +86,14 @@ impl ChemistryState {
             copy_each(&mut to.kinds, &from.kinds, MembraneCells::copy_from);
         });
         self.times.clone_from(&other.times);
+        self.kicks.clone_from(&other.kicks);
         if self.fields.len() != other.fields.len() {
             self.fields.clone_from(&other.fields);
         }
         for (to, from) in self.fields.iter_mut().zip(&other.fields) {
             to.values.clone_from(&from.values);
             to.inputs.clone_from(&from.inputs);
-            to.pace = from.pace;
+            (to.pace, to.kicks) = (from.pace, from.kicks);
         }
         self.controls.copy_from(&other.controls);
         self.carried = other.carried;
@@ -98,7 +105,9 @@ impl ChemistryState {
         self.events.clear();
         self.membranes.clear();
         self.times.fill(f64::NAN);
+        self.kicks.fill(u64::MAX);
         for field in &mut self.fields {
+            field.kicks = u64::MAX;
             field.values.fill(f64::NAN);
             field.inputs.fill(f64::NAN);
         }
@@ -115,6 +124,7 @@ impl ChemistryState {
             a.kinds.len() == b.kinds.len() && a.kinds.iter().zip(&b.kinds).all(|(a, b)| a.has_shape_of(b))
         };
         self.populations.len() == other.populations.len()
+            && self.kicks.len() == other.kicks.len()
             && self.membranes.len() == other.membranes.len()
             && self.membranes.iter().zip(&other.membranes).all(|(a, b)| surfaces(a, b))
             && self.events.len() == other.events.len()

@@ -142,6 +142,7 @@ impl<'a> Writer<'a> {
                 None => {}
             }
         }
+        tail.push_str(&self.noise(number));
         let initial = self.initial(number);
         let zero = Expr::Number(0.0);
         let (element, value, rate) = match &quantity.role {
@@ -161,6 +162,12 @@ impl<'a> Writer<'a> {
             Some(rate) => self.line(format_args!("  <{element}{head}{}{tail}/>", attribute("rate", &rate))),
             None => self.line(format_args!("  <{element}{head}{tail}/>")),
         }
+    }
+
+    /// The attribute of the noise of a variable; empty without.
+    fn noise(&self, number: QuantityId) -> String {
+        let noise = self.document.noise.iter().find(|noise| noise.quantity == number);
+        noise.map_or(String::new(), |noise| attribute("noise", &self.expression(&noise.strength)))
     }
 
     /// The text of the value at the start, which EML wants finite and without time.
@@ -244,6 +251,7 @@ impl<'a> Writer<'a> {
         if field.range == crate::equations::Range::Free {
             head.push_str(" range=\"free\"");
         }
+        head.push_str(&self.noise(field.quantity));
         self.line(format_args!("  <field{head}{tail}>"));
         for (side, wall) in SIDES.iter().zip(&field.walls) {
             match wall {
@@ -268,8 +276,13 @@ impl<'a> Writer<'a> {
         let solver = &self.document.solver;
         let scheme = SCHEMES.iter().find(|(_, scheme)| Some(*scheme) == solver.scheme);
         let mut head = scheme.map_or(String::new(), |(name, _)| attribute("scheme", name));
-        let numbers =
-            [("rtol", solver.rtol), ("atol", solver.atol), ("step", solver.step), ("inner_step", solver.inner_step)];
+        let numbers = [
+            ("rtol", solver.rtol),
+            ("atol", solver.atol),
+            ("step", solver.step),
+            ("inner_step", solver.inner_step),
+            ("noise_step", solver.noise_step),
+        ];
         for (name, value) in numbers {
             if let Some(value) = value {
                 head.push_str(&attribute(name, &self.expression(&Expr::Number(value))));

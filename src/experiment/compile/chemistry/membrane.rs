@@ -1,7 +1,7 @@
 //! Documents of membranes.
 
 use super::super::super::Document;
-use super::{Part, at, within};
+use super::{Part, at, pace, within};
 use crate::equations::tree::{Expr, Role};
 use crate::error::Fault;
 use crate::membrane::{MembraneStepping, MembraneSystem};
@@ -46,7 +46,7 @@ pub(super) fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: 
         if given {
             let key = part.key(key);
             let fault = Fault::new(format!("`{key}` has no meaning for membranes")).help(
-                "remove it: membranes have a scheme of their own and exchange numbers in every step; rtol, atol and inner_step can be set",
+                "remove it: membranes have a scheme of their own and exchange numbers in every step; rtol, atol, inner_step and noise_step can be set",
             );
             faults.push(at(document, &key, "not used", fault));
         }
@@ -68,6 +68,7 @@ pub(super) fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: 
         }
     };
     check_diffusion(part, &system, faults);
+    let pace = pace(document, part, eml.seconds, faults);
     for kind in part.kinds.iter().map(|&kind| &kinds[kind]) {
         let (what, help) = if kind.rest.facets.is_empty() {
             ("has no surface", "give the type a mesh with facets")
@@ -91,6 +92,9 @@ pub(super) fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: 
         name: part.name.to_owned(),
         program: system.inside().clone(),
         events: EventPlan::default(),
+        // Surface and pools are kicked together, with the membrane.
+        noise: None,
+        pace,
         membrane: Some(Membrane::new(system, &part.kinds, kinds)),
         members: Members::Kinds(part.kinds.clone()),
         seconds: eml.seconds,

@@ -14,7 +14,7 @@ use crate::equations::program::{Program, initial_values};
 use crate::equations::tree::{QuantityId, Role};
 use crate::error::{Error, Fault, Location};
 use crate::field::{FieldSystem, Fields, Placing};
-use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Tolerances, assigned_parameters, too_large};
+use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Noise, Pace, Tolerances, assigned_parameters, too_large};
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
 
@@ -134,7 +134,8 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         true => Program::new(&eml.system).map(|program| (program, EventPlan::default())),
         false => EventPlan::compile(&eml.system, 0.0),
     };
-    let (program, events) = match compiled {
+    let compiled = compiled.and_then(|(program, events)| Ok((program, events, Noise::new(eml)?)));
+    let (program, events, noise) = match compiled {
         Ok(compiled) => compiled,
         Err(circle) => {
             let message = format!("`{}` has a circle of definitions: {}", part.name, circle.join(" → "));
@@ -155,6 +156,8 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         name: part.name.to_owned(),
         program,
         events,
+        noise,
+        pace: pace(document, part, eml.seconds, faults),
         membrane: None,
         members,
         seconds: eml.seconds,
@@ -167,6 +170,23 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         exchange,
         recorded: quantities.map(|(number, q)| (number as u32, q.id.clone(), q.unit.clone())).collect(),
     })
+}
+
+/// How often the noise of a system kicks, in a unit of time of so many seconds.
+fn pace(document: &Document, part: &Part, seconds: f64, faults: &mut Vec<Fault>) -> Pace {
+    let (entry, eml) = (part.entry, &part.document);
+    let step = entry.noise_step.map(|step| step.value()).or(eml.solver.noise_step.map(|step| step * eml.seconds));
+    if eml.noise.is_empty() && entry.noise_step.is_some() {
+        let key = part.key("noise_step");
+        let fault = Fault::new(format!("`{key}` is given, but nothing in the document has noise"))
+            .help("write noise=\"…\" at a variable of the document, or remove the key");
+        faults.push(at(document, &key, "not used", fault));
+    }
+    match step {
+        _ if eml.noise.is_empty() => Pace::Never,
+        None => Pace::EachWindow,
+        Some(step) => Pace::Every(step / seconds),
+    }
 }
 
 /// The scheme of a system, with its inner step in the system's unit of time.
@@ -265,6 +285,7 @@ fn field(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<(F
             absolute: entry.atol.or(eml.solver.atol).unwrap_or(FIELD_TOLERANCE.1),
         },
     };
+    let pace = pace(document, part, 1.0, faults);
     let constants = initial_values(&eml.system, 0.0).unwrap_or_default();
-    Some((FieldReactor { name: part.name.to_owned(), system, stepping, constants }, start))
+    Some((FieldReactor { name: part.name.to_owned(), system, stepping, pace, constants }, start))
 }

@@ -1,0 +1,205 @@
+//! Standard normal numbers, many side by side, from plain arithmetic: the same bits on every processor and for every number of lanes.
+
+use super::{Purpose, philox, philox_lanes};
+
+/// Normal numbers of mean 0 and variance 1 that belong to (seed, purpose, name, counter, cell, element) and to nothing else: each can be
+/// had without any other, eq. (random.2) and (random.3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Normals {
+    key: [u32; 2],
+}
+
+/// π/2.
+const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
+/// 1.5·2^52: adding it leaves a whole number in the low bits.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+/// The bits of √½.
+const LOW_MANTISSA: u64 = 0x3FE6_A09E_667F_3BCD;
+/// 2/(2k+1) from k = 11 down to 1: the series of 2·artanh.
+const LN: [f64; 11] = [
+    2.0 / 23.0,
+    2.0 / 21.0,
+    2.0 / 19.0,
+    2.0 / 17.0,
+    2.0 / 15.0,
+    2.0 / 13.0,
+    2.0 / 11.0,
+    2.0 / 9.0,
+    2.0 / 7.0,
+    2.0 / 5.0,
+    2.0 / 3.0,
+];
+/// ±1/(2k+1)! from k = 8 down to 1.
+const SIN: [f64; 8] = [
+    1.0 / 355_687_428_096_000.0,
+    -1.0 / 1_307_674_368_000.0,
+    1.0 / 6_227_020_800.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 362_880.0,
+    -1.0 / 5_040.0,
+    1.0 / 120.0,
+    -1.0 / 6.0,
+];
+/// ±1/(2k)! from k = 8 down to 1.
+const COS: [f64; 8] = [
+    1.0 / 20_922_789_888_000.0,
+    -1.0 / 87_178_291_200.0,
+    1.0 / 479_001_600.0,
+    -1.0 / 3_628_800.0,
+    1.0 / 40_320.0,
+    -1.0 / 720.0,
+    1.0 / 24.0,
+    -1.0 / 2.0,
+];
+
+impl Normals {
+    /// The numbers of what has this name, written in parts.
+    pub fn new(seed: u64, purpose: Purpose, name: &[&str]) -> Self {
+        let label = label(name);
+        let counter = [label as u32, (label >> 32) as u32, 0, purpose as u32];
+        let [first, second, ..] = philox(counter, [seed as u32, (seed >> 32) as u32]);
+        Self { key: [first, second] }
+    }
+
+    /// Of each lane, a cell and a pair, the numbers of the elements 2·pair and 2·pair + 1.
+    #[inline(always)]
+    pub fn pairs<const L: usize>(&self, counter: u64, cells: &[u32; L], pairs: &[u32; L]) -> [[f64; L]; 2] {
+        let counter = [[counter as u32; L], [(counter >> 32) as u32; L], *cells, *pairs];
+        let [a, b, c, d] = philox_lanes(counter, self.key);
+        let mut numbers = [[0.0; L]; 2];
+        for l in 0..L {
+            // The logarithm wants numbers above 0: (0, 1] for it, [0, 1) for the angle.
+            let (radius, angle) = (2.0 - one_to_two(a[l], b[l]), one_to_two(c[l], d[l]) - 1.0);
+            let radius = (-2.0 * ln(radius)).sqrt();
+            let [cos, sin] = turn(angle);
+            (numbers[0][l], numbers[1][l]) = (radius * cos, radius * sin);
+        }
+        numbers
+    }
+
+    /// The number of one element of a cell.
+    pub fn one(&self, counter: u64, cell: u32, element: u32) -> f64 {
+        self.pairs(counter, &[cell], &[element / 2])[element as usize % 2][0]
+    }
+}
+
+/// FNV-1a in 64 bits of the parts of a name. 0xff, which never occurs in UTF-8, parts them.
+fn label(name: &[&str]) -> u64 {
+    let bytes = name.iter().flat_map(|part| part.bytes().chain([0xff]));
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// A number uniform in [1, 2) with 52 bits.
+#[inline(always)]
+fn one_to_two(high: u32, low: u32) -> f64 {
+    f64::from_bits((u64::from(high) << 32 | u64::from(low)) >> 12 | 1.0_f64.to_bits())
+}
+
+/// The natural logarithm of a number in (0, 1] that is no smaller than 2^-52.
+#[inline(always)]
+fn ln(x: f64) -> f64 {
+    let bits = x.to_bits();
+    // The mantissa from √½ to √2, so that the series is short and nothing cancels near 1.
+    let exponent = (bits.wrapping_sub(LOW_MANTISSA) as i64) >> 52;
+    let mantissa = f64::from_bits(bits.wrapping_sub((exponent << 52) as u64));
+    let s = (mantissa - 1.0) / (mantissa + 1.0);
+    let square = s * s;
+    let mut series = LN[0];
+    for &coefficient in &LN[1..] {
+        series = series * square + coefficient;
+    }
+    f64::from(exponent as i32) * std::f64::consts::LN_2 + (2.0 * s + s * square * series)
+}
+
+/// Cosine and sine of a share, from 0 to 1, of a whole turn.
+#[inline(always)]
+fn turn(share: f64) -> [f64; 2] {
+    let shifted = 4.0 * share + ROUND;
+    let quarter = shifted.to_bits();
+    let r = (4.0 * share - (shifted - ROUND)) * QUARTER;
+    let square = r * r;
+    let (mut sin, mut cos) = (SIN[0], COS[0]);
+    for k in 1..SIN.len() {
+        (sin, cos) = (sin * square + SIN[k], cos * square + COS[k]);
+    }
+    let (sin, cos) = (r + r * square * sin, 1.0 + square * cos);
+    let (along, across) = if quarter & 1 == 0 { (cos, sin) } else { (sin, cos) };
+    let signed = |value: f64, sign: u64| f64::from_bits(value.to_bits() ^ (sign & 2) << 62);
+    [signed(along, quarter.wrapping_add(1)), signed(across, quarter)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn normals(seed: u64, id: &str) -> Normals {
+        Normals::new(seed, Purpose::Noise, &["system", id])
+    }
+
+    #[test]
+    fn logarithm_and_turns_are_those_of_the_standard_library() {
+        for k in 1..100_000 {
+            let x = f64::from(k) / 100_000.0;
+            let (found, exact) = (ln(x), x.ln());
+            assert!((found - exact).abs() <= 4.0 * f64::EPSILON * exact.abs(), "ln {x}: {found}, not {exact}");
+            let ([cos, sin], angle) = (turn(x), std::f64::consts::TAU * x);
+            // The angle itself is rounded.
+            let close = 4.0 * f64::EPSILON * (1.0 + angle);
+            assert!((cos - angle.cos()).abs() <= close && (sin - angle.sin()).abs() <= close, "a turn by {x}");
+        }
+        assert_eq!((ln(1.0), turn(0.0)), (0.0, [1.0, 0.0]));
+        assert!((ln(f64::EPSILON) / f64::EPSILON.ln() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_number_is_the_same_alone_and_side_by_side() {
+        let of = normals(7, "u");
+        let (cells, pairs) = ([3, 3, 9, 1, 0, 4, 4, 4], [0, 1, 2, 3, 4, 5, 6, 900]);
+        let many = of.pairs(41, &cells, &pairs);
+        for l in 0..8 {
+            for half in 0..2 {
+                let alone = of.one(41, cells[l], 2 * pairs[l] + half);
+                assert_eq!(alone.to_bits(), many[half as usize][l].to_bits());
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_differ_by_seed_name_counter_cell_and_element_and_repeat_otherwise() {
+        let base = normals(1, "u").one(5, 2, 3);
+        assert_eq!(base, normals(1, "u").one(5, 2, 3));
+        let others = [
+            normals(2, "u").one(5, 2, 3),
+            normals(1, "v").one(5, 2, 3),
+            Normals::new(1, Purpose::Noise, &["systemu"]).one(5, 2, 3),
+            Normals::new(1, Purpose::Motility, &["system", "u"]).one(5, 2, 3),
+            normals(1, "u").one(6, 2, 3),
+            normals(1, "u").one(5 + (1 << 32), 2, 3),
+            normals(1, "u").one(5, 1, 3),
+            normals(1, "u").one(5, 2, 2),
+            normals(1, "u").one(5, 2, 5),
+        ];
+        assert!(others.iter().all(|other| *other != base));
+    }
+
+    #[test]
+    fn moments_and_correlations_are_those_of_independent_normal_numbers() {
+        let (of, n) = (normals(3, "u"), 200_000_u32);
+        let numbers: Vec<f64> = (0..n).map(|k| of.one(u64::from(k / 1000), k % 1000 / 8, k % 8)).collect();
+        let mean = |power: i32| numbers.iter().map(|x| x.powi(power)).sum::<f64>() / f64::from(n);
+        // Standard errors of the moments are the roots of (2p)-th moments less squares, over n: 1, 2, 15, 96. Four of them.
+        for (power, expected, variance) in [(1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 15.0), (4, 3.0, 96.0)] {
+            let off = (mean(power) - expected) / f64::sqrt(variance / f64::from(n));
+            assert!(off.abs() < 4.0, "moment {power} is off by {off} standard errors");
+        }
+        // Neighbours: of a pair, of an atom, of a cell, of a counter.
+        for apart in [1, 2, 8, 1000] {
+            let products = numbers.windows(apart + 1).map(|window| window[0] * window[apart]);
+            let off = products.sum::<f64>() / f64::from(n).sqrt();
+            assert!(off.abs() < 4.0, "numbers {apart} apart are correlated by {off} standard errors");
+        }
+        // A part of 0.0455 lies beyond two.
+        let far = numbers.iter().filter(|x| x.abs() > 2.0).count() as f64 / f64::from(n);
+        assert!((far - 0.045_500_3).abs() < 4.0 * (0.0455 * 0.9545 / f64::from(n)).sqrt(), "{far}");
+    }
+}
