@@ -6,6 +6,7 @@ use super::buffers::PopulationScratch;
 use super::events::assigned_parameters;
 use super::population::{LANES, Population};
 use super::substeps::Kick;
+use super::{OdeTrouble, Reason};
 use crate::equations::eml::Document;
 use crate::equations::program::{Lanes, Program, run};
 use crate::random::{Normals, Purpose};
@@ -56,6 +57,9 @@ impl Population {
     /// Kicks all cells at a time of the system, eq. (noise.2); `ids` has one number a cell, which is never that of another. What a cell gets does
     /// not depend on the others. Nothing is allocated after the first time with the same scratch.
     ///
+    /// # Errors
+    /// A cell of which a number is none after the kick; the population then holds anything.
+    ///
     /// # Panics
     /// When the noise is that of a system with other variables or open quantities.
     pub fn kick(
@@ -65,7 +69,7 @@ impl Population {
         ids: impl Iterator<Item = u64>,
         (time, kick): (f64, Kick),
         scratch: &mut PopulationScratch,
-    ) {
+    ) -> Result<(), OdeTrouble> {
         let program = &noise.program;
         assert_eq!((self.variables, self.open), (program.size(), program.open.len()), "the population's own noise");
         let PopulationScratch { kicks: file, normals, .. } = scratch;
@@ -73,7 +77,17 @@ impl Population {
         normals.clear();
         let name = |variable: &usize| program.names[program.variables[*variable] as usize].as_str();
         normals.extend(noise.variables.iter().map(|variable| numbers.of(name(variable))));
-        Arch::new().dispatch(Blocks { population: self, noise, normals, ids, time, kick, file });
+        let broken = Arch::new().dispatch(Blocks { population: self, noise, normals, ids, time, kick, file });
+        broken.map_or(Ok(()), |(cell, variable)| {
+            Err(OdeTrouble {
+                system: program.name.clone(),
+                cell: Some(cell),
+                time,
+                variable: Some(name(&variable).to_owned()),
+                reason: Reason::NotFinite,
+                detail: "of its noise".to_owned(),
+            })
+        })
     }
 }
 
@@ -90,9 +104,11 @@ struct Blocks<'a, I> {
 }
 
 impl<I: Iterator<Item = u64>> WithSimd for Blocks<'_, I> {
-    type Output = ();
+    /// A cell that has no number after the kick, and the variable.
+    type Output = Option<(usize, usize)>;
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let mut broken = None;
         let Self { population, noise, normals, mut ids, time, kick, file } = self;
         let (n, m, root) = (population.variables, population.open, kick.span.sqrt());
         let code = &noise.program.further[0];
@@ -111,8 +127,12 @@ impl<I: Iterator<Item = u64>> WithSimd for Blocks<'_, I> {
                 let strength = &file[output as usize];
                 for l in 0..count {
                     states[variable][l] += strength[l] * root * numbers[l];
+                    if !states[variable][l].is_finite() && broken.is_none() {
+                        broken = Some((block * LANES + l, variable));
+                    }
                 }
             }
         }
+        broken
     }
 }

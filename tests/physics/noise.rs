@@ -146,7 +146,7 @@ fn noise_of_a_field_has_the_variance_of_white_noise_on_any_grid() {
 const CELL: &str = r#"<eml name="own" level="cell" time_unit="min"><input id="c" default="0"/>
     <variable id="u" initial="1" rate="c - u" noise="0.2*u"/><variable id="w" initial="0" rate="u - w" noise="0.1"/>
     <variable id="hits" initial="0" rate="0"/><event when="u gt 1.02"><set id="hits">hits + 1</set></event>
-    <solver noise_step="0.01"/><link from="field[c]" to="system.c"/></eml>"#;
+    <solver noise_step="0.002"/><link from="field[c]" to="system.c"/></eml>"#;
 const FIELD: &str = r#"<eml name="f"><grid dimension="2" spacing="4" origin="-64 -64" size="128 128"/><input id="sum" default="0"/>
     <field id="c" range="free" diffusion="30" decay="0.1" initial="2" noise="0.5 + 0.01*x"><reaction>0.1 - 0.02*c</reaction></field>
     <field id="n" range="free" initial="0" noise="0.1 + 0*sum"/><link from="scene.time" to="system.sum"/></eml>"#;
@@ -154,11 +154,11 @@ const SCENE: &str =
     r#"<eml name="all"><variable id="z" initial="0" rate="-z" noise="1"/><solver noise_step="0.3"/></eml>"#;
 const SKIN: &str = r#"<eml name="own" level="membrane"><variable id="a" initial="1 + 0.05*x" diffusion="0.5" rate="inside - a" noise="0.3*sqrt(max(a, 0))"/>
     <variable id="b" initial="0" rate="a - b"/><variable id="inside" level="cell" initial="1" rate="1 - inside" noise="0.1*m"/>
-    <mean id="m">a</mean><solver noise_step="0.4"/></eml>"#;
+    <mean id="m">a</mean><solver noise_step="0.05"/></eml>"#;
 
 #[test]
 fn threads_and_stops_change_no_bit_of_noise() {
-    for own in [CELL, SKIN] {
+    for (own, span) in [(CELL, 0.12), (SKIN, 0.05)] {
         let documents = [("own", own), ("f", FIELD), ("all", SCENE)];
         let once = crowd(1, &documents, 6, |_| ());
         assert_eq!(once.state(), crowd(3, &documents, 6, |_| ()).state(), "threads");
@@ -168,8 +168,9 @@ fn threads_and_stops_change_no_bit_of_noise() {
             scene.ws.poison(&model);
         });
         assert_eq!(once.state(), poisoned.state(), "scratch is scratch");
-        let kicks = &once.state().chemistry.kicks;
-        assert!(kicks.iter().all(|kicks| *kicks > 6), "noise has kicked on grids of its own: {kicks:?}");
+        let (kicks, time) = (&once.state().chemistry.kicks, once.state().time);
+        let expected = [span, 0.3].map(|span| (time / span).ceil() as u64);
+        assert_eq!(kicks[..], expected, "noise has kicked on grids of its own until {time}");
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) fn advance_population(
     let population = &mut chemistry.populations[number];
     for Substep { begin, end, length, kick } in substeps {
         if let (Some(kick), Some(noise)) = (kick, &reactor.noise) {
-            population.kick(noise, numbers, ids(kinds, &reactor.members), (begin, kick), scratch);
+            population.kick(noise, numbers, ids(kinds, &reactor.members), (begin, kick), scratch)?;
         }
         if length <= 0.0 {
             continue;
