@@ -27,6 +27,7 @@ mod test_recordings;
 #[cfg(test)]
 mod test_results;
 mod track_average;
+mod traction;
 mod value;
 mod velocity_correlation;
 mod wave_speed;
@@ -54,6 +55,7 @@ pub use segregation::{Segregation, SegregationStatistic};
 pub use sphere_fit::SphereFit;
 pub use statistic::Statistic;
 pub use track_average::TrackAverage;
+pub use traction::{Traction, TractionStatistic};
 pub use value::Value;
 pub use velocity_correlation::VelocityCorrelation;
 pub use wave_speed::{WaveSpeed, WaveStatistic};
@@ -151,6 +153,8 @@ pub enum MeasureKind {
     /// What the cells of the largest aggregate leave empty between them: the radius of the largest ball that fits there, µm, or the
     /// part of the inside that no cell fills.
     Gaps(Gaps),
+    /// How cells pull at the planes that they stand on: the sums of the forces ahead and behind, their dipole, or where they pull most.
+    Traction(Traction),
 }
 
 impl MeasureKind {
@@ -172,9 +176,8 @@ impl MeasureKind {
             Self::Distance(distance) => distance.series(),
             Self::Period(period) => period.series(),
             Self::WaveSpeed(wave) => wave.series(),
-            Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) | Self::Gaps(_) => {
-                Vec::new()
-            }
+            Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) => Vec::new(),
+            Self::Gaps(_) | Self::Traction(_) => Vec::new(),
         };
         names.into_iter().filter(|name| *name != "time").collect()
     }
@@ -200,6 +203,7 @@ impl MeasureKind {
             Self::Wavelength(pattern) => pattern.check(at),
             Self::Segregation(segregation) => segregation.check(at),
             Self::Gaps(gaps) => gaps.check(at),
+            Self::Traction(traction) => traction.check(at),
             Self::SphereShear(_) | Self::TableRms(_) | Self::TableRatio(_) | Self::RunLengthP(_) => {}
         }
     }
@@ -235,6 +239,7 @@ impl MeasureKind {
             Self::Wavelength(pattern) => pattern.evaluate(run),
             Self::Segregation(segregation) => segregation.evaluate(run),
             Self::Gaps(gaps) => gaps.evaluate(run),
+            Self::Traction(traction) => traction.evaluate(run),
         }
     }
 }
