@@ -35,6 +35,7 @@ fn frame(cells: usize) -> Frame {
         smallest_cosine: 0.8,
         contact_share: 0.3,
         aggregate: 0.0,
+        ..CellRecord::default()
     };
     Frame {
         positions: vectors(10.0).collect(),

@@ -73,6 +73,8 @@ pub enum AtomReading {
     InContact,
     /// 1 where the atom stands on a plane, and else 0.
     OnPlane,
+    /// Force of the atom on planes and other cells over the last step over its area, pN/µm².
+    Traction,
 }
 
 /// What chemistry can set of atoms.
@@ -111,7 +113,7 @@ pub enum Sense {
 }
 
 /// What can be read, as messages list it.
-pub const READABLE: [&str; 21] = [
+pub const READABLE: [&str; 22] = [
     "position.x",
     "atom[0].x",
     "velocity.x",
@@ -132,6 +134,7 @@ pub const READABLE: [&str; 21] = [
     "atoms.area_strain",
     "atoms.in_contact",
     "atoms.on_plane",
+    "atoms.traction",
     "atoms.field[NAME]",
 ];
 
@@ -176,6 +179,7 @@ pub fn atom_reading(path: &[Step]) -> Option<AtomReading> {
         [("area_strain", None)] => AtomReading::AreaStrain,
         [("in_contact", None)] => AtomReading::InContact,
         [("on_plane", None)] => AtomReading::OnPlane,
+        [("traction", None)] => AtomReading::Traction,
         _ => return None,
     })
 }

@@ -24,7 +24,7 @@ pub struct RenderArgs {
     /// Which frame.
     #[command(flatten)]
     pub frame: FrameArgs,
-    /// What colours show: type, a series of the cells such as volume, or height, displacement, curvature or force of the
+    /// What colours show: type, a series of the cells such as volume, or height, displacement, curvature, force or traction of the
     /// atoms.
     #[arg(long, value_name = "QUANTITY")]
     pub colour_by: Option<String>,

@@ -14,7 +14,7 @@ pub struct Picture {
     /// The instant that is shown.
     pub time: When,
     /// What the colours show: "type", a series of the cells such as "volume", or a quantity of the atoms: "height",
-    /// "displacement" (since the first frame), "curvature", "force" (needs `output.forces`), or what is on membranes,
+    /// "displacement" (since the first frame), "curvature", "force" (needs `output.forces`), "traction" (needs `output.tractions`), or what is on membranes,
     /// "SYSTEM.VARIABLE".
     pub colour_by: String,
     /// The ends of the scale of colours, in base units; chosen when absent.

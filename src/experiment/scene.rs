@@ -114,4 +114,6 @@ pub struct Output {
     pub checkpoint: Option<Time>,
     /// Records the force on every atom.
     pub forces: bool,
+    /// Records what cells do to what they stand on and to each other, and the drag of the medium, at every atom and of every cell.
+    pub tractions: bool,
 }

@@ -101,7 +101,8 @@ impl Check<'_> {
     }
 
     fn series(&mut self, path: &str, text: &str) {
-        let (pairs, of_cells) = (self.series_of_pairs(), cell_series().collect::<Vec<String>>());
+        let tractions = self.document.experiment.output.tractions;
+        let (pairs, of_cells) = (self.series_of_pairs(), cell_series(tractions).collect::<Vec<String>>());
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> =
             cells.flat_map(|cell| &cell.applied.loads).map(|load| format!("load.{}", load.name)).collect();
@@ -116,6 +117,10 @@ impl Check<'_> {
         };
         if known().any(|name| name == text) {
             return;
+        }
+        if cell_series(true).any(|name| name == text) {
+            let message = format!("`{path}`: there is no series \"{text}\" without tractions");
+            return self.fault(path, "not recorded", message, "add `tractions = true` to [output]");
         }
         let row: Option<&ContactQuantity> = CONTACTS.iter().find(|row| row.name == text);
         let lacks = row.and_then(|row| match row.recorded {

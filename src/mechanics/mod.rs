@@ -81,6 +81,15 @@ impl Force {
         }
     }
 
+    /// Whether something outside of the cell exerts it: what a cell does to itself has neither sum nor torque.
+    pub fn is_outer(&self) -> bool {
+        match self {
+            Self::Load(_) | Self::Gravity(_) | Self::Attraction(_) => true,
+            Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) | Self::Ordering(_) => false,
+            Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) | Self::Fibres(_) => false,
+        }
+    }
+
     /// Whether it is, at any instant, the gradient of the energy that it tells. Not so are the documents' shape memories and pulls
     /// that keep order.
     pub fn is_conservative(&self) -> bool {

@@ -16,6 +16,25 @@ pub fn measure_forces(forces: &[Force], context: &Context, lanes: usize, x: &[f6
             row.iter_mut().zip(&factors).for_each(|(slot, factor)| *slot *= factor);
         }
     }
+    measure_others(forces, context, lanes, x, f, energy, |_| true);
+}
+
+/// The same of forces from outside alone; their energy is added to `energy`.
+pub fn measure_outer(forces: &[Force], context: &Context, lanes: usize, x: &[f64], f: &mut [f64], energy: &mut [f64]) {
+    f.fill(0.0);
+    measure_others(forces, context, lanes, x, f, energy, Force::is_outer);
+}
+
+/// Adds the forces that are not elastic and that are wanted.
+fn measure_others(
+    forces: &[Force],
+    context: &Context,
+    lanes: usize,
+    x: &[f64],
+    f: &mut [f64],
+    energy: &mut [f64],
+    is_wanted: impl Fn(&Force) -> bool,
+) {
     // How many forces with each handle there were.
     let mut numbers = [0; CONTROLLED.len()];
     for force in forces.iter().filter(|force| !force.is_elastic()) {
@@ -23,6 +42,9 @@ pub fn measure_forces(forces: &[Force], context: &Context, lanes: usize, x: &[f6
             numbers[handle] += 1;
             context.control(handle, numbers[handle] - 1, CONTROLLED[handle].unset)
         });
+        if !is_wanted(force) {
+            continue;
+        }
         let strength = force.strength(context, &set.unwrap_or([1.0; LANES]));
         let (forces, strength) = (std::slice::from_ref(force), &strength[..lanes]);
         dispatch(lanes, Work { forces, elastic: false, strength, x, f, energy });

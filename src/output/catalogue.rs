@@ -9,7 +9,7 @@
 
 use super::population::{OfShared, Part, Population, Shared};
 use super::{Cell, Frame};
-use crate::recorded::{CELL, Values};
+use crate::recorded::{Values, cell_quantities};
 
 /// One motility run that ended: id of the cell, end (s), duration (s).
 pub type Run = (u64, f64, f64);
@@ -158,7 +158,7 @@ use Filled::{
     Population as PerPopulation, RowFloat, RowInteger, Shared as Block,
 };
 
-/// All datasets, in the order in which they are made, except those of [`cell_entries`], [`CONTACT`] and [`FORCE`].
+/// All datasets, in the order in which they are made, except those of [`cell_entries`], [`CONTACT`], [`FORCE`] and [`TRACTION`].
 #[rustfmt::skip]
 pub const CATALOGUE: &[Entry] = &[
     // The animated surface, in the layout that VTK calls VTKHDF PolyData 2.0.
@@ -258,9 +258,24 @@ pub const FORCE: &[Entry] = &[
     row("/VTKHDF/Steps/PointDataOffsets/force", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/force."),
 ];
 
-/// The datasets of the quantities of cells, as [`CELL`] lists them.
-pub fn cell_entries() -> impl Iterator<Item = Entry> {
-    CELL.iter().map(|quantity| {
+/// The datasets of what atoms do to what is around them, which exist in a run that records tractions.
+#[rustfmt::skip]
+pub const TRACTION: &[Entry] = &[
+    row("/VTKHDF/PointData/traction", "pN", "atom of all frames, 3", Atoms(|f| &f.tractions.traction), "Force of the atoms on planes, in the mean over the last step."),
+    row("/VTKHDF/PointData/traction_of_cells", "pN", "atom of all frames, 3", Atoms(|f| &f.tractions.of_cells), "Force of the atoms on other cells."),
+    row("/VTKHDF/PointData/drag", "pN", "atom of all frames, 3", Atoms(|f| &f.tractions.drag), "Drag of the medium on the atoms."),
+    row("/VTKHDF/PointData/outer_force", "pN", "atom of all frames, 3", Atoms(|f| &f.tractions.outer), "Loads, gravity, attraction and what drives a walk, on the atoms."),
+    row("/VTKHDF/PointData/inertia", "pN", "atom of all frames, 3", Atoms(|f| &f.tractions.inertia), "Mass times acceleration of the atoms; 0 in over-damped runs."),
+    row("/VTKHDF/Steps/PointDataOffsets/traction", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/traction."),
+    row("/VTKHDF/Steps/PointDataOffsets/traction_of_cells", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/traction_of_cells."),
+    row("/VTKHDF/Steps/PointDataOffsets/drag", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/drag."),
+    row("/VTKHDF/Steps/PointDataOffsets/outer_force", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/outer_force."),
+    row("/VTKHDF/Steps/PointDataOffsets/inertia", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/inertia."),
+];
+
+/// The datasets of the quantities of cells in a run that records tractions, or in one that does not.
+pub fn cell_entries(tractions: bool) -> impl Iterator<Item = Entry> {
+    cell_quantities(tractions).map(|quantity| {
         let shape = if matches!(quantity.values, Values::Vector(..)) { "cell, 3" } else { "cell" };
         row(quantity.dataset, quantity.unit, shape, Filled::Cell(quantity.values), quantity.description)
     })
@@ -271,7 +286,7 @@ pub fn cell_entries() -> impl Iterator<Item = Entry> {
 /// # Panics
 /// If the catalogue has no such row: a mistake in this module.
 pub fn entry(path: &str) -> &'static Entry {
-    let found = CATALOGUE.iter().chain(CONTACT).chain(FORCE).find(|entry| entry.path == path);
+    let found = CATALOGUE.iter().chain(CONTACT).chain(FORCE).chain(TRACTION).find(|entry| entry.path == path);
     found.unwrap_or_else(|| panic!("{path} is missing from the catalogue of the result file"))
 }
 
@@ -281,8 +296,8 @@ mod tests {
 
     #[test]
     fn every_path_is_listed_once_and_links_lead_somewhere() {
-        let cells: Vec<Entry> = cell_entries().collect();
-        let all: Vec<&Entry> = CATALOGUE.iter().chain(&cells).chain(CONTACT).chain(FORCE).collect();
+        let cells: Vec<Entry> = cell_entries(true).collect();
+        let all: Vec<&Entry> = CATALOGUE.iter().chain(&cells).chain(CONTACT).chain(FORCE).chain(TRACTION).collect();
         for (number, entry) in all.iter().enumerate() {
             assert!(!all[..number].iter().any(|other| other.path == entry.path), "{} is listed twice", entry.path);
             if let Link(target) = entry.filled {

@@ -6,7 +6,7 @@ use ndarray::Array2;
 
 use super::{Cell, Known, ResultFile, SystemScope};
 use crate::error::Result;
-use crate::recorded::{CELL, SPEED};
+use crate::recorded::{SPEED, cell_quantities};
 
 impl ResultFile {
     /// All cells that were ever recorded, by ascending id: the columns of [`cell_series`](Self::cell_series).
@@ -96,6 +96,7 @@ impl ResultFile {
         {
             return Some((system.path(quantity), None));
         }
-        CELL.iter().find_map(|quantity| Some((quantity.dataset.to_owned(), quantity.component(name)?.0)))
+        let all = cell_quantities(self.layout().tractions);
+        all.into_iter().find_map(|quantity| Some((quantity.dataset.to_owned(), quantity.component(name)?.0)))
     }
 }

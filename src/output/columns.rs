@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use hdf5::File;
 
-use super::catalogue::{CATALOGUE, CONTACT, Entry, FORCE, Filled, Instant, List, cell_entries};
+use super::catalogue::{CATALOGUE, CONTACT, Entry, FORCE, Filled, Instant, List, TRACTION, cell_entries};
 use super::cell_column::{CellColumn, CellSource};
 use super::column::{Column, Number, Numbers, PackedColumn, Plan, SMALL_ROWS, push_frames};
 use super::container::set_number;
@@ -15,7 +15,7 @@ use super::pieces::{Pieces, has_frames};
 use super::population::{Population, Shared};
 use super::systems::{SystemScope, create_groups};
 use super::whole::Ends;
-use super::{Frame, Layout};
+use super::{Frame, Layout, Tractions};
 
 /// Frames and pieces of frames after which HDF5 is made to forget where the pieces lie, a few MB.
 const REMEMBERED: usize = 10_000;
@@ -117,10 +117,11 @@ impl Columns {
 
     fn start(&mut self, file: &File, start: Start) -> hdf5::Result<()> {
         let contacts = if self.layout.contacts { CONTACT } else { &[] };
-        for entry in CATALOGUE.iter().chain(contacts) {
+        let tractions = if self.layout.tractions { TRACTION } else { &[] };
+        for entry in CATALOGUE.iter().chain(contacts).chain(tractions) {
             self.add(file, entry, start)?;
         }
-        cell_entries().try_for_each(|entry| self.add(file, &entry, start))?;
+        cell_entries(self.layout.tractions).try_for_each(|entry| self.add(file, &entry, start))?;
         for (order, (name, unit)) in (0_i64..).zip(&self.layout.scene_series) {
             let path = format!("/scene/{name}");
             let description = "A series of the scene as a whole.";
@@ -364,6 +365,10 @@ impl Columns {
         let expected = (atoms, if self.forces { atoms } else { 0 }, cells, self.layout.scene_series.len());
         let found = (frame.positions.len(), frame.forces.len(), frame.records.len(), frame.scene.len());
         assert_eq!(found, expected, "positions, forces, cells and scene values of a frame must fit the layout");
+        let Tractions { traction, of_cells, drag, outer, inertia } = &frame.tractions;
+        let kept = if self.layout.tractions { atoms } else { 0 };
+        let fits = [traction, of_cells, drag, outer, inertia].iter().all(|list| list.len() == kept);
+        assert!(fits, "tractions of a frame must fit the layout");
         let sizes = frame.membranes.iter().map(Vec::len);
         assert!(
             sizes.eq(self.layout.membranes.iter().map(|_| atoms)),

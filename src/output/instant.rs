@@ -2,7 +2,7 @@
 
 use super::contacts::{series_of_frame, values_of_frame};
 use super::{Frame, Layout, SystemScope};
-use crate::recorded::{CELL, SPEED, Values, cell_series, cell_unit};
+use crate::recorded::{SPEED, Values, cell_quantities, cell_series, cell_unit};
 
 /// What prefix quantities of chemistry may have.
 const CHEMISTRY: &str = "chemistry.";
@@ -34,7 +34,7 @@ impl Layout {
         let mut all = vec![info("time", "s", SeriesScope::Scene)];
         all.extend(self.scene_series.iter().map(|(name, unit)| info(name, unit, SeriesScope::Scene)));
         all.extend(series_of_frame(self).iter().map(|(name, unit)| info(name, unit, SeriesScope::Scene)));
-        for name in cell_series() {
+        for name in cell_series(self.tractions) {
             all.push(info(&name, cell_unit(&name).unwrap_or("1"), SeriesScope::Cells));
         }
         for system in &self.systems {
@@ -61,7 +61,7 @@ impl Frame {
             }
         };
         let found = of_scene().or_else(|| self.of_contacts(layout, name)).map(|value| vec![value]);
-        found.or_else(|| self.of_cells(name)).or_else(|| self.of_systems(layout, name))
+        found.or_else(|| self.of_cells(layout, name)).or_else(|| self.of_systems(layout, name))
     }
 
     fn of_contacts(&self, layout: &Layout, name: &str) -> Option<f64> {
@@ -70,13 +70,13 @@ impl Frame {
         values_of_frame(layout, &self.cells, surface, &self.pairs, &self.on_planes).get(number).copied()
     }
 
-    fn of_cells(&self, name: &str) -> Option<Vec<f64>> {
+    fn of_cells(&self, layout: &Layout, name: &str) -> Option<Vec<f64>> {
         if name == SPEED {
             let speed = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
             return Some(self.records.iter().map(|cell| speed(cell.velocity)).collect());
         }
-        let (values, (component, _)) =
-            CELL.iter().find_map(|quantity| Some((quantity.values, quantity.component(name)?)))?;
+        let (values, (component, _)) = cell_quantities(layout.tractions)
+            .find_map(|quantity| Some((quantity.values, quantity.component(name)?)))?;
         Some(match (values, component) {
             (Values::Number(value, _), _) => self.records.iter().map(value).collect(),
             (Values::Vector(value, _), axis) => {

@@ -3,7 +3,7 @@
 use hdf5::types::{FixedAscii, VarLenUnicode};
 use hdf5::{File, Group};
 
-use super::catalogue::{CATALOGUE, Entry, Filled, entry};
+use super::catalogue::{CATALOGUE, Entry, Filled, TRACTION, entry};
 use super::column::{Number, Plan, write_integers, write_vectors};
 use super::container::{self, FORMAT, FORMAT_ATTRIBUTE, read_texts, set_number, set_text, text, write_texts};
 use super::header::Header;
@@ -128,6 +128,7 @@ pub(super) fn read_layout(file: &File) -> hdf5::Result<Layout> {
         systems: super::systems::read_layouts(file)?,
         membranes: super::membranes::read_layouts(file)?,
         contacts: file.link_exists("contacts"),
+        tractions: file.dataset(TRACTION[0].path).is_ok(),
     })
 }
 

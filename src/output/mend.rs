@@ -12,7 +12,7 @@ use hdf5::{Dataset, File};
 use hdf5_sys::h5d::H5Dget_chunk_info_by_coord;
 
 use super::Layout;
-use super::catalogue::{CATALOGUE, CONTACT, FORCE, Filled};
+use super::catalogue::{CATALOGUE, CONTACT, FORCE, Filled, TRACTION};
 use super::column::write_piece_at;
 use super::columns::Columns;
 use super::container::{self, Access, damaged, failed, machine_error, set_number};
@@ -95,7 +95,7 @@ fn is_second_name(path: &str) -> bool {
     if super::membranes::is_offsets(path) {
         return true;
     }
-    let mut entries = CATALOGUE.iter().chain(CONTACT).chain(FORCE);
+    let mut entries = CATALOGUE.iter().chain(CONTACT).chain(FORCE).chain(TRACTION);
     entries.any(|entry| entry.path == path && matches!(entry.filled, Filled::Link(_)))
 }
 

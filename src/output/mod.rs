@@ -74,6 +74,23 @@ pub struct Layout {
     pub membranes: Vec<MembraneLayout>,
     /// Whether the cells can touch, so that who touches whom is recorded.
     pub contacts: bool,
+    /// Whether what cells do to what is around them is recorded.
+    pub tractions: bool,
+}
+
+/// Forces between atoms and what is around them, in the mean over the last step, pN, atom after atom.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tractions {
+    /// On planes.
+    pub traction: Vec<[f64; 3]>,
+    /// On other cells.
+    pub of_cells: Vec<[f64; 3]>,
+    /// Drag of the medium, on the atom.
+    pub drag: Vec<[f64; 3]>,
+    /// Loads, gravity, attraction and what drives a walk, on the atom.
+    pub outer: Vec<[f64; 3]>,
+    /// Mass times acceleration; 0 in over-damped runs.
+    pub inertia: Vec<[f64; 3]>,
 }
 
 /// A pseudopod whose protrusion ended.
@@ -108,6 +125,8 @@ pub struct Frame {
     pub membranes: Vec<Vec<f64>>,
     /// Elastic and applied force on every atom, pN.
     pub forces: Vec<[f64; 3]>,
+    /// What atoms do to what is around them; empty in a run that does not record it.
+    pub tractions: Tractions,
     /// What is recorded of each cell.
     pub records: Vec<CellRecord>,
     /// One value per [`Layout::scene_series`].

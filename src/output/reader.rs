@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use hdf5::{Dataset, File};
 
-use super::catalogue::{FORCE, List, Run};
+use super::catalogue::{FORCE, List, Run, TRACTION};
 use super::census::Census;
 use super::contacts;
 use super::container::{self, Access, damaged, text};
@@ -14,9 +14,9 @@ use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
 use super::systems::SystemScope;
 use super::whole::whole_frames;
-use super::{Layout, PseudopodEvent};
+use super::{Layout, PseudopodEvent, Tractions};
 use crate::error::{Error, Fault, Result};
-use crate::recorded::{CONTACTS, cell_label, cell_series, cell_unit};
+use crate::recorded::{CONTACTS, SPEED, cell_label, cell_series, cell_unit};
 
 /// A result file opened for reading. Arrays are read when they are asked for.
 pub struct ResultFile {
@@ -142,6 +142,22 @@ impl ResultFile {
         self.atom_vectors(path, frame).map(Some)
     }
 
+    /// What all atoms did to what is around them, in the mean over the step that led to a frame; `None` if the run did not record it.
+    ///
+    /// # Errors
+    /// A damaged file.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    pub fn tractions(&self, frame: usize) -> Result<Option<Tractions>> {
+        if !self.layout.tractions {
+            return Ok(None);
+        }
+        let of = |number: usize| self.atom_vectors(TRACTION[number].path, frame);
+        let (traction, of_cells, drag) = (of(0)?, of(1)?, of(2)?);
+        Ok(Some(Tractions { traction, of_cells, drag, outer: of(3)?, inertia: of(4)? }))
+    }
+
     /// Density of a substance on membranes, `SYSTEM.VARIABLE`, at all atoms in a frame: NaN on cells without the system; `None` if the
     /// run recorded no such substance.
     ///
@@ -175,7 +191,7 @@ impl ResultFile {
 
     /// Names that [`cell_series`](Self::cell_series) knows, those of systems included.
     pub fn series_names(&self) -> Vec<String> {
-        let mut names: Vec<String> = cell_series().collect();
+        let mut names: Vec<String> = cell_series(self.layout.tractions).collect();
         names.extend(self.cell_quantities());
         names
     }
@@ -225,7 +241,8 @@ impl ResultFile {
         if name == "time" {
             return Ok(super::catalogue::entry("/time").unit.to_string());
         }
-        cell_unit(name).map(str::to_owned).ok_or_else(|| self.unknown(name))
+        let known = self.series_names().iter().any(|known| known == name) || name == SPEED;
+        cell_unit(name).filter(|_| known).map(str::to_owned).ok_or_else(|| self.unknown(name))
     }
 
     /// What a chart calls a series, without its unit.

@@ -3,7 +3,7 @@
 use hdf5::{Dataset, File};
 use ndarray::s;
 
-use super::catalogue::{CATALOGUE, CONTACT, FORCE, Filled, List, cell_entries};
+use super::catalogue::{CATALOGUE, CONTACT, FORCE, Filled, List, TRACTION, cell_entries};
 use super::mark::FlushMark;
 use super::pieces::has_frames;
 use super::population::{OfShared, Part, Population, Shared};
@@ -182,7 +182,7 @@ impl Datasets {
     fn of(file: &File, layout: &Layout, fields: Vec<Dataset>) -> hdf5::Result<Self> {
         let (atoms, cells, scene_systems) = (Vec::new(), Vec::new(), Vec::new());
         let mut found = Self { atoms, cells, blocks: Vec::new(), populations: Vec::new(), fields, scene_systems };
-        let of_cells = cell_entries().map(|entry| (entry.path, entry.filled));
+        let of_cells = cell_entries(layout.tractions).map(|entry| (entry.path, entry.filled));
         let all = CATALOGUE.iter().chain(FORCE).map(|entry| (entry.path, &entry.filled));
         for (path, filled) in all {
             let dataset = || file.dataset(path);
@@ -194,6 +194,9 @@ impl Datasets {
                 Filled::Population(_) => found.populations.push(dataset()?),
                 _ => {}
             }
+        }
+        for entry in TRACTION.iter().filter(|entry| layout.tractions && matches!(entry.filled, Filled::Atoms(_))) {
+            found.atoms.push(file.dataset(entry.path)?);
         }
         for (path, _) in of_cells {
             found.cells.push(file.dataset(path)?);

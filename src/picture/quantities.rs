@@ -12,6 +12,8 @@ use std::ops::Range;
 pub enum AtomQuantity {
     /// Length of the force on the atom, pN; there where the experiment says `output.forces = true`.
     Force,
+    /// Length of the force of the atom on planes, pN; there where the experiment says `output.tractions = true`.
+    Traction,
     /// z of the atom, µm.
     Height,
     /// Distance from where the atom was in the first frame with its cell, µm.
@@ -21,8 +23,9 @@ pub enum AtomQuantity {
 }
 
 /// Their names in documents and on the command line, and the labels of their colour bars.
-const NAMES: [(&str, AtomQuantity, &str); 4] = [
+const NAMES: [(&str, AtomQuantity, &str); 5] = [
     ("force", AtomQuantity::Force, "force on the atoms (pN)"),
+    ("traction", AtomQuantity::Traction, "traction of the atoms (pN)"),
     ("height", AtomQuantity::Height, "height (µm)"),
     ("displacement", AtomQuantity::Displacement, "displacement (µm)"),
     ("curvature", AtomQuantity::Curvature, "mean curvature (1/µm)"),
@@ -49,7 +52,11 @@ impl AtomQuantity {
     /// # Errors
     /// A damaged file.
     pub fn is_in(self, result: &ResultFile) -> Result<bool> {
-        Ok(self != Self::Force || (result.frames() > 0 && result.forces(0)?.is_some()))
+        Ok(match self {
+            Self::Force => result.frames() > 0 && result.forces(0)?.is_some(),
+            Self::Traction => result.frames() > 0 && result.tractions(0)?.is_some(),
+            Self::Height | Self::Displacement | Self::Curvature => true,
+        })
     }
 
     /// Its value for every atom of a frame; NaN where there is none.
@@ -60,6 +67,10 @@ impl AtomQuantity {
         Ok(match self {
             Self::Force => match result.forces(frame)? {
                 Some(forces) => forces.into_iter().map(|force| Vec3::from(force).norm()).collect(),
+                None => vec![f64::NAN; positions.len()],
+            },
+            Self::Traction => match result.tractions(frame)? {
+                Some(all) => all.traction.into_iter().map(|force| Vec3::from(force).norm()).collect(),
                 None => vec![f64::NAN; positions.len()],
             },
             Self::Height => positions.iter().map(|position| position[2]).collect(),

@@ -1,5 +1,7 @@
 //! Quantities of cells: what is recorded of each at each instant.
 
+use super::balance::TractionRecord;
+
 /// What is recorded of one cell at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CellRecord {
@@ -27,6 +29,8 @@ pub struct CellRecord {
     pub contact_share: f64,
     /// Id of the aggregate: of the cell in it with the smallest; the cell's own where it touches no other.
     pub aggregate: f64,
+    /// Forces between it and what is around it; nothing in runs that do not record them.
+    pub traction: TractionRecord,
 }
 
 /// A row of [`CELL`].
@@ -51,10 +55,12 @@ pub enum Values {
     Vector(fn(&CellRecord) -> [f64; 3], [(&'static str, &'static str); 3]),
 }
 
-/// The length of the velocity, a series that is not stored.
-pub const SPEED: &str = "speed";
-
-const fn row(dataset: &'static str, unit: &'static str, values: Values, description: &'static str) -> CellQuantity {
+pub(super) const fn row(
+    dataset: &'static str,
+    unit: &'static str,
+    values: Values,
+    description: &'static str,
+) -> CellQuantity {
     CellQuantity { dataset, unit, description, values }
 }
 
@@ -105,44 +111,5 @@ impl CellQuantity {
                 Some((Some(index), components[index].1))
             }
         }
-    }
-}
-
-/// Names of the series of cells, vectors by their components (`position_x`), in the order of [`CELL`], and [`SPEED`].
-pub fn cell_series() -> impl Iterator<Item = String> {
-    let names = CELL.iter().flat_map(|quantity| match &quantity.values {
-        Number(..) => vec![quantity.name().to_owned()],
-        Vector(_, components) => components.iter().map(|(end, _)| format!("{}_{end}", quantity.name())).collect(),
-    });
-    names.chain([SPEED.to_owned()])
-}
-
-/// The unit of a series of cells.
-pub fn cell_unit(series: &str) -> Option<&'static str> {
-    let stored = if series == SPEED { "velocity_x" } else { series };
-    CELL.iter().find(|quantity| quantity.component(stored).is_some()).map(|quantity| quantity.unit)
-}
-
-/// What a chart calls a series of cells.
-pub fn cell_label(series: &str) -> Option<&'static str> {
-    let found = CELL.iter().find_map(|quantity| quantity.component(series)).map(|(_, label)| label);
-    found.or_else(|| (series == SPEED).then_some(SPEED))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn vector_series_are_named_by_component_and_every_series_has_unit_and_label() {
-        let names: Vec<String> = cell_series().collect();
-        for name in ["position_x", "size_z", "principal_1", "velocity_y", "volume", "speed"] {
-            assert!(names.iter().any(|known| known == name), "{name} is missing from {names:?}");
-        }
-        for (number, name) in names.iter().enumerate() {
-            assert!(cell_unit(name).is_some() && cell_label(name).is_some(), "{name}");
-            assert!(!names[..number].contains(name), "{name} is there twice");
-        }
-        assert_eq!((cell_unit("speed"), cell_unit("position"), cell_label("size_w")), (Some("um/s"), None, None));
     }
 }

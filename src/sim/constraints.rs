@@ -87,6 +87,11 @@ fn project_block(
         for (row, value) in x.chunks_exact_mut(lanes).zip(&alone) {
             row[lane] = *value;
         }
+        if model.keeps_tractions {
+            let ProjectScratch { pushed, pushed_alone, .. } = scratch;
+            pushed.resize(x.len(), 0.0);
+            pushed.chunks_exact_mut(lanes).zip(&*pushed_alone).for_each(|(row, value)| row[lane] += value);
+        }
     }
     scratch.alone = alone;
 }

@@ -14,7 +14,7 @@ use super::workspace::{KindScratch, Workspace};
 use crate::Vec3;
 use crate::mechanics::control::Context;
 use crate::mechanics::lanes::LANES;
-use crate::mechanics::sum::{measure_elastic, measure_forces};
+use crate::mechanics::sum::{measure_elastic, measure_forces, measure_outer};
 use crate::mechanics::volume;
 
 /// All forces on the cells of a kind, drag not included. Motility enters as the drag that its velocity
@@ -76,22 +76,54 @@ impl Forces<'_> {
     }
 }
 
+impl Forces<'_> {
+    /// Adds a share of the forces from outside on the atoms of a block at `x` and a time, pN, to `outer`. `spare` is scratch of the size of
+    /// `x`.
+    pub fn add_outer(&self, block: usize, (time, share): (f64, f64), x: &[f64], outer: &mut [f64], spare: &mut [f64]) {
+        let &Self { kind, cells, controls, acting: Acting { drive, .. } } = self;
+        let numbers = cells.numbers_of_block(kind, block);
+        let context = context(kind, controls, numbers.clone(), time);
+        measure_outer(&kind.forces, &context, kind.lanes, x, spare, &mut [0.0; LANES][..kind.lanes]);
+        if cells.is_driven(kind) {
+            add_drive(kind, &drive[numbers], spare);
+        }
+        outer.iter_mut().zip(spare).for_each(|(outer, force)| *outer += share * *force);
+    }
+}
+
 /// Sets `force` of every kind to the sum of all forces at time `time` (pN), and `energy` to the energy of every cell. What contacts
 /// carry must have been found.
 pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
     ws.suit(model, state);
-    sum_forces(model, time, &state.chemistry.controls, &state.kinds, ws);
+    sum_forces(model, (time, 0.0), &state.chemistry.controls, &state.kinds, ws);
 }
 
-/// As [`add_forces`], for cells that stand elsewhere than where what chemistry sets was set.
-pub fn sum_forces(model: &Model, time: f64, controls: &Controls, cells: &[KindState], ws: &mut Workspace) {
-    pull_contacts(model, controls, cells, &mut ws.contact);
+/// As [`add_forces`], for cells that stand elsewhere than where what chemistry sets was set. Where tractions are kept the forces count
+/// `share` of the step.
+pub fn sum_forces(
+    model: &Model,
+    (time, share): (f64, f64),
+    controls: &Controls,
+    cells: &[KindState],
+    ws: &mut Workspace,
+) {
+    pull_contacts(model, controls, cells, &mut ws.contact, share);
     for (w, now) in ws.kinds.iter_mut().zip(cells) {
         w.force.resize(now.positions.len(), 0.0);
     }
     let Workspace { kinds, buffers, drive, pushes, contact, .. } = ws;
     let acting = Acting { drive, pushes, contact: &contact.forces };
     for_each_kind(model, time, (controls, acting), cells, kinds, buffers, |w| (&mut w.force, &mut w.energy));
+    if share == 0.0 || !model.keeps_tractions {
+        return;
+    }
+    for ((kind, now), w) in model.kinds.iter().zip(cells).zip(kinds) {
+        let (forces, length) = (Forces { kind, cells: now, controls, acting }, kind.block_len());
+        let blocks = now.positions.par_chunks_exact(length).zip(w.outer.par_chunks_exact_mut(length)).enumerate();
+        blocks.for_each(|(block, (x, outer))| {
+            buffers.enter(length, |[spare, ..]| forces.add_outer(block, (time, share), x, outer, spare));
+        });
+    }
 }
 
 /// Sets `energy` of every kind to the energy of every cell, pN·µm; contacts have none.

@@ -57,15 +57,23 @@ pub fn advance_implicitly(
     ws: &mut Workspace,
 ) -> f64 {
     let controls = &from.chemistry.controls;
-    pull_contacts(model, controls, &from.kinds, &mut ws.contact);
+    pull_contacts(model, controls, &from.kinds, &mut ws.contact, share_of_stage(order));
     match order {
         Order::First => advance_stages(model, dt, order, &[Stage::First], from, to, ws),
         Order::Second if has_live_forces(model) => {
             advance_stages(model, dt, order, &[Stage::First], from, to, ws);
-            pull_contacts(model, controls, &to.kinds, &mut ws.contact);
+            pull_contacts(model, controls, &to.kinds, &mut ws.contact, share_of_stage(order));
             advance_stages(model, dt, order, &[Stage::Second], from, to, ws)
         }
         Order::Second => advance_stages(model, dt, order, &[Stage::First, Stage::Second], from, to, ws),
+    }
+}
+
+/// What forces of a stage count of what moves a cell as a whole: (step.3) moves it by the mean of both.
+pub(super) fn share_of_stage(order: Order) -> f64 {
+    match order {
+        Order::First => 1.0,
+        Order::Second => 0.5,
     }
 }
 
@@ -97,7 +105,7 @@ fn advance_stages(
         let of_block = kind.tangent.as_ref().map_or(0, |tangent| tangent.len(lanes));
         let are_kept = model.contact.is_some() && solver.own.is_empty();
         w.own_factors.resize(if are_kept { of_block * blocks } else { 0 }, 0.0);
-        let KindScratch { increments, energy, volume, target, pressure, touch, own_factors, .. } = w;
+        let KindScratch { increments, energy, volume, target, pressure, touch, own_factors, outer, .. } = w;
         let error = (next.positions.par_chunks_exact_mut(length))
             .zip(now.rest_volumes.par_chunks_exact(lanes).zip(now.positions.par_chunks_exact(length)))
             .zip(volume.par_chunks_exact_mut(lanes).zip(target.par_chunks_exact_mut(lanes)))
@@ -105,11 +113,13 @@ fn advance_stages(
             .zip(
                 each_or_none(increments, length, blocks)
                     .zip(each_or_none(own_factors, of_block.max(1), blocks))
+                    .zip(each_or_none(outer, length, blocks))
                     .zip(touch),
             )
             .enumerate()
-            .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), ((kept, own), touch)))| {
-                let mut block = Block { number, x, rest, start, volume, target, energy, pressure, touch };
+            .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), kept))| {
+                let (((kept, own), outer), touch) = kept;
+                let mut block = Block { number, x, rest, start, volume, target, energy, pressure, outer, touch };
                 buffers.enter_with_factor(length, |buffer, spare| {
                     let (factor, has_factor) = match own {
                         Some(own) => (own, stages[0] == Stage::Second),
@@ -151,6 +161,8 @@ struct Block<'a> {
     target: &'a mut [f64],
     energy: &'a mut [f64],
     pressure: &'a mut [f64],
+    /// Where forces from outside are added up, if somebody asks.
+    outer: Option<&'a mut [f64]>,
     touch: &'a mut TouchScratch,
 }
 
@@ -201,6 +213,9 @@ impl Step<'_> {
             }
             let (time, x) = if stage == Stage::First { (self.start, block.start) } else { (end, &*block.x) };
             self.forces.on_block(block.number, time, (x, block.rest), (&mut *y, &mut *block.energy), spare);
+            if let Some(outer) = &mut block.outer {
+                self.forces.add_outer(block.number, (time, share_of_stage(self.order)), x, outer, spare);
+            }
             if stage == Stage::Second {
                 carry_pressure(kind, block.x, block.pressure, y, spare);
             }
@@ -243,7 +258,7 @@ impl Step<'_> {
         }
         let gamma = gamma(kind, order);
         constrain(kind, gamma, gradient, swell, &wanted[..kind.lanes], target, y, pressure);
-        let scene = planes::Scene { model, kind, system: *system, stage, gamma };
+        let scene = planes::Scene { model, kind, system: *system, stage, gamma, share: share_of_stage(order) };
         planes::correct_block(&scene, start, first, gradient, swell, target, y, pressure, touch);
     }
 }

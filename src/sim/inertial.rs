@@ -31,7 +31,11 @@ fn keep_free_positions(to: &State, ws: &mut Workspace) {
 /// Moves atoms that stand where the step begins.
 fn move_atoms(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut Workspace) {
     let (start, controls) = (from.time, &from.chemistry.controls);
-    sum_forces(model, start, controls, &to.kinds, ws);
+    let share = if model.integrator.method == Method::Verlet { 0.5 } else { 1.0 };
+    match model.integrator.method {
+        Method::RungeKutta4 => return runge_kutta(model, dt, from, to, ws),
+        _ => sum_forces(model, (start, share), controls, &to.kinds, ws),
+    }
     match model.integrator.method {
         Method::Explicit => each(model, to, ws, |kind, x, _, f| {
             let mobility = dt / kind.drag;
@@ -57,14 +61,13 @@ fn move_atoms(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut Wor
                     *x += dt * *v;
                 }
             });
-            sum_forces(model, start + dt, controls, &to.kinds, ws);
+            sum_forces(model, (start + dt, share), controls, &to.kinds, ws);
             each(model, to, ws, |kind, _, v, f| {
                 let (kick, keep) = (0.5 * dt / kind.mass, 1.0 - 0.5 * dt * kind.drag / kind.mass);
                 v.iter_mut().zip(f).for_each(|(v, f)| *v = *v * keep + kick * f);
             });
         }
-        Method::RungeKutta4 => runge_kutta(model, dt, from, to, ws),
-        Method::Implicit { .. } => unreachable!("the implicit scheme has its own stages"),
+        Method::RungeKutta4 | Method::Implicit { .. } => unreachable!("these schemes have their own stages"),
     }
 }
 
@@ -86,10 +89,8 @@ fn runge_kutta(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut Wo
     // (weight of the stage in the sum, time and step from the start at which the next stage is taken)
     let stages = [(1.0, Some(0.5)), (2.0, Some(0.5)), (2.0, Some(1.0)), (1.0, None)];
     for (number, (weight, next)) in stages.into_iter().enumerate() {
-        if number > 0 {
-            let at = stages[number - 1].1.unwrap_or(1.0);
-            sum_forces(model, start + at * dt, controls, &to.kinds, ws);
-        }
+        let at = if number == 0 { 0.0 } else { stages[number - 1].1.unwrap_or(1.0) };
+        sum_forces(model, (start + at * dt, weight / 6.0), controls, &to.kinds, ws);
         let cells = from.kinds.iter().zip(&mut to.kinds);
         for ((kind, (begun, now)), w) in model.kinds.iter().zip(cells).zip(&mut ws.kinds) {
             if kind.is_held() {

@@ -1,6 +1,7 @@
 //! The simulator: model, state, workspace and the step. It knows no files, formats or clocks.
 
 mod atom_controls;
+pub mod balance;
 pub mod chemistry;
 pub mod constraints;
 pub mod contact;
@@ -32,10 +33,12 @@ pub mod state;
 mod step;
 mod targets;
 mod thread_buffers;
+mod traction;
 pub mod trouble;
 mod velocity;
 pub mod workspace;
 
+pub use balance::AtomBalance;
 pub use chemistry::Chemistry;
 pub use kind::{Kind, VolumeRule, kinks};
 pub use model::{Change, Model, PopulationChange, Removal};

@@ -28,6 +28,8 @@ pub struct Model {
     pub kinks: Vec<f64>,
     /// Cells that come and go at given times, in rising order of these; a step ends there.
     pub changes: Vec<PopulationChange>,
+    /// Whether the state holds what cells did to what is around them in the last step.
+    pub keeps_tractions: bool,
 }
 
 /// Cells of a kind that come or go between two steps.
@@ -76,6 +78,7 @@ impl Model {
             integrator,
             until,
             changes: Vec::new(),
+            keeps_tractions: false,
         }
     }
 

@@ -24,6 +24,8 @@ pub struct Scene<'a> {
     pub stage: Stage,
     /// γ of the scheme.
     pub gamma: f64,
+    /// What forces of the stage count of what moves a cell as a whole.
+    pub share: f64,
 }
 
 /// An atom closer to a plane than this part of an edge touches it: far below any deformation, far above round-off.
@@ -35,6 +37,9 @@ const ROUNDS: usize = 12;
 /// Scratch of a block: empty until a cell of the block touches a plane, then kept.
 #[derive(Debug, Clone, Default)]
 pub struct TouchScratch {
+    /// Forces of planes on atoms in the mean over the attempt, pN, of the shape of the positions of the block; empty where nobody asks or
+    /// nothing touches.
+    pub reactions: Vec<f64>,
     /// Pairs (atom, plane) that press now.
     active: Vec<Pair>,
     /// Pairs that a look at the gaps found.
@@ -73,6 +78,8 @@ struct CellArrays {
     swell: Vec<f64>,
     free: Vec<f64>,
     moved: Vec<f64>,
+    /// Forces of planes, pN.
+    pressed: Vec<f64>,
     spare: Vec<f64>,
     spare2: Vec<f64>,
 }
@@ -87,7 +94,16 @@ impl TouchScratch {
         for array in [&mut self.columns, &mut self.pressures, &mut self.system, &mut c.x, &mut c.first] {
             array.fill(f64::NAN);
         }
-        for array in [&mut c.gradient, &mut c.swell, &mut c.free, &mut c.moved, &mut c.spare, &mut c.spare2] {
+        for array in [
+            &mut self.reactions,
+            &mut c.pressed,
+            &mut c.gradient,
+            &mut c.swell,
+            &mut c.free,
+            &mut c.moved,
+            &mut c.spare,
+            &mut c.spare2,
+        ] {
             array.fill(f64::NAN);
         }
         let copies = &mut self.copies;
@@ -127,6 +143,12 @@ pub fn correct_block(
         pressure[lane] += correct_cell(&of_cell, target[lane], scratch);
         for (row, value) in y.chunks_exact_mut(lanes).zip(&scratch.cell.moved) {
             row[lane] = *value;
+        }
+        if scene.model.keeps_tractions {
+            scratch.reactions.resize(y.len(), 0.0);
+            for (row, force) in scratch.reactions.chunks_exact_mut(lanes).zip(&scratch.cell.pressed) {
+                row[lane] += scene.share * force;
+            }
         }
     }
 }
@@ -177,6 +199,8 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
     s.columns.clear();
     s.pressures.clear();
     s.cell.moved.clone_from(&s.cell.free);
+    s.cell.pressed.clear();
+    s.cell.pressed.resize(if scene.model.keeps_tractions { size } else { 0 }, 0.0);
     for _ in 0..ROUNDS {
         let known = s.known.len();
         s.numbers.clear();
@@ -192,6 +216,7 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
             break;
         }
         s.cell.moved.copy_from_slice(&s.cell.free);
+        s.cell.pressed.fill(0.0);
         pressure = 0.0;
         let width = s.active.len() + 1;
         for (number, &column) in s.numbers.iter().enumerate() {
@@ -199,6 +224,10 @@ fn correct_cell(scene: &Scene, target: f64, s: &mut TouchScratch) -> f64 {
             let answer = &s.columns[column * size..(column + 1) * size];
             s.cell.moved.iter_mut().zip(answer).for_each(|(to, c)| *to += r * c);
             pressure += r * s.pressures[column];
+            let (atom, p) = s.known[column];
+            let normal = &scene.model.planes[p].normal;
+            let pressed = s.cell.pressed.iter_mut().skip(3 * atom);
+            pressed.zip(normal).for_each(|(pressed, n)| *pressed += r * n);
         }
         if !change_active(scene, s) {
             break;

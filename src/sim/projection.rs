@@ -12,6 +12,13 @@ use crate::mechanics::volume;
 pub struct ProjectScratch {
     /// Positions of the cell.
     pub alone: Vec<f64>,
+    /// What planes have moved atoms by in the attempt, µm, of the shape of the positions of the block; empty where nobody asks or nothing
+    /// touches.
+    pub pushed: Vec<f64>,
+    /// The same of one cell.
+    pub pushed_alone: Vec<f64>,
+    /// What planes take of the gradient of each pair that touches.
+    taken: Vec<Vec3>,
     g: Vec<f64>,
     h: Vec<f64>,
     touching: Vec<(usize, usize)>,
@@ -20,7 +27,8 @@ pub struct ProjectScratch {
 impl ProjectScratch {
     /// Writes NaN over all scratch numbers.
     pub fn poison(&mut self) {
-        [&mut self.alone, &mut self.g, &mut self.h].into_iter().for_each(|array| array.fill(f64::NAN));
+        let of_planes = [&mut self.pushed, &mut self.pushed_alone];
+        [&mut self.alone, &mut self.g, &mut self.h].into_iter().chain(of_planes).for_each(|array| array.fill(f64::NAN));
     }
 }
 
@@ -37,7 +45,9 @@ pub fn project_cell(
     scratch: &mut ProjectScratch,
 ) -> f64 {
     let (atoms, mut v) = (kind.atoms(), [0.0]);
-    let ProjectScratch { g, h, touching, .. } = scratch;
+    let ProjectScratch { g, h, touching, taken, pushed_alone: pushed, .. } = scratch;
+    pushed.clear();
+    pushed.resize(if model.keeps_tractions { x.len() } else { 0 }, 0.0);
     g.resize(x.len(), 0.0);
     h.resize(x.len(), 0.0);
     let mut error: f64 = 0.0;
@@ -52,6 +62,7 @@ pub fn project_cell(
                 if gap < 0.0 && !(0..3).any(|axis| kind.is_held() && kind.held[3 * atom + axis] == 0.0) {
                     let back = position - gap * plane.normal;
                     x[3 * atom..3 * atom + 3].copy_from_slice(back.as_slice());
+                    push(pushed, atom, -gap * plane.normal);
                     moved = moved.max(-gap);
                 }
                 if gap <= TOUCH * kind.edge && !touching.contains(&(atom, p)) {
@@ -65,10 +76,13 @@ pub fn project_cell(
         if error < 1e-13 && moved <= 1e-12 * kind.edge {
             return error;
         }
+        taken.clear();
         for &(atom, p) in touching.iter() {
             let (normal, slot) = (&model.planes[p].normal, &mut g[3 * atom..3 * atom + 3]);
             let free = Vec3::from_column_slice(slot);
-            slot.copy_from_slice((free - free.dot(normal) * normal).as_slice());
+            let along = free.dot(normal) * normal;
+            taken.push(along);
+            slot.copy_from_slice((free - along).as_slice());
         }
         let c0 = v[0] - target;
         volume::measure_block(&kind.rest.facets, g, &[], h, &mut v);
@@ -76,6 +90,14 @@ pub fn project_cell(
         let relative: f64 = x.iter().zip(h.iter()).enumerate().map(|(i, (value, h))| (value - x[i % 3]) * h).sum();
         let Some(root) = volume::least_root_exact(c0, dot(g, g), relative, v[0]) else { return error };
         x.iter_mut().zip(g.iter()).for_each(|(x, g)| *x += root * g);
+        for ((atom, _), along) in touching.iter().zip(&*taken) {
+            push(pushed, *atom, -root * along);
+        }
     }
     error
+}
+
+/// Notes what a plane moves an atom by, where somebody asks.
+fn push(pushed: &mut [f64], atom: usize, by: Vec3) {
+    pushed.iter_mut().skip(3 * atom).zip(&by).for_each(|(pushed, by)| *pushed += by);
 }

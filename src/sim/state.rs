@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use super::balance::AtomBalance;
 use super::chemistry::ChemistryState;
 use super::contact::ContactState;
 use super::kind::Kind;
@@ -72,6 +73,8 @@ pub struct KindState {
     pub behaviours: Vec<Vec<BehaviourState>>,
     /// Whether a program has set a velocity of any of them, which is then added to what behaviours ask for.
     pub is_biased: bool,
+    /// What the atoms of each cell did to what is around them in the last step, cell after cell; empty where that is not kept.
+    pub balance: Vec<AtomBalance>,
 }
 
 /// What cells with these ids remember of a behaviour where it begins.
@@ -119,6 +122,7 @@ impl KindState {
             mean_velocities: vec![[0.0; 3]; cells],
             behaviours: kind.behaviours.iter().map(|behaviour| start_of(&ids, *behaviour, seed)).collect(),
             is_biased: false,
+            balance: Vec::new(),
             ids,
         }
     }
@@ -165,6 +169,7 @@ impl KindState {
         self.stiffness_shape.clone_from(&from.stiffness_shape);
         self.is_biased = from.is_biased;
         self.mean_velocities.resize(from.mean_velocities.len(), [0.0; 3]);
+        self.balance.clear();
     }
 
     fn poison(&mut self) {
@@ -175,6 +180,7 @@ impl KindState {
             array.fill(f64::NAN);
         }
         self.mean_velocities.fill([f64::NAN; 3]);
+        self.balance.fill(AtomBalance::UNKNOWN);
         self.behaviours.iter_mut().for_each(Vec::clear);
     }
 
@@ -189,6 +195,8 @@ impl KindState {
             states.push(behaviour.start(model.seed, id));
         }
         self.mean_velocities.push([0.0; 3]);
+        let kept = if model.keeps_tractions { self.cells() * kind.atoms() } else { 0 };
+        self.balance.resize(kept, AtomBalance::NONE);
         self.stiffness_shape.clear();
         let blocks = self.blocks(kind);
         self.positions.resize(blocks * kind.block_len(), 0.0);
@@ -228,6 +236,10 @@ impl KindState {
         self.velocities = if self.velocities.is_empty() { Vec::new() } else { take(&self.velocities, numbers) };
         self.rest_volumes = take(&self.rest_volumes, 1);
         self.stiffness_shape.clear();
+        if !self.balance.is_empty() {
+            let of_cell = |cell: &usize| self.balance[cell * kind.atoms()..(cell + 1) * kind.atoms()].iter().copied();
+            self.balance = kept.iter().flat_map(of_cell).collect();
+        }
         self.ids = kept.iter().map(|cell| self.ids[*cell]).collect();
         self.parents = kept.iter().map(|cell| self.parents[*cell]).collect();
         for states in &mut self.behaviours {

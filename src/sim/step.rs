@@ -20,6 +20,7 @@ use super::plan::{Estimate, Flaw, Halt, Plan, StepReport};
 use super::protrude::{find_grips, push_pseudopods, release_rears};
 use super::refresh::fit_stiffness;
 use super::state::State;
+use super::traction::{begin_tractions, keep_tractions};
 use super::trouble::Trouble;
 use super::velocity::measure_velocities;
 use super::workspace::Workspace;
@@ -70,6 +71,7 @@ fn make_step(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) ->
     }
     keep_contacts(model, from, to, ws);
     measure_velocities(model, plan.dt, from, to);
+    keep_tractions(model, plan.dt, from, to, ws);
     advance_chemistry(model, plan.dt, from, to, ws)?;
     release_rears(model, to);
     advance_clock(model, &plan, to);
@@ -91,6 +93,7 @@ fn prepare(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) -> R
 fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Workspace) -> Result<Estimate, Halt> {
     let (dt, end) = (plan.dt, from.time + plan.dt);
     carry_forces(model, from, ws);
+    begin_tractions(model, from, ws);
     advance_behaviours(model, dt, from, to, ws);
     push_pseudopods(model, from, to, ws);
     let error = move_freely(model, dt, from, to, ws);

@@ -41,6 +41,8 @@ pub struct Workspace {
 pub struct KindScratch {
     /// Forces, pN, where they are asked for; the stages of the implicit step hold no more than those of a block.
     pub force: Vec<f64>,
+    /// Forces from outside in the mean over the attempt, pN, where tractions are kept; else empty.
+    pub outer: Vec<f64>,
     /// Increments of the first stage, µm, where the second is made after it and not block by block; else empty.
     pub increments: Vec<f64>,
     /// Positions to which the atoms went freely, µm (inertial schemes); else empty.
@@ -86,6 +88,7 @@ impl KindScratch {
     fn new() -> Self {
         Self {
             force: Vec::new(),
+            outer: Vec::new(),
             increments: Vec::new(),
             free: Vec::new(),
             rates: Vec::new(),
@@ -158,6 +161,7 @@ impl KindScratch {
         self.stiffening = f64::NAN;
         for array in [
             &mut self.force,
+            &mut self.outer,
             &mut self.increments,
             &mut self.free,
             &mut self.rates,

@@ -24,6 +24,7 @@
 //! # Ok::<(), SimulationError>(())
 //! ```
 
+mod balance;
 mod builder;
 mod cancel;
 mod cells;

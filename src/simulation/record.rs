@@ -1,11 +1,12 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
+use super::balance::record_tractions;
 use super::touch::Touch;
 use crate::cell::pseudopods::EndedPseudopod;
 use crate::output::{
     Cell, CellRecord, CellType, FieldLayout, Frame, Layout, MembraneLayout, PseudopodEvent, SystemLayout, SystemScope,
 };
-use crate::recorded::contact_quantities;
+use crate::recorded::{TractionRecord, contact_quantities};
 use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::find_contacts;
 use crate::sim::kind::Kind;
@@ -28,6 +29,7 @@ pub fn outline_of(model: &Model) -> Layout {
     let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     layout.contacts = model.contact.is_some();
+    layout.tractions = model.keeps_tractions;
     let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(contact.law.series()));
     layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
@@ -209,8 +211,12 @@ fn frame_of(model: &Model, state: &State) -> Frame {
             smallest_facet: cell.smallest_facet,
             smallest_cosine: cell.smallest_cosine,
             contact_share: 0.0,
+            traction: TractionRecord::default(),
             aggregate: frame.cells[number].id as f64,
         });
+    }
+    if model.keeps_tractions {
+        record_tractions(model, state, &mut frame);
     }
     record_chemistry(model, state, &mut frame);
     record_membranes(model, state, &mut frame);

@@ -71,6 +71,7 @@ fn a_step_that_succeeds_writes_every_part_of_the_state() {
     for (now, then) in next.kinds.iter().zip(&state.kinds) {
         assert_ne!(now.positions, then.positions);
         assert_ne!(now.mean_velocities, then.mean_velocities);
+        assert_ne!(now.balance, then.balance);
     }
     assert_ne!(next.kinds[0].rest_volumes, state.kinds[0].rest_volumes, "links set them");
     assert_ne!(next.kinds[1].stiffness_shape, state.kinds[1].stiffness_shape, "K was made again");

@@ -5,7 +5,7 @@ use pseudopod::error::{Error, Paint, render};
 use pseudopod::experiment::Document;
 use pseudopod::output::{
     Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Overwrite, ResultFile, ResultWriter, SystemLayout,
-    SystemScope,
+    SystemScope, Tractions,
 };
 use std::path::{Path, PathBuf};
 
@@ -85,8 +85,9 @@ fn every_fault_of_a_document_has_a_location() {
     }
 }
 
-/// Three frames of two amoebae, one of which moves, a rock, two systems and two fields that stay as they are.
-fn recorded(path: &Path) -> ResultFile {
+/// Three frames of two amoebae, one of which moves, a rock, two systems and two fields that stay as they are, and, if they are wanted,
+/// tractions of cells that do not pull.
+fn recorded(path: &Path, tractions: bool) -> ResultFile {
     let cell = |number: u32| Cell { id: u64::from(number), kind: number / 2, parent: None };
     let kind = |name: &str| CellType { name: name.into(), atoms: 1, ..CellType::default() };
     let unit = |name: &str| vec![(name.to_owned(), "uM".to_owned())];
@@ -102,8 +103,10 @@ fn recorded(path: &Path) -> ResultFile {
         types: vec![kind("amoeba"), kind("rock")],
         fields: vec![field("attractant", [4, 3, 1]), field("medium", [2, 2, 2])],
         systems: vec![system("oscillator", SystemScope::Cells, "cAMP"), system("clock", SystemScope::Scene, "tick")],
+        tractions,
         ..Layout::default()
     };
+    let none = || vec![[0.0; 3]; if tractions { 3 } else { 0 }];
     let header = Header::now("chemistry.toml", "Made up", "", &[], 0);
     let mut writer = ResultWriter::create(path, &header, &layout, Overwrite::Refuse).expect("a new file");
     for step in 0..3_u32 {
@@ -116,6 +119,7 @@ fn recorded(path: &Path) -> ResultFile {
             records: [time, 0.0, 0.0].map(|x| CellRecord { position: [x, 0.0, 0.0], ..CellRecord::default() }).to_vec(),
             fields: vec![vec![vec![3.0; 12]], vec![vec![3.0; 8]]],
             systems: vec![vec![vec![time, 2.0, f64::NAN]], vec![vec![time]]],
+            tractions: Tractions { traction: none(), of_cells: none(), drag: none(), outer: none(), inertia: none() },
             ..Frame::default()
         };
         writer.append(&frame).expect("a frame");
@@ -127,9 +131,19 @@ fn recorded(path: &Path) -> ResultFile {
 #[test]
 fn every_measure_that_cannot_be_taken_says_why() {
     let _turn = take_turn();
+    for (document, tractions, kept) in [
+        ("chemistry.toml", false, "chemistry.txt"),
+        ("traction.toml", false, "traction_not_recorded.txt"),
+        ("traction.toml", true, "traction_of_nobody.txt"),
+    ] {
+        cannot_be_taken(document, tractions, kept);
+    }
+}
+
+fn cannot_be_taken(document: &str, tractions: bool, kept: &str) {
     let folder = tempfile::tempdir().expect("a folder");
-    let result = recorded(&folder.path().join("result.h5"));
-    let path = Path::new("tests/messages/measures/chemistry.toml");
+    let result = recorded(&folder.path().join("result.h5"), tractions);
+    let path = &Path::new("tests/messages/measures").join(document);
     let document = Document::read(path, &[]).unwrap_or_else(|error| panic!("{}", render(&error, Paint::Plain)));
     let (measures, faults) = pseudopod::run::measure_result(&result, &document).expect("a whole file");
     let taken: Vec<&str> = measures.iter().map(|measure| measure.name.as_str()).collect();
@@ -139,5 +153,5 @@ fn every_measure_that_cannot_be_taken_says_why() {
         "each says what to do, and where"
     );
     let message = render(&Error::Input(faults), Paint::Plain).replace(&folder.path().display().to_string(), "FOLDER");
-    compare_text(&message, &path.with_extension("txt")).expect("the message that is kept");
+    compare_text(&message, &path.with_file_name(kept)).expect("the message that is kept");
 }

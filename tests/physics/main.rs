@@ -29,6 +29,7 @@ mod soft_cells;
 mod sphere;
 mod stability_limits;
 mod step;
+mod tractions;
 mod virtual_adhesives;
 mod walk;
 

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use pseudopod::output::{
     Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, MembraneLayout, Overwrite, ResultWriter,
-    SystemLayout, SystemScope, Touching,
+    SystemLayout, SystemScope, Touching, Tractions,
 };
+use pseudopod::recorded::TractionRecord;
 
 /// Corners of an octahedron.
 const CORNERS: [[f64; 3]; 6] =
@@ -48,6 +49,7 @@ pub fn frame(cells: &[Cell], number: usize) -> Frame {
         smallest_cosine: 0.8,
         contact_share: 0.25,
         aggregate: cell.id as f64,
+        ..CellRecord::default()
     };
     let mut ids: Vec<u64> = cells.iter().map(|cell| cell.id).collect();
     ids.sort_unstable();
@@ -113,7 +115,7 @@ pub fn lineage() -> Vec<Vec<Cell>> {
 }
 
 /// The same cells with two fields, one of them on the substrate, a system in the cells of the first type, two substances on their
-/// membranes, and a system of the scene.
+/// membranes, a system of the scene, and tractions.
 pub fn layout_with_fields() -> Layout {
     let named = |name: &str| (name.to_string(), "uM".to_string());
     let flat = FieldLayout {
@@ -138,7 +140,7 @@ pub fn layout_with_fields() -> Layout {
     let clock = SystemLayout { name: "clock".into(), scope: SystemScope::Scene, quantities: vec![named("tick")] };
     let on_membrane = |name: &str| MembraneLayout { name: format!("brain.{name}"), unit: "1/um^2".into() };
     let membranes = vec![on_membrane("b"), on_membrane("a")];
-    Layout { membranes, fields: vec![flat, block], systems: vec![brain, clock], ..layout() }
+    Layout { membranes, fields: vec![flat, block], systems: vec![brain, clock], tractions: true, ..layout() }
 }
 
 /// The frame of this number with values that differ from place to place, from species to species and from frame to frame.
@@ -166,11 +168,25 @@ pub fn frame_with_fields(cells: &[Cell], number: usize) -> Frame {
         };
         cells.iter().flat_map(of_cell).collect()
     };
+    let of_atoms =
+        |first: f64| (0..6 * cells.len()).map(|atom| [first, atom as f64, number as f64]).collect::<Vec<[f64; 3]>>();
+    let mut plain = frame(cells, number);
+    for (record, cell) in plain.records.iter_mut().zip(cells) {
+        let (total, dipole) = (10.0 + number as f64, -(cell.id as f64));
+        record.traction = TractionRecord { total, dipole, moment: [dipole, 0.0, 1.0], ..TractionRecord::default() };
+    }
     Frame {
+        tractions: Tractions {
+            traction: of_atoms(1.0),
+            of_cells: of_atoms(2.0),
+            drag: of_atoms(3.0),
+            outer: of_atoms(4.0),
+            inertia: of_atoms(5.0),
+        },
         membranes: (0..layout.membranes.len()).map(of_membrane).collect(),
         fields: layout.fields.iter().map(of_field).collect(),
         systems: layout.systems.iter().map(of_system).collect(),
-        ..frame(cells, number)
+        ..plain
     }
 }
 

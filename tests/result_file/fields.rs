@@ -57,6 +57,27 @@ fn quantities_come_back_exactly_and_are_series_like_others() {
     assert!(table.lines().next().unwrap().contains("brain.U (uM)"), "{table}");
 }
 
+#[test]
+fn tractions_come_back_exactly_and_their_sums_are_series() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.vtkhdf");
+    write(&path, 3, 40).finish(1.0).unwrap();
+    let result = ResultFile::open(&path).unwrap();
+    for number in [0, 17, 39] {
+        assert_eq!(result.tractions(number).unwrap(), Some(frame(&cells(3), number).tractions));
+    }
+    let series = |name: &str| result.cell_series(name).unwrap()[[39, 2]];
+    assert_eq!(["traction_total", "traction_dipole", "traction_moment_1"].map(series), [49.0, -2.0, -2.0]);
+    assert_eq!(result.units("traction_dipole").unwrap(), "pN um");
+    // A run without them has neither.
+    let plain = folder.path().join("plain.vtkhdf");
+    example::write(&plain, 3, 4).finish(1.0).unwrap();
+    let plain = ResultFile::open(&plain).unwrap();
+    assert_eq!(plain.tractions(0).unwrap(), None);
+    assert!(plain.cell_series("traction_total").is_err() && plain.units("traction_total").is_err());
+    assert!(!plain.series_names().iter().any(|name| name.starts_with("traction")));
+}
+
 /// Whether two lists hold the same bits.
 fn same(one: &[f64], other: &[f64]) -> bool {
     one.iter().map(|value| value.to_bits()).eq(other.iter().map(|value| value.to_bits()))

@@ -29,15 +29,15 @@ const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/
 /// What is on the membranes of all.
 const SKIN: &str = r#"<eml name="skin" level="membrane"><input id="c" default="0"/>
     <input id="here" default="0" level="membrane"/><input id="up" default="0" level="membrane"/><input id="bent" default="0" level="membrane"/>
-    <input id="wide" default="0" level="membrane"/><input id="near" default="0" level="membrane"/><input id="low" default="0" level="membrane"/>
-    <variable id="a" initial="1 + 0.05*x" diffusion="0.5" rate="0.3*inside - a*(0.2 + 0.1*a) + 0.01*(c + here) + 0.02*(near + low + up*bent + wide)" noise="0.01*a"/>
+    <input id="wide" default="0" level="membrane"/><input id="near" default="0" level="membrane"/><input id="low" default="0" level="membrane"/><input id="pull" default="0" level="membrane"/>
+    <variable id="a" initial="1 + 0.05*x" diffusion="0.5" rate="0.3*inside - a*(0.2 + 0.1*a) + 0.01*(c + here) + 0.02*(near + low + up*bent + wide) + 0.01*tanh(pull)" noise="0.01*a"/>
     <variable id="h" initial="0.1" rate="a - h"/>
     <variable id="inside" initial="2" level="cell" rate="(lost - 0.3*inside*area)/volume" noise="0.01*front"/>
     <integral id="lost">0.2*a</integral><mean id="front">a*x</mean>
     <define id="push">0.05*max(a - low, 0)</define>
     <link from="field[c]" to="system.c"/><link from="cell.atoms.field[c]" to="system.here"/><link from="cell.atoms.normal.z" to="system.up"/>
     <link from="cell.atoms.curvature" to="system.bent"/><link from="cell.atoms.area_strain" to="system.wide" transfer="value + 0*inside"/>
-    <link from="cell.atoms.in_contact" to="system.near"/><link from="cell.atoms.on_plane" to="system.low"/>
+    <link from="cell.atoms.in_contact" to="system.near"/><link from="cell.atoms.on_plane" to="system.low"/><link from="cell.atoms.traction" to="system.pull"/>
     <link from="system.push" to="cell.atoms.protrusion"/><link from="system.a" to="cell.atoms.tension" gain="0.2"/>
     <link from="system.h" to="cell.atoms.adhesion" transfer="1/(1 + value^2)"/><link from="system.a" to="cell.atoms.secretion[c]" gain="0.01"/></eml>"#;
 
@@ -58,6 +58,7 @@ until = "100 s"
 integrator = { INTEGRATOR }
 [output]
 every = "10 s"
+tractions = true
 
 [cells.walker]
 mesh = { shape = "icosphere", radius = "5 um", level = 1 }

@@ -17,6 +17,9 @@ pub trait Declared {
     /// Whether cells touch, so that who touches whom is recorded.
     fn has_contacts(&self) -> bool;
 
+    /// Whether it is recorded how cells pull at what they touch.
+    fn records_tractions(&self) -> bool;
+
     /// Notes a fault at a key.
     fn fault(&mut self, key: &str, label: &str, message: String, help: &str);
 

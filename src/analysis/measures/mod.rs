@@ -30,6 +30,7 @@ mod test_recordings;
 #[cfg(test)]
 mod test_results;
 mod track_average;
+mod traction;
 mod value;
 mod velocity_correlation;
 mod wave_speed;
@@ -60,6 +61,7 @@ pub use sphere_fit::SphereFit;
 pub use statistic::Statistic;
 pub use successive::SuccessiveStatistic;
 pub use track_average::TrackAverage;
+pub use traction::{Traction, TractionStatistic};
 pub use value::Value;
 pub use velocity_correlation::VelocityCorrelation;
 pub use wave_speed::{WaveSpeed, WaveStatistic};
@@ -162,6 +164,8 @@ pub enum MeasureKind {
     /// What the cells of the largest aggregate leave empty between them: the radius of the largest ball that fits there, µm, or the
     /// part of the inside that no cell fills.
     Gaps(Gaps),
+    /// How cells pull at the planes that they stand on: the sums of the forces ahead and behind, their dipole, or where they pull most.
+    Traction(Traction),
 }
 
 impl MeasureKind {
@@ -184,7 +188,7 @@ impl MeasureKind {
             Self::Period(period) => period.series(),
             Self::WaveSpeed(wave) => wave.series(),
             Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) => Vec::new(),
-            Self::Fronts(_) | Self::Gaps(_) | Self::Pseudopods(_) => Vec::new(),
+            Self::Fronts(_) | Self::Gaps(_) | Self::Pseudopods(_) | Self::Traction(_) => Vec::new(),
         };
         names.into_iter().filter(|name| *name != "time").collect()
     }
@@ -212,6 +216,7 @@ impl MeasureKind {
             Self::Pseudopods(pods) => pods.check(at),
             Self::Fronts(fronts) => fronts.check(at),
             Self::Gaps(gaps) => gaps.check(at),
+            Self::Traction(traction) => traction.check(at),
             Self::SphereShear(_) | Self::TableRms(_) | Self::TableRatio(_) | Self::RunLengthP(_) => {}
         }
     }
@@ -249,6 +254,7 @@ impl MeasureKind {
             Self::Pseudopods(pods) => pods.evaluate(run),
             Self::Fronts(fronts) => fronts.evaluate(run),
             Self::Gaps(gaps) => gaps.evaluate(run),
+            Self::Traction(traction) => traction.evaluate(run),
         }
     }
 }

@@ -134,6 +134,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     if contact.as_ref().is_none_or(|contact| contact.law.moves_as_steps()) {
         kinds.iter_mut().for_each(Kind::use_tangent);
     }
+    let keeps_tractions = experiment.output.tractions || chemistry.reads_tractions();
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),
@@ -144,6 +145,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         chemistry,
         planes,
         until: experiment.run.until.value(),
+        keeps_tractions,
     };
     let schedule = steps::schedule(document, &model)?;
     Ok(Prepared { model, schedule, centres, fields })

@@ -34,6 +34,10 @@ impl Declared for InDocument<'_, '_> {
         self.check.document.experiment.contact.is_some()
     }
 
+    fn records_tractions(&self) -> bool {
+        self.check.document.experiment.output.tractions
+    }
+
     fn fault(&mut self, key: &str, label: &str, message: String, help: &str) {
         self.check.fault(&self.of(key), label, message, help);
     }

@@ -1,5 +1,6 @@
 //! Links that carry a number for each atom of the cells that have a system.
 
+use super::super::balance::AtomBalance;
 use super::super::model::Model;
 use super::super::state::{State, vector};
 use super::super::trouble::Trouble;
@@ -9,6 +10,7 @@ use super::measure::{is_on_plane, near_cell};
 use super::model::Members;
 use super::observe::pick;
 use super::scratch::ChemistryScratch;
+use crate::Vec3;
 use crate::cell::ends::AtomReading;
 use crate::contact::{AtomContact, Scene};
 use crate::equations::eml::LinkDescription;
@@ -124,6 +126,15 @@ fn read(
             AtomReading::Curvature => {
                 shapes.take(&kind.rest.facets, positions);
                 numbers.extend((0..atoms).map(|atom| shapes.curvature(atom)));
+            }
+            AtomReading::Traction => {
+                shapes.take(&kind.rest.facets, positions);
+                let of_atom = |atom: &AtomBalance| (Vec3::from(atom.traction) + Vec3::from(atom.of_cells)).norm();
+                let own = now.balance.get(cell * atoms..(cell + 1) * atoms).unwrap_or_default();
+                // Before the first step there is none.
+                let forces = own.iter().map(of_atom).chain(std::iter::repeat(0.0));
+                numbers
+                    .extend(shapes.areas.iter().zip(forces).map(|(area, force)| force / area.max(f64::MIN_POSITIVE)));
             }
             AtomReading::AreaStrain => {
                 shapes.take(&kind.rest.facets, positions);

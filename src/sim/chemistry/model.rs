@@ -133,6 +133,12 @@ impl Chemistry {
         self.measures_cells || self.links.iter().any(at_atoms)
     }
 
+    /// Whether some link reads what cells do to what is around them.
+    pub fn reads_tractions(&self) -> bool {
+        let at_atoms = |link: &Link| matches!(link.from, Source::Atoms(AtAtoms::Read(AtomReading::Traction)));
+        self.links.iter().any(at_atoms)
+    }
+
     /// Whether there is nothing to do.
     pub fn is_empty(&self) -> bool {
         self.reactors.is_empty() && self.fields.is_empty()

@@ -118,14 +118,15 @@ pub fn has_live_forces(model: &Model) -> bool {
 }
 
 /// Sets the forces that the law of contact adds where the atoms are now: they change while a step is made, and its error estimate
-/// must see that.
-pub fn pull_contacts(model: &Model, controls: &Controls, cells: &[KindState], s: &mut ContactScratch) {
+/// must see that. What of these cells do to what they touch counts this share of the step; nothing is noted where that is 0.
+pub fn pull_contacts(model: &Model, controls: &Controls, cells: &[KindState], s: &mut ContactScratch, share: f64) {
     let Some(contact) = &s.scene(model, cells).filter(|_| has_live_forces(model)) else { return };
     gather_positions(model, contact, cells, &mut s.positions);
     let live = &mut s.forces.live;
     live.clear();
     live.resize(contact.scene.atoms, Vec3::zeros());
-    contact.law.add_forces(&contact.scene, controls, (&s.rows, &s.law), (&s.start, &s.positions), live);
+    let noted = s.tractions.counting(share);
+    contact.law.add_forces(&contact.scene, controls, (&s.rows, &s.law), (&s.start, &s.positions), live, noted);
 }
 
 /// The energy of the law of contact where cells stand, with what was found where the step began, pN·µm.

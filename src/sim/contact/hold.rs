@@ -55,11 +55,13 @@ pub fn hold_contacts(
     find_columns(model, contact, dt, (from, to), s, kinds, buffers);
     load_rows(contact, rules, s);
     let left = sweep(model, contact, dt, rules, s);
+    s.deep.clear();
     if rules.mends && s.rows.iter().any(|row| row.gap() < 0.0) {
         mend(model, contact, s);
     }
     s.law.adhesives.align(&s.start, &mut s.moved);
     put_back(model, contact, s, from, to);
+    note_rows(contact, s);
     let worst = s.rows[left.worst].atoms;
     if s.mobility.is_arranged {
         s.mobility.turns.put_back(&mut s.rows);
@@ -175,6 +177,16 @@ fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
                 sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut Change::default());
             },
         );
+    }
+}
+
+/// Notes what rows do, and what pushed out what was inside.
+fn note_rows(contact: &ContactScene, s: &mut ContactScratch) {
+    let Some(noted) = s.tractions.counting(1.0) else { return };
+    s.rows.iter().zip(&s.pulls).for_each(|(row, pull)| noted.by_row(&contact.scene, row, pull.force()));
+    for (number, pushed) in &s.deep {
+        let row = &s.rows[*number as usize];
+        noted.by_row(&contact.scene, row, *pushed * row.normal());
     }
 }
 

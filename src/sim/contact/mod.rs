@@ -38,6 +38,7 @@ mod sweep;
 #[cfg(test)]
 mod sweep_tests;
 mod together;
+mod tractions;
 mod turnover;
 mod turns;
 mod vectors;
@@ -61,4 +62,5 @@ pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
 pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, PlaneBond, SurfaceBonds};
+pub use tractions::ContactTractions;
 pub use turnover::turn_over_bonds;

@@ -5,6 +5,7 @@ use super::mobility::Mobility;
 use super::momentum::Momentum;
 use super::rows::{Pull, Row};
 use super::scene::{ContactScene, Surfaces};
+use super::tractions::ContactTractions;
 use super::vectors::V4;
 use super::volumes::{InModes, VolumeRow};
 use crate::Vec3;
@@ -47,6 +48,8 @@ pub struct ContactScratch {
     pub start: Vec<Vec3>,
     /// Forces on all atoms. The projection takes the memory of those carried for its direction.
     pub forces: ContactForces,
+    /// What cells do to what they touch in the attempt; empty where nobody asks.
+    pub tractions: ContactTractions,
     /// Displacements before the last sweep of the projection, µm, under laws whose projection needs `start`.
     pub(super) before: Vec<Vec3>,
     /// Gradients of the volumes that are kept, µm².
@@ -101,6 +104,13 @@ impl ContactScratch {
         self.scene(model, &state.kinds).is_some()
     }
 
+    /// Notes what cells do to virtual adhesives in the attempt.
+    pub(in crate::sim) fn note_adhesives(&mut self) {
+        if let Some(noted) = self.tractions.counting(1.0) {
+            self.law.adhesives.note(noted);
+        }
+    }
+
     /// Where the row of a contact stands, by the number of that contact.
     pub(in crate::sim) fn row_of(&self, number: usize) -> usize {
         if self.is_in_turns { self.mobility.turns.of_row(number) } else { number }
@@ -127,6 +137,7 @@ impl ContactScratch {
         let forces = [&mut self.forces.carried, &mut self.forces.live];
         let vectors = [&mut self.start, &mut self.before, &mut self.positions].into_iter().chain(forces);
         vectors.for_each(|all| all.fill(Vec3::repeat(f64::NAN)));
+        self.tractions.poison();
         self.gradient.fill([f64::NAN; 3]);
         self.moved.fill([f64::NAN; 4]);
         self.deep.clear();

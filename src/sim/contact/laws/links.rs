@@ -129,13 +129,25 @@ impl LinkTable {
         positions: &[Vec3],
         force: &mut [Vec3],
     ) -> f64 {
+        self.act(scene, controls, links, positions, |atom, pull| force[atom as usize] += pull)
+    }
+
+    /// As [`add_forces`](Self::add_forces), telling each atom and the force on it.
+    pub(in crate::sim::contact) fn act(
+        &self,
+        scene: &Scene,
+        controls: &Controls,
+        links: &[Link],
+        positions: &[Vec3],
+        mut tell: impl FnMut(u32, Vec3),
+    ) -> f64 {
         let mut energy = 0.0;
         for link in links {
             let stiffness = self.stiffness_between(scene, link.bodies, controls);
-            for [one, other] in link.pairs.map(|pair| pair.map(|atom| atom as usize)) {
-                let pull = stiffness * (positions[other] - positions[one]);
-                force[one] += pull;
-                force[other] -= pull;
+            for [one, other] in link.pairs {
+                let pull = stiffness * (positions[other as usize] - positions[one as usize]);
+                tell(one, pull);
+                tell(other, -pull);
             }
             energy += 0.5 * stiffness * (link.squared(positions) - 3.0 * self.range * self.range);
         }

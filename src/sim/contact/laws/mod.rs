@@ -20,6 +20,7 @@ pub use virtual_adhesives::{AdhesiveScratch, AdhesiveTable, Zones};
 
 use super::rows::Row;
 use super::state::ContactState;
+use super::tractions::ContactTractions;
 use super::vectors::V4;
 use crate::Vec3;
 use crate::contact::{Contacts, Scene};
@@ -101,7 +102,8 @@ impl Law {
         }
     }
 
-    /// Adds the forces of the law where the atoms are now, of contacts and links found where they were at `start`.
+    /// Adds the forces of the law where the atoms are now, of contacts and links found where they were at `start`, and notes what of them
+    /// cells do to what they touch.
     pub(super) fn add_forces(
         &self,
         scene: &Scene,
@@ -109,12 +111,18 @@ impl Law {
         (rows, found): (&[Row], &LawScratch),
         (start, now): (&[Vec3], &[Vec3]),
         force: &mut [Vec3],
+        mut noted: Option<&mut ContactTractions>,
     ) {
         match self {
             Self::Adhesives | Self::VirtualAdhesives(_) => 0.0,
-            Self::Cohesion(table) => table.add_forces(scene, &found.cohesion, now, force),
-            Self::Links(table) => table.add_forces(scene, controls, &found.links.links, now, force),
-            Self::Penalty(penalty) => penalty.add_forces(rows, start, now, force),
+            Self::Cohesion(table) => table.add_forces(scene, &found.cohesion, now, force, noted),
+            Self::Links(table) => table.act(scene, controls, &found.links.links, now, |atom, pull| {
+                force[atom as usize] += pull;
+                noted.iter_mut().for_each(|noted| noted.by_cell(atom, pull));
+            }),
+            Self::Penalty(penalty) => penalty.act(rows, (start, now), force, |row, push| {
+                noted.iter_mut().for_each(|noted| noted.by_row(scene, row, push));
+            }),
         };
     }
 

@@ -30,6 +30,17 @@ impl Penalty {
     /// Adds the forces of contacts that were found at `start` where the atoms are now, and returns their energy, pN·µm. Normals and
     /// weights stay those of the start.
     pub fn add_forces(&self, rows: &[Row], start: &[Vec3], positions: &[Vec3], force: &mut [Vec3]) -> f64 {
+        self.act(rows, (start, positions), force, |_, _| {})
+    }
+
+    /// As [`add_forces`](Self::add_forces), telling each row and the force on its first side.
+    pub(in crate::sim::contact) fn act(
+        &self,
+        rows: &[Row],
+        (start, positions): (&[Vec3], &[Vec3]),
+        force: &mut [Vec3],
+        mut tell: impl FnMut(&Row, Vec3),
+    ) -> f64 {
         let mut energy = 0.0;
         for row in rows {
             let sides = || row.atoms.map(|atom| atom as usize).into_iter().zip(row.weights());
@@ -37,6 +48,7 @@ impl Penalty {
             let normal = row.normal();
             let (push, stored) = self.at(row.gap() + normal.dot(&apart), -f64::from(row.least));
             sides().for_each(|(atom, weight)| force[atom] += weight * push * normal);
+            tell(row, push * normal);
             energy += stored;
         }
         energy

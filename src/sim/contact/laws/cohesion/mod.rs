@@ -23,13 +23,14 @@ pub use self::bonds::{BondKinetics, Pathway};
 pub use self::closed::Earlier;
 use self::closed::PatchBonds;
 pub use self::facing::{Faced, Facing, area_between, number_of};
-use self::patch::{Partner, Patch};
+use self::patch::{Partner, Patch, PatchPull};
 use self::search::{Around, Seen, Surroundings};
 pub use self::table::{CohesionTable, Cohesive};
 use self::turnover::Turnover;
 use crate::Vec3;
 use crate::contact::Scene;
 use crate::sim::contact::state::SurfaceBonds;
+use crate::sim::contact::tractions::ContactTractions;
 use crate::sim::controls::Controls;
 
 /// What the law finds where a step begins.
@@ -135,7 +136,14 @@ impl CohesionTable {
     }
 
     /// Adds the forces of what attracts each other where the atoms are now, and returns the energy, pN·µm.
-    pub(super) fn add_forces(&self, scene: &Scene, found: &CohesionScratch, now: &[Vec3], force: &mut [Vec3]) -> f64 {
+    pub(super) fn add_forces(
+        &self,
+        scene: &Scene,
+        found: &CohesionScratch,
+        now: &[Vec3],
+        force: &mut [Vec3],
+        mut noted: Option<&mut ContactTractions>,
+    ) -> f64 {
         let mut energy = 0.0;
         for patch in found.patches.iter().flatten() {
             let Some(pull) = patch.pull(scene, now) else { continue };
@@ -147,6 +155,7 @@ impl CohesionTable {
             if let Partner::Facet(atoms, _) = patch.other {
                 add(atoms, pull.on_other);
             }
+            noted.iter_mut().for_each(|noted| note(patch, &pull, noted));
         }
         energy
     }
@@ -160,5 +169,16 @@ impl CohesionTable {
     /// The energy of what was found, where the atoms are now, pN·µm.
     pub fn energy(&self, scene: &Scene, found: &CohesionScratch, now: &[Vec3]) -> f64 {
         found.patches.iter().flatten().filter_map(|patch| patch.pull(scene, now)).map(|pull| pull.energy).sum()
+    }
+}
+
+/// Notes what a part does to what attracts it: what draws it at its point. What it does besides to its own facet has no sum.
+fn note(patch: &Patch, pull: &PatchPull, noted: &mut ContactTractions) {
+    let own = patch.own.iter().zip(patch.weights).map(|(atom, weight)| (*atom, *weight * pull.drawn));
+    match patch.other {
+        Partner::Plane(_) => own.for_each(|(atom, force)| noted.by_plane(atom, force)),
+        Partner::Facet(atoms, _) => {
+            own.chain(atoms.into_iter().zip(pull.on_other)).for_each(|(atom, force)| noted.by_cell(atom, force));
+        }
     }
 }

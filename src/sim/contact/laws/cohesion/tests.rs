@@ -58,7 +58,7 @@ fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
         let (table, scene, positions) = scene(&surfaces, planes, GLUE);
         let found = found(&table, &scene, &positions);
         let mut force = vec![Vec3::zeros(); positions.len()];
-        let energy = table.add_forces(&scene, &found, &positions, &mut force);
+        let energy = table.add_forces(&scene, &found, &positions, &mut force, None);
         assert!(energy < -0.5, "{energy}");
         let acted = force.iter().filter(|force| force.norm() > 0.0).count();
         assert!(acted > 30, "{acted}");

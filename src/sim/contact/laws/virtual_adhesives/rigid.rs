@@ -113,15 +113,29 @@ impl Rigid {
         motion
     }
 
-    /// Moves its atoms as one, with a rotation of any size; returns the farthest that this took one, µm.
-    pub(super) fn align(&self, atoms: &[AdhesiveAtom], drags: &[f64], positions: &[Vec3], moved: &mut [V4]) -> f64 {
+    /// Whether a plane holds it.
+    pub(super) fn is_grounded(&self) -> bool {
+        self.grounded
+    }
+
+    /// Moves its atoms as one, with a rotation of any size; returns the farthest that this took one, µm. Adds the forces that do so to
+    /// `forces`, pN.
+    pub(super) fn align(
+        &self,
+        (atoms, drags): (&[AdhesiveAtom], &[f64]),
+        positions: &[Vec3],
+        moved: &mut [V4],
+        forces: &mut [Vec3],
+    ) -> f64 {
         let motion = self.motion(atoms, drags, positions, moved);
         let mut farthest: f64 = 0.0;
-        for one in atoms {
+        for (one, force) in atoms.iter().zip(forces) {
             let moved = &mut moved[one.atom as usize];
             if moved[3] > 0.0 {
                 let to = motion.of(&(positions[one.atom as usize] - self.centre));
-                farthest = farthest.max((to - vector(moved)).norm());
+                let further = to - vector(moved);
+                farthest = farthest.max(further.norm());
+                *force += further / moved[3];
                 (moved[0], moved[1], moved[2]) = (to.x, to.y, to.z);
             }
         }

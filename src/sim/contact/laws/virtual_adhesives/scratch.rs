@@ -4,6 +4,7 @@ use super::rigid::{Rigid, vector};
 use crate::Vec3;
 use crate::sim::contact::change::Change;
 use crate::sim::contact::state::AdhesiveAtom;
+use crate::sim::contact::tractions::ContactTractions;
 use crate::sim::contact::vectors::V4;
 use nalgebra::Rotation3;
 
@@ -32,6 +33,8 @@ pub struct AdhesiveScratch {
     pub(super) drags: Vec<f64>,
     /// Force on each now, pN.
     pub(super) forces: Vec<Vec3>,
+    /// Forces on each that gave adhesives their shapes back, pN: they are not carried on.
+    aligning: Vec<Vec3>,
     /// What the last sweep changed of it.
     pub(super) changes: Vec<Vec3>,
     /// The direction that speeds the sweeps up.
@@ -50,10 +53,10 @@ pub struct AdhesiveScratch {
 
 impl AdhesiveScratch {
     /// Begins sweeps with the forces that the adhesives carry.
-    pub(in crate::sim::contact) fn begin(&mut self) {
+    pub(in crate::sim) fn begin(&mut self) {
         self.forces.clear();
         self.forces.extend(self.atoms.iter().map(|one| Vec3::from(one.force)));
-        for list in [&mut self.changes, &mut self.directions] {
+        for list in [&mut self.changes, &mut self.directions, &mut self.aligning] {
             list.clear();
             list.resize(self.atoms.len(), Vec3::zeros());
         }
@@ -91,9 +94,26 @@ impl AdhesiveScratch {
     }
 
     /// Moves every adhesive as one without a change of its shape; returns the farthest that this took an atom, µm.
-    pub(in crate::sim::contact) fn align(&self, positions: &[Vec3], moved: &mut [V4]) -> f64 {
-        let align = |body: &Rigid| body.align(&self.atoms[body.range()], &self.drags[body.range()], positions, moved);
-        self.bodies.iter().map(align).fold(0.0, f64::max)
+    pub(in crate::sim::contact) fn align(&mut self, positions: &[Vec3], moved: &mut [V4]) -> f64 {
+        let Self { atoms, drags, bodies, aligning, .. } = self;
+        let align = |body: &Rigid| {
+            let own = body.range();
+            body.align((&atoms[own.clone()], &drags[own.clone()]), positions, moved, &mut aligning[own])
+        };
+        bodies.iter().map(align).fold(0.0, f64::max)
+    }
+
+    /// Notes what cells do to adhesives in the attempt: to planes, where one holds the adhesive, else to the cells that are in it.
+    pub(in crate::sim::contact) fn note(&self, noted: &mut ContactTractions) {
+        for body in &self.bodies {
+            for number in body.range() {
+                let (atom, force) = (self.atoms[number].atom, self.forces[number] + self.aligning[number]);
+                match body.is_grounded() {
+                    true => noted.by_plane(atom, force),
+                    false => noted.by_cell(atom, force),
+                }
+            }
+        }
     }
 
     /// Forgets everything.
