@@ -123,7 +123,7 @@ mod tests {
                 let length = f64::min(*length, until - time);
                 let mut parts = Substeps::new(Pace::Every(span), kicks, time, length);
                 let mut whole = 0.0;
-                while let Some(part) = parts.next() {
+                for part in parts.by_ref() {
                     assert!(part.length > 0.0 && part.length <= span * (1.0 + 1e-9), "{part:?}");
                     whole += part.length;
                     found.extend(part.kick.map(|kick| (kick, part.begin)));

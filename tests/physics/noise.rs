@@ -215,7 +215,7 @@ fn noise_that_is_no_number_ends_the_step_and_leaves_the_state() {
     for own in [cell, skin] {
         let mut scene = scene(&[("own", own)], &sphere(1, "1000 s"));
         let told = scene.until_trouble().to_string();
-        assert!(scene.state().step == 2 && told.contains("not finite"), "{told}");
+        assert!(scene.state().step == 2 && told.contains("no longer a finite number"), "{told}");
     }
     let field = r#"<eml name="own"><grid dimension="2" spacing="4" origin="0 0" size="20 20"/>
         <field id="c" range="free" initial="0" noise="sqrt(0.75 - time)"/></eml>"#;
