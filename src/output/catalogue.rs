@@ -283,8 +283,7 @@ mod tests {
     #[test]
     fn every_path_is_listed_once_and_links_lead_somewhere() {
         let cells: Vec<Entry> = cell_entries(true).collect();
-        let all: Vec<&Entry> =
-            CATALOGUE.iter().chain(&cells).chain(CONTACT).chain(FORCE).chain(TRACTION).collect();
+        let all: Vec<&Entry> = CATALOGUE.iter().chain(&cells).chain(CONTACT).chain(FORCE).chain(TRACTION).collect();
         for (number, entry) in all.iter().enumerate() {
             assert!(!all[..number].iter().any(|other| other.path == entry.path), "{} is listed twice", entry.path);
             if let Link(target) = entry.filled {

@@ -75,8 +75,8 @@ impl Frame {
             let speed = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
             return Some(self.records.iter().map(|cell| speed(cell.velocity)).collect());
         }
-        let (values, (component, _)) =
-            cell_quantities(layout.tractions).find_map(|quantity| Some((quantity.values, quantity.component(name)?)))?;
+        let (values, (component, _)) = cell_quantities(layout.tractions)
+            .find_map(|quantity| Some((quantity.values, quantity.component(name)?)))?;
         Some(match (values, component) {
             (Values::Number(value, _), _) => self.records.iter().map(value).collect(),
             (Values::Vector(value, _), axis) => {

@@ -6,7 +6,6 @@ use std::sync::OnceLock;
 
 use hdf5::{Dataset, File};
 
-use super::{Layout, Tractions};
 use super::catalogue::{FORCE, List, Run, TRACTION};
 use super::census::Census;
 use super::contacts;
@@ -15,6 +14,7 @@ use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
 use super::systems::SystemScope;
 use super::whole::whole_frames;
+use super::{Layout, Tractions};
 use crate::error::{Error, Fault, Result};
 use crate::recorded::{CONTACTS, SPEED, cell_label, cell_series, cell_unit};
 

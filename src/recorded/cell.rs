@@ -55,7 +55,12 @@ pub enum Values {
     Vector(fn(&CellRecord) -> [f64; 3], [(&'static str, &'static str); 3]),
 }
 
-pub(super) const fn row(dataset: &'static str, unit: &'static str, values: Values, description: &'static str) -> CellQuantity {
+pub(super) const fn row(
+    dataset: &'static str,
+    unit: &'static str,
+    values: Values,
+    description: &'static str,
+) -> CellQuantity {
     CellQuantity { dataset, unit, description, values }
 }
 

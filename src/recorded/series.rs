@@ -42,7 +42,9 @@ mod tests {
         let names: Vec<String> = cell_series(true).collect();
         let of_all: Vec<String> = cell_series(false).collect();
         assert!(of_all.iter().all(|name| names.contains(name) && !name.starts_with("traction")));
-        for name in ["position_x", "size_z", "principal_1", "velocity_y", "volume", "speed", "traction_x", "traction_dipole"] {
+        for name in
+            ["position_x", "size_z", "principal_1", "velocity_y", "volume", "speed", "traction_x", "traction_dipole"]
+        {
             assert!(names.iter().any(|known| known == name), "{name} is missing from {names:?}");
         }
         for (number, name) in names.iter().enumerate() {

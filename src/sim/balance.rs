@@ -43,6 +43,9 @@ impl AtomBalance {
 
     /// The sum of the sizes of all of them, pN: what [`left`](Self::left) is small beside.
     pub fn size(&self) -> f64 {
-        [self.traction, self.of_cells, self.drag, self.outer, self.inertia].map(|force| Vec3::from(force).norm()).iter().sum()
+        [self.traction, self.of_cells, self.drag, self.outer, self.inertia]
+            .map(|force| Vec3::from(force).norm())
+            .iter()
+            .sum()
     }
 }

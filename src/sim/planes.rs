@@ -94,7 +94,16 @@ impl TouchScratch {
         for array in [&mut self.columns, &mut self.pressures, &mut self.system, &mut c.x, &mut c.first] {
             array.fill(f64::NAN);
         }
-        for array in [&mut self.reactions, &mut c.pressed, &mut c.gradient, &mut c.swell, &mut c.free, &mut c.moved, &mut c.spare, &mut c.spare2] {
+        for array in [
+            &mut self.reactions,
+            &mut c.pressed,
+            &mut c.gradient,
+            &mut c.swell,
+            &mut c.free,
+            &mut c.moved,
+            &mut c.spare,
+            &mut c.spare2,
+        ] {
             array.fill(f64::NAN);
         }
         let copies = &mut self.copies;

@@ -33,7 +33,8 @@ impl Write for Fnv {
 
 /// The fingerprint of a model: of all that decides the course of a state, and of nothing that follows from the rest.
 pub fn fingerprint(model: &Model) -> u64 {
-    let Model { seed, kinds, planes, contact, chemistry, integrator, until, kinks: _, changes, keeps_tractions } = model;
+    let Model { seed, kinds, planes, contact, chemistry, integrator, until, kinks: _, changes, keeps_tractions } =
+        model;
     let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
     hash.value(&(seed, integrator, until, planes, changes, keeps_tractions));
     kinds.iter().for_each(|kind| add_kind(&mut hash, kind));

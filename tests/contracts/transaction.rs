@@ -147,7 +147,8 @@ fn a_stage_of_chemistry_that_fails_leaves_every_byte() {
     // Links: the last one, when all others have been carried.
     let mut wrong = model.clone();
     let last = wrong.chemistry.links.last_mut().unwrap();
-    (last.transfer, last.gain) = (Expr::Number(f64::NAN), 1.0);
+    // The transfer of what a membrane shows is worked out there.
+    (last.transfer, last.gain) = (Expr::Number(f64::NAN), f64::NAN);
     fails("links", &wrong, &state, &mut ws, |trouble| matches!(trouble, Trouble::Link { .. }));
     // The volume of a cell one of whose atoms is put far away.
     let mut torn = model.clone();
@@ -160,7 +161,7 @@ fn the_start_of_chemistry_is_a_transaction_too() {
     let (mut model, state) = everything(None, "0.3 s");
     let (before, mut ws) = (bytes(&state), Workspace::new(&model));
     let good = model.clone();
-    model.chemistry.links.last_mut().unwrap().transfer = Expr::Number(f64::NAN);
+    model.chemistry.links.last_mut().unwrap().gain = f64::NAN;
     let mut tried = state.clone();
     assert!(matches!(begin_chemistry(&model, &mut tried, &mut ws), Err(Trouble::Link { .. })));
     assert!(bytes(&tried) == before);
@@ -177,7 +178,7 @@ fn the_start_of_chemistry_is_a_transaction_too() {
 fn a_failed_step_does_not_change_those_that_follow() {
     let (model, state, mut ws) = scene(None);
     let mut wrong = model.clone();
-    wrong.chemistry.links.last_mut().unwrap().transfer = Expr::Number(f64::NAN);
+    wrong.chemistry.links.last_mut().unwrap().gain = f64::NAN;
     let (mut plain, mut tried, mut other) = (state.clone(), state, Workspace::new(&model));
     for _ in 0..5 {
         step(&model, &mut plain, &mut ws).unwrap();

@@ -5,7 +5,9 @@ use crate::contact_scenes::Scene;
 use pseudopod::Vec3;
 use pseudopod::experiment::{Compiled, Document, compile};
 use pseudopod::mechanics::Force;
-use pseudopod::sim::{AtomBalance, Kind, Model, NewCell, State, Workspace, add_cells, begin_chemistry, remove_cells, step};
+use pseudopod::sim::{
+    AtomBalance, Kind, Model, NewCell, State, Workspace, add_cells, begin_chemistry, remove_cells, step,
+};
 use pseudopod::simulation::Simulation;
 
 /// What the sum over a cell may leave, over the sum of the sizes: contacts carry forces of seven digits.
@@ -138,7 +140,8 @@ fn over_each_cell_the_forces_from_outside_add_up_to_nothing_under_every_law() {
 #[test]
 fn the_forces_on_a_crawling_cell_add_up_to_nothing() {
     let glass = |more: &str| format!("[contact]\n{more}[[contact.between]]\ntypes = [\"cell\", \"glass\"]\n");
-    let bonds = "bonds = { density = \"20 /um^2\", on = \"0.05 /s\", off = \"0.001 /s\", force = \"10 pN\", start = 1 }\n";
+    let bonds =
+        "bonds = { density = \"20 /um^2\", on = \"0.05 /s\", off = \"0.001 /s\", force = \"10 pN\", start = 1 }\n";
     let cohesive = format!("{}energy = \"10 pN/um\"\nrange = \"1.5 um\"\nshear_strength = \"100 Pa\"\n", glass(""));
     let laws = [
         ("nothing to grip", String::new()),
@@ -157,7 +160,8 @@ fn the_forces_on_a_crawling_cell_add_up_to_nothing() {
 fn a_cell_at_rest_presses_the_plane_with_its_weight() {
     for contact in ["", "[contact]\n"] {
         let text = pair(contact, "max_step = \"1 s\"").replace("force = \"20 pN\"", "force = \"0 pN\"");
-        let (model, mut state) = built(&text.replace("force = \"15 pN\"", "force = \"0 pN\"").replace("9.9 um", "30 um"));
+        let (model, mut state) =
+            built(&text.replace("force = \"15 pN\"", "force = \"0 pN\"").replace("9.9 um", "30 um"));
         let mut ws = Workspace::new(&model);
         while state.time < 60.0 {
             step(&model, &mut state, &mut ws).unwrap_or_else(|trouble| panic!("{trouble}"));
@@ -284,11 +288,13 @@ fn a_membrane_reads_what_its_atoms_do() {
         <integral id="all">pull</integral><link from="cell.atoms.traction" to="system.pull"/></eml>"#;
     std::fs::write(folder.path().join("skin.eml"), skin).unwrap();
     let text = pair("", "max_step = \"0.1 s\"").replace("tractions = true\n", "");
-    let text = text.replace("[cells.left]\n", "[cells.left]\nchemistry = [\"skin\"]\n") + "[chemistry.skin]\ndocument = \"skin.eml\"\n";
+    let text = text.replace("[cells.left]\n", "[cells.left]\nchemistry = [\"skin\"]\n")
+        + "[chemistry.skin]\ndocument = \"skin.eml\"\n";
     let path = folder.path().join("pair.toml");
     std::fs::write(&path, text).unwrap();
     let mut simulation = Simulation::from_file(&path).unwrap_or_else(|error| panic!("{error}"));
-    let series = |simulation: &Simulation, name: &str| simulation.series(name).unwrap_or_else(|error| panic!("{error}"))[0];
+    let series =
+        |simulation: &Simulation, name: &str| simulation.series(name).unwrap_or_else(|error| panic!("{error}"))[0];
     assert_eq!(series(&simulation, "skin.all"), 0.0, "nothing before the first step");
     // Until shapes stand still: an integral is as old as the step that it was taken in, and tractions are read where that ends.
     simulation.run_until(40.0).unwrap_or_else(|error| panic!("{error}"));

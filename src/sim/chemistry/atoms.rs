@@ -133,7 +133,8 @@ fn read(
                 let own = now.balance.get(cell * atoms..(cell + 1) * atoms).unwrap_or_default();
                 // Before the first step there is none.
                 let forces = own.iter().map(of_atom).chain(std::iter::repeat(0.0));
-                numbers.extend(shapes.areas.iter().zip(forces).map(|(area, force)| force / area.max(f64::MIN_POSITIVE)));
+                numbers
+                    .extend(shapes.areas.iter().zip(forces).map(|(area, force)| force / area.max(f64::MIN_POSITIVE)));
             }
             AtomReading::AreaStrain => {
                 shapes.take(&kind.rest.facets, positions);
