@@ -15,7 +15,7 @@ pub struct TractionRecord {
     pub inertia: [f64; 3],
     /// Sum of the sizes of the forces of its atoms on planes, pN.
     pub total: f64,
-    /// Trace of the first moment of these forces, pN·µm, below 0 where the cell draws what it stands on together.
+    /// Trace of the first moment of these forces along the first plane, pN·µm, below 0 where the cell draws what it stands on together.
     pub dipole: f64,
     /// Principal values of the symmetric part of that moment, the lowest first, pN·µm.
     pub moment: [f64; 3],

@@ -20,7 +20,7 @@ pub const TRACTION: &[CellQuantity] = &[
     row("/cells/traction_total", "pN", Number(|c| c.traction.total, "total traction"),
         "Sum of the sizes of the forces of the atoms on planes."),
     row("/cells/traction_dipole", "pN um", Number(|c| c.traction.dipole, "traction dipole"),
-        "Trace of the first moment of the forces of the atoms on planes; below 0 where the cell draws what it stands on together."),
+        "Trace of the first moment, along the first plane, of the forces of the atoms on planes; below 0 where the cell draws what it stands on together."),
     row("/cells/traction_moment", "pN um", Vector(|c| c.traction.moment, [("1", "lowest moment of traction"), ("2", "middle moment of traction"), ("3", "highest moment of traction")]),
         "Principal values of the symmetric part of that moment, lowest first."),
     row("/cells/traction_axis", "1", Vector(|c| c.traction.axis, [("x", "axis of traction, x"), ("y", "axis of traction, y"), ("z", "axis of traction, z")]),

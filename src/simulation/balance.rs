@@ -10,6 +10,7 @@ use crate::sim::{AtomBalance, Model, State};
 /// Writes what the atoms of all cells did in the last step, and the sums over each cell; nothing before the first step.
 pub fn record_tractions(model: &Model, state: &State, frame: &mut Frame) {
     let mut all = Tractions::default();
+    let up = model.planes.first().map(|plane| plane.normal);
     let mut first_cell = 0;
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
         for cell in 0..now.cells() {
@@ -20,7 +21,7 @@ pub fn record_tractions(model: &Model, state: &State, frame: &mut Frame) {
                 None => (0..kind.atoms()).for_each(|_| all.push(&AtomBalance::NONE)),
             }
             let atoms = first_atom..all.traction.len();
-            frame.records[first_cell + cell].traction = of_cell(all.cut(atoms.clone()), &frame.positions[atoms]);
+            frame.records[first_cell + cell].traction = of_cell(all.cut(atoms.clone()), &frame.positions[atoms], up);
         }
         first_cell += now.cells();
     }
@@ -42,11 +43,18 @@ impl Tractions {
     }
 }
 
-/// Sums of the forces of the atoms of a cell, and the moment of its traction, eq. (traction.2).
-fn of_cell([traction, of_cells, drag, outer, inertia]: [&[[f64; 3]]; 5], positions: &[[f64; 3]]) -> TractionRecord {
+/// Sums of the forces of the atoms of a cell, and the moment of its traction along what it stands on, whose normal is `up`, eq.
+/// (traction.2).
+fn of_cell(
+    [traction, of_cells, drag, outer, inertia]: [&[[f64; 3]]; 5],
+    positions: &[[f64; 3]],
+    up: Option<Vec3>,
+) -> TractionRecord {
     let sum = |forces: &[[f64; 3]]| <[f64; 3]>::from(forces.iter().map(|force| Vec3::from(*force)).sum::<Vec3>());
-    let pulls = || traction.iter().zip(positions).map(|(force, x)| (Vec3::from(*force), Vec3::from(*x)));
-    let total: f64 = pulls().map(|(force, _)| force.norm()).sum();
+    let along = |vector: Vec3| up.map_or(vector, |up| vector - vector.dot(&up) * up);
+    let pulls = || traction.iter().zip(positions).map(|(force, x)| (along(Vec3::from(*force)), along(Vec3::from(*x))));
+    let total = traction.iter().map(|force| Vec3::from(*force).norm()).sum();
+    let whole: f64 = pulls().map(|(force, _)| force.norm()).sum();
     let mut record = TractionRecord {
         traction: sum(traction),
         of_cells: sum(of_cells),
@@ -56,8 +64,8 @@ fn of_cell([traction, of_cells, drag, outer, inertia]: [&[[f64; 3]]; 5], positio
         total,
         ..TractionRecord::default()
     };
-    if total > 0.0 {
-        let centre = pulls().map(|(force, x)| force.norm() * x).sum::<Vec3>() / total;
+    if whole > 0.0 {
+        let centre = pulls().map(|(force, x)| force.norm() * x).sum::<Vec3>() / whole;
         let moment: Matrix3<f64> = pulls().map(|(force, x)| (x - centre) * force.transpose()).sum();
         let axes = SymmetricEigen::new(0.5 * (moment + moment.transpose()));
         let mut order = [0, 1, 2];
@@ -81,10 +89,14 @@ mod tests {
         let traction = [[pull, 0.0, 0.0], [-pull, 0.0, 0.0], [0.0; 3]];
         let positions = [[-2.0, 1.0, 0.0], [-2.0 + apart, 1.0, 0.0], [0.0, 9.0, 5.0]];
         let none = [[0.0; 3]; 3];
-        let record = of_cell([&traction, &none, &none, &none, &none], &positions);
+        let record = of_cell([&traction, &none, &none, &none, &none], &positions, None);
         assert_eq!((record.total, record.dipole, record.traction), (2.0 * pull, -pull * apart, [0.0; 3]));
         assert_eq!((record.moment, record.axis), ([-pull * apart, 0.0, 0.0], [1.0, 0.0, 0.0]));
-        let still = of_cell([&none, &none, &none, &none, &none], &positions);
+        // Along a plane what presses on it counts in the total alone.
+        let pressed = [[pull, 0.0, -4.0], [-pull, 0.0, 4.0], [0.0; 3]];
+        let on_plane = of_cell([&pressed, &none, &none, &none, &none], &positions, Some(Vec3::z()));
+        assert_eq!((on_plane.total, on_plane.dipole), (10.0, -pull * apart));
+        let still = of_cell([&none, &none, &none, &none, &none], &positions, Some(Vec3::z()));
         assert_eq!(still, TractionRecord::default());
     }
 }

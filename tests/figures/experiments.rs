@@ -89,6 +89,11 @@ fn a_cell_crawls_by_pseudopods() {
 }
 
 #[test]
+fn a_crawling_cell_draws_the_glass_together() {
+    experiment_keeps_its_word("traction", "experiment.toml");
+}
+
+#[test]
 fn two_thousand_cells_wander_as_furth_says() {
     experiment_keeps_its_word("random_walk", "experiment.toml");
 }

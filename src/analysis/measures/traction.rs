@@ -40,7 +40,7 @@ pub enum TractionStatistic {
     Front,
     /// The same of those behind it, pN.
     Rear,
-    /// What the quarter in front has of the sizes of all forces.
+    /// What the quarter in front has of the sizes of all forces along the plane.
     FrontShare,
     /// What the two quarters at the sides have.
     SideShare,
@@ -106,7 +106,7 @@ impl Traction {
             TractionStatistic::Balance => left_over(&forces, atoms),
             _ => {
                 let x = positions[atoms.clone()].iter().map(|x| Vec3::from(*x)).collect();
-                let pulls = forces.traction[atoms].iter().map(|force| Vec3::from(*force)).collect();
+                let pulls = forces.traction[atoms].iter().map(|force| along(up, Vec3::from(*force))).collect();
                 let front = Vec3::from(self.direction.unwrap_or([1.0, 0.0, 0.0]));
                 Seen { x, pulls, front, up }.value(self.statistic)
             }
@@ -133,7 +133,12 @@ fn left_over(forces: &Tractions, atoms: std::ops::Range<usize>) -> f64 {
     left.norm() / size
 }
 
-/// A cell that pulls.
+/// The part of a vector along what a cell stands on, whose normal is `up`.
+fn along(up: Option<Vec3>, vector: Vec3) -> Vec3 {
+    up.map_or(vector, |up| vector - vector.dot(&up) * up)
+}
+
+/// A cell that pulls, along what it stands on.
 struct Seen {
     x: Vec<Vec3>,
     pulls: Vec<Vec3>,
@@ -145,8 +150,7 @@ struct Seen {
 impl Seen {
     /// Where an atom is, seen from the middle of the atoms along what the cell stands on.
     fn arm(&self, x: &Vec3, middle: &Vec3) -> Vec3 {
-        let arm = x - middle;
-        self.up.map_or(arm, |up| arm - arm.dot(&up) * up)
+        along(self.up, x - middle)
     }
 
     fn value(&self, statistic: TractionStatistic) -> f64 {
@@ -158,15 +162,15 @@ impl Seen {
             let across = (arm - arm.dot(&front) * front).norm();
             across.atan2(arm.dot(&front)).to_degrees()
         };
-        let along = |is_there: &dyn Fn(f64) -> bool| {
+        let sum = |is_there: &dyn Fn(f64) -> bool| {
             all().filter(|(arm, _)| is_there(arm.dot(&front))).map(|(_, pull)| pull.dot(&front)).sum()
         };
         let share = |is_there: &dyn Fn(f64) -> bool| {
             all().filter(|(arm, _)| is_there(angle(arm))).map(|(_, pull)| pull.norm()).sum::<f64>() / total
         };
         match statistic {
-            TractionStatistic::Front => along(&|ahead| ahead > 0.0),
-            TractionStatistic::Rear => along(&|ahead| ahead < 0.0),
+            TractionStatistic::Front => sum(&|ahead| ahead > 0.0),
+            TractionStatistic::Rear => sum(&|ahead| ahead < 0.0),
             TractionStatistic::FrontShare => share(&|angle| angle < QUARTER),
             TractionStatistic::SideShare => share(&|angle| (QUARTER..=180.0 - QUARTER).contains(&angle)),
             TractionStatistic::RearShare => share(&|angle| angle > 180.0 - QUARTER),

@@ -172,9 +172,9 @@ impl CohesionTable {
     }
 }
 
-/// Notes what a part does to what attracts it: what draws it at its point. What it does besides to its own facet has no sum.
+/// Notes what a part does to what attracts it, with what spreads it along the other: that has no sum, but a moment.
 fn note(patch: &Patch, pull: &PatchPull, noted: &mut ContactTractions) {
-    let own = patch.own.iter().zip(patch.weights).map(|(atom, weight)| (*atom, *weight * pull.drawn));
+    let own = patch.own.into_iter().zip(pull.on_own);
     match patch.other {
         Partner::Plane(_) => own.for_each(|(atom, force)| noted.by_plane(atom, force)),
         Partner::Facet(atoms, _) => {

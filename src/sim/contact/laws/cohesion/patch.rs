@@ -75,8 +75,6 @@ pub struct PatchPull {
     pub on_own: [Vec3; 3],
     /// On those of the other.
     pub on_other: [Vec3; 3],
-    /// What draws the patch at its point, pN: the sum of the forces on its facet.
-    pub drawn: Vec3,
 }
 
 impl Patch {
@@ -157,7 +155,6 @@ impl Patch {
             energy: -0.5 * self.strength * self.range * area * depth,
             on_own: [u * drawn - on_b - on_c, v * drawn + on_b, w * drawn + on_c],
             on_other: weights.map(|weight| -weight * drawn),
-            drawn,
         })
     }
 }
