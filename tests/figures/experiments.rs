@@ -94,6 +94,23 @@ fn a_crawling_cell_draws_the_glass_together() {
 }
 
 #[test]
+fn pseudopods_arise_by_themselves_beside_each_other_and_in_turns() {
+    experiment_keeps_its_word("pseudopods", "experiment.toml");
+}
+
+#[test]
+fn three_cells_follow_the_trace_of_one() {
+    experiment_keeps_its_word("haptotaxis", "experiment.toml");
+}
+
+#[test]
+#[ignore = "slow: half a minute each; the control and the larger group of the test above"]
+fn without_a_trace_none_follows_and_five_follow_as_three_do() {
+    experiment_keeps_its_word("haptotaxis", "control.toml");
+    experiment_keeps_its_word("haptotaxis", "six.toml");
+}
+
+#[test]
 fn two_thousand_cells_wander_as_furth_says() {
     experiment_keeps_its_word("random_walk", "experiment.toml");
 }
