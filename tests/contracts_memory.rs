@@ -125,16 +125,20 @@ fn allocations_of_everything() -> usize {
         .unwrap();
     let (model, start) = everything(Some("0.05 s"), "1000 h");
     pool.install(|| {
-        // Until the cells lie where they stay, as long as their bonds take, and lists of contacts are as long as they become.
-        let (mut state, mut ws) = after(&model, start, 400);
+        // Until the cells lie where they stay, as long as their bonds take, and lists of contacts, and of what may become one, are as long
+        // as they become; with noise in everything that takes a while.
+        let (mut state, mut ws) = after(&model, start, 1000);
         let pulses = |state: &State| -> f64 { (0..3).map(|cell| state.chemistry.populations[0].state(cell, 3)).sum() };
         let contacts = |State { contact, .. }: &State| {
             [contact.atoms.len(), contact.edges.len(), contact.planes.len(), contact.bonds.len()]
         };
+        state.ended_pseudopods.clear();
         let (mut calls, mut counted, mut with_events, mut most, mut since) = (0, 0, 0, contacts(&state), 0);
         for _ in 0..40 {
             let (before, pulsed) = (CALLS.load(Ordering::Relaxed), pulses(&state));
             step(&model, &mut state, &mut ws).unwrap();
+            // As the recorder does now and then: pseudopods that end are kept for the result until then.
+            state.ended_pseudopods.clear();
             let now = contacts(&state);
             since = if (0..4).any(|list| now[list] > most[list]) { 0 } else { since + 1 };
             most = std::array::from_fn(|list| most[list].max(now[list]));

@@ -55,8 +55,8 @@ fn an_atom_reads_the_field_and_the_shape_where_it_is() {
     );
     let (scene, found) = read("normal.z", "1 + value");
     for (x, found) in atoms(&scene, 0).iter().zip(&found) {
-        // An icosphere's normals lie within a degree of the radii at this level: 0.02 of 3.
-        assert!((found - 3.0 * (1.0 + x.z / 5.0)).abs() < 0.06, "{found} at {x}");
+        // The area vectors of an icosphere of this level point up to 1.354° away from the radii: 0.0237, three times that.
+        assert!((found - 3.0 * (1.0 + x.z / 5.0)).abs() < 0.0711, "{found} at {x}");
     }
     let (_, found) = read("curvature", "value");
     assert!(found.iter().all(|found| (found - 3.0 / 5.0).abs() < 0.02), "{found:?}");
