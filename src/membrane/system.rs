@@ -104,8 +104,8 @@ impl MembraneSystem {
         let (surface, inside, start) = (outer(system, &pools), inner(system, &membrane.local), beginning(system));
         let integrands: Vec<Expr> = membrane.totals.iter().map(|total| total.integrand.clone()).collect();
         let variables: Vec<Expr> = on_surface.iter().chain(&pools).map(|number| Expr::Quantity(*number)).collect();
-        let (noisy, strengths) = noise(document, &on_surface);
-        let (strengths, of_pools) = strengths;
+        let [(noisy, strengths), (noisy_pools, of_pools)] = noise(document, &on_surface);
+        let noisy = [noisy, noisy_pools];
         let groups: Vec<Vec<Expr>> =
             [integrands, strengths].into_iter().chain(shown.iter().map(|one| vec![one.clone()])).collect();
         let surface = Program::with(&surface, 0.0, &[], &groups)?;
@@ -209,17 +209,18 @@ impl MembraneSystem {
     }
 }
 
-/// The variables on the surface and the pools that have noise, by their numbers, and its strengths.
-fn noise(document: &Document, on_surface: &[QuantityId]) -> ([Vec<usize>; 2], (Vec<Expr>, Vec<Expr>)) {
+/// Variables that have noise, by their numbers, and its strengths.
+type Noisy = (Vec<usize>, Vec<Expr>);
+
+/// What has noise of the variables on the surface, and of the pools.
+fn noise(document: &Document, on_surface: &[QuantityId]) -> [Noisy; 2] {
     let pools: Vec<QuantityId> =
         document.system.variables().into_iter().filter(|variable| !on_surface.contains(variable)).collect();
-    let of = |variables: &[QuantityId]| -> (Vec<usize>, Vec<Expr>) {
+    [on_surface, pools.as_slice()].map(|variables| {
         let number = |quantity| variables.iter().position(|variable| *variable == quantity);
         let noise = document.noise.iter();
         noise.filter_map(|noise| Some((number(noise.quantity)?, noise.strength.clone()))).unzip()
-    };
-    let ((surface, strengths), (pools, of_pools)) = (of(on_surface), of(&pools));
-    ([surface, pools], (strengths, of_pools))
+    })
 }
 
 /// The system as an atom of the surface sees it: pools are given.

@@ -94,8 +94,14 @@ fn a_crawling_cell_draws_the_glass_together() {
 }
 
 #[test]
-fn pseudopods_arise_by_themselves_beside_each_other_and_in_turns() {
+fn pseudopods_arise_by_themselves_beside_each_other() {
     experiment_keeps_its_word("pseudopods", "experiment.toml");
+}
+
+#[test]
+#[ignore = "slow: four cells, three to four minutes"]
+fn pseudopods_go_left_and_right_in_turns() {
+    experiment_keeps_its_word("pseudopods", "statistics.toml");
 }
 
 #[test]
