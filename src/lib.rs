@@ -15,6 +15,7 @@ pub mod cell;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;
+pub mod elementary;
 pub mod equations;
 pub mod error;
 pub mod experiment;

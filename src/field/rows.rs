@@ -4,7 +4,8 @@
 use std::cell::Cell;
 
 use crate::equations::program::code::{Action, Code, Op};
-use crate::equations::program::{Lanes, Program, math, run};
+use crate::elementary;
+use crate::equations::program::{Lanes, Program, run};
 use crate::equations::tree::{Binary, Unary};
 
 /// Boxes in a row.
@@ -149,8 +150,8 @@ fn plain(op: &Op, file: Row) {
         Action::Unary(Unary::Neg) => one(a, to, #[inline(always)] |a| -a),
         Action::Unary(Unary::Abs) => one(a, to, #[inline(always)] |a| a.abs()),
         Action::Unary(Unary::Sqrt) => one(a, to, #[inline(always)] |a| a.sqrt()),
-        Action::Unary(Unary::Exp) => one(a, to, #[inline(always)] |a| math::exp(a)),
-        Action::Unary(Unary::Ln) => one(a, to, #[inline(always)] |a| math::ln(a)),
+        Action::Unary(Unary::Exp) => one(a, to, #[inline(always)] |a| elementary::exp(a)),
+        Action::Unary(Unary::Ln) => one(a, to, #[inline(always)] |a| elementary::ln(a)),
         Action::MulAdd => three(a, b, row(file, op.c), to, #[inline(always)] |a, b, c| a * b + c),
         Action::MulSub => three(a, b, row(file, op.c), to, #[inline(always)] |a, b, c| a * b - c),
         Action::SubMul => three(a, b, row(file, op.c), to, #[inline(always)] |a, b, c| c - a * b),

@@ -161,29 +161,9 @@ pub fn rates<const L: usize>(
     atoms: Atoms<L>,
     open: &[[f64; L]],
     registers: &mut Registers,
-    (surface, pools): (&mut [[f64; L]], &mut [[f64; L]]),
+    rates: (&mut [[f64; L]], &mut [[f64; L]]),
 ) {
-    let (program, code) = (&system.surface, &system.surface.rates);
-    fill(program, &system.slots, cell, open, &mut registers.surface);
-    let (rates, length) = (surface.as_flattened_mut(), atoms.coordinates.len() / 3 * L);
-    sweep((program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
-        for (variable, &output) in code.outputs.iter().enumerate() {
-            let row = &mut rates[variable * length..][..length][numbers.clone()];
-            row.copy_from_slice(&file[output as usize][..row.len()]);
-        }
-    });
-    if pools.is_empty() {
-        return;
-    }
-    let (program, file) = (&system.inside, &mut registers.inside);
-    file[0] = spread(&cell.time);
-    for (register, value) in file[1..].iter_mut().zip(cell.pools.iter().chain(open)) {
-        *register = spread(value);
-    }
-    run(&program.rates, file);
-    for (rate, &output) in pools.iter_mut().zip(&program.rates.outputs) {
-        rate.copy_from_slice(&file[output as usize][..L]);
-    }
+    work_out(system, (&system.surface.rates, &system.inside.rates), cell, atoms, open, registers, rates);
 }
 
 /// Strengths of noise, of each variable that has it at all atoms, `[variable][atom]`, and of each such pool.
@@ -194,30 +174,45 @@ pub fn strengths<const L: usize>(
     atoms: Atoms<L>,
     open: &[[f64; L]],
     registers: &mut Registers,
-    (surface, pools): (&mut [[f64; L]], &mut [[f64; L]]),
+    strengths: (&mut [[f64; L]], &mut [[f64; L]]),
 ) {
-    let (program, code) = (&system.surface, &system.surface.further[1]);
-    fill(program, &system.slots, cell, open, &mut registers.surface);
-    let (strengths, length) = (surface.as_flattened_mut(), atoms.coordinates.len() / 3 * L);
-    if !code.outputs.is_empty() {
-        sweep((program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
-            for (variable, &output) in code.outputs.iter().enumerate() {
-                let row = &mut strengths[variable * length..][..length][numbers.clone()];
+    let codes = (&system.surface.further[1], &system.inside.further[0]);
+    work_out(system, codes, cell, atoms, open, registers, strengths);
+}
+
+/// Numbers of all atoms, `[number][atom]`, and of the inside of each cell.
+#[inline(always)]
+fn work_out<const L: usize>(
+    system: &MembraneSystem,
+    (on_surface, of_inside): (&Code, &Code),
+    cell: &Cell<L>,
+    atoms: Atoms<L>,
+    open: &[[f64; L]],
+    registers: &mut Registers,
+    (surface, inside): (&mut [[f64; L]], &mut [[f64; L]]),
+) {
+    if !on_surface.outputs.is_empty() {
+        let program = &system.surface;
+        fill(program, &system.slots, cell, open, &mut registers.surface);
+        let (numbers, length) = (surface.as_flattened_mut(), atoms.coordinates.len() / 3 * L);
+        sweep((program, on_surface, &system.slots), atoms, &mut registers.surface, |part, file| {
+            for (number, &output) in on_surface.outputs.iter().enumerate() {
+                let row = &mut numbers[number * length..][..length][part.clone()];
                 row.copy_from_slice(&file[output as usize][..row.len()]);
             }
         });
     }
-    let (code, file) = (&system.inside.further[0], &mut registers.inside);
-    if code.outputs.is_empty() {
+    if of_inside.outputs.is_empty() {
         return;
     }
+    let file = &mut registers.inside;
     file[0] = spread(&cell.time);
     for (register, value) in file[1..].iter_mut().zip(cell.pools.iter().chain(open)) {
         *register = spread(value);
     }
-    run(code, file);
-    for (strength, &output) in pools.iter_mut().zip(&code.outputs) {
-        strength.copy_from_slice(&file[output as usize][..L]);
+    run(of_inside, file);
+    for (number, &output) in inside.iter_mut().zip(&of_inside.outputs) {
+        number.copy_from_slice(&file[output as usize][..L]);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Standard normal numbers, many side by side, from plain arithmetic: the same bits on every processor and for every number of lanes.
 
 use super::{Purpose, philox, philox_lanes};
+use crate::elementary::{ln, turn};
 
 /// Normal numbers of mean 0 and variance 1 that belong to (seed, purpose, name, counter, cell, element) and to nothing else: each can be
 /// had without any other, eq. (random.2) and (random.3).
@@ -8,49 +9,6 @@ use super::{Purpose, philox, philox_lanes};
 pub struct Normals {
     key: [u32; 2],
 }
-
-/// π/2.
-const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
-/// 1.5·2^52: adding it leaves a whole number in the low bits.
-const ROUND: f64 = 6_755_399_441_055_744.0;
-/// The bits of √½.
-const LOW_MANTISSA: u64 = 0x3FE6_A09E_667F_3BCD;
-/// 2/(2k+1) from k = 11 down to 1: the series of 2·artanh.
-const LN: [f64; 11] = [
-    2.0 / 23.0,
-    2.0 / 21.0,
-    2.0 / 19.0,
-    2.0 / 17.0,
-    2.0 / 15.0,
-    2.0 / 13.0,
-    2.0 / 11.0,
-    2.0 / 9.0,
-    2.0 / 7.0,
-    2.0 / 5.0,
-    2.0 / 3.0,
-];
-/// ±1/(2k+1)! from k = 8 down to 1.
-const SIN: [f64; 8] = [
-    1.0 / 355_687_428_096_000.0,
-    -1.0 / 1_307_674_368_000.0,
-    1.0 / 6_227_020_800.0,
-    -1.0 / 39_916_800.0,
-    1.0 / 362_880.0,
-    -1.0 / 5_040.0,
-    1.0 / 120.0,
-    -1.0 / 6.0,
-];
-/// ±1/(2k)! from k = 8 down to 1.
-const COS: [f64; 8] = [
-    1.0 / 20_922_789_888_000.0,
-    -1.0 / 87_178_291_200.0,
-    1.0 / 479_001_600.0,
-    -1.0 / 3_628_800.0,
-    1.0 / 40_320.0,
-    -1.0 / 720.0,
-    1.0 / 24.0,
-    -1.0 / 2.0,
-];
 
 impl Normals {
     /// The numbers of what has this name, written in parts.
@@ -95,60 +53,12 @@ fn one_to_two(high: u32, low: u32) -> f64 {
     f64::from_bits((u64::from(high) << 32 | u64::from(low)) >> 12 | 1.0_f64.to_bits())
 }
 
-/// The natural logarithm of a number in (0, 1] that is no smaller than 2^-52.
-#[inline(always)]
-fn ln(x: f64) -> f64 {
-    let bits = x.to_bits();
-    // The mantissa from √½ to √2, so that the series is short and nothing cancels near 1.
-    let exponent = (bits.wrapping_sub(LOW_MANTISSA) as i64) >> 52;
-    let mantissa = f64::from_bits(bits.wrapping_sub((exponent << 52) as u64));
-    let s = (mantissa - 1.0) / (mantissa + 1.0);
-    let square = s * s;
-    let mut series = LN[0];
-    for &coefficient in &LN[1..] {
-        series = series * square + coefficient;
-    }
-    f64::from(exponent as i32) * std::f64::consts::LN_2 + (2.0 * s + s * square * series)
-}
-
-/// Cosine and sine of a share, from 0 to 1, of a whole turn.
-#[inline(always)]
-fn turn(share: f64) -> [f64; 2] {
-    let shifted = 4.0 * share + ROUND;
-    let quarter = shifted.to_bits();
-    let r = (4.0 * share - (shifted - ROUND)) * QUARTER;
-    let square = r * r;
-    let (mut sin, mut cos) = (SIN[0], COS[0]);
-    for k in 1..SIN.len() {
-        (sin, cos) = (sin * square + SIN[k], cos * square + COS[k]);
-    }
-    let (sin, cos) = (r + r * square * sin, 1.0 + square * cos);
-    let (along, across) = if quarter & 1 == 0 { (cos, sin) } else { (sin, cos) };
-    let signed = |value: f64, sign: u64| f64::from_bits(value.to_bits() ^ (sign & 2) << 62);
-    [signed(along, quarter.wrapping_add(1)), signed(across, quarter)]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn normals(seed: u64, id: &str) -> Normals {
         Normals::new(seed, Purpose::Noise, &["system", id])
-    }
-
-    #[test]
-    fn logarithm_and_turns_are_those_of_the_standard_library() {
-        for k in 1..100_000 {
-            let x = f64::from(k) / 100_000.0;
-            let (found, exact) = (ln(x), x.ln());
-            assert!((found - exact).abs() <= 4.0 * f64::EPSILON * exact.abs(), "ln {x}: {found}, not {exact}");
-            let ([cos, sin], angle) = (turn(x), std::f64::consts::TAU * x);
-            // The angle itself is rounded.
-            let close = 4.0 * f64::EPSILON * (1.0 + angle);
-            assert!((cos - angle.cos()).abs() <= close && (sin - angle.sin()).abs() <= close, "a turn by {x}");
-        }
-        assert_eq!((ln(1.0), turn(0.0)), (0.0, [1.0, 0.0]));
-        assert!((ln(f64::EPSILON) / f64::EPSILON.ln() - 1.0).abs() < 1e-15);
     }
 
     #[test]

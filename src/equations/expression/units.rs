@@ -130,6 +130,11 @@ impl Unit {
                 self.times(&found.to_the(-1.0)).text()
             );
         }
+        // A unit has whole powers where it is written.
+        if self.written.iter().any(|(_, power)| power.fract() != 0.0) {
+            let square = self.to_the(2.0).text();
+            return format!("make it the root of a quantity, `sqrt(q)` with q in {square}, or correct the units of its parts");
+        }
         format!("make it a quantity in {}, or correct the units of its parts", self.text())
     }
 }

@@ -8,7 +8,6 @@ pub mod code;
 mod derivative;
 pub mod graph;
 mod initial;
-pub mod math;
 mod run;
 mod simplify;
 

@@ -1,7 +1,7 @@
 //! Runs register code over lanes of cells.
 
 use super::code::{Action, Code};
-use super::math;
+use crate::elementary;
 use crate::equations::tree::{Binary, Unary, larger, smaller};
 
 /// One number for each of `L` cells.
@@ -86,8 +86,8 @@ pub fn run<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
                 Unary::Sign => map(a, |a| truth(a > 0.0) - truth(a < 0.0)),
                 Unary::Sqrt => map(a, f64::sqrt),
                 Unary::Heaviside => map(a, |a| truth(a >= 0.0)),
-                Unary::Exp => map(a, math::exp),
-                Unary::Ln => map(a, math::ln),
+                Unary::Exp => map(a, elementary::exp),
+                Unary::Ln => map(a, elementary::ln),
                 _ => {
                     let mut result = *a;
                     one_by_one(|value| function.apply(value), &mut result);
