@@ -31,11 +31,12 @@ fn keep_free_positions(to: &State, ws: &mut Workspace) {
 /// Moves atoms that stand where the step begins.
 fn move_atoms(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut Workspace) {
     let (start, controls) = (from.time, &from.chemistry.controls);
-    let share = if model.integrator.method == Method::Verlet { 0.5 } else { 1.0 };
-    match model.integrator.method {
-        Method::RungeKutta4 => return runge_kutta(model, dt, from, to, ws),
-        _ => sum_forces(model, (start, share), controls, &to.kinds, ws),
+    if model.integrator.method == Method::RungeKutta4 {
+        return runge_kutta(model, dt, from, to, ws);
     }
+    // Verlet moves by the mean of the forces where the step begins and where it ends.
+    let share = if model.integrator.method == Method::Verlet { 0.5 } else { 1.0 };
+    sum_forces(model, (start, share), controls, &to.kinds, ws);
     match model.integrator.method {
         Method::Explicit => each(model, to, ws, |kind, x, _, f| {
             let mobility = dt / kind.drag;

@@ -56,7 +56,7 @@ pub(crate) use history::passed;
 pub use id::CellId;
 pub use population::NewCell;
 pub(crate) use record::{Recorder, layout_of};
-pub use series::EndedRun;
+pub use series::{EndedPseudopod, EndedRun};
 pub use snapshot::Snapshot;
 pub use stepping::Simulation;
 

@@ -6,6 +6,7 @@ use super::id::CellId;
 use super::record::{Recorder, outline_of};
 use super::snapshot::{Snapshot, unknown};
 use super::stepping::Simulation;
+use crate::cell::pseudopods;
 use crate::output::{Frame, SeriesInfo};
 
 /// A run of Brownian motility that ended.
@@ -17,6 +18,23 @@ pub struct EndedRun {
     pub time: f64,
     /// How long it lasted, s.
     pub duration: f64,
+}
+
+/// A pseudopod whose protrusion ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndedPseudopod {
+    /// Whose.
+    pub cell: CellId,
+    /// When it ended, s.
+    pub time: f64,
+    /// How long it was pushed, s.
+    pub lifetime: f64,
+    /// Unit vector to which it pointed.
+    pub direction: [f64; 3],
+    /// Angle from the one before, rad; none of the first of a cell.
+    pub turn: Option<f64>,
+    /// The side to which it split off from the one before: 1 left, -1 right, 0 where it started anew.
+    pub side: i8,
 }
 
 impl Simulation {
@@ -100,6 +118,17 @@ impl Simulation {
         let runs = std::mem::take(&mut self.state.ended_runs);
         let run = |(cell, time, duration)| EndedRun { cell: CellId::new(cell), time, duration };
         runs.into_iter().map(run).collect()
+    }
+
+    /// The pseudopods of `[cells.NAME.pseudopods]` whose protrusion ended since this was asked last. They are part of the state and of
+    /// checkpoints until they are taken.
+    pub fn take_ended_pseudopods(&mut self) -> Vec<EndedPseudopod> {
+        let pods = std::mem::take(&mut self.state.ended_pseudopods);
+        let told = |(cell, time, pod): (u64, f64, pseudopods::EndedPseudopod)| {
+            let pseudopods::EndedPseudopod { lifetime, direction, turn, side } = pod;
+            EndedPseudopod { cell: CellId::new(cell), time, lifetime, direction, turn, side }
+        };
+        pods.into_iter().map(told).collect()
     }
 
     /// Keeps what is to be kept after a step that began at `before`, s.

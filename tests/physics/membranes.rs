@@ -1,24 +1,7 @@
 //! Substances on membranes: they spread, react, are diluted and exchanged as the equations of the book say.
 
-use crate::coupled_scene::{Scene, crowd, scene};
+use crate::coupled_scene::{Scene, crowd, scene, sphere};
 use pseudopod::membrane::MembraneCells;
-
-/// One cell, a sphere of radius 5 µm, that has the system `own`; steps of a fixed size.
-fn sphere(level: usize, until: &str, step: &str) -> String {
-    format!(
-        r#"
-[run]
-until = "{until}"
-integrator = {{ step = "{step}" }}
-[output]
-every = "{until}"
-[cells.cell]
-mesh = {{ shape = "icosphere", radius = "5 um", level = {level} }}
-mechanics = {{ drag = "20 pN s/um", shape_memory = {{ shape_modulus = "10 pN/um" }} }}
-chemistry = ["own"]
-"#
-    )
-}
 
 fn surfaces(scene: &Scene) -> &MembraneCells {
     &scene.state().chemistry.membranes[0].kinds[0]

@@ -1,25 +1,8 @@
 //! Noise at all four levels, as documents have it.
 
-use crate::coupled_scene::{Scene, crowd, scene};
+use crate::coupled_scene::{Scene, crowd, scene, sphere};
 use pseudopod::membrane::MembraneCells;
 use pseudopod::sim::{add_cells, remove_cells};
-
-/// One cell at rest, a sphere of radius 5 µm, that has the system `own`.
-fn sphere(level: usize, until: &str) -> String {
-    format!(
-        r#"
-[run]
-until = "{until}"
-integrator = {{ step = "0.5 s" }}
-[output]
-every = "{until}"
-[cells.cell]
-mesh = {{ shape = "icosphere", radius = "5 um", level = {level} }}
-mechanics = {{ drag = "20 pN s/um", shape_memory = {{ shape_modulus = "10 pN/um" }} }}
-chemistry = ["own"]
-"#
-    )
-}
 
 fn surfaces(scene: &Scene) -> &MembraneCells {
     &scene.state().chemistry.membranes[0].kinds[0]
@@ -44,7 +27,7 @@ const ON_SURFACE: &str = r#"<eml name="own" level="membrane" time_unit="s">
 fn noise_of_a_membrane_has_the_variance_of_white_noise_on_any_mesh() {
     for level in [1, 2, 3] {
         let (steps, h) = (250, 0.5);
-        let mut scene = scene(&[("own", ON_SURFACE)], &sphere(level, "1000 s"));
+        let mut scene = scene(&[("own", ON_SURFACE)], &sphere(level, "1000 s", "0.5 s"));
         scene.begin();
         let atoms = scene.compiled.model.kinds[0].atoms();
         let (mut of_means, mut of_atoms, mut of_pool) = (0.0, 0.0, 0.0);
@@ -82,7 +65,7 @@ fn diffusion_moves_noise_and_changes_no_mean() {
         )
     };
     let run = |diffusion: &str| {
-        let mut scene = scene(&[("own", &own(diffusion))], &sphere(2, "1000 s"));
+        let mut scene = scene(&[("own", &own(diffusion))], &sphere(2, "1000 s", "0.5 s"));
         for _ in 0..20 {
             scene.step().unwrap();
         }
@@ -213,7 +196,7 @@ fn noise_that_is_no_number_ends_the_step_and_leaves_the_state() {
     let skin =
         r#"<eml name="own" level="membrane"><variable id="u" initial="1" rate="0" noise="sqrt(0.75 - time)"/></eml>"#;
     for own in [cell, skin] {
-        let mut scene = scene(&[("own", own)], &sphere(1, "1000 s"));
+        let mut scene = scene(&[("own", own)], &sphere(1, "1000 s", "0.5 s"));
         let told = scene.until_trouble().to_string();
         assert!(scene.state().step == 2 && told.contains("no longer a finite number"), "{told}");
     }

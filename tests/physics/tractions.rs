@@ -178,6 +178,37 @@ fn a_cell_at_rest_presses_the_plane_with_its_weight() {
     }
 }
 
+/// Torques about the middle of a cell, over the sum of the sizes of forces times arms: those of forces from outside.
+fn twisted(kind: &Kind, positions: &[Vec3], atoms: &[AtomBalance]) -> f64 {
+    let middle = positions.iter().sum::<Vec3>() / kind.atoms() as f64;
+    let (mut torque, mut size) = (Vec3::zeros(), 0.0);
+    for (x, atom) in positions.iter().zip(atoms) {
+        torque += (x - middle).cross(&atom.left());
+        size += (x - middle).norm() * atom.size();
+    }
+    torque.norm() / size
+}
+
+#[test]
+fn the_forces_on_cells_at_rest_have_no_torque_so_that_each_is_told_where_it_acts() {
+    // Pushed at each other and held by what they stick to. What a cell does to itself has no torque either, where it stands still.
+    for (law, contact) in [("cohesion", COHESION), ("adhesives", ADHESIVES), ("penalty", PENALTY)] {
+        let (model, mut state) = built(&pair(contact, "max_step = \"1 s\""));
+        let mut ws = Workspace::new(&model);
+        while state.time < 99.0 {
+            step(&model, &mut state, &mut ws).unwrap_or_else(|trouble| panic!("{trouble}"));
+        }
+        for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+            let drag: f64 = now.balance.iter().map(|atom| Vec3::from(atom.drag).norm()).sum();
+            let size: f64 = now.balance.iter().map(AtomBalance::size).sum();
+            let twisted = twisted(kind, &now.cell(kind, 0), &now.balance);
+            println!("{law}: torque {twisted}, drag {} of all forces", drag / size);
+            // What still moves: the implicit step answers as much of the forces as the drag takes, by a stiffness that knows no turns.
+            assert!(twisted < LEFT + drag / size, "{law}: {twisted}, drag {}", drag / size);
+        }
+    }
+}
+
 #[test]
 fn a_cell_that_is_pulled_through_the_medium_feels_its_drag_and_nothing_else() {
     let text = pair("", "max_step = \"0.1 s\"").replace("5.02 um", "50 um").replace("-1 um/s^2", "0 um/s^2");

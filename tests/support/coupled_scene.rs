@@ -99,6 +99,11 @@ impl Scene {
 
 /// A sphere of 42 atoms that has the system `own`; steps of a fixed size.
 pub fn one_cell(until: &str, step: &str) -> String {
+    sphere(1, until, step)
+}
+
+/// A sphere of radius 5 µm, of a level of the icosphere, that has the system `own`; steps of a fixed size.
+pub fn sphere(level: usize, until: &str, step: &str) -> String {
     format!(
         r#"
 [run]
@@ -107,7 +112,7 @@ integrator = {{ step = "{step}" }}
 [output]
 every = "{until}"
 [cells.cell]
-mesh = {{ shape = "icosphere", radius = "5 um", level = 1 }}
+mesh = {{ shape = "icosphere", radius = "5 um", level = {level} }}
 mechanics = {{ drag = "20 pN s/um", shape_memory = {{ shape_modulus = "10 pN/um" }} }}
 chemistry = ["own"]
 "#

@@ -20,6 +20,12 @@ pub trait Declared {
     /// Whether it is recorded how cells pull at what they touch.
     fn records_tractions(&self) -> bool;
 
+    /// Whether cells of a type, or of any, have explicit pseudopods.
+    fn has_pseudopods(&self, kind: Option<&str>) -> bool;
+
+    /// Notes a fault if a quantity, SYSTEM.QUANTITY, is of a system that is not there.
+    fn system_of(&mut self, key: &str, quantity: &str);
+
     /// Notes a fault at a key.
     fn fault(&mut self, key: &str, label: &str, message: String, help: &str);
 

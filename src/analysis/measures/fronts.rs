@@ -38,6 +38,7 @@ pub struct Fronts {
 
 impl Fronts {
     pub(super) fn check(&self, at: &mut dyn Declared) {
+        at.system_of("of", &self.of);
         at.stretch(self.from, self.to);
         at.direction("axis", self.axis);
         if let Some(lasting) = self.lasting {

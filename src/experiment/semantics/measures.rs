@@ -38,6 +38,23 @@ impl Declared for InDocument<'_, '_> {
         self.check.document.experiment.output.tractions
     }
 
+    fn has_pseudopods(&self, kind: Option<&str>) -> bool {
+        let cells = &self.check.document.experiment.cells;
+        cells.iter().any(|(name, cell)| kind.is_none_or(|kind| kind == name) && cell.pseudopods.is_some())
+    }
+
+    fn system_of(&mut self, key: &str, quantity: &str) {
+        let path = self.of(key);
+        match quantity.split_once('.') {
+            Some((system, _)) => self.check.system(&path, system),
+            None => {
+                let message = format!("`{path}` is \"{quantity}\", which is no SYSTEM.VARIABLE");
+                let help = "write the name of the system in [chemistry], a dot, and the variable on its membrane";
+                self.check.fault(&path, "no system", message, help);
+            }
+        }
+    }
+
     fn fault(&mut self, key: &str, label: &str, message: String, help: &str) {
         self.check.fault(&self.of(key), label, message, help);
     }
