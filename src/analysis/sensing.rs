@@ -62,7 +62,8 @@ impl Receptors {
 pub fn choice_index(preference: f64, candidates: u32) -> f64 {
     // Means over the circle of w exp(−t w) cos θ and of exp(−t w), w = exp(κ (cos θ − 1)): the midpoint rule, exact to round-off.
     const ANGLES: usize = 256;
-    let cosines: [f64; ANGLES] = std::array::from_fn(|k| (std::f64::consts::PI * (k as f64 + 0.5) / ANGLES as f64).cos());
+    let cosines: [f64; ANGLES] =
+        std::array::from_fn(|k| (std::f64::consts::PI * (k as f64 + 0.5) / ANGLES as f64).cos());
     let weights = cosines.map(|cosine| (preference * (cosine - 1.0)).exp());
     // The integral over t in equal steps of ln t: its ends fall off as fast as exp(−t) and t.
     const STEP: f64 = 0.02;
@@ -200,7 +201,11 @@ mod tests {
             .collect();
         let (found, error) =
             (crate::analysis::statistics::mean(&cosines), crate::analysis::statistics::standard_error(&cosines));
-        assert!((found - choice_index(1.25, 8)).abs() < 3.0 * error, "{found} ± {error}, not {}", choice_index(1.25, 8));
+        assert!(
+            (found - choice_index(1.25, 8)).abs() < 3.0 * error,
+            "{found} ± {error}, not {}",
+            choice_index(1.25, 8)
+        );
     }
 
     #[test]

@@ -19,8 +19,12 @@ fn document(changes: &[(&str, &str)]) -> String {
         assert!(text.contains(old), "{old}");
         text = text.replace(old, new);
     }
-    let moments = ["x", "y", "z"].map(|axis| format!("<integral id=\"bound_{axis}\" unit=\"um\">bound*{axis}</integral>"));
-    text.replace("</eml>", &format!("<integral id=\"messengers_z\" unit=\"um\">messenger*z</integral>{}</eml>", moments.concat()))
+    let moments =
+        ["x", "y", "z"].map(|axis| format!("<integral id=\"bound_{axis}\" unit=\"um\">bound*{axis}</integral>"));
+    text.replace(
+        "</eml>",
+        &format!("<integral id=\"messengers_z\" unit=\"um\">messenger*z</integral>{}</eml>", moments.concat()),
+    )
 }
 
 /// Cells at rest where x is 0, in a gradient of so many nM a µm with `c` nM in their middle.
@@ -59,7 +63,11 @@ fn of_cells(scene: &Scene, quantity: &str, number: usize) -> Vec<f64> {
 
 #[test]
 fn more_is_bound_in_front_by_a_sixth_of_the_difference_whatever_the_mesh() {
-    let still = document(&[(" noise=\"sqrt(2*off*in_balance)\"", ""), (" noise=\"sqrt(2*made*in_balance)\"", ""), ("<solver noise_step=\"0.5\"/>", "")]);
+    let still = document(&[
+        (" noise=\"sqrt(2*off*in_balance)\"", ""),
+        (" noise=\"sqrt(2*made*in_balance)\"", ""),
+        ("<solver noise_step=\"0.5\"/>", ""),
+    ]);
     for level in [1, 2, 3] {
         for (c, gradient) in [(50.0, 0.05), (1_000.0, 1.0), (9_000.0, 9.0)] {
             let mut scene = cells(1, level, (c, gradient), &still);
@@ -69,7 +77,10 @@ fn more_is_bound_in_front_by_a_sixth_of_the_difference_whatever_the_mesh() {
             let bound = RECEPTORS.number * RECEPTORS.occupied(c);
             let front = scene.value(0, "bound_x", 0) / RADIUS;
             let expected = RECEPTORS.difference(c, gradient) / 6.0;
-            println!("level {level}, {c} nM: {} of {bound} bound, front {front} of {expected}", scene.value(0, "all_bound", 0));
+            println!(
+                "level {level}, {c} nM: {} of {bound} bound, front {front} of {expected}",
+                scene.value(0, "all_bound", 0)
+            );
             // What bends the curve of occupancy is (gR/c)² = 2.5e-5 of the difference and of what is bound.
             assert!((scene.value(0, "all_bound", 0) / bound - 1.0).abs() < 1e-4);
             assert!((front / expected - 1.0).abs() < 1e-4, "{front}, not {expected}");
@@ -85,7 +96,10 @@ fn more_is_bound_in_front_by_a_sixth_of_the_difference_whatever_the_mesh() {
 fn check_squares(what: &str, values: &[f64], expected: f64) {
     let squares: Vec<f64> = values.iter().map(|value| value * value).collect();
     let (found, error) = (mean(&squares), standard_error(&squares));
-    println!("{what}: {found:.5e} ± {error:.1e}, expected {expected:.5e}: {:.2} standard errors", (found - expected) / error);
+    println!(
+        "{what}: {found:.5e} ± {error:.1e}, expected {expected:.5e}: {:.2} standard errors",
+        (found - expected) / error
+    );
     assert!((found - expected).abs() < 3.0 * error, "{what}: {found} ± {error}, not {expected}");
 }
 
@@ -122,7 +136,8 @@ fn binding_has_the_mean_variance_and_correlation_of_single_molecules_on_any_mesh
         check_squares("number bound", &deviations, single * kicked);
         // A third of the receptors counts along each axis: the mean of (x/R)² over a sphere.
         check_squares("moment", &sides, single * kicked / 3.0);
-        let products: Vec<f64> = deviations.iter().zip(&later).map(|(one, other)| one * other / (single * kicked)).collect();
+        let products: Vec<f64> =
+            deviations.iter().zip(&later).map(|(one, other)| one * other / (single * kicked)).collect();
         let (found, error, expected) = (mean(&products), standard_error(&products), f64::exp(-rate));
         println!("correlation after 1 s: {found:.4} ± {error:.4}, expected {expected:.4}");
         assert!((found - expected).abs() < 3.0 * error);
@@ -147,7 +162,8 @@ fn a_messenger_averages_binding_over_its_life_and_adds_a_noise_of_its_own() {
         scene.step().unwrap();
         if step >= 40 && step % 15 == 0 {
             for axis in ["messengers_x", "messengers_y", "messengers_z"] {
-                moments.extend(of_cells(&scene, axis, number).into_iter().map(|moment| moment / RADIUS / (made * life)));
+                moments
+                    .extend(of_cells(&scene, axis, number).into_iter().map(|moment| moment / RADIUS / (made * life)));
             }
         }
     }
