@@ -32,6 +32,59 @@ impl Receptors {
     }
 }
 
+/// What bound receptors make, and what a cell goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Messenger {
+    /// Rate at which a bound receptor is left, per s.
+    pub off: f64,
+    /// How many a bound receptor makes, per s.
+    pub made: f64,
+    /// Mean life, s.
+    pub life: f64,
+}
+
+impl Receptors {
+    /// Variance of what a cell reads along an axis of where its messenger is, in bound receptors each counted by its part of the radius, eq. (analysis.32).
+    pub fn reading_variance(&self, messenger: &Messenger, concentration: f64) -> f64 {
+        let occupied = self.occupied(concentration);
+        let rate = messenger.off * (1.0 + concentration / self.dissociation);
+        let binding = occupied * (1.0 - occupied) / (1.0 + messenger.life * rate);
+        self.number / 3.0 * (binding + occupied / (messenger.made * messenger.life))
+    }
+
+    /// Signal to noise ratio of that reading on a sphere, eq. (analysis.33): the square of its mean, a sixth of the difference, over its variance. NaN where nothing is bound.
+    pub fn reading_signal_to_noise(&self, messenger: &Messenger, concentration: f64, gradient: f64) -> f64 {
+        (self.difference(concentration, gradient) / 6.0).powi(2) / self.reading_variance(messenger, concentration)
+    }
+}
+
+/// The mean cosine between a cue of the length `preference` and the direction that is taken by it of `candidates` directions in the plane, each anywhere, eq. (analysis.34).
+pub fn choice_index(preference: f64, candidates: u32) -> f64 {
+    // Means over the circle of w exp(−t w) cos θ and of exp(−t w), w = exp(κ (cos θ − 1)): the midpoint rule, exact to round-off.
+    const ANGLES: usize = 256;
+    let cosines: [f64; ANGLES] =
+        std::array::from_fn(|k| (std::f64::consts::PI * (k as f64 + 0.5) / ANGLES as f64).cos());
+    let weights = cosines.map(|cosine| (preference * (cosine - 1.0)).exp());
+    // The integral over t in equal steps of ln t: its ends fall off as fast as exp(−t) and t.
+    const STEP: f64 = 0.02;
+    let lowest = -40.0;
+    let highest = 2.0 * preference.abs() + 5.0;
+    let steps = ((highest - lowest) / STEP) as usize;
+    let integral: f64 = (0..=steps)
+        .map(|step| {
+            let t = (lowest + STEP * step as f64).exp();
+            let (mut part, mut rest) = (0.0, 0.0);
+            for (cosine, weight) in cosines.iter().zip(&weights) {
+                let left = (-t * weight).exp();
+                part += weight * left * cosine;
+                rest += left;
+            }
+            t * part * (rest / ANGLES as f64).powi(candidates as i32 - 1)
+        })
+        .sum();
+    f64::from(candidates) * integral * STEP / ANGLES as f64
+}
+
 /// The mean cosine between the true direction in the plane and one estimated with a signal to noise ratio `s`, eq. (analysis.29): from 0 for no signal to 1.
 pub fn chemotactic_index(s: f64) -> f64 {
     let x = 0.25 * s;
@@ -121,6 +174,38 @@ mod tests {
         // 1 − 1/2s for much signal, √(πs/8) for little.
         assert!((chemotactic_index(1e4) - (1.0 - 0.5e-4)).abs() < 1e-8);
         assert!((chemotactic_index(1e-8) / (std::f64::consts::PI * 1e-8 / 8.0).sqrt() - 1.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn one_of_many_directions_is_nearer_to_the_cue_than_one_of_few() {
+        // One candidate knows nothing of the cue; a weak cue takes 1 − 1/n of what one direction of von Mises' law would have; a strong one the nearest.
+        assert!(choice_index(1.25, 1).abs() < 1e-12);
+        for n in [2, 8, 100] {
+            let weak = choice_index(1e-4, n);
+            assert!((weak / (0.5e-4 * (1.0 - 1.0 / f64::from(n))) - 1.0).abs() < 1e-3, "{n}: {weak}");
+        }
+        let many = scaled_bessel_i(1, 1.25) / scaled_bessel_i(0, 1.25);
+        assert!((choice_index(1.25, 10_000) / many - 1.0).abs() < 1e-3, "von Mises");
+        // The nearest of two on a circle: the angle to it falls off linearly, with the mean cosine 4/π².
+        let nearest = choice_index(2_000.0, 2);
+        assert!((nearest - 4.0 / std::f64::consts::PI.powi(2)).abs() < 2e-3, "{nearest}");
+        // Choices by chance, as pseudopods are chosen.
+        let mut uniform = noise::uniform(4);
+        let cosines: Vec<f64> = (0..40_000)
+            .map(|_| {
+                let candidates: [f64; 8] = std::array::from_fn(|_| (std::f64::consts::TAU * uniform()).cos());
+                let weights = candidates.map(|cosine| (1.25 * cosine).exp());
+                weights.iter().zip(candidates).map(|(weight, cosine)| weight * cosine).sum::<f64>()
+                    / weights.iter().sum::<f64>()
+            })
+            .collect();
+        let (found, error) =
+            (crate::analysis::statistics::mean(&cosines), crate::analysis::statistics::standard_error(&cosines));
+        assert!(
+            (found - choice_index(1.25, 8)).abs() < 3.0 * error,
+            "{found} ± {error}, not {}",
+            choice_index(1.25, 8)
+        );
     }
 
     #[test]

@@ -84,6 +84,11 @@ fn four_cells_crawl_up_an_attractant() {
 }
 
 #[test]
+fn receptors_tell_a_clear_gradient_from_a_faint_one_and_one_that_binds_them_all() {
+    experiment_keeps_its_word("chemotactic_index", "experiment.toml");
+}
+
+#[test]
 fn a_cell_crawls_by_pseudopods() {
     experiment_keeps_its_word("motility", "experiment.toml");
 }

@@ -24,6 +24,7 @@ mod own_stiffness;
 mod own_stiffness_touching;
 mod population;
 mod pseudopods;
+mod receptors;
 mod sensing;
 mod soft_cells;
 mod sphere;

@@ -1,14 +1,21 @@
 //! Measured indices of chemotaxis follow what receptors can tell of a gradient.
 
-use pseudopod::analysis::sensing::{Receptors, chemotactic_index};
+use pseudopod::analysis::sensing::{Messenger, Receptors, chemotactic_index, choice_index};
+use pseudopod::analysis::statistics::{mean, standard_error};
 use pseudopod::analysis::table::Table;
+use pseudopod::random::{Purpose, Stream};
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Those of the paper: concentrations in nM, lengths in µm.
 const RECEPTORS: Receptors = Receptors { number: 25_000.0, dissociation: 1_000.0, length: 10.0 };
 
-/// Signal to noise ratio and index of each row of the table, and its largest concentration of that gradient (nM).
-fn measured() -> Option<Vec<(f64, f64, f64)>> {
+/// What the document `eml/receptors.eml` makes of them, and the length of its cue.
+const MESSENGER: Messenger = Messenger { off: 0.3, made: 2.0, life: 10.0 };
+const PREFERENCE: f64 = 1.25;
+
+/// Concentration (nM), gradient (nM/µm) and index of each row of the table.
+fn table() -> Option<Vec<[f64; 3]>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/migration/chemotactic_index_open.csv");
     if !path.is_file() {
         println!("SKIPPED: needs ../shared/data/migration");
@@ -23,8 +30,13 @@ fn measured() -> Option<Vec<(f64, f64, f64)>> {
     let table = Table::read(&path).unwrap();
     let [c, gradient, index] =
         ["concentration_nM", "gradient_nM_per_mm", "chemotactic_index"].map(|name| table.column(name).unwrap());
-    let s = |row: usize| RECEPTORS.signal_to_noise(c[row], 1e-3 * gradient[row]);
-    Some((0..table.rows()).map(|row| (s(row), index[row], gradient[row])).collect())
+    Some((0..table.rows()).map(|row| [c[row], 1e-3 * gradient[row], index[row]]).collect())
+}
+
+/// Signal to noise ratio, index and gradient (nM/mm) of each row of the table.
+fn measured() -> Option<Vec<(f64, f64, f64)>> {
+    let of = |[c, gradient, index]: [f64; 3]| (RECEPTORS.signal_to_noise(c, gradient), index, (1e3 * gradient).round());
+    Some(table()?.into_iter().map(of).collect())
 }
 
 /// Root mean square of the distance of the indices from m CI(A s).
@@ -62,4 +74,79 @@ fn measured_indices_fall_where_receptors_are_all_bound() {
     assert!((peak(100_000.0) - 0.36).abs() < 0.005, "{}", peak(100_000.0));
     let model = |c: f64, gradient: f64| 0.49 * chemotactic_index(0.60 * RECEPTORS.signal_to_noise(c, 1e-3 * gradient));
     assert!(model(75_000.0, 100_000.0) < 0.5 * model(5_000.0, 100_000.0));
+}
+
+/// The mean cosine between the true direction and that of pseudopods which follow each other by eq. (pseudopods.1), with a cue that points
+/// where a reading of the signal to noise ratio `s` does: one number for each of some cells. `split` of the eight candidates split off by
+/// 60° ± 15° from the last, three of four to the other side than it did; the rest points anywhere. Written here once more, apart from the
+/// simulated cells, from numbers of its own.
+fn indices_of_choices(s: f64, split: f64, cells: usize) -> Vec<f64> {
+    const PODS: usize = 120;
+    let mut draws = Stream::new(s.to_bits(), Purpose::Placement, (100.0 * split) as u32, 0);
+    let normal = |draws: &mut Stream| {
+        let [radius, phase] = draws.uniform_pair();
+        let radius = (-2.0 * (-radius).ln_1p()).sqrt();
+        [radius * (TAU * phase).cos(), radius * (TAU * phase).sin()]
+    };
+    let one = |_| {
+        let (mut last, mut side, mut sum) = (TAU * draws.uniform_pair()[0], 0.0, 0.0);
+        for pod in 0..PODS + 10 {
+            let [x, y] = normal(&mut draws);
+            let cue = y.atan2(s.sqrt() + x);
+            let mut best = (f64::NEG_INFINITY, 0.0, 0.0);
+            for _ in 0..8 {
+                let [[splits, turns], [angle, noise]] = [(); 2].map(|()| draws.uniform_pair());
+                let (direction, its_side) = if splits < split {
+                    let other: f64 = if side == 0.0 { (angle - 0.5).signum() } else { -side };
+                    let its_side = if turns < 0.75 { other } else { -other };
+                    (last + its_side * (60.0 + 15.0 * normal(&mut draws)[0]).to_radians(), its_side)
+                } else {
+                    (TAU * angle, 0.0)
+                };
+                let worth = PREFERENCE * (direction - cue).cos() - (-noise.max(f64::MIN_POSITIVE).ln()).ln();
+                if worth > best.0 {
+                    best = (worth, direction, its_side);
+                }
+            }
+            (last, side) = (best.1, best.2);
+            sum += if pod < 10 { 0.0 } else { last.cos() };
+        }
+        sum / PODS as f64
+    };
+    (0..cells).map(one).collect()
+}
+
+#[test]
+fn pseudopods_that_start_anew_follow_a_reading_as_is_derived() {
+    for s in [0.01, 0.3, 3.0, 100.0] {
+        let found = indices_of_choices(s, 0.0, 200);
+        let (index, error) = (mean(&found), standard_error(&found));
+        let expected = choice_index(PREFERENCE, 8) * chemotactic_index(s);
+        println!("s = {s}: {index:.4} ± {error:.4}, derived {expected:.4}");
+        assert!((index - expected).abs() < 3.0 * error);
+    }
+}
+
+#[test]
+fn pseudopods_that_split_off_go_straighter_by_the_same_reading() {
+    for s in [0.03, 0.3, 3.0, 1_000.0] {
+        let found = indices_of_choices(s, 0.7, 100);
+        let (index, error) = (mean(&found), standard_error(&found));
+        let ratio = index / (choice_index(PREFERENCE, 8) * chemotactic_index(s));
+        println!("s = {s}: {index:.4} ± {error:.4}, {ratio:.3} times that of such as start anew");
+        assert!(ratio > 1.0 + 3.0 * error / index, "s = {s}: {ratio}");
+    }
+}
+
+#[test]
+fn measured_indices_follow_what_pseudopods_choose_by_receptors() {
+    let Some(rows) = table() else { return };
+    let mut squares = 0.0;
+    for &[c, gradient, measured] in &rows {
+        let s = RECEPTORS.reading_signal_to_noise(&MESSENGER, c, gradient);
+        squares += (mean(&indices_of_choices(s, 0.7, 16)) - measured).powi(2);
+    }
+    let rms = (squares / rows.len() as f64).sqrt();
+    println!("{} rows: rms {rms:.4} with a cue of the length {PREFERENCE}", rows.len());
+    assert!(rms < 0.1, "{rms}");
 }
