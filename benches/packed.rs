@@ -38,8 +38,12 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Steps that are timed.
+/// Steps of which the parts are timed.
 const STEPS: u32 = 40;
+
+/// Steps of atoms that are timed, at least: a contact that lets go in a small population makes
+/// some steps dearer, so that many are needed to tell what one costs.
+const ATOMS_TIMED: u32 = 400_000;
 
 /// A population that is being pulled together, and its start.
 fn population(cells: usize, largest: f64) -> (Model, State) {
@@ -101,8 +105,9 @@ fn measure(cells: usize, threads: usize, pack: f64) {
             step(&model, &mut state, &mut ws).expect("a step");
         }
         let (mut tries, mut sweeps, mut contacts) = (0, 0, 0);
+        let steps = (ATOMS_TIMED / state.atoms(&model) as u32).max(STEPS);
         let (began, start) = (now(), state.time);
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             let done = step(&model, &mut state, &mut ws).expect("a step");
             tries += 1 + done.refused;
             sweeps += ws.contact.sweeps;
@@ -141,11 +146,11 @@ fn measure(cells: usize, threads: usize, pack: f64) {
         println!(
             "{cells:6} {threads:8} {:10.3} {:10.2} {:10.2} {:10.3} {:8.1} {:12.1} {:10.2} {:10.2} {:10.3} {:10.0}",
             seconds / simulated,
-            each(seconds, STEPS),
+            each(seconds, steps),
             each(seconds, tries),
             1e-6 * state.atoms(&model) as f64 * f64::from(tries) / seconds,
-            f64::from(sweeps) / f64::from(STEPS),
-            contacts as f64 / f64::from(STEPS) / cells as f64,
+            f64::from(sweeps) / f64::from(steps),
+            contacts as f64 / f64::from(steps) / cells as f64,
             each(seconds, tries) - each(without, others),
             each(finding, STEPS),
             each(detecting, STEPS),

@@ -58,8 +58,11 @@ impl Receptors {
     }
 }
 
-/// The mean cosine between a cue of the length `preference` and the direction that is taken by it of `candidates` directions in the plane, each anywhere, eq. (analysis.34).
+/// The mean cosine between a cue of the length `preference` and the direction that is taken by it of `candidates` directions in the plane, each anywhere, eq. (analysis.34). A cue
+/// longer than 300 takes the nearest of them, to 10⁻⁴, and counts as 300.
 pub fn choice_index(preference: f64, candidates: u32) -> f64 {
+    // Beyond 350 weights underflow.
+    let preference = preference.clamp(-300.0, 300.0);
     // Means over the circle of w exp(−t w) cos θ and of exp(−t w), w = exp(κ (cos θ − 1)): the midpoint rule, exact to round-off.
     const ANGLES: usize = 256;
     let cosines: [f64; ANGLES] =

@@ -3,8 +3,8 @@
 
 use std::cell::Cell;
 
-use crate::equations::program::code::{Action, Code, Op};
 use crate::elementary;
+use crate::equations::program::code::{Action, Code, Op};
 use crate::equations::program::{Lanes, Program, run};
 use crate::equations::tree::{Binary, Unary};
 

@@ -212,6 +212,11 @@ fn a_squeezed_drop_takes_its_exact_shape() {
 }
 
 #[test]
+fn drops_spread_on_glass_to_the_angle_of_young_and_dupre() {
+    experiment_keeps_its_word("spreading", "experiment.toml");
+}
+
+#[test]
 fn drops_that_stick_meet_at_the_angle_of_young_and_dupre() {
     experiment_keeps_its_word("doublet", "experiment.toml");
 }

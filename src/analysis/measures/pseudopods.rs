@@ -36,9 +36,13 @@ impl PseudopodTurns {
         at.stretch(self.from, self.to);
         at.direction("axis", self.axis);
         if !at.has_pseudopods(self.cells.as_deref()) {
-            let which = self.cells.as_ref().map_or("no type of cells has".to_owned(), |kind| format!("\"{kind}\" does not have"));
+            let which = self
+                .cells
+                .as_ref()
+                .map_or("no type of cells has".to_owned(), |kind| format!("\"{kind}\" does not have"));
             let message = format!("`{}` counts explicit pseudopods, which {which}", at.path());
-            let help = "add [cells.NAME.pseudopods]; fronts of a membrane's chemistry are counted by `kind = \"fronts\"`";
+            let help =
+                "add [cells.NAME.pseudopods]; fronts of a membrane's chemistry are counted by `kind = \"fronts\"`";
             at.fault("", "no pseudopods", message, help);
         }
     }

@@ -133,7 +133,9 @@ impl Unit {
         // A unit has whole powers where it is written.
         if self.written.iter().any(|(_, power)| power.fract() != 0.0) {
             let square = self.to_the(2.0).text();
-            return format!("make it the root of a quantity, `sqrt(q)` with q in {square}, or correct the units of its parts");
+            return format!(
+                "make it the root of a quantity, `sqrt(q)` with q in {square}, or correct the units of its parts"
+            );
         }
         format!("make it a quantity in {}, or correct the units of its parts", self.text())
     }
