@@ -137,7 +137,7 @@ pub fn turn(from: &Vec3, to: &Vec3, axis: &Vec3) -> Option<f64> {
     (cosine != 0.0 || sine != 0.0).then(|| sine.atan2(cosine))
 }
 
-/// The probability that at least `number` of `of` independent trials with even chances succeed, eq. (analysis.32).
+/// The probability that at least `number` of `of` independent trials with even chances succeed, eq. (analysis.35).
 pub fn chance_of_at_least(number: usize, of: usize) -> f64 {
     let mut term = 0.5_f64.powi(of as i32);
     let mut sum = 0.0;
