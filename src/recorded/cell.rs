@@ -1,6 +1,7 @@
 //! Quantities of cells: what is recorded of each at each instant.
 
 use super::balance::TractionRecord;
+use super::fibres::FibresRecord;
 
 /// What is recorded of one cell at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -31,6 +32,8 @@ pub struct CellRecord {
     pub aggregate: f64,
     /// Forces between it and what is around it; nothing in runs that do not record them.
     pub traction: TractionRecord,
+    /// Its fibres that were made at run time; nothing in runs in which none may be.
+    pub fibres: FibresRecord,
 }
 
 /// A row of [`CELL`].

@@ -15,6 +15,7 @@ mod forces;
 mod friction;
 mod glossary;
 mod inertial;
+mod made_fibres;
 mod membranes;
 mod modulus;
 mod motility;
