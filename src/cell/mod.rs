@@ -4,8 +4,10 @@
 //! Every behaviour is one file: its parameters, how it begins and how it goes on. [`Behaviour`] is the one list of them, and
 //! [`BehaviourState`] of what they remember.
 
+mod choices;
 pub mod ends;
 pub mod motility;
+mod pods;
 pub mod pseudopods;
 pub mod turning;
 

@@ -1,5 +1,7 @@
 use super::super::motility::Space;
 use super::*;
+use crate::Vec3;
+use crate::cell::choices::CANDIDATES;
 
 const PODS: Pseudopods = Pseudopods {
     pressure: 50.0,

@@ -1,7 +1,6 @@
 //! Quantities of cells: what is recorded of each at each instant.
 
 use super::balance::TractionRecord;
-use super::fibres::FibresRecord;
 
 /// What is recorded of one cell at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -34,6 +33,19 @@ pub struct CellRecord {
     pub traction: TractionRecord,
     /// Its fibres that were made at run time; nothing in runs in which none may be.
     pub fibres: FibresRecord,
+}
+
+/// What the fibres of a cell are like that were made at run time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FibresRecord {
+    /// How many there are.
+    pub count: f64,
+    /// Sum of what they pull with, pN.
+    pub tension: f64,
+    /// Their mean length, µm; NaN where there are none.
+    pub length: f64,
+    /// Their energy, pN·µm.
+    pub energy: f64,
 }
 
 /// A row of [`CELL`].

@@ -4,19 +4,6 @@ use super::cell::{CellQuantity, Values, row};
 
 use Values::Number;
 
-/// What the fibres of a cell are like that were made at run time.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct FibresRecord {
-    /// How many there are.
-    pub count: f64,
-    /// Sum of what they pull with, pN.
-    pub tension: f64,
-    /// Their mean length, µm; NaN where there are none.
-    pub length: f64,
-    /// Their energy, pN·µm.
-    pub energy: f64,
-}
-
 /// All of them, in the order of the result file; they stand behind those of all runs.
 #[rustfmt::skip]
 pub const FIBRES: &[CellQuantity] = &[

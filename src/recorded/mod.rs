@@ -12,8 +12,8 @@ mod series;
 mod traction;
 
 pub use balance::TractionRecord;
-pub use cell::{CELL, CellQuantity, CellRecord, Values};
+pub use cell::{CELL, CellQuantity, CellRecord, FibresRecord, Values};
 pub use contacts::{CONTACTS, ContactQuantity, ContactSeries, Recorded, Touch, contact_quantities};
-pub use fibres::{FIBRES, FibresRecord};
+pub use fibres::FIBRES;
 pub use series::{OnDemand, SPEED, cell_label, cell_quantities, cell_series, cell_unit};
 pub use traction::TRACTION;

@@ -1,6 +1,6 @@
 //! What can go wrong with a simulation, by kind, so that a program can tell one trouble from another.
 
-use super::fibres::FibreFault;
+use super::fibre_fault::FibreFault;
 use super::id::CellId;
 use crate::error::words::{all_of, meant};
 use crate::error::{Error, Fault};

@@ -93,7 +93,7 @@ fn fibres_that_cannot_be_are_refused_with_their_reason() {
         // ζ/(2 dt) = 200/42/2/0.5.
         (
             ([0, 1], 5.0),
-            "fibres at atom 0 of cell 1 would have 5 pN/um together, and steps bear 4.762; let it be softer, take another atom, or let steps be shorter (run.integrator.max_step)",
+            "fibres at atom 0 of cell 1 would have 5 pN/um together, and steps bear 4.7619; let it be softer, take another atom, or let steps be shorter (run.integrator.max_step)",
         ),
     ];
     for ((atoms, stiffness), expected) in said {
@@ -149,7 +149,7 @@ fn crawling(threads: usize) -> Simulation {
          [cells.cell.mechanics]\ndrag = \"500 pN s/um\"\n\
          membrane = { law = \"skalak\", shear = \"5 pN/um\", area = \"10 pN/um\", bending = \"2 pN um\", tension = \"10 pN/um\" }\n\
          [cells.cell.pseudopods]\npressure = \"15 Pa\"\nfibres = { number = 5, stiffness = \"1 pN/um\" }\npause = \"1 s\"\nprotrusion = \"4 s\"\nretraction = \"3 s\"\n\
-         [contact]\n[[contact.between]]\ntypes = [\"cell\", \"glass\"]\nenergy = \"10 pN/um\"\nrange = \"1.5 um\"\nshear_strength = \"100 Pa\"\n";
+         [contact]\nstrength = \"0 Pa\"\n[[contact.between]]\ntypes = [\"cell\", \"glass\"]\nenergy = \"10 pN/um\"\nrange = \"1.5 um\"\nshear_strength = \"100 Pa\"\n";
     Simulation::builder().threads(threads).text("crawling.toml", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -188,7 +188,7 @@ fn a_cell_that_its_own_fibres_draw_together_advances_only_where_it_grips() {
                  membrane = {{ law = \"skalak\", shear = \"5 pN/um\", area = \"10 pN/um\", bending = \"2 pN um\", tension = \"10 pN/um\" }}\n\
                  [cells.cell.pseudopods]\npressure = \"15 Pa\"\nfibres = {{ number = 5, stiffness = \"1.2 pN/um\" }}\npause = \"1 s\"\nprotrusion = \"4 s\"\nretraction = \"3 s\"\n\
                  split = 1\nangle = \"10 deg\"\nspread = \"0 deg\"\n\
-                 [contact]\n[[contact.between]]\ntypes = [\"cell\", \"glass\"]\nenergy = \"10 pN/um\"\nrange = \"1.5 um\"\nshear_strength = \"{grip} Pa\"\n"
+                 [contact]\nstrength = \"0 Pa\"\n[[contact.between]]\ntypes = [\"cell\", \"glass\"]\nenergy = \"10 pN/um\"\nrange = \"1.5 um\"\nshear_strength = \"{grip} Pa\"\n"
             );
             Simulation::from_text("pushing.toml", &text).unwrap_or_else(|error| panic!("{error}"))
         };
