@@ -28,6 +28,8 @@ pub enum Purpose {
     Pseudopods = 5,
     /// Noise in equations; see [`Normals`].
     Noise = 6,
+    /// Which atoms the fibres of a pseudopod join; the number of the pseudopod and that of the fibre stand for the draw.
+    Fibres = 7,
     /// Which cells are drawn for an interval by the bootstrap; the number of the draw stands for the cell. Numbers of analysis begin with 100.
     Bootstrap = 100,
 }

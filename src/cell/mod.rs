@@ -4,9 +4,12 @@
 //! Every behaviour is one file: its parameters, how it begins and how it goes on. [`Behaviour`] is the one list of them, and
 //! [`BehaviourState`] of what they remember.
 
+mod choices;
 pub mod ends;
 pub mod motility;
+mod pods;
 pub mod pseudopods;
+pub mod turning;
 
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +30,7 @@ pub enum Behaviour {
 }
 
 /// What one cell remembers of a behaviour: part of the state.
+#[allow(clippy::large_enum_variant)] // all cells of a type have the same variant, and a state that is copied must not allocate
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum BehaviourState {
     /// Where its walk is.
@@ -120,7 +124,8 @@ impl Behaviour {
 #[cfg(test)]
 mod tests {
     use super::motility::Space;
-    use super::pseudopods::{Cycle, Turning};
+    use super::pseudopods::{Cycle, Several};
+    use super::turning::Turning;
     use super::*;
 
     /// One of each; a new one must be added here, or the match does not compile.
@@ -132,9 +137,12 @@ mod tests {
             reach: f64::INFINITY,
             least_cosine: 0.7,
             contraction: 10.0,
+            fibres: None,
             release: 1.0,
             cycle: Cycle { means: [1.0, 2.0, 3.0], variation: 0.5 },
             turning,
+            several: Several { most: 3, rate: 0.5 },
+            abandon: Some(0.3),
         };
         let all = vec![Behaviour::Brownian(walk), Behaviour::Bias, Behaviour::Pseudopods(pods)];
         for behaviour in &all {

@@ -3,16 +3,13 @@
 //! The cycle pause, protrusion, retraction of Promayon 2008 §5.4.3 (figure 44) is an explicit machine. Its times are those of the type, or
 //! chemistry sets both activities (Rac in front, RhoA behind). A new pseudopod splits off from the last one at an angle, to the other side
 //! more often than to the same, or starts anew in any direction (Bosgraaf and van Haastert 2009); among what it may be, a cue makes a choice
-//! likelier by e to the power of its part along the direction, eq. (pseudopods.1).
+//! likelier by e to the power of its part along the direction, eq. (pseudopods.1). Others may begin beside it, and some are given up,
+//! eq. (pseudopods.10).
 
-use serde::{Deserialize, Serialize};
-
-use super::motility::Space;
-use crate::Vec3;
+use super::turning::{Turning, anywhere};
 use crate::random::{Purpose, Stream};
 
-/// Directions that a cell chooses from.
-const CANDIDATES: usize = 8;
+pub use super::pods::{Activity, BESIDE, EndedPseudopod, MOST, Phase, Pod, PodState, Told};
 
 /// What pseudopods of a kind do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,12 +22,41 @@ pub struct Pseudopods {
     pub reach: f64,
     /// Tension between front and rear while a pseudopod retracts, pN.
     pub contraction: f64,
+    /// Fibres that draw front and rear together in place of that tension, if there are any.
+    pub fibres: Option<PodFibres>,
     /// What of its adhesion the rear lets go meanwhile, from 0 to 1.
     pub release: f64,
     /// When the cycle goes on.
     pub cycle: Cycle,
     /// Where pseudopods go.
     pub turning: Turning,
+    /// How many there are at once.
+    pub several: Several,
+    /// Share of those that are given up when their protrusion ends, where any are, eq. (pseudopods.10).
+    pub abandon: Option<f64>,
+}
+
+/// How many pseudopods there are at once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Several {
+    /// How many at most, up to [`MOST`].
+    pub most: usize,
+    /// How often another begins while there are some and not so many, 1/s.
+    pub rate: f64,
+}
+
+impl Several {
+    /// One after the other.
+    pub const ONE: Self = Self { most: 1, rate: 0.0 };
+}
+
+/// The fibres that a pseudopod makes while it retracts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PodFibres {
+    /// How many.
+    pub number: usize,
+    /// Stiffness of each at full activation, pN/µm.
+    pub stiffness: f64,
 }
 
 /// How long the phases are.
@@ -42,145 +68,26 @@ pub struct Cycle {
     pub variation: f64,
 }
 
-/// Where a new pseudopod goes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turning {
-    /// Share of pseudopods that split off from the last.
-    pub split: f64,
-    /// Angle between such a one and the last, rad.
-    pub angle: f64,
-    /// Standard deviation of that angle, rad.
-    pub spread: f64,
-    /// Share of those that go to the other side than the last did.
-    pub alternation: f64,
-    /// Where directions may point.
-    pub space: Space,
-}
-
-/// What chemistry tells the pseudopods of a cell.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Told {
-    /// What makes directions likelier, eq. (pseudopods.1).
-    pub cue: [f64; 3],
-    /// How much the front is pushed, from 0 to 1; NaN where the cycle's times say that.
-    pub protrusion: f64,
-    /// The same of retraction.
-    pub retraction: f64,
-}
-
-/// Where the cycle of a cell is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Phase {
-    /// Nothing is pushed or drawn.
-    Pause,
-    /// The front is pushed out.
-    Protrusion,
-    /// The rear lets go and is drawn after.
-    Retraction,
-}
-
-impl Phase {
-    const fn next(self) -> Self {
-        match self {
-            Self::Pause => Self::Protrusion,
-            Self::Protrusion => Self::Retraction,
-            Self::Retraction => Self::Pause,
-        }
-    }
-}
-
-/// What one pseudopod did in a step, in the mean.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Activity {
-    /// Unit vector to which it points.
-    pub direction: [f64; 3],
-    /// How much the front was pushed, from 0 to 1.
-    pub protrusion: f64,
-    /// How much front and rear were drawn together, from 0 to 1.
-    pub retraction: f64,
-}
-
-/// A pseudopod that has been pushed out.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct EndedPseudopod {
-    /// How long it was pushed, s.
-    pub lifetime: f64,
-    /// Unit vector to which it pointed.
-    pub direction: [f64; 3],
-    /// Angle from the one before, rad; none of the first of a cell.
-    pub turn: Option<f64>,
-    /// The side to which it split off from the one before: 1 left, -1 right, 0 where it started anew.
-    pub side: i8,
-}
-
-/// Where the pseudopods of one cell are.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct PodState {
-    /// What the cell does.
-    pub phase: Phase,
-    /// What is left of it, s.
-    pub left: f64,
-    /// Unit vector to which the present pseudopod points, or the last one.
-    pub direction: [f64; 3],
-    /// The side to which it split off: 1 left, -1 right, 0 where it started anew.
-    pub side: i8,
-    /// Pseudopods so far.
-    pub number: u32,
-    /// How long the present one has been pushed, s.
-    pub age: f64,
-    /// Angle between the present one, or the last, and the one before, rad; none of the first.
-    pub turn: Option<f64>,
-    /// Draws made so far.
-    pub draws: u64,
-    /// What was done in the last step: by the pseudopod there was, and by one that began.
-    pub did: [Activity; 2],
-}
-
-impl Told {
-    /// Nothing is told.
-    pub const NOTHING: Self = Self { cue: [0.0; 3], protrusion: f64::NAN, retraction: f64::NAN };
-
-    /// Both activities, where chemistry sets one of them.
-    fn activities(&self) -> Option<[f64; 2]> {
-        let both = [self.protrusion, self.retraction];
-        let or_none = |value: f64| if value.is_nan() { 0.0 } else { value };
-        (!both.iter().all(|value| value.is_nan())).then(|| both.map(or_none))
-    }
-}
-
-impl PodState {
-    /// How much the rear lets go now, from 0 to 1.
-    pub fn releases(&self, told: &Told) -> f64 {
-        match told.activities() {
-            Some([_, retraction]) => retraction,
-            None => f64::from(u8::from(self.phase == Phase::Retraction)),
-        }
-    }
-
-    /// What is told of the present pseudopod when its protrusion ends.
-    fn end(&mut self) -> EndedPseudopod {
-        let lifetime = std::mem::take(&mut self.age);
-        EndedPseudopod { lifetime, direction: self.direction, turn: self.turn, side: self.side }
-    }
-}
-
 impl Pseudopods {
     /// The cell waits for its first pseudopod, at most for a whole cycle, so that cells do not go in step.
     pub fn start(&self, seed: u64, cell: u64) -> PodState {
         let mut stream = Stream::new(seed, Purpose::Pseudopods, cell as u32, 0);
         let [share, angle] = stream.uniform_pair();
         let [height, _] = stream.uniform_pair();
-        PodState {
-            phase: Phase::Pause,
-            left: share * self.cycle.means.iter().sum::<f64>(),
-            direction: anywhere(self.turning.space, angle, height).into(),
-            side: 0,
+        let direction = anywhere(self.turning.space, angle, height).into();
+        let left = share * self.cycle.means.iter().sum::<f64>();
+        let (phase, alone, abandoned) = (Phase::Pause, true, false);
+        let mut state = PodState {
+            pod: Pod { phase, left, direction, side: 0, number: 0, age: 0.0, turn: None, alone, abandoned },
+            beside: [None; BESIDE],
+            wait: f64::INFINITY,
+            last: (direction, 0),
             number: 0,
-            age: 0.0,
-            turn: None,
             draws: stream.draw,
             did: Default::default(),
-        }
+        };
+        self.wait_anew(seed, cell, &mut state);
+        state
     }
 
     /// Goes on by `dt` (s); at zero nothing changes. `ended(pseudopod, offset)` is told of every one whose protrusion ends, `offset` seconds
@@ -197,111 +104,144 @@ impl Pseudopods {
         if dt <= 0.0 {
             return;
         }
-        state.did = [Activity { direction: state.direction, ..Activity::default() }; 2];
+        state.did = Default::default();
+        state.did[..2].fill(state.pod.did());
         if let Some([protrusion, retraction]) = told.activities() {
-            let phase = match (protrusion > 0.0, retraction > 0.0) {
-                (true, _) => Phase::Protrusion,
-                (_, true) => Phase::Retraction,
-                _ => Phase::Pause,
-            };
-            match (state.phase == Phase::Protrusion, phase == Phase::Protrusion) {
-                (false, true) => self.begin(seed, cell, told, state),
-                (true, false) => ended(state.end(), 0.0),
-                _ => {}
-            }
-            state.phase = phase;
-            state.age += if phase == Phase::Protrusion { dt } else { 0.0 };
-            state.did[0] = Activity { direction: state.direction, protrusion, retraction };
-            return;
+            return self.follow(seed, cell, told, state, (dt, [protrusion, retraction]), ended);
         }
         let (mut left, mut one) = (dt, 0);
         loop {
-            let part = left.min(state.left);
-            let did = &mut state.did[one];
-            match state.phase {
-                Phase::Pause => {}
-                Phase::Protrusion => {
-                    did.protrusion += part / dt;
-                    state.age += part;
-                }
-                Phase::Retraction => did.retraction += part / dt,
+            let waits = state.pod.phase == Phase::Pause && state.there().next().is_some();
+            let may_begin = self.may_begin(state);
+            let clocks = [(state.pod.left, !waits), (state.wait, may_begin)];
+            let clocks = clocks.into_iter().chain(state.beside.iter().flatten().map(|pod| (pod.left, true)));
+            let part = clocks.filter(|(_, runs)| *runs).fold(left, |part, (clock, _)| part.min(clock));
+            let PodState { pod, beside, wait, did, .. } = state;
+            if !waits {
+                pod.advance(&mut did[one], part, dt);
             }
-            state.left -= part;
+            for (pod, did) in beside.iter_mut().zip(&mut did[2..]) {
+                if let Some(pod) = pod {
+                    (did.direction, did.number) = (pod.direction, pod.number);
+                    pod.advance(did, part, dt);
+                }
+            }
+            *wait -= if may_begin { part } else { 0.0 };
             left -= part;
-            if state.left > 0.0 || left <= 0.0 {
+            if left <= 0.0 {
                 return;
             }
-            if state.phase == Phase::Protrusion {
-                ended(state.end(), dt - left);
+            if !waits && state.pod.left <= 0.0 {
+                one = self.go_on(seed, cell, told, state, one, |pod| ended(pod, dt - left));
             }
-            state.phase = state.phase.next();
-            let mut stream = Stream::new(seed, Purpose::Pseudopods, cell as u32, state.draws);
-            let [vary, _] = stream.uniform_pair();
-            state.draws = stream.draw;
-            state.left = self.cycle.means[state.phase as usize] * (1.0 + self.cycle.variation * (2.0 * vary - 1.0));
-            if state.phase == Phase::Protrusion {
-                self.begin(seed, cell, told, state);
-                one = 1;
-                state.did[1].direction = state.direction;
+            self.go_on_beside(seed, cell, told, state, |pod| ended(pod, dt - left));
+            if may_begin && state.wait <= 0.0 {
+                self.begin_beside(seed, cell, told, state);
             }
         }
     }
 
-    /// Chooses where a new pseudopod goes, eq. (pseudopods.1): the greatest of the parts along the cue with Gumbel's noise is a choice by
-    /// those chances.
-    fn begin(&self, seed: u64, cell: u64, told: &Told, state: &mut PodState) {
-        let mut stream = Stream::new(seed, Purpose::Pseudopods, cell as u32, state.draws);
-        let (last, side, cue) = (Vec3::from(state.direction), state.side, Vec3::from(told.cue));
-        let mut most = f64::NEG_INFINITY;
-        for _ in 0..CANDIDATES {
-            let (direction, side) = self.turning.draw(&last, side, &mut stream);
-            let [noise, _] = stream.uniform_pair();
-            let worth = cue.dot(&direction) - (-noise.max(f64::MIN_POSITIVE).ln()).ln();
-            if worth > most {
-                (most, state.direction, state.side) = (worth, direction.into(), side);
-            }
-        }
-        let cosine = last.dot(&Vec3::from(state.direction)).clamp(-1.0, 1.0);
-        state.turn = (state.number > 0).then(|| cosine.acos());
-        state.number += 1;
-        state.draws = stream.draw;
-    }
-}
-
-impl Turning {
-    /// One direction that a new pseudopod may take, and to which side of the last that is.
-    fn draw(&self, last: &Vec3, side: i8, stream: &mut Stream) -> (Vec3, i8) {
-        let [[splits, turns], [angle, height], [radius, phase]] = [(); 3].map(|()| stream.uniform_pair());
-        if splits >= self.split {
-            return (anywhere(self.space, angle, height), 0);
-        }
-        let other = if side == 0 { if angle < 0.5 { 1 } else { -1 } } else { -side };
-        let side = if turns < self.alternation { other } else { -other };
-        let normal = (-2.0 * (1.0 - radius).ln()).sqrt() * (std::f64::consts::TAU * phase).cos();
-        let (sine, cosine) = (self.angle + self.spread * normal).sin_cos();
-        let across = match self.space {
-            Space::Plane => f64::from(side) * Vec3::new(-last.y, last.x, 0.0),
-            Space::Volume => {
-                let any = if last.x.abs() < 0.7 { Vec3::x() } else { Vec3::y() };
-                let one = last.cross(&any).normalize();
-                let (sine, cosine) = (std::f64::consts::TAU * height).sin_cos();
-                cosine * one + sine * last.cross(&one)
-            }
+    /// What chemistry sets of the activities is what a single pseudopod does.
+    fn follow(
+        &self,
+        seed: u64,
+        cell: u64,
+        told: &Told,
+        state: &mut PodState,
+        (dt, [protrusion, retraction]): (f64, [f64; 2]),
+        mut ended: impl FnMut(EndedPseudopod, f64),
+    ) {
+        let phase = match (protrusion > 0.0, retraction > 0.0) {
+            (true, _) => Phase::Protrusion,
+            (_, true) => Phase::Retraction,
+            _ => Phase::Pause,
         };
-        ((cosine * last + sine * across).normalize(), side)
-    }
-}
-
-/// A direction by two numbers uniform in [0, 1).
-fn anywhere(space: Space, angle: f64, height: f64) -> Vec3 {
-    let (sine, cosine) = (std::f64::consts::TAU * angle).sin_cos();
-    match space {
-        Space::Plane => Vec3::new(cosine, sine, 0.0),
-        Space::Volume => {
-            let z = 2.0 * height - 1.0;
-            let across = (1.0 - z * z).sqrt();
-            Vec3::new(across * cosine, across * sine, z)
+        state.beside = [None; BESIDE];
+        match (state.pod.phase == Phase::Protrusion, phase == Phase::Protrusion) {
+            (false, true) => {
+                let begun = self.begin(seed, cell, told, state);
+                state.pod = Pod { left: state.pod.left, ..begun };
+            }
+            (true, false) => {
+                let pod = state.pod;
+                state.pod.abandoned = self.gives_up(seed, cell, told, state, &pod);
+                ended(state.pod.end(), 0.0);
+            }
+            _ => {}
         }
+        state.pod.phase = phase;
+        state.pod.age += if phase == Phase::Protrusion { dt } else { 0.0 };
+        state.did[0] = Activity { protrusion, retraction, ..state.pod.did() };
+        state.did[1] = state.pod.did();
+    }
+
+    /// Lets the pseudopod that comes after pauses enter its next phase; returns which of its activities is meant from now on.
+    fn go_on(
+        &self,
+        seed: u64,
+        cell: u64,
+        told: &Told,
+        state: &mut PodState,
+        one: usize,
+        mut ended: impl FnMut(EndedPseudopod),
+    ) -> usize {
+        if state.pod.phase == Phase::Protrusion {
+            let pod = state.pod;
+            state.pod.abandoned = self.gives_up(seed, cell, told, state, &pod);
+            ended(state.pod.end());
+        }
+        let phase = state.pod.phase.next();
+        let left = self.duration(seed, cell, phase, state);
+        (state.pod.phase, state.pod.left) = (phase, left);
+        if phase != Phase::Protrusion {
+            return one;
+        }
+        // It waited until there was no other.
+        state.pod.phase = Phase::Pause;
+        state.pod = Pod { left, ..self.begin(seed, cell, told, state) };
+        state.did[1] = state.pod.did();
+        1
+    }
+
+    /// The same for those beside it: they are gone when they have been drawn in.
+    fn go_on_beside(
+        &self,
+        seed: u64,
+        cell: u64,
+        told: &Told,
+        state: &mut PodState,
+        mut ended: impl FnMut(EndedPseudopod),
+    ) {
+        for slot in 0..state.beside.len() {
+            let Some(mut pod) = state.beside[slot].filter(|pod| pod.left <= 0.0) else { continue };
+            state.beside[slot] = None;
+            if pod.phase == Phase::Protrusion {
+                state.beside[slot] = Some(pod);
+                pod.abandoned = self.gives_up(seed, cell, told, state, &pod);
+                ended(pod.end());
+                let left = self.duration(seed, cell, Phase::Retraction, state);
+                (pod.phase, pod.left) = (Phase::Retraction, left);
+                state.beside[slot] = Some(pod);
+            }
+        }
+    }
+
+    /// Whether another may begin now beside those that there are.
+    fn may_begin(&self, state: &PodState) -> bool {
+        (1..self.several.most).contains(&state.there().count()) && Self::free_slot(state).is_some()
+    }
+
+    /// Where one beside is kept: what was used in the step is not used again in it, so that each activity is that of one pseudopod.
+    fn free_slot(state: &PodState) -> Option<usize> {
+        (0..state.beside.len()).find(|slot| state.beside[*slot].is_none() && state.did[2 + slot].number == 0)
+    }
+
+    /// Lets one begin beside those that there are.
+    fn begin_beside(&self, seed: u64, cell: u64, told: &Told, state: &mut PodState) {
+        let Some(slot) = Self::free_slot(state) else { return };
+        let left = self.duration(seed, cell, Phase::Protrusion, state);
+        state.beside[slot] = Some(Pod { left, ..self.begin(seed, cell, told, state) });
+        self.wait_anew(seed, cell, state);
     }
 }
 

@@ -1,13 +1,19 @@
+use super::super::motility::Space;
 use super::*;
+use crate::Vec3;
+use crate::cell::choices::CANDIDATES;
 
 const PODS: Pseudopods = Pseudopods {
     pressure: 50.0,
     reach: f64::INFINITY,
     least_cosine: 0.7,
     contraction: 10.0,
+    fibres: None,
     release: 1.0,
     cycle: Cycle { means: [2.0, 5.0, 3.0], variation: 0.5 },
     turning: Turning { split: 0.7, angle: 1.0, spread: 0.2, alternation: 0.8, space: Space::Plane },
+    several: Several::ONE,
+    abandon: None,
 };
 
 /// The directions of so many pseudopods, with their sides.
@@ -17,7 +23,7 @@ fn run(pods: &Pseudopods, told: &Told, count: u32) -> Vec<(Vec3, i8)> {
         let before = state.number;
         pods.advance(3, 4, told, &mut state, 0.1, |_, _| ());
         if state.number > before {
-            all.push((Vec3::from(state.direction), state.side));
+            all.push((Vec3::from(state.last.0), state.last.1));
         }
     }
     all
@@ -91,12 +97,13 @@ fn what_chemistry_tells_takes_the_place_of_the_times() {
         (told(0.1, 0.0), Phase::Protrusion, 2),
     ] {
         PODS.advance(1, 2, &said, &mut state, 7.0, |_, _| ());
-        assert_eq!((state.phase, state.number), (phase, number), "{said:?}");
-        let [did, other] = state.did;
+        assert_eq!((state.pod.phase, state.number), (phase, number), "{said:?}");
+        let [did, other, ..] = state.did;
         let expected = said.activities().expect("both are told");
         assert_eq!([did.protrusion, did.retraction], expected);
         assert_eq!([other.protrusion, other.retraction], [0.0; 2]);
-        assert_eq!(state.releases(&said), expected[1]);
+        let front = Vec3::from(state.pod.direction);
+        assert_eq!(state.releases(&said).collect::<Vec<_>>(), [(front, expected[1])]);
     }
 }
 
@@ -121,9 +128,9 @@ fn every_pseudopod_that_ends_is_told_with_its_time_and_its_turn_whatever_the_ste
             PODS.advance(1, 2, &Told::NOTHING, &mut state, dt, |pod, offset| all.push((begin + offset, pod)));
             pushed += state.did.iter().map(|did| did.protrusion * dt).sum::<f64>();
         }
-        let lasted = all.iter().map(|(_, pod)| pod.lifetime).sum::<f64>() + state.age;
+        let lasted = all.iter().map(|(_, pod)| pod.lifetime).sum::<f64>() + state.pod.age;
         assert!((lasted - pushed).abs() < 1e-9, "{lasted} and {pushed}");
-        assert_eq!(all.len(), state.number as usize - usize::from(state.phase == Phase::Protrusion));
+        assert_eq!(all.len(), state.number as usize - usize::from(state.pod.phase == Phase::Protrusion));
         all
     };
     let (fine, coarse) = (told(0.125), told(0.5));
@@ -148,4 +155,103 @@ fn a_pseudopod_that_chemistry_pushes_is_told_when_chemistry_lets_it_go() {
         PODS.advance(1, 2, &said, &mut state, 2.0, |pod, offset| all.push((2.0 * step as f64 + offset, pod.lifetime)));
     }
     assert_eq!(all, [(8.0, 6.0), (14.0, 2.0)]);
+}
+
+/// What pseudopods did in steps of `dt`: of each that ended when, what it was, and whether others were there that were kept.
+fn ended(pods: &Pseudopods, told: &Told, dt: f64, until: f64) -> (PodState, Vec<(f64, EndedPseudopod, bool)>, f64) {
+    let (mut state, mut all, mut one_was_there) = (pods.start(1, 2), Vec::new(), 0.0);
+    for step in 0..(until / dt) as u32 {
+        let (begin, before) = (f64::from(step) * dt, state);
+        pods.advance(1, 2, told, &mut state, dt, |pod, offset| {
+            let rivals = before.there().filter(|other| !other.abandoned && other.direction != pod.direction).count();
+            all.push((begin + offset, pod, rivals > 0));
+        });
+        let there = state.there().count();
+        assert!(there <= pods.several.most);
+        one_was_there += if there == 1 { dt } else { 0.0 };
+    }
+    (state, all, one_was_there)
+}
+
+const TWO: Pseudopods = Pseudopods { several: Several { most: 2, rate: 0.05 }, ..PODS };
+
+#[test]
+fn others_begin_beside_the_first_as_often_as_is_said() {
+    let until = 100_000.0;
+    let (_, all, exposed) = ended(&TWO, &Told::NOTHING, 0.05, until);
+    let beside = all.iter().filter(|(_, pod, _)| !pod.alone).count() as f64;
+    let (rate, error) = (beside / exposed, beside.sqrt() / exposed);
+    println!("{} of {} began alone; {rate} /s", all.len() as f64 - beside, all.len());
+    assert!((rate - 0.05).abs() < 3.0 * error, "{rate} with a standard error of {error}");
+    assert!(beside > 1_000.0 && beside < 0.5 * all.len() as f64);
+    // Where there is a rate and room for one, there is one at a time.
+    let one = Pseudopods { several: Several { most: 1, rate: 0.05 }, ..PODS };
+    let (_, all, _) = ended(&one, &Told::NOTHING, 0.5, 1_000.0);
+    assert!(all.iter().all(|(_, pod, _)| pod.alone && !pod.abandoned));
+}
+
+#[test]
+fn so_many_are_given_up_as_is_said_and_half_where_two_are_alike() {
+    for abandon in [0.0, 0.3] {
+        let pods = Pseudopods { abandon: Some(abandon), ..TWO };
+        let (_, all, _) = ended(&pods, &Told::NOTHING, 0.1, 100_000.0);
+        for (rivals, chance) in [(false, abandon), (true, 1.0 - 0.5 * (1.0 - abandon))] {
+            let own: Vec<_> = all.iter().filter(|(.., rival)| *rival == rivals).collect();
+            let share = own.iter().filter(|(_, pod, _)| pod.abandoned).count() as f64 / own.len() as f64;
+            let error = (chance * (1.0 - chance) / own.len() as f64).sqrt();
+            // Half a per cent for those that end in the same step as another.
+            assert!((share - chance).abs() <= 3.0 * error + 0.005, "{rivals}: {share}, expected {chance}");
+            assert!(own.len() > 300, "{}", own.len());
+        }
+    }
+}
+
+#[test]
+fn of_two_the_one_that_goes_with_the_cue_is_kept() {
+    let pods = Pseudopods { abandon: Some(0.0), ..TWO };
+    let told = Told { cue: [3.0, 0.0, 0.0], ..Told::NOTHING };
+    let (_, all, _) = ended(&pods, &told, 0.1, 50_000.0);
+    let mean = |abandoned: bool| {
+        let own: Vec<f64> = all
+            .iter()
+            .filter(|(_, pod, rivals)| *rivals && pod.abandoned == abandoned)
+            .map(|(_, pod, _)| pod.direction[0])
+            .collect();
+        (own.iter().sum::<f64>() / own.len() as f64, own.len() as f64)
+    };
+    let ((kept, of_kept), (given_up, of_given_up)) = (mean(false), mean(true));
+    // A cosine deviates by 0.7 at most.
+    let error = 0.7 * (1.0 / of_kept + 1.0 / of_given_up).sqrt();
+    assert!(kept > given_up + 4.0 * error, "{kept} and {given_up}, {error}");
+}
+
+#[test]
+fn several_are_the_same_ones_whatever_the_step() {
+    let pods = Pseudopods { several: Several { most: 3, rate: 0.1 }, abandon: Some(0.2), ..PODS };
+    let [fine, coarse] = [0.125, 0.5].map(|dt| ended(&pods, &Told::NOTHING, dt, 800.0).1);
+    assert!(
+        fine.len() > 60 && fine.iter().any(|(_, pod, _)| !pod.alone) && fine.iter().any(|(_, pod, _)| pod.abandoned)
+    );
+    assert_eq!(fine.len(), coarse.len());
+    for (one, other) in fine.iter().zip(&coarse) {
+        assert!((one.0 - other.0).abs() < 1e-9 && (one.1.lifetime - other.1.lifetime).abs() < 1e-9);
+        let told = |pod: &EndedPseudopod| (pod.direction, pod.side, pod.alone, pod.abandoned);
+        assert_eq!(told(&one.1), told(&other.1));
+    }
+}
+
+#[test]
+fn one_that_is_given_up_lets_its_own_front_go() {
+    let pods = Pseudopods { abandon: Some(1.0), ..PODS };
+    let mut state = pods.start(1, 2);
+    let mut seen = 0;
+    for _ in 0..400 {
+        pods.advance(1, 2, &Told::NOTHING, &mut state, 0.1, |pod, _| assert!(pod.abandoned));
+        let (front, amount) = state.releases(&Told::NOTHING).next().unwrap();
+        if state.pod.phase == Phase::Retraction {
+            assert_eq!((front, amount), (-Vec3::from(state.pod.direction), 1.0));
+            seen += 1;
+        }
+    }
+    assert!(seen > 50);
 }

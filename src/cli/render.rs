@@ -46,6 +46,9 @@ pub struct RenderArgs {
     /// Shows the loads as arrows.
     #[arg(long)]
     pub loads: bool,
+    /// Leaves out the fibres that were made at run time, and cells are solid.
+    #[arg(long)]
+    pub no_fibres: bool,
     /// Width in pixels.
     #[arg(long, value_parser = clap::value_parser!(u32).range(PIXELS))]
     pub width: Option<u32>,
@@ -78,6 +81,7 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     picture.field_height = args.field_height.map(Length::new).or(picture.field_height);
     picture.cut = args.cut.map(Length::new).or(picture.cut);
     picture.loads |= args.loads;
+    picture.fibres &= !args.no_fibres;
     picture.width = args.width.unwrap_or(picture.width);
     picture.height = args.height.unwrap_or(picture.height);
     let frame = args.frame.of(&result, picture.time)?;

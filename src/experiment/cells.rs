@@ -48,6 +48,11 @@ pub struct CellType {
     /// Pseudopods that push and draw the cell along what it sticks to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pseudopods: Option<Pseudopods>,
+    /// How many fibres a cell has at most that are made while it runs, by its pseudopods or by a program; as many as its pseudopods need when
+    /// absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 10_000))]
+    pub fibre_budget: Option<u32>,
     /// Systems of equations that every cell has a copy of: names in `[chemistry]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub chemistry: Vec<String>,
@@ -68,6 +73,7 @@ impl CellType {
             applied: Applied::default(),
             motility: Motility::default(),
             pseudopods: None,
+            fibre_budget: None,
             chemistry: Vec::new(),
         }
     }
@@ -76,6 +82,12 @@ impl CellType {
     pub fn count(&self) -> usize {
         let positions = self.placement.as_ref().map_or(1, Placement::positions);
         self.number.map_or(positions, |number| number as usize)
+    }
+
+    /// How many fibres a cell may have at most that are made while it runs.
+    pub(super) fn fibre_budget(&self) -> usize {
+        let of_pods = || self.pseudopods.as_ref().map_or(0, Pseudopods::fibres_at_once);
+        self.fibre_budget.unwrap_or_else(of_pods) as usize
     }
 
     /// The most cells that there can be at a time: those of the start and all that come.

@@ -70,12 +70,13 @@ pub use motility::{Attraction, Brownian, Motility, Space};
 pub use pictures::{FieldLine, Picture, Plot, PlotKind, PlotTable, View};
 pub use placement::Placement;
 pub use population::{Added, Removed};
-pub use pseudopods::Pseudopods;
+pub use pseudopods::{PodFibres, Pseudopods};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
 pub use schema::schema;
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use volume::{VolumeControl, VolumeRule};
 
+use crate::recorded::OnDemand;
 use crate::units::Time;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -130,6 +131,12 @@ pub struct Experiment {
 }
 
 impl Experiment {
+    /// What is recorded of cells that not all runs have.
+    pub(crate) fn on_demand(&self) -> OnDemand {
+        let fibres = self.cells.values().any(|cell| cell.fibre_budget() > 0);
+        OnDemand { tractions: self.output.tractions, fibres }
+    }
+
     /// An experiment that lasts `until`, still without cells, with the defaults everywhere else.
     pub fn new(title: impl Into<String>, until: Time) -> Self {
         Self {

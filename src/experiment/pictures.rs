@@ -37,6 +37,8 @@ pub struct Picture {
     pub cut: Option<Length>,
     /// Shows the loads as arrows, the longest for the strongest.
     pub loads: bool,
+    /// Shows the fibres that were made at run time as lines inside the cells, the thicker the more they pull.
+    pub fibres: bool,
     /// Where the picture is taken from.
     pub view: View,
     /// Width in pixels.
@@ -59,6 +61,7 @@ impl Default for Picture {
             field_height: None,
             cut: None,
             loads: false,
+            fibres: true,
             view: View::default(),
             width,
             height,

@@ -2,8 +2,9 @@
 
 use crate::cell::Behaviour;
 use crate::cell::motility::Space;
-use crate::cell::pseudopods::{self as cell, Cycle, Turning};
-use crate::units::{Angle, Force, Length, Stress, Time};
+use crate::cell::pseudopods::{self as cell, Cycle, Several};
+use crate::cell::turning::Turning;
+use crate::units::{Angle, Force, Frequency, Length, LineStiffness, Stress, Time};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +26,10 @@ pub struct Pseudopods {
     #[serde(default)]
     #[schemars(extend("x-minimum" = 0))]
     pub contraction: Force,
+    /// Fibres that draw front and rear together meanwhile, in place of `contraction`: made where the pseudopod begins to retract, gone where
+    /// that ends.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fibres: Option<PodFibres>,
     /// What of its adhesion the rear lets go meanwhile.
     #[serde(default = "default_release")]
     #[schemars(range(min = 0.0, max = 1.0))]
@@ -59,6 +64,35 @@ pub struct Pseudopods {
     /// Whether pseudopods lie in the plane of the substrate or anywhere in space.
     #[serde(default)]
     pub space: Space,
+    /// How many there are at once at most.
+    #[serde(default = "one")]
+    #[schemars(range(min = 1, max = 4))]
+    pub most: u32,
+    /// How often another begins while there are some and fewer than `most`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub beside: Option<Frequency>,
+    /// Share of pseudopods that are given up when their protrusion ends: they are drawn in while their own front lets go. Where there are
+    /// several, those that go less well with the cue are given up besides. None are when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub abandon: Option<f64>,
+}
+
+/// Fibres between front and rear of a pseudopod.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PodFibres {
+    /// How many each pseudopod makes. Each has an atom of its own at both ends.
+    #[schemars(range(min = 1, max = 10_000))]
+    pub number: u32,
+    /// Stiffness of each at full activation: it pulls with that times its length.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub stiffness: LineStiffness,
+}
+
+const fn one() -> u32 {
+    1
 }
 
 fn degrees(degrees: f64) -> Angle {
@@ -101,6 +135,11 @@ impl Pseudopods {
         (1.0 - self.variation) * whole
     }
 
+    /// The most fibres that all pseudopods of a cell make together.
+    pub(super) fn fibres_at_once(&self) -> u32 {
+        self.most * self.fibres.as_ref().map_or(0, |fibres| fibres.number)
+    }
+
     /// What cells do by themselves.
     pub(super) fn behaviour(&self) -> Behaviour {
         let times = [self.pause, self.protrusion, self.retraction];
@@ -109,6 +148,10 @@ impl Pseudopods {
             least_cosine: self.half_angle.value().cos(),
             reach: self.reach.map_or(f64::INFINITY, |reach| reach.value()),
             contraction: self.contraction.value(),
+            fibres: self
+                .fibres
+                .as_ref()
+                .map(|fibres| cell::PodFibres { number: fibres.number as usize, stiffness: fibres.stiffness.value() }),
             release: self.release,
             cycle: Cycle { means: times.map(|time| time.value()), variation: self.variation },
             turning: Turning {
@@ -118,6 +161,11 @@ impl Pseudopods {
                 alternation: self.alternation,
                 space: self.space,
             },
+            several: Several {
+                most: self.most as usize,
+                rate: self.beside.filter(|_| self.most > 1).map_or(0.0, |rate| rate.value()),
+            },
+            abandon: self.abandon,
         })
     }
 }

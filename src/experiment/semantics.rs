@@ -4,7 +4,7 @@ use super::check::Reference;
 use super::document::{Document, near_file};
 use crate::error::Fault;
 use crate::error::words;
-use crate::recorded::{CONTACTS, ContactQuantity, Recorded, Touch, cell_series, contact_quantities};
+use crate::recorded::{CONTACTS, ContactQuantity, OnDemand, Recorded, Touch, cell_series, contact_quantities};
 use std::path::Path;
 
 mod cells;
@@ -101,8 +101,8 @@ impl Check<'_> {
     }
 
     fn series(&mut self, path: &str, text: &str) {
-        let tractions = self.document.experiment.output.tractions;
-        let (pairs, of_cells) = (self.series_of_pairs(), cell_series(tractions).collect::<Vec<String>>());
+        let with = self.document.experiment.on_demand();
+        let (pairs, of_cells) = (self.series_of_pairs(), cell_series(with).collect::<Vec<String>>());
         let cells = self.document.experiment.cells.values();
         let loads: Vec<String> =
             cells.flat_map(|cell| &cell.applied.loads).map(|load| format!("load.{}", load.name)).collect();
@@ -118,7 +118,16 @@ impl Check<'_> {
         if known().any(|name| name == text) {
             return;
         }
-        if cell_series(true).any(|name| name == text) {
+        if cell_series(OnDemand { tractions: false, ..OnDemand::ALL }).any(|name| name == text) {
+            let message = format!("`{path}`: there is no series \"{text}\" without fibres that are made at run time");
+            return self.fault(
+                path,
+                "not recorded",
+                message,
+                "add `fibres` to the pseudopods of a type, or `fibre_budget` to the type",
+            );
+        }
+        if cell_series(OnDemand::ALL).any(|name| name == text) {
             let message = format!("`{path}`: there is no series \"{text}\" without tractions");
             return self.fault(path, "not recorded", message, "add `tractions = true` to [output]");
         }

@@ -3,14 +3,37 @@
 //! `F = A K (X_b − X_a)` on atom a and its opposite on b, eq. (fibres.1); Promayon 2008 and MODEL.md §4. A fibre has no length of
 //! its own: relaxed it does nothing, and active it pulls with a force in proportion to its length.
 
+use serde::{Deserialize, Serialize};
+
 use super::control::Handle;
 use super::course::Course;
 use super::lanes::{LANES, Real, Vectors, VectorsMut};
 use super::stiffness::StiffnessMatrix;
+use crate::Vec3;
 
 /// What may be set is the activation; below 0 the course stands.
 pub const HANDLE: Handle =
     Handle { word: "fibre", key: "fibres", range: [0.0, 1.0], expected: "a number from 0 to 1", unset: -1.0 };
+
+/// A single fibre of a cell, which may come and go while it runs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Fibre {
+    /// The atoms at its ends.
+    pub atoms: [u32; 2],
+    /// Stiffness K at full activation, pN/µm.
+    pub stiffness: f64,
+    /// Activation A, 0 to 1.
+    pub activation: f64,
+}
+
+impl Fibre {
+    /// The force on the atom at the first end, pN, where the other is this far off (µm), and the energy, pN·µm, eq. (fibres.1). The
+    /// force on the other end is opposite.
+    pub fn pull(&self, along: Vec3) -> (Vec3, f64) {
+        let pull = along * (self.activation * self.stiffness);
+        (pull, 0.5 * pull.dot(&along))
+    }
+}
 
 /// Fibres of a cell that are active together.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,7 +9,7 @@
 
 use super::population::{OfShared, Part, Population, Shared};
 use super::{Cell, Frame};
-use crate::recorded::{Values, cell_quantities};
+use crate::recorded::{OnDemand, Values, cell_quantities};
 
 /// One motility run that ended: id of the cell, end (s), duration (s).
 pub type Run = (u64, f64, f64);
@@ -106,11 +106,13 @@ pub enum List {
     Pairs,
     /// Cells that touch a plane.
     OnPlanes,
+    /// Fibres that were made at run time and are there.
+    Fibres,
 }
 
 impl List {
     /// All lists, each at its number.
-    pub const ALL: [Self; 4] = [Self::Runs, Self::Pseudopods, Self::Pairs, Self::OnPlanes];
+    pub const ALL: [Self; 5] = [Self::Runs, Self::Pseudopods, Self::Pairs, Self::OnPlanes, Self::Fibres];
 
     /// Rows of a frame.
     pub fn rows(self, frame: &Frame) -> usize {
@@ -119,6 +121,7 @@ impl List {
             Self::Pseudopods => frame.pseudopods.len(),
             Self::Pairs => frame.pairs.len(),
             Self::OnPlanes => frame.on_planes.len(),
+            Self::Fibres => frame.fibres.len(),
         }
     }
 
@@ -129,6 +132,7 @@ impl List {
             Self::Pseudopods => "/events/pseudopod_count",
             Self::Pairs => "/contacts/pair_count",
             Self::OnPlanes => "/contacts/plane_count",
+            Self::Fibres => "/fibres/count",
         }
     }
 
@@ -139,6 +143,7 @@ impl List {
             Self::Pseudopods => "/events/pseudopods/cell",
             Self::Pairs => "/contacts/pairs/area",
             Self::OnPlanes => "/contacts/planes/area",
+            Self::Fibres => "/fibres/tension",
         }
     }
 }
@@ -158,7 +163,7 @@ use Filled::{
     Population as PerPopulation, RowFloat, RowInteger, Shared as Block,
 };
 
-/// All datasets, in the order in which they are made, except those of [`cell_entries`], [`CONTACT`], [`FORCE`] and [`TRACTION`].
+/// All datasets, in the order in which they are made, except those of [`cell_entries`], [`CONTACT`], [`FORCE`], [`TRACTION`] and [`FIBRE`].
 #[rustfmt::skip]
 pub const CATALOGUE: &[Entry] = &[
     // The animated surface, in the layout that VTK calls VTKHDF PolyData 2.0.
@@ -228,6 +233,8 @@ pub const CATALOGUE: &[Entry] = &[
     row("/events/pseudopods/direction_z", "1", "pseudopod", RowFloat(List::Pseudopods, |f, i| f.pseudopods[i].direction[2]), "z of it."),
     row("/events/pseudopods/turn", "deg", "pseudopod", RowFloat(List::Pseudopods, |f, i| f.pseudopods[i].turn), "Angle from the pseudopod before; NaN of the first of a cell."),
     row("/events/pseudopods/side", "1", "pseudopod", RowInteger(List::Pseudopods, |f, i| i64::from(f.pseudopods[i].side)), "Side to which it split off from the one before: 1 left, -1 right; 0 where it started anew."),
+    row("/events/pseudopods/alone", "1", "pseudopod", RowInteger(List::Pseudopods, |f, i| i64::from(f.pseudopods[i].alone)), "1 where the cell had no other pseudopod when it began, 0 where it had."),
+    row("/events/pseudopods/abandoned", "1", "pseudopod", RowInteger(List::Pseudopods, |f, i| i64::from(f.pseudopods[i].abandoned)), "1 where it was given up when its protrusion ended, 0 where it was kept."),
     row("/scene/<name>", "of the series", "frame", Filled::Scene, "A series of the scene as a whole."),
     row("/provenance/experiment", "1", "1", OnceTexts, "The experiment document, verbatim."),
     row("/provenance/equation_files", "1", "document", OnceTexts, "Documents of equations, as the experiment names them."),
@@ -249,6 +256,18 @@ pub const CONTACT: &[Entry] = &[
     row("/contacts/planes/cell", "1", "cell on plane", RowInteger(List::OnPlanes, |f, i| f.on_planes[i].cell.cast_signed()), "Id of a cell that touches a plane."),
     row("/contacts/planes/plane", "1", "cell on plane", RowInteger(List::OnPlanes, |f, i| f.on_planes[i].other.cast_signed()), "The plane, an index into /planes/names."),
     row("/contacts/planes/area", "um^2", "cell on plane", RowFloat(List::OnPlanes, |f, i| f.on_planes[i].area), "Area of contact: of the atoms that touch the plane, at rest."),
+];
+
+/// The datasets of fibres, which exist in a run in which some may be made.
+#[rustfmt::skip]
+pub const FIBRE: &[Entry] = &[
+    row("/fibres/count", "1", "frame", Counter(|i| i.rows[List::Fibres as usize] as i64), "Rows of the other datasets of fibres up to the end of a frame."),
+    row("/fibres/cell", "1", "fibre", RowInteger(List::Fibres, |f, i| f.fibres[i].cell.cast_signed()), "Id of the cell that a fibre belongs to."),
+    row("/fibres/number", "1", "fibre", RowInteger(List::Fibres, |f, i| f.fibres[i].number.cast_signed()), "Number of the fibre among those that its cell has made: the same in all frames, and no other's."),
+    row("/fibres/from", "1", "fibre", RowInteger(List::Fibres, |f, i| i64::from(f.fibres[i].atoms[0])), "Atom at its first end, by its number in the cell; of a pseudopod's fibre the one in front."),
+    row("/fibres/to", "1", "fibre", RowInteger(List::Fibres, |f, i| i64::from(f.fibres[i].atoms[1])), "Atom at its other end."),
+    row("/fibres/length", "um", "fibre", RowFloat(List::Fibres, |f, i| f.fibres[i].length), "Distance of these atoms."),
+    row("/fibres/tension", "pN", "fibre", RowFloat(List::Fibres, |f, i| f.fibres[i].tension), "What the fibre pulls with: stiffness times activation in the last step times length."),
 ];
 
 /// The datasets of the forces, which exist when the first frame carries forces.
@@ -273,9 +292,9 @@ pub const TRACTION: &[Entry] = &[
     row("/VTKHDF/Steps/PointDataOffsets/inertia", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/inertia."),
 ];
 
-/// The datasets of the quantities of cells in a run that records tractions, or in one that does not.
-pub fn cell_entries(tractions: bool) -> impl Iterator<Item = Entry> {
-    cell_quantities(tractions).map(|quantity| {
+/// The datasets of the quantities of cells in a run that records these.
+pub fn cell_entries(with: OnDemand) -> impl Iterator<Item = Entry> {
+    cell_quantities(with).map(|quantity| {
         let shape = if matches!(quantity.values, Values::Vector(..)) { "cell, 3" } else { "cell" };
         row(quantity.dataset, quantity.unit, shape, Filled::Cell(quantity.values), quantity.description)
     })
@@ -286,7 +305,8 @@ pub fn cell_entries(tractions: bool) -> impl Iterator<Item = Entry> {
 /// # Panics
 /// If the catalogue has no such row: a mistake in this module.
 pub fn entry(path: &str) -> &'static Entry {
-    let found = CATALOGUE.iter().chain(CONTACT).chain(FORCE).chain(TRACTION).find(|entry| entry.path == path);
+    let found =
+        CATALOGUE.iter().chain(CONTACT).chain(FORCE).chain(TRACTION).chain(FIBRE).find(|entry| entry.path == path);
     found.unwrap_or_else(|| panic!("{path} is missing from the catalogue of the result file"))
 }
 
@@ -296,8 +316,9 @@ mod tests {
 
     #[test]
     fn every_path_is_listed_once_and_links_lead_somewhere() {
-        let cells: Vec<Entry> = cell_entries(true).collect();
-        let all: Vec<&Entry> = CATALOGUE.iter().chain(&cells).chain(CONTACT).chain(FORCE).chain(TRACTION).collect();
+        let cells: Vec<Entry> = cell_entries(OnDemand::ALL).collect();
+        let all: Vec<&Entry> =
+            CATALOGUE.iter().chain(&cells).chain(CONTACT).chain(FORCE).chain(TRACTION).chain(FIBRE).collect();
         for (number, entry) in all.iter().enumerate() {
             assert!(!all[..number].iter().any(|other| other.path == entry.path), "{} is listed twice", entry.path);
             if let Link(target) = entry.filled {

@@ -96,7 +96,7 @@ impl ResultFile {
         {
             return Some((system.path(quantity), None));
         }
-        let all = cell_quantities(self.layout().tractions);
+        let all = cell_quantities(self.layout().on_demand());
         all.into_iter().find_map(|quantity| Some((quantity.dataset.to_owned(), quantity.component(name)?.0)))
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use hdf5::File;
 
-use super::catalogue::{CATALOGUE, CONTACT, Entry, FORCE, Filled, Instant, List, TRACTION, cell_entries};
+use super::catalogue::{CATALOGUE, CONTACT, Entry, FIBRE, FORCE, Filled, Instant, List, TRACTION, cell_entries};
 use super::cell_column::{CellColumn, CellSource};
 use super::column::{Column, Number, Numbers, PackedColumn, Plan, SMALL_ROWS, push_frames};
 use super::container::set_number;
@@ -118,10 +118,11 @@ impl Columns {
     fn start(&mut self, file: &File, start: Start) -> hdf5::Result<()> {
         let contacts = if self.layout.contacts { CONTACT } else { &[] };
         let tractions = if self.layout.tractions { TRACTION } else { &[] };
-        for entry in CATALOGUE.iter().chain(contacts).chain(tractions) {
+        let fibres = if self.layout.fibres { FIBRE } else { &[] };
+        for entry in CATALOGUE.iter().chain(contacts).chain(tractions).chain(fibres) {
             self.add(file, entry, start)?;
         }
-        cell_entries(self.layout.tractions).try_for_each(|entry| self.add(file, &entry, start))?;
+        cell_entries(self.layout.on_demand()).try_for_each(|entry| self.add(file, &entry, start))?;
         for (order, (name, unit)) in (0_i64..).zip(&self.layout.scene_series) {
             let path = format!("/scene/{name}");
             let description = "A series of the scene as a whole.";
@@ -369,6 +370,7 @@ impl Columns {
         let kept = if self.layout.tractions { atoms } else { 0 };
         let fits = [traction, of_cells, drag, outer, inertia].iter().all(|list| list.len() == kept);
         assert!(fits, "tractions of a frame must fit the layout");
+        assert!(self.layout.fibres || frame.fibres.is_empty(), "fibres of a frame must fit the layout");
         let sizes = frame.membranes.iter().map(Vec::len);
         assert!(
             sizes.eq(self.layout.membranes.iter().map(|_| atoms)),

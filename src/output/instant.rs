@@ -34,7 +34,7 @@ impl Layout {
         let mut all = vec![info("time", "s", SeriesScope::Scene)];
         all.extend(self.scene_series.iter().map(|(name, unit)| info(name, unit, SeriesScope::Scene)));
         all.extend(series_of_frame(self).iter().map(|(name, unit)| info(name, unit, SeriesScope::Scene)));
-        for name in cell_series(self.tractions) {
+        for name in cell_series(self.on_demand()) {
             all.push(info(&name, cell_unit(&name).unwrap_or("1"), SeriesScope::Cells));
         }
         for system in &self.systems {
@@ -75,7 +75,7 @@ impl Frame {
             let speed = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
             return Some(self.records.iter().map(|cell| speed(cell.velocity)).collect());
         }
-        let (values, (component, _)) = cell_quantities(layout.tractions)
+        let (values, (component, _)) = cell_quantities(layout.on_demand())
             .find_map(|quantity| Some((quantity.values, quantity.component(name)?)))?;
         Some(match (values, component) {
             (Values::Number(value, _), _) => self.records.iter().map(value).collect(),

@@ -129,6 +129,7 @@ pub(super) fn read_layout(file: &File) -> hdf5::Result<Layout> {
         membranes: super::membranes::read_layouts(file)?,
         contacts: file.link_exists("contacts"),
         tractions: file.dataset(TRACTION[0].path).is_ok(),
+        fibres: file.link_exists("fibres"),
     })
 }
 

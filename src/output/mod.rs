@@ -39,7 +39,7 @@ mod tables;
 mod whole;
 mod writer;
 
-pub use crate::recorded::CellRecord;
+pub use crate::recorded::{CellRecord, OnDemand};
 pub use cells::{Cell, CellType, Known};
 pub use changes::{Change, Event, changes};
 pub use checkpoint::{Checkpoint, CheckpointMeta, checkpoint_path, load_checkpoint, save_checkpoint};
@@ -76,6 +76,15 @@ pub struct Layout {
     pub contacts: bool,
     /// Whether what cells do to what is around them is recorded.
     pub tractions: bool,
+    /// Whether fibres may be made at run time, so that those that are there are recorded.
+    pub fibres: bool,
+}
+
+impl Layout {
+    /// What is recorded of cells that not all runs have.
+    pub fn on_demand(&self) -> OnDemand {
+        OnDemand { tractions: self.tractions, fibres: self.fibres }
+    }
 }
 
 /// Forces between atoms and what is around them, in the mean over the last step, pN, atom after atom.
@@ -93,6 +102,21 @@ pub struct Tractions {
     pub inertia: Vec<[f64; 3]>,
 }
 
+/// A fibre of a cell that was made at run time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FibreRow {
+    /// Id of the cell.
+    pub cell: u64,
+    /// Its number among those that the cell has made.
+    pub number: u64,
+    /// The atoms at its ends, by their numbers in the cell.
+    pub atoms: [u32; 2],
+    /// Their distance, µm.
+    pub length: f64,
+    /// What it pulls with, pN.
+    pub tension: f64,
+}
+
 /// A pseudopod whose protrusion ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PseudopodEvent {
@@ -108,6 +132,10 @@ pub struct PseudopodEvent {
     pub turn: f64,
     /// The side to which it split off from the one before: 1 left, -1 right, 0 where it started anew.
     pub side: i8,
+    /// Whether there was no other when it began.
+    pub alone: bool,
+    /// Whether it was given up then.
+    pub abandoned: bool,
 }
 
 /// What is recorded at one instant. Its arrays follow its own list of cells, which may differ from frame to frame.
@@ -135,6 +163,8 @@ pub struct Frame {
     pub runs: Vec<(u64, f64, f64)>,
     /// Pseudopods whose protrusion ended since the frame before.
     pub pseudopods: Vec<PseudopodEvent>,
+    /// Fibres that were made at run time and are there, cell after cell.
+    pub fibres: Vec<FibreRow>,
     /// Pairs of cells that touch, the smaller id first, in ascending order.
     pub pairs: Vec<Touching>,
     /// Cells that touch planes, in ascending order of cell, then plane.

@@ -1,5 +1,6 @@
 //! Reads a result file: finished, interrupted, or left behind by a run that was killed.
 
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -14,7 +15,7 @@ use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
 use super::systems::SystemScope;
 use super::whole::whole_frames;
-use super::{Layout, PseudopodEvent, Tractions};
+use super::{Cell, FibreRow, Layout, PseudopodEvent, Tractions};
 use crate::error::{Error, Fault, Result};
 use crate::recorded::{CONTACTS, SPEED, cell_label, cell_series, cell_unit};
 
@@ -191,7 +192,7 @@ impl ResultFile {
 
     /// Names that [`cell_series`](Self::cell_series) knows, those of systems included.
     pub fn series_names(&self) -> Vec<String> {
-        let mut names: Vec<String> = cell_series(self.layout.tractions).collect();
+        let mut names: Vec<String> = cell_series(self.layout.on_demand()).collect();
         names.extend(self.cell_quantities());
         names
     }
@@ -281,6 +282,10 @@ impl ResultFile {
             self.read(&format!("/events/pseudopods/{name}"), |dataset| dataset.read_slice_1d::<f64, _>(0..count))
         };
         let [cells, sides] = [integers("cell")?, integers("side")?];
+        // Of files of earlier versions all were alone, and kept.
+        let told = self.file.dataset("/events/pseudopods/alone").is_ok();
+        let outcomes = if told { Some([integers("alone")?, integers("abandoned")?]) } else { None };
+        let is = |which: usize, row: usize| outcomes.as_ref().map(|outcomes| outcomes[which][row] == 1);
         let [ends, lifetimes, turns] = [numbers("end_time")?, numbers("lifetime")?, numbers("turn")?];
         let directions = [numbers("direction_x")?, numbers("direction_y")?, numbers("direction_z")?];
         let event = |row: usize| PseudopodEvent {
@@ -290,8 +295,53 @@ impl ResultFile {
             direction: [0, 1, 2].map(|axis| directions[axis][row]),
             turn: turns[row],
             side: sides[row].signum() as i8,
+            alone: is(0, row).unwrap_or(true),
+            abandoned: is(1, row).unwrap_or(false),
         };
         Ok((0..count).map(event).collect())
+    }
+
+    /// The fibres that were made at run time and are there in a frame; none in a run without such fibres. All join atoms that their cells have.
+    ///
+    /// # Errors
+    /// A damaged file.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    pub fn fibres(&self, frame: usize) -> Result<Vec<FibreRow>> {
+        assert!(frame < self.frames, "frame {frame} of {}", self.frames);
+        if !self.layout.fibres {
+            return Ok(Vec::new());
+        }
+        let rows = self.rows_of(List::Fibres, frame..frame + 1)?;
+        let integers = |name: &str| {
+            let read = |dataset: &Dataset| dataset.read_slice_1d::<i64, _>(rows.clone());
+            self.read(&format!("/fibres/{name}"), read)
+        };
+        let numbers = |name: &str| {
+            let read = |dataset: &Dataset| dataset.read_slice_1d::<f64, _>(rows.clone());
+            self.read(&format!("/fibres/{name}"), read)
+        };
+        let [cells, own, from, to] = [integers("cell")?, integers("number")?, integers("from")?, integers("to")?];
+        let [lengths, tensions] = [numbers("length")?, numbers("tension")?];
+        let unsigned = |number: i64| u64::try_from(number).unwrap_or(u64::MAX);
+        let atom = |number: i64| u32::try_from(number).unwrap_or(u32::MAX);
+        let row = |row: usize| FibreRow {
+            cell: unsigned(cells[row]),
+            number: unsigned(own[row]),
+            atoms: [atom(from[row]), atom(to[row])],
+            length: lengths[row],
+            tension: tensions[row],
+        };
+        let found: Vec<FibreRow> = (0..cells.len()).map(row).collect();
+        let atoms_of = |cell: &Cell| (cell.id, self.layout.types[cell.kind as usize].atoms);
+        let there: HashMap<u64, u32> = self.cells(frame).iter().map(atoms_of).collect();
+        let joins =
+            |fibre: &FibreRow| there.get(&fibre.cell).is_some_and(|atoms| fibre.atoms.iter().all(|atom| atom < atoms));
+        match found.iter().all(joins) {
+            true => Ok(found),
+            false => Err(damaged(&self.path, "/fibres joins atoms that are not there")),
+        }
     }
 
     /// The rows that a list has in some frames.

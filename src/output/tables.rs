@@ -16,7 +16,8 @@ pub enum Table {
     Tracks,
     /// A row per motility run that ended: cell, end (s), duration (s).
     Runs,
-    /// A row per pseudopod whose protrusion ended: cell, end (s), how long it was pushed (s), direction, angle from the one before (degrees), side.
+    /// A row per pseudopod whose protrusion ended: cell, end (s), how long it was pushed (s), direction, angle from the one before (degrees), side, whether it began
+    /// alone and was given up.
     Pseudopods,
     /// A row per measure of the experiment.
     Summary,
@@ -143,10 +144,14 @@ fn runs(result: &ResultFile) -> Result<String> {
 }
 
 fn pseudopods(result: &ResultFile) -> Result<String> {
-    let mut text = String::from("cell,end time (s),lifetime (s),direction x,direction y,direction z,turn (deg),side\n");
+    let mut text = String::from(
+        "cell,end time (s),lifetime (s),direction x,direction y,direction z,turn (deg),side,alone,abandoned\n",
+    );
     for pod in result.pseudopods()? {
         let [x, y, z] = pod.direction;
-        text.push_str(&format!("{},{},{},{x},{y},{z},{},{}\n", pod.cell, pod.end, pod.lifetime, pod.turn, pod.side));
+        let [alone, abandoned] = [pod.alone, pod.abandoned].map(u8::from);
+        let (cell, end, lifetime, turn, side) = (pod.cell, pod.end, pod.lifetime, pod.turn, pod.side);
+        text.push_str(&format!("{cell},{end},{lifetime},{x},{y},{z},{turn},{side},{alone},{abandoned}\n"));
     }
     Ok(text)
 }

@@ -3,7 +3,7 @@
 use hdf5::{Dataset, File};
 use ndarray::s;
 
-use super::catalogue::{CATALOGUE, CONTACT, FORCE, Filled, List, TRACTION, cell_entries};
+use super::catalogue::{CATALOGUE, CONTACT, FIBRE, FORCE, Filled, List, TRACTION, cell_entries};
 use super::mark::FlushMark;
 use super::pieces::has_frames;
 use super::population::{OfShared, Part, Population, Shared};
@@ -128,13 +128,13 @@ pub(super) fn whole_frames(file: &File, layout: &Layout) -> hdf5::Result<usize> 
         return Ok(0);
     }
     let (mut frames, mut fields) = (usize::MAX, Vec::new());
-    for entry in CATALOGUE.iter().chain(CONTACT) {
+    for entry in CATALOGUE.iter().chain(CONTACT).chain(FIBRE) {
         if !matches!(entry.filled, Filled::Frame(_) | Filled::Counter(_) | Filled::Counters(_)) {
             continue;
         }
         match file.dataset(entry.path) {
             Ok(dataset) => frames = frames.min(dataset.get_shape()?[0]),
-            Err(_) if CONTACT.iter().any(|optional| optional.path == entry.path) => {}
+            Err(_) if CONTACT.iter().chain(FIBRE).any(|optional| optional.path == entry.path) => {}
             Err(error) => return Err(error),
         }
     }
@@ -182,7 +182,7 @@ impl Datasets {
     fn of(file: &File, layout: &Layout, fields: Vec<Dataset>) -> hdf5::Result<Self> {
         let (atoms, cells, scene_systems) = (Vec::new(), Vec::new(), Vec::new());
         let mut found = Self { atoms, cells, blocks: Vec::new(), populations: Vec::new(), fields, scene_systems };
-        let of_cells = cell_entries(layout.tractions).map(|entry| (entry.path, entry.filled));
+        let of_cells = cell_entries(layout.on_demand()).map(|entry| (entry.path, entry.filled));
         let all = CATALOGUE.iter().chain(FORCE).map(|entry| (entry.path, &entry.filled));
         for (path, filled) in all {
             let dataset = || file.dataset(path);

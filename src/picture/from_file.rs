@@ -1,5 +1,6 @@
 //! Pictures of a result file: the frames it holds, seen as the experiment asks.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::arrows::LoadArrows;
@@ -12,7 +13,7 @@ use super::render::Sheet;
 use super::{Image, plots};
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Picture};
-use crate::output::{Cell, ResultFile};
+use crate::output::{Cell, FibreRow, ResultFile};
 
 /// What one frame gives to a picture.
 struct Shot {
@@ -20,6 +21,8 @@ struct Shot {
     positions: Vec<[f64; 3]>,
     values: Vec<f64>,
     arrows: Vec<[[f64; 3]; 2]>,
+    /// Ends and tensions of fibres, where they are shown.
+    fibres: Option<Vec<([[f64; 3]; 2], f64)>>,
     field: Option<Sheet>,
     time: f64,
 }
@@ -39,6 +42,8 @@ struct Stage<'a> {
     look: Look,
     shown: Shown,
     arrows: LoadArrows,
+    /// Whether fibres are shown: the run may have made some.
+    fibres: bool,
     field: Option<FieldView>,
     times: Vec<f64>,
     /// When the run was to end, s.
@@ -105,7 +110,8 @@ impl<'a> Stage<'a> {
         look.field_label = field.as_ref().map_or_else(String::new, FieldView::label);
         let arrows = if picture.loads { LoadArrows::of(document)? } else { LoadArrows::default() };
         let until = document.experiment.run.until.value();
-        Ok(Self { result, look, shown, arrows, field, times: result.times()?, until })
+        let fibres = picture.fibres && result.layout().fibres;
+        Ok(Self { result, look, shown, arrows, fibres, field, times: result.times()?, until })
     }
 
     /// Nothing seen yet; times are told in the unit that suits the whole run, whichever frames are drawn.
@@ -126,7 +132,19 @@ impl<'a> Stage<'a> {
         let time = self.times[frame];
         let field = self.field.as_ref().map(|field| field.sheet(self.result, frame, &positions)).transpose()?;
         let arrows = self.arrows.at(time, self.result.layout(), &cells, &positions);
-        Ok(Shot { cells, positions, values, arrows, field, time })
+        let fibres = self.fibres.then(|| self.fibres_at(frame, &cells, &positions)).transpose()?;
+        Ok(Shot { cells, positions, values, arrows, fibres, field, time })
+    }
+
+    /// The ends and tensions of the fibres of a frame.
+    fn fibres_at(&self, frame: usize, cells: &[Cell], positions: &[[f64; 3]]) -> Result<Vec<([[f64; 3]; 2], f64)>> {
+        let firsts = cells.iter().zip(self.result.layout().atoms_of(cells)).map(|(cell, atoms)| (cell.id, atoms.start));
+        let firsts: HashMap<u64, usize> = firsts.collect();
+        let ends = |fibre: FibreRow| {
+            let ends = fibre.atoms.map(|atom| positions[firsts[&fibre.cell] + atom as usize]);
+            (ends, fibre.tension)
+        };
+        Ok(self.result.fibres(frame)?.into_iter().map(ends).collect())
     }
 
     fn snapshot<'b>(&'b self, shot: &'b Shot) -> Snapshot<'b> {
@@ -137,7 +155,8 @@ impl<'a> Stage<'a> {
         };
         let layout = self.result.layout();
         let (cells, positions, arrows, field) = (&shot.cells, &shot.positions, &shot.arrows, shot.field.as_ref());
-        Snapshot { layout, cells, positions, time: shot.time, values, arrows, field }
+        let fibres = shot.fibres.as_deref();
+        Snapshot { layout, cells, positions, time: shot.time, values, arrows, fibres, field }
     }
 
     fn draw(&self, shot: &Shot, framing: &Framing, picture: &Picture) -> Image {

@@ -15,6 +15,9 @@ use super::ticks::nice_above;
 use crate::Vec3;
 use crate::output::{Cell, CellType, Layout};
 
+/// The colour of fibres: a dark red, as stained actomyosin is often shown.
+const FIBRE: Colour = Colour([0xa8, 0x1d, 0x2d]);
+
 /// One recorded instant.
 #[derive(Debug, Clone, Copy)]
 pub struct Snapshot<'a> {
@@ -30,9 +33,14 @@ pub struct Snapshot<'a> {
     pub values: Values<'a>,
     /// Arrows over the cells, from tail to tip (µm): loads, velocities.
     pub arrows: &'a [[[f64; 3]; 2]],
+    /// Fibres inside the cells: their ends (µm) and what they pull with (pN); none where they are not shown in any frame.
+    pub fibres: Option<&'a [DrawnFibre]>,
     /// A field under or between the cells; the look says its colours.
     pub field: Option<&'a Sheet>,
 }
+
+/// The ends of a fibre (µm) and what it pulls with (pN).
+pub type DrawnFibre = ([[f64; 3]; 2], f64);
 
 /// What colours show.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -116,6 +124,8 @@ pub struct Framing {
     field_corners: Vec<[f64; 3]>,
     range: [f64; 2],
     field_range: [f64; 2],
+    /// What the strongest fibre pulls with, pN.
+    strongest: f64,
     longest: f64,
 }
 
@@ -141,6 +151,7 @@ impl Framing {
             field_corners: Vec::new(),
             range: [f64::INFINITY, f64::NEG_INFINITY],
             field_range: [f64::INFINITY, f64::NEG_INFINITY],
+            strongest: 0.0,
             longest: 0.0,
         }
     }
@@ -181,6 +192,8 @@ impl Framing {
             }
             self.field_corners = corners_near(sheet, self.bounds.as_ref());
         }
+        let pulls = snapshot.fibres.into_iter().flatten().map(|(_, tension)| *tension);
+        self.strongest = pulls.fold(self.strongest, f64::max);
         self.longest = self.longest.max(snapshot.time);
     }
 
@@ -268,7 +281,9 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
     let [low, high] = framing.ends(look);
     let number_colour = |value: f64| look.map.at((value - low) / (high - low));
     let has_links = snapshot.cells.iter().any(|cell| !layout.types[cell.kind as usize].links.is_empty());
-    let opacity = look.opacity.unwrap_or(if has_links { 0.35 } else { 1.0 });
+    // Skins are as translucent in frames without fibres as in those with them.
+    let shows_inside = has_links || snapshot.fibres.is_some();
+    let opacity = look.opacity.unwrap_or(if shows_inside { 0.35 } else { 1.0 });
     let mut scene = Scene::default();
     let mut sizes = Vec::with_capacity(snapshot.cells.len());
     for (number, (cell, atoms)) in snapshot.cells.iter().zip(layout.atoms_of(snapshot.cells)).enumerate() {
@@ -306,6 +321,11 @@ pub fn scene_of(snapshot: &Snapshot, look: &Look, framing: &Framing) -> Scene {
                 dark,
             );
         }
+    }
+    for ([from, to], tension) in snapshot.fibres.into_iter().flatten().filter(|(_, tension)| *tension > 0.0) {
+        // A bundle's cross-section goes with what it pulls with.
+        let share = (tension / framing.strongest.max(*tension)).sqrt();
+        scene.add_line(*from, *to, (0.002 + 0.003 * share) * typical, FIBRE);
     }
     for [tail, tip] in snapshot.arrows {
         scene.add_arrow(*tail, *tip, 0.011 * typical, dark);
@@ -397,6 +417,7 @@ mod tests {
             time: 3.0,
             values: Values::Type,
             arrows: &[],
+            fibres: None,
             field: None,
         };
         let look = Look::default();
@@ -421,8 +442,16 @@ mod tests {
         let look = Look::default();
         let stamp = |time: f64| {
             let (positions, values) = (&positions, Values::Type);
-            let snapshot =
-                Snapshot { layout: &layout, cells: &CELLS, positions, time, values, arrows: &[], field: None };
+            let snapshot = Snapshot {
+                layout: &layout,
+                cells: &CELLS,
+                positions,
+                time,
+                values,
+                arrows: &[],
+                fibres: None,
+                field: None,
+            };
             // A picture of one frame alone: the others have not been seen.
             let mut framing = Framing::new(&look).lasting(600.0);
             framing.include(&snapshot);
@@ -444,6 +473,7 @@ mod tests {
             time: 0.0,
             values: Values::Type,
             arrows: &[],
+            fibres: None,
             field: None,
         };
         let (mut one, mut both) = (Framing::new(&look), Framing::new(&look));
@@ -474,6 +504,7 @@ mod tests {
             time: k as f64,
             values: Values::Atoms(&heights),
             arrows: &[],
+            fibres: None,
             field: None,
         };
         let mut framing = Framing::new(&look);

@@ -31,6 +31,21 @@ pub struct CellRecord {
     pub aggregate: f64,
     /// Forces between it and what is around it; nothing in runs that do not record them.
     pub traction: TractionRecord,
+    /// Its fibres that were made at run time; nothing in runs in which none may be.
+    pub fibres: FibresRecord,
+}
+
+/// What the fibres of a cell are like that were made at run time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FibresRecord {
+    /// How many there are.
+    pub count: f64,
+    /// Sum of what they pull with, pN.
+    pub tension: f64,
+    /// Their mean length, µm; NaN where there are none.
+    pub length: f64,
+    /// Their energy, pN·µm.
+    pub energy: f64,
 }
 
 /// A row of [`CELL`].

@@ -1,17 +1,19 @@
 //! What a run writes down: names, units, labels and meanings of all quantities, in one table.
 //!
 //! Documents name them, the run fills them, the result file stores them, charts and messages speak of them; all by the
-//! tables here. A new quantity of cells is a field of [`CellRecord`] and a row of [`CELL`], or of [`TRACTION`] where runs record it on demand; a
+//! tables here. A new quantity of cells is a field of [`CellRecord`] and a row of [`CELL`], or of [`TRACTION`] or [`FIBRES`] where only some runs have it; a
 //! new series about contacts is a variant of [`ContactSeries`] and a row of [`CONTACTS`].
 
 mod balance;
 mod cell;
 mod contacts;
+mod fibres;
 mod series;
 mod traction;
 
 pub use balance::TractionRecord;
-pub use cell::{CELL, CellQuantity, CellRecord, Values};
+pub use cell::{CELL, CellQuantity, CellRecord, FibresRecord, Values};
 pub use contacts::{CONTACTS, ContactQuantity, ContactSeries, Recorded, Touch, contact_quantities};
-pub use series::{SPEED, cell_label, cell_quantities, cell_series, cell_unit};
+pub use fibres::FIBRES;
+pub use series::{OnDemand, SPEED, cell_label, cell_quantities, cell_series, cell_unit};
 pub use traction::TRACTION;

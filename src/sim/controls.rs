@@ -98,16 +98,33 @@ impl Controls {
         self.adhesion_of_atoms.get(atom as usize).copied().unwrap_or(1.0)
     }
 
-    /// The same at a point between atoms.
+    /// The same at a point between atoms, whose weights sum to 1 but for round-off: one that is a little below 0 for that reason counts
+    /// nothing, so that where all atoms let go nothing is held with less than nothing.
     pub fn adhesion_between(&self, atoms: [u32; 3], weights: [f64; 3]) -> f64 {
         if self.adhesion_of_atoms.is_empty() {
             return 1.0;
         }
-        atoms.iter().zip(weights).map(|(atom, weight)| weight * self.adhesion_of_atom(*atom)).sum()
+        atoms.iter().zip(weights).map(|(atom, weight)| weight.max(0.0) * self.adhesion_of_atom(*atom)).sum()
     }
 
     /// Factor of the strength with which a cell sticks.
     pub fn adhesion_of(&self, cell: usize) -> f64 {
         self.adhesion.get(cell).copied().unwrap_or(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_with_round_off_never_hold_with_less_than_nothing() {
+        // As a contact keeps them: to seven digits, which here sum to 1 + 4e-8.
+        let [second, third] = [0.438_151_1_f32, 0.561_848_94].map(f64::from);
+        let weights = [1.0 - second - third, second, third];
+        assert!(weights[0] < 0.0);
+        let controls = Controls { adhesion_of_atoms: vec![1.0, 0.0, 0.0, 0.5], ..Controls::default() };
+        assert_eq!(controls.adhesion_between([0, 1, 2], weights), 0.0);
+        assert_eq!(controls.adhesion_between([0, 3, 3], weights), 0.5 * (second + third));
     }
 }

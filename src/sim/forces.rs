@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::acting_fibres::ActingFibres;
 use super::contact::{ContactForces, add_contact_forces, pull_contacts};
 use super::controls::Controls;
 use super::kind::{Kind, VolumeRule};
@@ -38,6 +39,8 @@ pub struct Acting<'a> {
     pub drive: &'a [[f64; 3]],
     /// What pseudopods do to the atoms of all cells, pN; none in a model without them.
     pub pushes: &'a [Vec3],
+    /// Fibres that were made at run time.
+    pub fibres: &'a ActingFibres,
     /// What contacts do.
     pub contact: &'a ContactForces,
 }
@@ -63,7 +66,7 @@ impl Forces<'_> {
         (f, energy): (&mut [f64], &mut [f64]),
         spare: &mut [f64],
     ) {
-        let &Self { kind, cells, controls, acting: Acting { drive, pushes, contact } } = self;
+        let &Self { kind, cells, controls, acting: Acting { drive, pushes, fibres, contact } } = self;
         let numbers = cells.numbers_of_block(kind, block);
         let context = context(kind, controls, numbers.clone(), time);
         measure_forces(&kind.forces, &context, kind.lanes, x, f, energy);
@@ -72,6 +75,7 @@ impl Forces<'_> {
         }
         add_pressure(kind, time, x, rest, spare, f, energy);
         add_to_atoms(kind, cells, block, pushes, f);
+        add_fibres(kind, cells, block, fibres, x, f, energy);
         add_contact_forces(kind, cells, block, contact, f);
     }
 }
@@ -95,6 +99,7 @@ impl Forces<'_> {
 /// carry must have been found.
 pub fn add_forces(model: &Model, time: f64, state: &State, ws: &mut Workspace) {
     ws.suit(model, state);
+    ws.fibres.gather(model, &state.kinds);
     sum_forces(model, (time, 0.0), &state.chemistry.controls, &state.kinds, ws);
 }
 
@@ -111,8 +116,8 @@ pub fn sum_forces(
     for (w, now) in ws.kinds.iter_mut().zip(cells) {
         w.force.resize(now.positions.len(), 0.0);
     }
-    let Workspace { kinds, buffers, drive, pushes, contact, .. } = ws;
-    let acting = Acting { drive, pushes, contact: &contact.forces };
+    let Workspace { kinds, buffers, drive, pushes, fibres, contact, .. } = ws;
+    let acting = Acting { drive, pushes, fibres, contact: &contact.forces };
     for_each_kind(model, time, (controls, acting), cells, kinds, buffers, |w| (&mut w.force, &mut w.energy));
     if share == 0.0 || !model.keeps_tractions {
         return;
@@ -126,10 +131,11 @@ pub fn sum_forces(
     }
 }
 
-/// Sets `energy` of every kind to the energy of every cell, pN·µm; contacts have none.
+/// Sets `energy` of every kind to the energy of every cell, pN·µm, without that of fibres made at run time; contacts have none.
 pub fn measure_energy(model: &Model, time: f64, controls: &Controls, cells: &[KindState], ws: &mut Workspace) {
     let Workspace { kinds, buffers, drive, .. } = ws;
-    let acting = Acting { drive, pushes: &[], contact: &ContactForces::default() };
+    let (fibres, contact) = (&ActingFibres::default(), &ContactForces::default());
+    let acting = Acting { drive, pushes: &[], fibres, contact };
     for_each_kind(model, time, (controls, acting), cells, kinds, buffers, |w| (&mut [], &mut w.energy));
 }
 
@@ -192,6 +198,34 @@ fn add_to_atoms(kind: &Kind, cells: &KindState, block: usize, forces: &[Vec3], f
         let own = &forces[cell * kind.atoms()..(cell + 1) * kind.atoms()];
         for (atom, force) in own.iter().enumerate() {
             (0..3).for_each(|axis| f[(3 * atom + axis) * kind.lanes + lane] += force[axis]);
+        }
+    }
+}
+
+/// Adds what fibres made at run time do to the atoms of a block, eq. (fibres.1), and their energy.
+fn add_fibres(
+    kind: &Kind,
+    cells: &KindState,
+    block: usize,
+    fibres: &ActingFibres,
+    x: &[f64],
+    f: &mut [f64],
+    energy: &mut [f64],
+) {
+    if fibres.is_empty() {
+        return;
+    }
+    for lane in 0..kind.lanes {
+        let cell = (block * kind.lanes + lane).min(cells.cells() - 1);
+        let at = |atom: u32, axis: usize| (3 * atom as usize + axis) * kind.lanes + lane;
+        for fibre in fibres.of(cells.first_cell + cell) {
+            let [a, b] = fibre.atoms;
+            let (pull, stored) = fibre.pull(Vec3::from_fn(|axis, _| x[at(b, axis)] - x[at(a, axis)]));
+            energy[lane] += stored;
+            for axis in 0..3 {
+                f[at(a, axis)] += pull[axis];
+                f[at(b, axis)] -= pull[axis];
+            }
         }
     }
 }

@@ -56,7 +56,7 @@ fn is_left_alone(model: &Model, state: &State) -> bool {
     let is_alone = |(kind, now): (&Kind, &KindState)| {
         let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
         let is_quiet = |force: &Force| force.is_elastic() && force.is_conservative() || is_idle(force);
-        steady && !now.is_driven(kind) && kind.forces.iter().all(is_quiet)
+        steady && !now.is_driven(kind) && now.fibres.is_empty() && kind.forces.iter().all(is_quiet)
     };
     matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)
         && model.contact.as_ref().is_some_and(sticks_only)

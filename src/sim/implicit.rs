@@ -87,12 +87,13 @@ fn advance_stages(
     to: &mut State,
     ws: &mut Workspace,
 ) -> f64 {
-    let Workspace { kinds, buffers, drive, pushes, contact, .. } = ws;
+    let Workspace { kinds, buffers, drive, pushes, fibres, contact, .. } = ws;
     let mut worst = 0.0;
     let cells = from.kinds.iter().zip(&mut to.kinds);
     for ((kind, (now, next)), w) in model.kinds.iter().zip(cells).zip(kinds) {
         let controls = &from.chemistry.controls;
-        let forces = Forces { kind, cells: now, controls, acting: Acting { drive, pushes, contact: &contact.forces } };
+        let acting = Acting { drive, pushes, fibres, contact: &contact.forces };
+        let forces = Forces { kind, cells: now, controls, acting };
         let solver = &*w.solver(kind, dt, gamma(kind, order));
         let targets = Targets::of(model, kind, [from.time, from.time + dt]);
         let step = Step { model, kind, forces, solver, targets, order, start: from.time, dt };

@@ -42,6 +42,10 @@ pub struct Kind {
     pub drawn_links: Vec<[u32; 2]>,
     /// What its cells do by themselves.
     pub behaviours: Vec<Behaviour>,
+    /// Fibres made at run time that a cell has at most.
+    pub fibre_budget: usize,
+    /// What the stiffnesses of such fibres may sum up to at one atom, so that steps bear them, pN/µm, eq. (fibres.2).
+    pub fibre_limit: f64,
     /// Lanes of a block: [`LANES`], or 1 for a few cells.
     pub lanes: usize,
     /// Mean edge length at rest, µm.
@@ -94,6 +98,8 @@ impl Kind {
             volume: if closed { VolumeRule::Exact(Course::constant(1.0)) } else { VolumeRule::Free },
             drawn_links: Vec::new(),
             behaviours: Vec::new(),
+            fibre_budget: 0,
+            fibre_limit: 0.0,
             lanes: 1,
             edge: geometry::mean_edge_length(&rest),
             rest,
@@ -118,6 +124,25 @@ impl Kind {
     /// Whether its cells have pseudopods.
     pub fn has_pseudopods(&self) -> bool {
         self.behaviours.iter().any(|behaviour| matches!(behaviour, Behaviour::Pseudopods(_)))
+    }
+
+    /// Whether its cells have several pseudopods at once.
+    pub fn has_several_pseudopods(&self) -> bool {
+        self.behaviours
+            .iter()
+            .any(|behaviour| matches!(behaviour, Behaviour::Pseudopods(pods) if pods.several.most > 1))
+    }
+
+    /// What the stiffnesses of the fibres of its pseudopods sum up to at one atom at most, pN/µm: those of one pseudopod have atoms of their
+    /// own.
+    pub fn pod_fibre_stiffness(&self) -> f64 {
+        let of = |behaviour: &Behaviour| match behaviour {
+            Behaviour::Pseudopods(pods) => {
+                pods.fibres.map_or(0.0, |fibres| pods.several.most as f64 * fibres.stiffness)
+            }
+            _ => 0.0,
+        };
+        self.behaviours.iter().map(of).sum()
     }
 
     /// Whether links set a velocity of its cells.

@@ -36,7 +36,8 @@ impl Kind {
             let forces = self.forces.iter().filter(|force| force.handle().is_some() == driven);
             forces.filter_map(Force::largest_stiffness).sum()
         };
-        elastic + bounds(true) + bounds(false)
+        // Twice what the fibres of one atom sum up to bounds those that come and go.
+        elastic + bounds(true) + bounds(false) + 2.0 * self.pod_fibre_stiffness()
     }
 
     /// Sets the stiffness K of the implicit step to the one that fits the rest shape; see [`Kind::stiffness_at`].

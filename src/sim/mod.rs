@@ -1,11 +1,14 @@
 //! The simulator: model, state, workspace and the step. It knows no files, formats or clocks.
 
+pub mod acting_fibres;
 mod atom_controls;
 pub mod balance;
 pub mod chemistry;
 pub mod constraints;
 pub mod contact;
 pub mod controls;
+pub mod fibre_state;
+mod fibres;
 mod finite;
 pub mod forces;
 mod gain;

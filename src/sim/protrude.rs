@@ -112,9 +112,11 @@ pub fn release_rears(model: &Model, to: &mut State) {
         let factors = of_all[now.atoms(kind)].chunks_mut(kind.atoms());
         for (cell, (factors, state)) in factors.zip(&now.behaviours[number]).enumerate() {
             let BehaviourState::Pseudopods(state) = state else { continue };
-            let let_go = pods.release * state.releases(&controls.told_pseudopods(now.first_cell + cell));
-            if let_go > 0.0 {
-                Positions { kind, now, cell }.release(let_go, &Vec3::from(state.direction), factors);
+            for (front, retraction) in state.releases(&controls.told_pseudopods(now.first_cell + cell)) {
+                let let_go = pods.release * retraction;
+                if let_go > 0.0 {
+                    Positions { kind, now, cell }.release(let_go, &front, factors);
+                }
             }
         }
     }

@@ -28,7 +28,8 @@ impl Positions<'_> {
         (0..self.kind.atoms()).map(|atom| self.of(atom))
     }
 
-    fn centre(&self) -> Vec3 {
+    /// The mean of the atoms, µm.
+    pub fn centre(&self) -> Vec3 {
         self.all().sum::<Vec3>() / self.kind.atoms() as f64
     }
 
@@ -44,7 +45,7 @@ impl Positions<'_> {
     }
 
     /// How much an atom belongs to a pseudopod, eq. (pseudopods.2).
-    fn share(&self, pods: &Pseudopods, atom: usize, (centre, direction): (&Vec3, &Vec3)) -> f64 {
+    pub fn share(&self, pods: &Pseudopods, atom: usize, (centre, direction): (&Vec3, &Vec3)) -> f64 {
         let out = self.of(atom) - centre;
         let cosine = out.dot(direction) / out.norm().max(f64::MIN_POSITIVE);
         ((cosine - pods.least_cosine) / (1.0 - pods.least_cosine)).max(0.0)
@@ -157,7 +158,7 @@ impl Positions<'_> {
         let ahead = |x: Vec3| (x - centre).dot(direction);
         let farthest = self.all().map(|x| ahead(x).abs()).fold(f64::MIN_POSITIVE, f64::max);
         for (factor, x) in factors.iter_mut().zip(self.all()) {
-            *factor = 1.0 - let_go * (0.5 - ahead(x) / farthest).clamp(0.0, 1.0);
+            *factor *= 1.0 - let_go * (0.5 - ahead(x) / farthest).clamp(0.0, 1.0);
         }
     }
 }

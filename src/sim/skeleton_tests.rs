@@ -1,6 +1,7 @@
 use super::*;
 use crate::cell::motility::Space;
-use crate::cell::pseudopods::{Cycle, Turning};
+use crate::cell::pseudopods::{Cycle, Several};
+use crate::cell::turning::Turning;
 use crate::geometry::icosphere;
 use crate::sim::state::Inertia;
 
@@ -9,9 +10,12 @@ const PODS: Pseudopods = Pseudopods {
     reach: f64::INFINITY,
     least_cosine: 0.7,
     contraction: 100.0,
+    fibres: None,
     release: 0.8,
     cycle: Cycle { means: [1.0, 2.0, 3.0], variation: 0.5 },
     turning: Turning { split: 0.5, angle: 1.0, spread: 0.1, alternation: 0.7, space: Space::Plane },
+    several: Several::ONE,
+    abandon: None,
 };
 
 /// A cell that is not round, and where its atoms are.
@@ -50,8 +54,12 @@ fn a_cell_pushes_itself_with_neither_sum_nor_torque_wherever_it_grips() {
     ] {
         for [protrusion, retraction] in [[1.0, 0.0], [0.0, 1.0], [0.3, 0.6]] {
             let mut forces = vec![Vec3::zeros(); kind.atoms()];
-            let did = Activity { direction: [0.6, 0.8, 0.0], protrusion, retraction };
-            positions.push(&PODS, &did, &grips, &mut forces);
+            // A second one at the same time, which is pushed and drawn otherwise.
+            for (direction, number) in [([0.6, 0.8, 0.0], 1), ([-0.28, 0.96, 0.0], 2)] {
+                let (one, other) = if number == 1 { (protrusion, retraction) } else { (retraction, protrusion) };
+                let did = Activity { direction, protrusion: one, retraction: other, number };
+                positions.push(&PODS, &did, &grips, &mut forces);
+            }
             let [sum, torque] = sum_and_torque(&positions, &forces);
             // Round-off of some hundred terms; where one atom grips the terms that cancel are a hundred times as large, as little leaks to others.
             assert!(sum < 1e-12 && torque < 1e-12, "{words}, {protrusion} {retraction}: {sum} {torque}");
@@ -66,7 +74,7 @@ fn what_grips_bears_what_is_pushed_in_proportion() {
     let positions = Positions { kind: &kind, now: &now, cell: 0 };
     let centre = positions.centre();
     let grips: Vec<f64> = positions.all().map(|x| if x.z < centre.z - 4.0 { 2.0 } else { 0.0 }).collect();
-    let did = Activity { direction: [1.0, 0.0, 0.0], protrusion: 1.0, retraction: 0.0 };
+    let did = Activity { direction: [1.0, 0.0, 0.0], protrusion: 1.0, retraction: 0.0, number: 1 };
     let mut forces = vec![Vec3::zeros(); kind.atoms()];
     positions.push(&PODS, &did, &grips, &mut forces);
     let held: Vec3 = forces.iter().zip(&grips).filter(|(_, grip)| **grip > 0.0).map(|(force, _)| force).sum();
@@ -88,7 +96,7 @@ fn the_pressure_is_that_on_the_area_of_the_front() {
     // The rear bears the reaction.
     let grips: Vec<f64> = rest.positions.iter().map(|x| if x.x < -3.0 { 1.0 } else { 0.0 }).collect();
     let mut forces = vec![Vec3::zeros(); kind.atoms()];
-    let did = Activity { direction: direction.into(), protrusion: 1.0, retraction: 0.0 };
+    let did = Activity { direction: direction.into(), protrusion: 1.0, retraction: 0.0, number: 1 };
     positions.push(&PODS, &did, &grips, &mut forces);
     // On a ball of 5 um with c the cosine to the axis: ∫ p (c − c₀)/(1 − c₀) c dA, dA = 2πR² dc.
     let c0 = PODS.least_cosine;
@@ -187,7 +195,7 @@ fn a_front_pushes_less_the_farther_it_is_ahead() {
         let now = KindState::new(&kind, std::slice::from_ref(&drawn), 0, Inertia::OverDamped, 1);
         let mut forces = vec![Vec3::zeros(); kind.atoms()];
         // Where nothing grips, what is in front bears the less the more it belongs to it: the axis nothing.
-        let did = Activity { direction: [1.0, 0.0, 0.0], protrusion: 1.0, retraction: 0.0 };
+        let did = Activity { direction: [1.0, 0.0, 0.0], protrusion: 1.0, retraction: 0.0, number: 1 };
         Positions { kind: &kind, now: &now, cell: 0 }.push(pods, &did, &vec![0.0; kind.atoms()], &mut forces);
         forces.iter().map(|force| force.norm()).sum()
     };

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::balance::AtomBalance;
 use super::chemistry::ChemistryState;
 use super::contact::ContactState;
+use super::fibre_state::FibreState;
 use super::kind::Kind;
 use super::model::Model;
 use crate::Vec3;
@@ -71,6 +72,8 @@ pub struct KindState {
     pub mean_velocities: Vec<[f64; 3]>,
     /// What every cell remembers of each behaviour of the kind: `[behaviour][cell]`.
     pub behaviours: Vec<Vec<BehaviourState>>,
+    /// Fibres that were made at run time.
+    pub fibres: FibreState,
     /// Whether a program has set a velocity of any of them, which is then added to what behaviours ask for.
     pub is_biased: bool,
     /// What the atoms of each cell did to what is around them in the last step, cell after cell; empty where that is not kept.
@@ -121,6 +124,7 @@ impl KindState {
             stiffness_shape: Vec::new(),
             mean_velocities: vec![[0.0; 3]; cells],
             behaviours: kind.behaviours.iter().map(|behaviour| start_of(&ids, *behaviour, seed)).collect(),
+            fibres: FibreState::new(kind, cells),
             is_biased: false,
             balance: Vec::new(),
             ids,
@@ -182,6 +186,7 @@ impl KindState {
         self.mean_velocities.fill([f64::NAN; 3]);
         self.balance.fill(AtomBalance::UNKNOWN);
         self.behaviours.iter_mut().for_each(Vec::clear);
+        self.fibres.poison();
     }
 
     /// Adds a cell at rest behind the others; whoever adds it counts the cells of all kinds anew.
@@ -194,6 +199,7 @@ impl KindState {
         for (states, behaviour) in self.behaviours.iter_mut().zip(&kind.behaviours) {
             states.push(behaviour.start(model.seed, id));
         }
+        self.fibres.push_cell(kind);
         self.mean_velocities.push([0.0; 3]);
         let kept = if model.keeps_tractions { self.cells() * kind.atoms() } else { 0 };
         self.balance.resize(kept, AtomBalance::NONE);
@@ -245,6 +251,7 @@ impl KindState {
         for states in &mut self.behaviours {
             *states = kept.iter().map(|cell| states[*cell]).collect();
         }
+        self.fibres.retain_cells(kind, &kept);
         self.mean_velocities = kept.iter().map(|cell| self.mean_velocities[*cell]).collect();
     }
 

@@ -10,6 +10,7 @@ use super::constraints::make_exact;
 use super::contact::{
     carry_forces, check_depth, hold_contacts, keep_contacts, locate_contacts, look_for_depth, travel, turn_over_bonds,
 };
+use super::fibres::act_fibres;
 use super::finite::check_finite;
 use super::gain::{energy_before, has_gained};
 use super::inertial::correct_velocities;
@@ -95,6 +96,7 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     carry_forces(model, from, ws);
     begin_tractions(model, from, ws);
     advance_behaviours(model, dt, from, to, ws);
+    act_fibres(model, from, to, ws);
     push_pseudopods(model, from, to, ws);
     let error = move_freely(model, dt, from, to, ws);
     check_finite(model, end, to)?;

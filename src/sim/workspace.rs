@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::acting_fibres::ActingFibres;
 use super::chemistry::ChemistryScratch;
 use super::contact::ContactScratch;
 use super::kind::Kind;
@@ -26,6 +27,8 @@ pub struct Workspace {
     pub drive: Vec<[f64; 3]>,
     /// Forces with which pseudopods push and draw atoms, pN, in the order of cells; none in a model without them.
     pub pushes: Vec<Vec3>,
+    /// Fibres made at run time that act in the step.
+    pub fibres: ActingFibres,
     /// How much each atom grips what its cell touches, pN; none in a model without pseudopods.
     pub grips: Vec<f64>,
     /// Scratch of chemistry.
@@ -189,6 +192,7 @@ impl Workspace {
             next: State::default(),
             drive: Vec::new(),
             pushes: Vec::new(),
+            fibres: ActingFibres::default(),
             grips: Vec::new(),
             chemistry: ChemistryScratch::new(model),
             contact: ContactScratch::default(),
@@ -214,6 +218,7 @@ impl Workspace {
         self.kinds.iter_mut().for_each(KindScratch::poison);
         self.drive.fill([f64::NAN; 3]);
         self.pushes.fill(Vec3::repeat(f64::NAN));
+        self.fibres.poison();
         self.grips.fill(f64::NAN);
         self.next.poison();
     }

@@ -3,7 +3,7 @@
 use super::error::SimulationError;
 use super::id::CellId;
 use super::stepping::Simulation;
-use crate::cell::ends::{Setting, settable, setting, word_of};
+use crate::cell::ends::{PodSetting, Setting, settable, setting, word_of};
 use crate::equations::eml::{Step, read_end};
 use crate::equations::tree::System;
 use crate::geometry;
@@ -83,6 +83,12 @@ impl Simulation {
             }
             Setting::Pseudopods(_) if !kind.has_pseudopods() => {
                 lacks("has no pseudopods", "add `pseudopods = { … }` to the type")
+            }
+            Setting::Pseudopods(PodSetting::Protrusion | PodSetting::Retraction) if kind.has_several_pseudopods() => {
+                lacks(
+                    "has several pseudopods at once, which have times of their own",
+                    "set their cue, or let `most` be 1",
+                )
             }
             Setting::Adhesion if self.model.contact.is_none() => {
                 lacks("touches nothing in this experiment", "add a [contact] table with a strength")

@@ -1,5 +1,6 @@
 //! What can go wrong with a simulation, by kind, so that a program can tell one trouble from another.
 
+use super::fibre_fault::FibreFault;
 use super::id::CellId;
 use crate::error::words::{all_of, meant};
 use crate::error::{Error, Fault};
@@ -71,6 +72,9 @@ pub enum SimulationError {
     /// Cells that cannot come or go.
     #[error(transparent)]
     Population(#[from] PopulationTrouble),
+    /// A fibre that cannot be what was asked.
+    #[error(transparent)]
+    Fibre(#[from] FibreFault),
     /// Bytes that cannot be restored.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointFault),
@@ -121,6 +125,7 @@ impl SimulationError {
             Self::NotSettable { help, .. } => (*help).to_owned(),
             Self::Length { .. } => "ask `atom_count` for the length of the buffer".to_owned(),
             Self::Mismatch(_) => "make the state with `State::new` from this model".to_owned(),
+            Self::Fibre(fault) => fault.help().to_owned(),
             Self::Checkpoint(fault) => fault.help().to_owned(),
         })
     }

@@ -50,6 +50,7 @@ fn add_kind(hash: &mut Fnv, kind: &Kind) {
     hash.value(&kind.forces);
     hash.value(&(kind.drag, kind.mass, &kind.held, &kind.volume));
     kind.behaviours.iter().for_each(|behaviour| hash.value(behaviour));
+    hash.value(&(kind.fibre_budget, kind.fibre_limit));
 }
 
 fn add_contact(hash: &mut Fnv, contact: &ContactModel) {

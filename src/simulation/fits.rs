@@ -25,6 +25,7 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
             && now.rest_volumes.len() == padded
             && (now.stiffness_shape.is_empty() || now.stiffness_shape.len() == 3 * kind.atoms())
             && now.mean_velocities.len() == count
+            && now.fibres.fits(kind, count)
             && now.parents.len() == count
             && now.ids.is_sorted_by(|one, other| one < other)
             && now.ids.last().is_none_or(|id| *id < state.next_id)

@@ -4,9 +4,10 @@ use super::balance::record_tractions;
 use super::touch::Touch;
 use crate::cell::pseudopods::EndedPseudopod;
 use crate::output::{
-    Cell, CellRecord, CellType, FieldLayout, Frame, Layout, MembraneLayout, PseudopodEvent, SystemLayout, SystemScope,
+    Cell, CellRecord, CellType, FibreRow, FieldLayout, Frame, Layout, MembraneLayout, PseudopodEvent, SystemLayout,
+    SystemScope,
 };
-use crate::recorded::{TractionRecord, contact_quantities};
+use crate::recorded::{FibresRecord, TractionRecord, contact_quantities};
 use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::find_contacts;
 use crate::sim::kind::Kind;
@@ -30,6 +31,7 @@ pub fn outline_of(model: &Model) -> Layout {
     layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
     layout.contacts = model.contact.is_some();
     layout.tractions = model.keeps_tractions;
+    layout.fibres = model.kinds.iter().any(|kind| kind.fibre_budget > 0);
     let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(contact.law.series()));
     layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
@@ -109,6 +111,27 @@ fn record_membranes(model: &Model, state: &State, frame: &mut Frame) {
     }
 }
 
+/// The fibres that were made at run time, one by one and summed up cell by cell.
+fn record_fibres(model: &Model, state: &State, frame: &mut Frame) {
+    for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+        for cell in 0..now.cells() {
+            let record = &mut frame.records[now.first_cell + cell].fibres;
+            for made in now.fibres.of_cell(kind, cell) {
+                let [a, b] = made.fibre.atoms.map(|atom| now.position(kind, cell, atom as usize));
+                let ((pull, energy), length) = (made.fibre.pull(b - a), (b - a).norm());
+                record.count += 1.0;
+                record.tension += pull.norm();
+                record.length += length;
+                record.energy += energy;
+                let (cell, number, atoms) = (now.ids[cell], made.number, made.fibre.atoms);
+                frame.fibres.push(FibreRow { cell, number, atoms, length, tension: pull.norm() });
+            }
+            // Of none there is no mean.
+            record.length /= record.count;
+        }
+    }
+}
+
 /// Series name, kind and number of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
 fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
     let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads().any(|load| load.name == name)).count();
@@ -158,6 +181,8 @@ impl Recorder {
             direction: pod.direction,
             turn: pod.turn.map_or(f64::NAN, f64::to_degrees),
             side: pod.side,
+            alone: pod.alone,
+            abandoned: pod.abandoned,
         };
         let pseudopods = std::mem::take(&mut state.ended_pseudopods).into_iter().map(pod).collect();
         Frame { runs: std::mem::take(&mut state.ended_runs), pseudopods, ..frame }
@@ -212,11 +237,15 @@ fn frame_of(model: &Model, state: &State) -> Frame {
             smallest_cosine: cell.smallest_cosine,
             contact_share: 0.0,
             traction: TractionRecord::default(),
+            fibres: FibresRecord::default(),
             aggregate: frame.cells[number].id as f64,
         });
     }
     if model.keeps_tractions {
         record_tractions(model, state, &mut frame);
+    }
+    if model.kinds.iter().any(|kind| kind.fibre_budget > 0) {
+        record_fibres(model, state, &mut frame);
     }
     record_chemistry(model, state, &mut frame);
     record_membranes(model, state, &mut frame);

@@ -35,6 +35,10 @@ pub struct EndedPseudopod {
     pub turn: Option<f64>,
     /// The side to which it split off from the one before: 1 left, -1 right, 0 where it started anew.
     pub side: i8,
+    /// Whether there was no other when it began.
+    pub alone: bool,
+    /// Whether it was given up then.
+    pub abandoned: bool,
 }
 
 impl Simulation {
@@ -125,8 +129,8 @@ impl Simulation {
     pub fn take_ended_pseudopods(&mut self) -> Vec<EndedPseudopod> {
         let pods = std::mem::take(&mut self.state.ended_pseudopods);
         let told = |(cell, time, pod): (u64, f64, pseudopods::EndedPseudopod)| {
-            let pseudopods::EndedPseudopod { lifetime, direction, turn, side } = pod;
-            EndedPseudopod { cell: CellId::new(cell), time, lifetime, direction, turn, side }
+            let pseudopods::EndedPseudopod { lifetime, direction, turn, side, alone, abandoned } = pod;
+            EndedPseudopod { cell: CellId::new(cell), time, lifetime, direction, turn, side, alone, abandoned }
         };
         pods.into_iter().map(told).collect()
     }

@@ -9,6 +9,8 @@ use pseudopod::xml::{self, Limits, Node};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::shared::shared;
+
 fn read_text(text: impl Into<String>) -> Result<Document, Error> {
     eml::read(Arc::new(Source { name: "test.eml".into(), text: text.into() }))
 }
@@ -112,11 +114,8 @@ fn step(system: &System, order: &[u32], time: f64, dt: f64, state: &[f64]) -> Ve
 
 #[test]
 fn martiel_and_goldbeter_follow_the_reference() {
-    let path = root().join("../shared/data/martiel-goldbeter/reference.json");
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        println!("SKIPPED: needs ../shared");
-        return;
-    };
+    let Some(path) = shared("martiel-goldbeter/reference.json") else { return };
+    let text = std::fs::read_to_string(path).expect("a file");
     let reference: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let expected = |name: &str, at: usize| reference[name][at].as_f64().expect("a number");
     let document = shipped("martiel_goldbeter");

@@ -8,15 +8,7 @@ use pseudopod::ode::{SolveOptions, solve};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A folder of data that is not part of the repository.
-fn data(name: &str) -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("SKIPPED: needs ../shared/data/{name}");
-    None
-}
+use crate::shared::shared;
 
 /// The files below a folder that end in one of some ways, in order.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
@@ -36,7 +28,7 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
 /// All models of the suite and of BioModels.
 fn models() -> Vec<PathBuf> {
     let folders = ["sbml-suite/ode", "sbml-suite/events", "biomodels"];
-    folders.iter().filter_map(|name| data(name)).flat_map(|folder| files(&folder, "xml")).collect()
+    folders.iter().filter_map(|name| shared(name)).flat_map(|folder| files(&folder, "xml")).collect()
 }
 
 fn read_text(name: &str, text: String) -> Read {

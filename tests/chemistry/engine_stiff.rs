@@ -1,17 +1,12 @@
 //! The test set of stiff and other hard problems, against its published answers, and a published oscillator.
 
-use std::path::PathBuf;
-
 use crate::ode_problems::{martiel_goldbeter, system};
+use crate::shared::shared;
 use pseudopod::ode::{Method, Scheme, SolveOptions, Work, solve};
 use serde_json::Value;
 
-fn shared(path: &str) -> Option<Value> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        eprintln!("SKIPPED: needs ../shared");
-        return None;
-    };
+fn json(path: &str) -> Option<Value> {
+    let text = std::fs::read_to_string(shared(path)?).expect("a file");
     Some(serde_json::from_str(&text).expect("the data is JSON"))
 }
 
@@ -21,7 +16,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 
 /// Fewest correct digits of all variables (relative to each), and the work.
 fn digits(name: &str, scheme: Scheme, relative: f64, absolute: f64) -> Option<(f64, Work)> {
-    let data = shared(&format!("ivp-testset/{name}.json"))?;
+    let data = json(&format!("ivp-testset/{name}.json"))?;
     let names: Vec<&str> = data["vars"].as_array()?.iter().filter_map(Value::as_str).collect();
     let (initial, times, wanted) = (numbers(&data["y0"]), numbers(&data["t"]), numbers(&data["ref"]));
     let rate = |name: &str| data["rhs"][name].as_str().expect("a rate for each variable");
@@ -89,7 +84,7 @@ fn the_solvers_of_diffsol_agree_on_the_hard_problems() {
 
 #[test]
 fn the_cyclic_amp_oscillator_keeps_its_published_run() {
-    let Some(data) = shared("martiel-goldbeter/reference.json") else { return };
+    let Some(data) = json("martiel-goldbeter/reference.json") else { return };
     let times = numbers(&data["t"]);
     let fine: Vec<f64> = (0..=60_000).map(|n| 0.002 * f64::from(n)).collect();
     for scheme in [ROSENBROCK, RK45, RK65] {

@@ -7,6 +7,8 @@ use pseudopod::equations::eml;
 use pseudopod::error::{Error, Fault, Result, Source};
 use pseudopod::field::{FieldSystem, Fields, Grid, Placing, Stepping};
 
+use crate::shared::shared;
+
 const ADAPTIVE: Stepping = Stepping::Adaptive { relative: 1e-3, absolute: 1e-6 };
 
 fn read(text: &str) -> eml::Document {
@@ -149,11 +151,7 @@ fn reactions_that_make_nothing_keep_the_mass() {
 
 /// A case of the analytic fronts and patterns, if they are there.
 fn analytic(case: &str, number: usize) -> Option<serde_json::Value> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/analytic/fronts_patterns.json");
-    let Ok(text) = std::fs::read_to_string(path) else {
-        println!("SKIPPED: needs ../shared");
-        return None;
-    };
+    let text = std::fs::read_to_string(shared("analytic/fronts_patterns.json")?).expect("a file");
     let cases: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let mut found = cases.as_array().expect("a list").iter().filter(|one| one["case"] == case);
     Some(found.nth(number).expect("the case").clone())

@@ -1,21 +1,15 @@
 //! Fields against textbook solutions: heat kernels, sources, fronts, and the first wave of the Brusselator.
 
-use std::path::PathBuf;
-
 use pseudopod::Vec3;
 use pseudopod::field::{Chunk, Fields, Grid, Range, Species, Stepping, Wall};
 use serde_json::Value;
 
+use crate::shared::shared;
+
 /// The cases of a file of the shared data, or none, said and noted, where the data are not there.
 fn cases(file: &str) -> Vec<Value> {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data/analytic");
-    match std::fs::read_to_string(folder.join(file)) {
-        Ok(text) => serde_json::from_str(&text).expect("an array of cases"),
-        Err(_) => {
-            println!("SKIPPED: needs ../shared");
-            Vec::new()
-        }
-    }
+    let Some(path) = shared(&format!("analytic/{file}")) else { return Vec::new() };
+    serde_json::from_str(&std::fs::read_to_string(path).expect("a file")).expect("an array of cases")
 }
 
 fn number(case: &Value, key: &str) -> f64 {

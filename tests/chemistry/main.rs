@@ -21,3 +21,5 @@ mod every_function;
 mod ode_problems;
 #[path = "../support/sbml_suite.rs"]
 mod sbml_suite;
+#[path = "../support/shared.rs"]
+mod shared;

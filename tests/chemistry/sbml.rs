@@ -1,6 +1,7 @@
 //! SBML models mean what the SBML test suite and other simulators take them to mean.
 
-use crate::sbml_suite::{Case, Solved, data, folders, load, suite, table};
+use crate::sbml_suite::{Case, Solved, folders, load, suite, table};
+use crate::shared::shared;
 use pseudopod::ode::{SolveOptions, solve};
 use std::path::Path;
 
@@ -46,7 +47,7 @@ fn distance(folder: &Path) -> Result<f64, String> {
 
 #[test]
 fn published_models_agree_with_another_simulator() {
-    let Some(folder) = data("biomodels") else { return };
+    let Some(folder) = shared("biomodels") else { return };
     let models = folders(&folder);
     assert_eq!(models.len(), 12);
     let mut bad = Vec::new();

@@ -30,7 +30,7 @@ mesh = { shape = "icosphere", radius = "5 um", level = 1 }
 placement = { grid = [5, 1, 1], spacing = "10.3 um" }
 mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
 motility = { brownian = { speed = "20 um/min", persistence = "3 s" } }
-pseudopods = { pressure = "5 Pa", contraction = "10 pN", pause = "0.2 s", protrusion = "0.5 s", retraction = "0.4 s" }
+pseudopods = { pressure = "5 Pa", fibres = { number = 3, stiffness = "0.3 pN/um" }, pause = "0.2 s", protrusion = "0.5 s", retraction = "0.4 s" }
 chemistry = ["own"]
 [cells.pulled]
 number = 2

@@ -2,13 +2,14 @@
 
 use pseudopod::analysis::recording::{POSITION, Recording};
 use pseudopod::analysis::statistics::{mean, standard_error};
-use pseudopod::analysis::table::Table;
 use pseudopod::analysis::tracks::Tracks;
 use pseudopod::experiment::Document;
 use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, RunOptions, run};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+use crate::index_table::{Measured, index_table};
 
 /// Length of a channel, and of the parts of it in which indices were measured, µm.
 const CHANNEL: f64 = 1_000.0;
@@ -23,30 +24,14 @@ struct Row {
     pieces: Vec<f64>,
 }
 
-/// The rows of the table by channel: the gradient and the concentration at the lower end. `PSEUDOPOD_INDEX_TABLE` names another table.
+/// The rows of the table by channel: the gradient and the concentration at the lower end.
 fn channels() -> Option<BTreeMap<(u64, u64), Vec<Row>>> {
-    let path = std::env::var("PSEUDOPOD_INDEX_TABLE").unwrap_or_else(|_| {
-        concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/migration/chemotactic_index_open.csv").to_owned()
-    });
-    if !Path::new(&path).is_file() {
-        println!("SKIPPED: needs ../shared/data/migration");
-        if let Some(list) = std::env::var_os("PSEUDOPOD_SKIPPED") {
-            use std::io::Write;
-            let mut file =
-                std::fs::OpenOptions::new().append(true).create(true).open(list).expect("the list of skipped tests");
-            writeln!(file, "SKIPPED: needs ../shared/data/migration").expect("the list of skipped tests");
-        }
-        return None;
-    }
-    let table = Table::read(Path::new(&path)).expect("a table");
-    let [c, gradient, index] = ["concentration_nM", "gradient_nM_per_mm", "chemotactic_index"]
-        .map(|name| table.column(name).expect("a column"));
     let mut channels = BTreeMap::new();
-    for row in 0..table.rows() {
+    for Measured { concentration, gradient, index } in index_table()? {
         // A channel spans as many nM as the gradient has in its millimetre.
-        let low = (c[row] / gradient[row]).floor() * gradient[row];
-        let rows: &mut Vec<Row> = channels.entry((gradient[row] as u64, low as u64)).or_default();
-        rows.push(Row { concentration: c[row], measured: index[row], pieces: Vec::new() });
+        let low = (concentration / gradient).floor() * gradient;
+        let rows: &mut Vec<Row> = channels.entry((gradient as u64, low as u64)).or_default();
+        rows.push(Row { concentration, measured: index, pieces: Vec::new() });
     }
     Some(channels)
 }

@@ -94,6 +94,11 @@ fn a_cell_crawls_by_pseudopods() {
 }
 
 #[test]
+fn a_cell_crawls_by_fibres_that_come_and_go() {
+    experiment_keeps_its_word("motility", "fibres.toml");
+}
+
+#[test]
 fn a_crawling_cell_draws_the_glass_together() {
     experiment_keeps_its_word("traction", "experiment.toml");
 }

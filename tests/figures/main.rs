@@ -2,4 +2,8 @@
 
 mod chemotactic_index;
 mod experiments;
+#[path = "../support/index_table.rs"]
+mod index_table;
+#[path = "../support/shared.rs"]
+mod shared;
 mod sorting_statistics;

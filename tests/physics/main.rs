@@ -15,6 +15,7 @@ mod forces;
 mod friction;
 mod glossary;
 mod inertial;
+mod made_fibres;
 mod membranes;
 mod modulus;
 mod motility;
@@ -40,7 +41,11 @@ mod contact_scenes;
 mod coupled_scene;
 #[path = "../support/everything.rs"]
 mod everything;
+#[path = "../support/index_table.rs"]
+mod index_table;
 #[path = "../support/same_bits.rs"]
 mod same_bits;
 #[path = "../support/sbml_suite.rs"]
 mod sbml_suite;
+#[path = "../support/shared.rs"]
+mod shared;

@@ -46,6 +46,19 @@ fn a_cell_that_grips_nothing_does_not_advance() {
 }
 
 #[test]
+fn a_cell_with_several_pseudopods_that_grips_nothing_does_not_advance() {
+    let several = "most = 3\nbeside = \"0.3 /s\"\nabandon = 0.3\n";
+    let [went, most] = advance(pushing(several));
+    assert!(went < 1e-3 * 5.0, "{went} um in ten cycles");
+    assert!(most > 0.1, "it changes its shape: its centre goes {most} um to and fro");
+    let mut simulation = pushing(several);
+    simulation.run_until(90.0).unwrap_or_else(|error| panic!("{error}"));
+    let pods = simulation.take_ended_pseudopods();
+    assert!(pods.iter().any(|pod| pod.alone) && pods.iter().any(|pod| !pod.alone));
+    assert!(pods.iter().any(|pod| pod.abandoned) && pods.iter().any(|pod| !pod.abandoned));
+}
+
+#[test]
 fn a_cell_that_sticks_to_a_plane_without_friction_does_not_advance() {
     let plane = "[contact]\n[[contact.between]]\ntypes = [\"cell\", \"glass\"]\nenergy = \"10 pN/um\"\nrange = \"1.5 um\"\nshear_strength = \"0 Pa\"\n";
     let mut sticking = pushing(plane);

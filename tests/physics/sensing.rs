@@ -2,10 +2,10 @@
 
 use pseudopod::analysis::sensing::{Messenger, Receptors, chemotactic_index, choice_index};
 use pseudopod::analysis::statistics::{mean, standard_error};
-use pseudopod::analysis::table::Table;
 use pseudopod::random::{Purpose, Stream};
 use std::f64::consts::TAU;
-use std::path::Path;
+
+use crate::index_table::{Measured, index_table};
 
 /// Those of the paper: concentrations in nM, lengths in µm.
 const RECEPTORS: Receptors = Receptors { number: 25_000.0, dissociation: 1_000.0, length: 10.0 };
@@ -16,21 +16,8 @@ const PREFERENCE: f64 = 1.25;
 
 /// Concentration (nM), gradient (nM/µm) and index of each row of the table.
 fn table() -> Option<Vec<[f64; 3]>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/migration/chemotactic_index_open.csv");
-    if !path.is_file() {
-        println!("SKIPPED: needs ../shared/data/migration");
-        if let Some(list) = std::env::var_os("PSEUDOPOD_SKIPPED") {
-            use std::io::Write;
-            let mut file =
-                std::fs::OpenOptions::new().append(true).create(true).open(list).expect("the list of skipped tests");
-            writeln!(file, "SKIPPED: needs ../shared/data/migration").expect("the list of skipped tests");
-        }
-        return None;
-    }
-    let table = Table::read(&path).unwrap();
-    let [c, gradient, index] =
-        ["concentration_nM", "gradient_nM_per_mm", "chemotactic_index"].map(|name| table.column(name).unwrap());
-    Some((0..table.rows()).map(|row| [c[row], 1e-3 * gradient[row], index[row]]).collect())
+    let row = |row: Measured| [row.concentration, 1e-3 * row.gradient, row.index];
+    Some(index_table()?.into_iter().map(row).collect())
 }
 
 /// Signal to noise ratio, index and gradient (nM/mm) of each row of the table.

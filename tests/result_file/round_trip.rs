@@ -1,6 +1,7 @@
 //! What was written is read.
 
 use pseudopod::output::{Frame, Layout, Measure, ResultFile, ResultWriter, catalogue, describe, to_json};
+use pseudopod::recorded::OnDemand;
 
 use crate::example::{cells, frame, header, layout, write};
 
@@ -145,7 +146,7 @@ fn json_tells_all_but_the_arrays() {
     for dataset in datasets {
         assert!(dataset["unit"] != "" && dataset["description"] != "", "{dataset}");
     }
-    let of_cells: Vec<catalogue::Entry> = catalogue::cell_entries(false).collect();
+    let of_cells: Vec<catalogue::Entry> = catalogue::cell_entries(OnDemand::default()).collect();
     let rows = catalogue::CATALOGUE.iter().chain(catalogue::CONTACT).chain(&of_cells);
     for entry in rows.filter(|entry| !entry.path.contains('<')) {
         assert!(listed(entry.path).is_some(), "{} is missing from the file", entry.path);

@@ -1,4 +1,4 @@
-//! A scene that has everything: two types, contacts that stick by bonds that close and open, walks that turn, pseudopods, a plane, loads, fibres, a field that cells secrete into
+//! A scene that has everything: two types, contacts that stick by bonds that close and open, walks that turn, pseudopods with fibres and without, a plane, loads, fibres, a field that cells secrete into
 //! and climb, noise at all levels, systems with events, links both ways, membranes that sense and push at every atom, an atom that is put somewhere.
 
 use pseudopod::experiment::{Compiled, Document, compile};
@@ -65,7 +65,7 @@ mesh = { shape = "icosphere", radius = "5 um", level = 1 }
 placement = { at = [["0 um", "0 um", "5.02 um"], ["9.9 um", "0 um", "5.02 um"], ["0 um", "9.9 um", "5.02 um"]] }
 mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
 motility = { brownian = { speed = "2 um/min", persistence = "PERSISTENCE" } }
-pseudopods = { pressure = "0.5 Pa", contraction = "1 pN", pause = "0.1 s", protrusion = "0.4 s", retraction = "0.4 s" }
+pseudopods = { pressure = "0.5 Pa", fibres = { number = 3, stiffness = "0.02 pN/um" }, pause = "0.1 s", protrusion = "0.4 s", retraction = "0.4 s" }
 loads = [{ name = "push", all = true, direction = [0, 0, -1], force = "4 pN" }]
 fibres = [{ name = "trunk", pairs = [[0, 20]], stiffness = "1 pN/um" }]
 chemistry = ["own", "skin"]
@@ -74,6 +74,7 @@ chemistry = ["own", "skin"]
 mesh = { shape = "icosphere", radius = "4 um", level = 1 }
 placement = { at = [["9 um", "9 um", "4.02 um"]] }
 mechanics = { drag = "15 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
+pseudopods = { pressure = "0.3 Pa", contraction = "1 pN", pause = "0.1 s", protrusion = "0.3 s", retraction = "0.3 s" }
 loads = [{ name = "press", all = true, direction = [-0.7, -0.7, -0.2], force = [["0 s", "8 pN"], ["3.05 s", "9 pN"]] }]
 chemistry = ["pin", "skin"]
 

@@ -6,15 +6,7 @@ use pseudopod::error::{Error, Source};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A folder of data that is not part of the repository.
-pub fn data(name: &str) -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("SKIPPED: needs ../shared/data/{name}");
-    None
-}
+use crate::shared::shared;
 
 pub fn folders(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
@@ -93,7 +85,7 @@ fn case(folder: &Path, file: &Path, solve: &dyn Fn(&Case) -> Solved) -> Result<(
 
 /// All cases of a part of the suite, in both levels, solved in some way, agree with their results by the suite's rule.
 pub fn suite(part: &str, count: usize, solve: &dyn Fn(&Case) -> Solved) {
-    let Some(folder) = data(&format!("sbml-suite/{part}")) else { return };
+    let Some(folder) = shared(&format!("sbml-suite/{part}")) else { return };
     let mut bad = Vec::new();
     let cases = folders(&folder);
     assert_eq!(cases.len(), count);

@@ -41,6 +41,11 @@ impl Fronts {
         at.system_of("of", &self.of);
         at.stretch(self.from, self.to);
         at.direction("axis", self.axis);
+        if self.statistic.is_of_explicit_ones() {
+            let message = format!("`{}.statistic` is not known of fronts of a membrane", at.path());
+            let help = "take another statistic, or `kind = \"pseudopods\"` where cells have [cells.NAME.pseudopods]";
+            at.fault("statistic", "of explicit pseudopods only", message, help);
+        }
         if let Some(lasting) = self.lasting {
             at.instant("lasting", lasting);
         }

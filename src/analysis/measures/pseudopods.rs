@@ -72,6 +72,8 @@ impl PseudopodTurns {
             let pods: Vec<&PseudopodEvent> = all.iter().filter(own).collect();
             seen.began += pods.len();
             seen.split += pods.iter().filter(|pod| pod.side != 0).count();
+            seen.alone += pods.iter().filter(|pod| pod.alone).count();
+            seen.abandoned += pods.iter().filter(|pod| pod.abandoned).count();
             seen.lasted += pods.iter().map(|pod| pod.lifetime).sum::<f64>();
             seen.lifetimes.extend(pods.iter().map(|pod| pod.lifetime));
             seen.add_turns(pods.windows(2).map(|pair| (pair[0].direction.into(), pair[1].direction.into())));

@@ -28,6 +28,8 @@ fn recorded(path: &Path) -> ResultFile {
                 direction: [degrees.to_radians().cos(), degrees.to_radians().sin(), 0.0],
                 turn: before.map_or(f64::NAN, |before| (degrees - before).abs()),
                 side: before.map_or(0, |before| (degrees - before).signum() as i8),
+                alone: number % 3 != 0,
+                abandoned: number % 2 == 0,
             })
         };
         let frame = Frame {
@@ -65,6 +67,8 @@ fn pseudopods_are_counted_timed_and_turned_as_they_were_made() {
         ("statistic = 'angle'", 60.0),
         ("statistic = 'split_share'", 6.0 / 8.0),
         ("statistic = 'alternation'", 2.0 / 4.0),
+        ("statistic = 'alone_share'", 6.0 / 8.0),
+        ("statistic = 'abandoned_share'", 3.0 / 8.0),
         // Two, three or four heads of four coins.
         ("statistic = 'alternation_p'", 11.0 / 16.0),
     ];

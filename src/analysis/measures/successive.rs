@@ -30,6 +30,17 @@ pub enum SuccessiveStatistic {
     Alternation,
     /// The probability that so many or more turns go to the other side if both sides were as likely.
     AlternationP,
+    /// The part that begins while the cell has no other; of explicit pseudopods only.
+    AloneShare,
+    /// The part that is given up when its protrusion ends; of explicit pseudopods only.
+    AbandonedShare,
+}
+
+impl SuccessiveStatistic {
+    /// Whether it tells of explicit pseudopods only.
+    pub(super) fn is_of_explicit_ones(self) -> bool {
+        matches!(self, Self::AloneShare | Self::AbandonedShare)
+    }
 }
 
 /// What is known of those of all cells.
@@ -44,6 +55,9 @@ pub(super) struct Successive {
     /// How many there were, and how many of them began out of another one.
     pub began: usize,
     pub split: usize,
+    /// How many began while there was no other, and how many were given up.
+    pub alone: usize,
+    pub abandoned: usize,
     /// How long they lasted, s, where that is known.
     pub lifetimes: Vec<f64>,
     /// Angles between successive ones, degrees, without sign.
@@ -62,6 +76,8 @@ impl Successive {
             lasted: 0.0,
             began: 0,
             split: 0,
+            alone: 0,
+            abandoned: 0,
             lifetimes: Vec::new(),
             angles: Vec::new(),
             turns: 0,
@@ -94,6 +110,8 @@ impl Successive {
             SuccessiveStatistic::Lifetime => median(self.lifetimes),
             SuccessiveStatistic::Angle => median(self.angles),
             SuccessiveStatistic::SplitShare => share(self.split, self.began),
+            SuccessiveStatistic::AloneShare => share(self.alone, self.began),
+            SuccessiveStatistic::AbandonedShare => share(self.abandoned, self.began),
             SuccessiveStatistic::Alternation => share(self.alternating, self.turns),
             SuccessiveStatistic::AlternationP if self.turns == 0 => f64::NAN,
             SuccessiveStatistic::AlternationP => chance_of_at_least(self.alternating, self.turns),

@@ -166,6 +166,7 @@ fn compile_kind(document: &Document, name: &str, cell: &CellType, surface: Built
     kind.behaviours = cell.motility.behaviours();
     let pods = pseudopods::pseudopods(document, &key, cell, &kind, faults);
     kind.behaviours.extend(pods);
+    kind.fibre_budget = cell.fibre_budget();
     kind
 }
 

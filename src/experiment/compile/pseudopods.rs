@@ -3,6 +3,7 @@
 use super::super::{CellType, Document, Pseudopods};
 use crate::Vec3;
 use crate::cell::Behaviour;
+use crate::cell::motility::Space;
 use crate::error::Fault;
 use crate::sim::Kind;
 
@@ -29,6 +30,16 @@ pub fn pseudopods(
         return None;
     }
     let fewest = fewest_in_front(pods, &kind.rest.positions);
+    if let Some(fibres) = pods.fibres.as_ref().filter(|fibres| fibres.number as usize > fewest) {
+        let key = format!("{path}.fibres.number");
+        let message = format!(
+            "`{key}`: {} fibres need as many atoms at each end, and a front has {fewest} of {}",
+            fibres.number,
+            kind.atoms()
+        );
+        let help = "give a finer mesh, a wider `half_angle`, or fewer and stiffer fibres";
+        fault(&key, "this mesh is too coarse to carry them", message, help);
+    }
     if fewest < LEAST {
         let message = format!("`{path}`: a front would have {fewest} of {} atoms, which makes spikes", kind.atoms());
         let key = format!("{path}.half_angle");
@@ -44,5 +55,7 @@ fn fewest_in_front(pods: &Pseudopods, positions: &[Vec3]) -> usize {
     let least = pods.half_angle.value().cos();
     let count =
         |direction: Vec3| positions.iter().filter(|x| (*x - centre).normalize().dot(&direction) > least).count();
-    [Vec3::x(), -Vec3::x(), Vec3::y(), -Vec3::y()].map(count).into_iter().min().unwrap_or(0)
+    let along = [Vec3::x(), -Vec3::x(), Vec3::y(), -Vec3::y(), Vec3::z(), -Vec3::z()];
+    let directions = if pods.space == Space::Plane { &along[..4] } else { &along };
+    directions.iter().map(|direction| count(*direction)).min().unwrap_or(0)
 }

@@ -28,9 +28,13 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
     let until = document.experiment.run.until.value();
     let pods = document.experiment.cells.values().filter_map(|cell| cell.pseudopods.as_ref());
     let cycle = pods.map(Pseudopods::shortest_cycle).fold(f64::INFINITY, f64::min);
-    let longest = text.max_step.map_or((HUNDREDTH * until).min(cycle), |step| step.value());
+    let borne = longest_with_fibres(document, kinds)?;
+    let longest = text.max_step.map_or((HUNDREDTH * until).min(cycle).min(borne), |step| step.value());
     if let Method::Implicit { order } = method {
         let largest = longest;
+        for kind in kinds {
+            kind.fibre_limit = 0.5 * kind.drag / text.step.map_or(longest, |step| step.value());
+        }
         let size = match (text.step, order) {
             (Some(step), _) => StepSize::Fixed(step.value()),
             (None, Order::Second) => StepSize::Adaptive { tolerance: text.tolerance, largest },
@@ -46,6 +50,8 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
     let mut limit = (f64::INFINITY, String::new());
     for kind in kinds {
         kind.largest_stiffness = kind.measure_largest_stiffness();
+        // Its own fibres are in that, and no others.
+        kind.fibre_limit = kind.pod_fibre_stiffness();
         let body = Body { mass: kind.mass, drag: kind.drag, largest_stiffness: kind.largest_stiffness };
         let stable = largest_stable_step(method, &body);
         if stable < limit.0 {
@@ -76,6 +82,34 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
         return Err(Error::input(location.into_iter().fold(fault, Fault::at)));
     }
     Ok(Integrator { method, size: StepSize::Fixed(step) })
+}
+
+/// The longest step of the implicit scheme, s, that bears the fibres of pseudopods, eq. (fibres.2): the stiffness of what comes and goes is
+/// not in its system.
+fn longest_with_fibres(document: &Document, kinds: &[Kind]) -> Result<f64> {
+    let text = &document.experiment.run.integrator;
+    if text.method != Text::Implicit {
+        return Ok(f64::INFINITY);
+    }
+    let longest = |kind: &Kind| match kind.pod_fibre_stiffness() {
+        0.0 => f64::INFINITY,
+        stiffness => 0.5 * kind.drag / stiffness,
+    };
+    let Some(kind) = kinds.iter().min_by(|a, b| longest(a).total_cmp(&longest(b))) else { return Ok(f64::INFINITY) };
+    for (key, step) in [("step", text.step), ("max_step", text.max_step)] {
+        if let Some(step) = step.filter(|step| step.value() > longest(kind)) {
+            let key = format!("run.integrator.{key}");
+            let (step, longest) = (short(step.value()), short(longest(kind)));
+            let fault = Fault::new(format!(
+                "`{key}` is {step} s, and the fibres of `cells.{}.pseudopods` bear steps of {longest} s",
+                kind.name
+            ));
+            let fault = fault.help("let steps be shorter, fibres softer and more of them, or the drag larger");
+            let location = document.location(&key, "too long for these fibres");
+            return Err(Error::input(location.into_iter().fold(fault, Fault::at)));
+        }
+    }
+    Ok(longest(kind))
 }
 
 /// When to record. Output never shortens a step, so that frames may not be asked for more often than steps are made.

@@ -15,6 +15,8 @@ impl Check<'_> {
             self.fault(&path, "nothing to push from", message, "give a closed mesh, or remove the pseudopods");
         }
         self.angles_of_pseudopods(&path, pods);
+        self.fibres_of_pseudopods(&path, cell, pods);
+        self.several_pseudopods(&path, pods);
         self.steps_in_cycles(&path, pods);
     }
 
@@ -28,6 +30,41 @@ impl Check<'_> {
             let message =
                 format!("`{path}` needs contacts that say how much a cell grips, and `contact.model` has none");
             self.fault("contact.model", "not with pseudopods", message, "take the model \"cohesion\" or \"adhesives\"");
+        }
+    }
+
+    /// Front and rear are drawn together in one way, by no more fibres than a cell may have.
+    fn fibres_of_pseudopods(&mut self, path: &str, cell: &CellType, pods: &Pseudopods) {
+        let Some(fibres) = &pods.fibres else { return };
+        if pods.contraction.value() > 0.0 {
+            let message = format!("`{path}` has both `contraction` and `fibres`");
+            self.fault(&format!("{path}.fibres"), "excluded by `contraction`", message, "remove one of them");
+        }
+        if let Some(budget) = cell.fibre_budget.filter(|budget| *budget < pods.fibres_at_once()) {
+            let key = format!("{}.fibre_budget", path.trim_end_matches(".pseudopods"));
+            let (number, most) = (fibres.number, pods.most);
+            let message = match most {
+                1 => format!("`{key}` is {budget}, and a pseudopod makes {number} fibres"),
+                _ => format!("`{key}` is {budget}, and {most} pseudopods make {number} fibres each"),
+            };
+            let help = "give a larger budget, leave it out, or let pseudopods make fewer fibres";
+            self.fault(&key, "too small", message, help);
+        }
+    }
+
+    /// Those beside begin at a rate, which one after the other have not.
+    fn several_pseudopods(&mut self, path: &str, pods: &Pseudopods) {
+        match (pods.most, pods.beside) {
+            (2.., None) => {
+                let message = format!("`{path}.most` is {}, and nothing says how often another begins", pods.most);
+                let help = "add `beside`, the rate at which another begins while there is one: \"0.01 /s\", say";
+                self.fault(&format!("{path}.most"), "needs `beside`", message, help);
+            }
+            (1, Some(_)) => {
+                let message = format!("`{path}.beside` lets others begin, and there is one at a time");
+                self.fault(&format!("{path}.beside"), "needs `most`", message, "add `most = 2`, or remove it");
+            }
+            _ => {}
         }
     }
 

@@ -1,7 +1,7 @@
 //! The meaning of a link's ends in this experiment: which cells, which atom, which field.
 
 use super::{Part, within};
-use crate::cell::ends::{self, AtomSetting, Reading, Sense, Setting};
+use crate::cell::ends::{self, AtomSetting, PodSetting, Reading, Sense, Setting};
 use crate::equations::eml::{Endpoint, Index, LinkDescription, Root, Step};
 use crate::error::words;
 use crate::error::{Fault, short};
@@ -200,6 +200,14 @@ impl Ends<'_, '_> {
                 }
                 Setting::Pseudopods(_) if !kind.has_pseudopods() => {
                     ("has no pseudopods", "add `pseudopods = { … }` to the type")
+                }
+                Setting::Pseudopods(PodSetting::Protrusion | PodSetting::Retraction)
+                    if kind.has_several_pseudopods() =>
+                {
+                    (
+                        "has several pseudopods at once, which have times of their own",
+                        "remove `most` and `beside` from its pseudopods, or link their cue only",
+                    )
                 }
                 Setting::Atoms(_) if kind.rest.facets.is_empty() => {
                     ("has no surface", "give the type a mesh with facets")
