@@ -20,7 +20,7 @@ use super::state::State;
 use super::targets::Targets;
 use super::thread_buffers::each_or_none;
 use super::workspace::{KindScratch, Workspace};
-use crate::mechanics::integrator::Order;
+use crate::mechanics::integrator::{Order, StepSize};
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::tangent::Scales;
 
@@ -45,7 +45,7 @@ pub fn gamma(kind: &Kind, order: Order) -> f64 {
 }
 
 /// Moves all atoms freely by one step: forces, the increments that they cause, and where these take the atoms; constraints hold to
-/// first order. Returns the largest error estimate over the mean edge of its kind, 0 at first order. A block goes through all
+/// first order. Returns the largest error estimate over the mean edge of its kind, 0 at first order and for steps of a fixed size. A block goes through all
 /// stages at once, with the buffers of its thread, so that what they need is near and is not held for all cells. Forces that change
 /// with where other cells are, as those of links do, are known for a second stage only after the first of all blocks.
 pub fn advance_implicitly(
@@ -190,6 +190,11 @@ impl Step<'_> {
         System::Own { mobility, tangent, factor, lanes: (kind.lanes, None) }
     }
 
+    /// Whether the step is as long as its error allows: one of a fixed size needs no estimate, which costs another solution.
+    fn asks_for_error(&self) -> bool {
+        matches!(self.model.integrator.size, StepSize::Adaptive { .. })
+    }
+
     /// Takes a block through stages of the step. The increments of the first are `kept` where stages are made one by one. Returns the
     /// largest error estimate, µm.
     fn advance(
@@ -222,7 +227,7 @@ impl Step<'_> {
             }
             self.solve(system, block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
             block.go_on(stage, y, first);
-            if stage == Stage::Second {
+            if stage == Stage::Second && self.asks_for_error() {
                 first.iter_mut().zip(&*y).for_each(|(first, y)| *first = 0.5 * (*first + y));
                 system.filter(kind, block.start, first, spare, spare2);
                 error = root_mean_square(kind, first);

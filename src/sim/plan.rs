@@ -113,7 +113,7 @@ pub struct StepReport {
     pub dt: f64,
     /// Attempts that were refused before it.
     pub refused: u32,
-    /// Error estimate over the mean edge, 0 for schemes without one.
+    /// Error estimate over the mean edge; 0 for schemes without one and steps of a fixed size.
     pub error: f64,
     /// Whether contacts made this step or the one planned after it shorter than the error estimate would have.
     pub limited: bool,
