@@ -148,6 +148,8 @@ pub enum PlotKind {
         #[schemars(extend("x-exclusive-minimum" = 0))]
         persistence: Option<Time>,
     },
+    /// The persistence of each type of cells against its mean speed, with the line through their logarithms.
+    SpeedPersistence,
     /// Into which directions in the plane cells came, as sectors about a point, and the mean of these directions.
     Rose {
         /// Number of sectors; 16 when absent.

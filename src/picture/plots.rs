@@ -9,6 +9,7 @@ use crate::analysis::over::Over;
 use crate::analysis::recording::{POSITION, Recording};
 use crate::analysis::table::Table;
 use crate::analysis::tracks::Tracks;
+use crate::cell::motility::Space;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, Plot, PlotKind, PlotTable};
 use crate::output::ResultFile;
@@ -43,6 +44,11 @@ pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result
         PlotKind::Msd { speed, persistence } => {
             let formula = speed.zip(*persistence).map(|(v, p)| (v.value(), p.value()));
             track_plots::displacements(&groups(result, plot)?, formula, result.header().seed)
+        }
+        PlotKind::SpeedPersistence => {
+            let in_plane = |Group { label, tracks }| Group { label, tracks: tracks.along(Space::Plane.axes()) };
+            let groups: Vec<Group> = groups(result, plot)?.into_iter().map(in_plane).collect();
+            track_plots::speed_persistence(&groups, result.header().seed)?
         }
         PlotKind::Rose { sectors } => track_plots::rose(&groups(result, plot)?, sectors.unwrap_or(SECTORS))?,
         PlotKind::Histogram { quantity, bins } => track_plots::histogram(&groups(result, plot)?, *quantity, *bins)?,

@@ -1,12 +1,13 @@
 //! Charts of tracks, simulated or measured: paths, displacements, directions, and how a number of tracks is distributed.
 
-use super::chart::{Aspect, Axis, Chart, Ground, Legend, Range, Scale, Series, Stroke};
+use super::chart::{Aspect, Axis, Chart, Ground, Legend, Marker, Range, Scale, Series, Stroke};
 use super::colour::Colour;
 use super::field_view::with_unit;
 use super::ticks::nice_above;
 use crate::analysis::circular;
-use crate::analysis::furth::furth;
+use crate::analysis::furth::{Localisation, furth};
 use crate::analysis::msd;
+use crate::analysis::speed_persistence::{Point, relation};
 use crate::analysis::statistics::mean;
 use crate::analysis::tracks::motion::{Quantity, turning_angles};
 use crate::analysis::tracks::{Tracks, summary};
@@ -60,6 +61,39 @@ pub fn displacements(groups: &[Group], formula: Option<(f64, f64)>, seed: u64) -
         }
     }
     chart
+}
+
+/// Speed and persistence of each group with its interval, and the line ln p = a + b v through them, eq. (analysis.36), where there are three
+/// groups or more.
+///
+/// # Errors
+/// When the persistence of a group cannot be told.
+pub fn speed_persistence(groups: &[Group], seed: u64) -> Result<Chart> {
+    let point = |group: &Group| Point::of(&group.tracks, Localisation::Exact, seed);
+    let found: Vec<Point> = groups.iter().map(point).collect::<Result<_>>()?;
+    let mut chart = Chart {
+        x: Axis::linear("mean speed (µm/min)"),
+        y: Axis { scale: Scale::Log, ..Axis::linear("persistence (s)") },
+        ..Chart::default()
+    };
+    let per_minute = |speed: f64| 60.0 * speed;
+    if let Ok(relation) = relation(&found) {
+        let speeds = found.iter().map(|point| point.speed);
+        let ends = speeds.fold([f64::INFINITY, 0.0_f64], |[low, high], v| [low.min(v), high.max(v)]);
+        let points = ends.map(|v| [per_minute(v), (relation.line.intercept + relation.line.slope * v).exp()]);
+        let label = format!("line of ln p: r = {}", digits(relation.correlation));
+        chart.series.push(Series::dashed(label, points.to_vec()).coloured(Colour([0x33; 3])));
+    }
+    for (Group { label, .. }, point) in groups.iter().zip(&found) {
+        chart.series.push(Series::Points {
+            label: label.clone(),
+            points: vec![[per_minute(point.speed), point.persistence.value]],
+            bars: vec![[point.persistence.low, point.persistence.high]],
+            colour: None,
+            marker: Marker::default(),
+        });
+    }
+    Ok(chart)
 }
 
 /// Lags in frames: all up to half of the frames, or some in equal ratios.

@@ -40,11 +40,12 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 5] = [
+const SHOWN: [(&str, &str, &str); 6] = [
     ("chemotaxis/experiment.toml", "result.png", "chemotaxis.png"),
     ("chemotaxis/experiment.toml", "result.tracks.png", "chemotaxis_tracks.png"),
     ("optical_tweezers/red_cell.toml", "result.png", "red_cell.png"),
     ("optical_tweezers/red_cell.toml", "result.force_diameter.png", "force_diameter.png"),
+    ("persistent_migration/experiment.toml", "result.persistence.png", "persistent_migration.png"),
     ("sphere_under_gravity/experiment.toml", "result.png", "spheres.png"),
 ];
 
@@ -219,6 +220,11 @@ fn a_squeezed_drop_takes_its_exact_shape() {
 #[test]
 fn drops_spread_on_glass_to_the_angle_of_young_and_dupre() {
     experiment_keeps_its_word("spreading", "experiment.toml");
+}
+
+#[test]
+fn faster_cells_go_straighter() {
+    experiment_keeps_its_word("persistent_migration", "experiment.toml");
 }
 
 #[test]

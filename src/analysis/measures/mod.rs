@@ -22,6 +22,7 @@ mod rayleigh;
 mod reduction;
 mod run_length;
 mod segregation;
+mod speed_persistence;
 mod sphere_fit;
 mod statistic;
 mod successive;
@@ -57,6 +58,7 @@ pub use rayleigh::{Rayleigh, RayleighStatistic};
 pub use reduction::Reduction;
 pub use run_length::RunLength;
 pub use segregation::{Segregation, SegregationStatistic};
+pub use speed_persistence::{SpeedPersistence, SpeedPersistenceStatistic};
 pub use sphere_fit::SphereFit;
 pub use statistic::Statistic;
 pub use successive::SuccessiveStatistic;
@@ -127,6 +129,8 @@ pub enum MeasureKind {
     MsdExponent(MsdExponent),
     /// The persistence time, s, by the fit of Fürth's formula to the mean squared displacement, or its interval, or the speed.
     Persistence(Persistence),
+    /// Whether faster types of cells go straighter: the line through the logarithms of their persistence against their mean speed.
+    SpeedPersistence(SpeedPersistence),
     /// The length of the path over its duration, µm/s.
     MeanSpeed(TrackAverage),
     /// How straight cells go: net displacement over the length of the path, from 0 to 1.
@@ -179,6 +183,7 @@ impl MeasureKind {
             Self::MsdDeviation(msd) => msd.series(),
             Self::MsdExponent(msd) => msd.series(),
             Self::Persistence(fit) => fit.series(),
+            Self::SpeedPersistence(line) => line.series(),
             Self::MeanSpeed(tracks) | Self::Directness(tracks) | Self::TurningAngle(tracks) => tracks.series(),
             Self::ForwardIndex(index) => index.series(),
             Self::VelocityCorrelation(lag) => lag.series(),
@@ -202,6 +207,7 @@ impl MeasureKind {
             Self::MsdDeviation(msd) => msd.check(at),
             Self::MsdExponent(msd) => msd.check(at),
             Self::Persistence(fit) => fit.check(at),
+            Self::SpeedPersistence(line) => line.check(at),
             Self::MeanSpeed(tracks) | Self::Directness(tracks) | Self::TurningAngle(tracks) => tracks.check(at),
             Self::ForwardIndex(index) => index.check(at),
             Self::VelocityCorrelation(lag) => lag.check(at),
@@ -237,6 +243,7 @@ impl MeasureKind {
             Self::MsdDeviation(msd) => msd.evaluate(run.recording),
             Self::MsdExponent(msd) => msd.evaluate(run.recording),
             Self::Persistence(fit) => fit.evaluate(run),
+            Self::SpeedPersistence(line) => line.evaluate(run),
             Self::MeanSpeed(tracks) => tracks.evaluate(run.recording, Quantity::MeanSpeed),
             Self::Directness(tracks) => tracks.evaluate(run.recording, Quantity::Directness),
             Self::TurningAngle(tracks) => tracks.evaluate(run.recording, Quantity::TurningAngle),
