@@ -188,6 +188,7 @@ fn twenty_five_cells_become_one_aggregate() {
 }
 
 #[test]
+#[ignore = "slow: a minute and a half"]
 fn no_facet_folds_in_a_packed_aggregate_stirred_for_1000_s() {
     experiment_keeps_its_word("aggregation", "stirred.toml");
 }
@@ -223,11 +224,13 @@ fn drops_spread_on_glass_to_the_angle_of_young_and_dupre() {
 }
 
 #[test]
+#[ignore = "slow: a minute"]
 fn faster_cells_go_straighter() {
     experiment_keeps_its_word("persistent_migration", "experiment.toml");
 }
 
 #[test]
+#[ignore = "slow: a minute"]
 fn drops_that_stick_meet_at_the_angle_of_young_and_dupre() {
     experiment_keeps_its_word("doublet", "experiment.toml");
 }
