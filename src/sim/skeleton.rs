@@ -113,7 +113,10 @@ impl Positions<'_> {
             }
         }
         let held: f64 = grips.iter().sum();
-        let mean = if held > 0.0 { LEAK * held / self.kind.atoms() as f64 } else { 1.0 };
+        // What is more than the grips bear slips: it is for those that are not pushed, as where nothing grips.
+        let behind: f64 = (0..self.kind.atoms()).map(|atom| 1.0 - share(atom)).sum();
+        let slips = if behind > 0.0 { (sum.norm() - held).max(0.0) / behind } else { 0.0 };
+        let mean = if held > 0.0 { slips.max(LEAK * held / self.kind.atoms() as f64) } else { 1.0 };
         // Where all are pushed alike and nothing grips, all bear alike.
         let none = held == 0.0 && (0..self.kind.atoms()).all(|atom| share(atom) == 1.0);
         let weight = |atom: usize| if none { 1.0 } else { grips[atom] + mean * (1.0 - share(atom)) };

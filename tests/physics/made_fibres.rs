@@ -1,5 +1,6 @@
 //! Fibres that a program makes and removes draw atoms together by their law, and nothing else changes.
 
+use crate::pseudopods::pushing_and_drawn_by;
 use pseudopod::Vec3;
 use pseudopod::simulation::{CellId, EXAMPLE, FibreFault, NewCell, Simulation, SimulationError};
 
@@ -179,19 +180,9 @@ fn cells_with_fibres_go_the_same_way_on_any_threads_and_after_a_checkpoint() {
 #[test]
 fn a_cell_that_its_own_fibres_draw_together_advances_only_where_it_grips() {
     let went = |grip: &str| {
-        let mut simulation = {
-            let text = format!(
-                "title = \"A cell pushes\"\nseed = 3\n[run]\nuntil = \"100 s\"\nintegrator = {{ max_step = \"0.5 s\" }}\n[[planes]]\nname = \"glass\"\n\
-                 point = [\"0 um\", \"0 um\", \"0 um\"]\nnormal = [0, 0, 1]\n[cells.cell]\n\
-                 mesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 1 }}\nplacement = {{ at = [[\"0 um\", \"0 um\", \"5.05 um\"]] }}\n\
-                 [cells.cell.mechanics]\ndrag = \"500 pN s/um\"\n\
-                 membrane = {{ law = \"skalak\", shear = \"5 pN/um\", area = \"10 pN/um\", bending = \"2 pN um\", tension = \"10 pN/um\" }}\n\
-                 [cells.cell.pseudopods]\npressure = \"15 Pa\"\nfibres = {{ number = 5, stiffness = \"1.2 pN/um\" }}\npause = \"1 s\"\nprotrusion = \"4 s\"\nretraction = \"3 s\"\n\
-                 split = 1\nangle = \"10 deg\"\nspread = \"0 deg\"\n\
-                 [contact]\nstrength = \"0 Pa\"\n[[contact.between]]\ntypes = [\"cell\", \"glass\"]\nenergy = \"10 pN/um\"\nrange = \"1.5 um\"\nshear_strength = \"{grip} Pa\"\n"
-            );
-            Simulation::from_text("pushing.toml", &text).unwrap_or_else(|error| panic!("{error}"))
-        };
+        let contact = "[contact]\nstrength = \"0 Pa\"\n[[contact.between]]\ntypes = [\"cell\", \"glass\"]\nenergy = \"10 pN/um\"\nrange = \"1.5 um\"";
+        let fibres = "fibres = { number = 5, stiffness = \"1.2 pN/um\" }";
+        let mut simulation = pushing_and_drawn_by(fibres, &format!("{contact}\nshear_strength = \"{grip} Pa\"\n"));
         let cell = simulation.cells().next().unwrap();
         let middle = |simulation: &Simulation| positions(simulation, cell).iter().sum::<Vec3>() / 42.0;
         let start = middle(&simulation);

@@ -5,13 +5,18 @@ use pseudopod::simulation::Simulation;
 
 /// A round cell that pushes and draws, with more of a document; ten cycles take 80 s.
 fn pushing(more: &str) -> Simulation {
+    pushing_and_drawn_by("contraction = \"60 pN\"", more)
+}
+
+/// The same, drawn after by what the line of its pseudopods says.
+pub fn pushing_and_drawn_by(line: &str, more: &str) -> Simulation {
     let text = format!(
         "title = \"A cell pushes\"\nseed = 3\n[run]\nuntil = \"100 s\"\nintegrator = {{ max_step = \"0.5 s\" }}\n[[planes]]\nname = \"glass\"\n\
          point = [\"0 um\", \"0 um\", \"0 um\"]\nnormal = [0, 0, 1]\n[cells.cell]\n\
          mesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 1 }}\nplacement = {{ at = [[\"0 um\", \"0 um\", \"5.05 um\"]] }}\n\
          [cells.cell.mechanics]\ndrag = \"500 pN s/um\"\n\
          membrane = {{ law = \"skalak\", shear = \"5 pN/um\", area = \"10 pN/um\", bending = \"2 pN um\", tension = \"10 pN/um\" }}\n\
-         [cells.cell.pseudopods]\npressure = \"15 Pa\"\ncontraction = \"60 pN\"\npause = \"1 s\"\nprotrusion = \"4 s\"\nretraction = \"3 s\"\n\
+         [cells.cell.pseudopods]\npressure = \"15 Pa\"\n{line}\npause = \"1 s\"\nprotrusion = \"4 s\"\nretraction = \"3 s\"\n\
          split = 1\nangle = \"10 deg\"\nspread = \"0 deg\"\n{more}"
     );
     Simulation::from_text("pseudopods.toml", &text).unwrap_or_else(|error| panic!("{error}"))
