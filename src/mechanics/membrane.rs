@@ -97,14 +97,10 @@ impl MembraneLaw {
         let (i, d) = (aa + bb, j * j);
         let (_, by_i, by_d) = self.energy_density(token, i, d);
         let [ii, id, dd] = self.second_derivatives(token, i, d);
-        // ∂I/∂a = 2a and ∂D/∂a = 2a b².
-        let twice = |a: T, bb: T| {
-            let (on_i, on_d) = (a * 2.0, a * bb * 2.0);
-            by_i * 2.0 + by_d * bb * 2.0 + (ii * on_i + id * on_d * 2.0) * on_i + dd * on_d * on_d
-        };
+        let derivatives = [by_i, by_d, ii, id, dd];
         let mixed = (by_d + ii + id * (aa + bb) + dd * d) * j * 4.0;
         Curvatures {
-            stretch: [twice(a, bb), mixed, twice(b, aa)],
+            stretch: [by_stretch_twice(derivatives, a, bb), mixed, by_stretch_twice(derivatives, b, aa)],
             twist: (by_i + by_d * j) * 2.0,
             flip: (by_i - by_d * j) * 2.0,
             out: [(by_i + by_d * bb) * 2.0, (by_i + by_d * aa) * 2.0],
@@ -134,6 +130,14 @@ impl MembraneLaw {
             }
         }
     }
+}
+
+/// The second derivative of W by the stretch a, which has ∂I/∂a = 2a and ∂D/∂a = 2a b², from those by I and D. (A closure in its place is
+/// not compiled for wide registers.)
+#[inline(always)]
+fn by_stretch_twice<T: Real>([by_i, by_d, ii, id, dd]: [T; 5], a: T, bb: T) -> T {
+    let (on_i, on_d) = (a * 2.0, a * bb * 2.0);
+    by_i * 2.0 + by_d * bb * 2.0 + (ii * on_i + id * on_d * 2.0) * on_i + dd * on_d * on_d
 }
 
 /// A facet at rest.
@@ -216,7 +220,8 @@ impl Membrane {
     #[inline(always)]
     pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
         for facet in &self.facets {
-            let corner = facet.atoms.map(|atom| x.get(atom as usize));
+            let [a, b, c] = facet.atoms;
+            let corner = [x.get(a as usize), x.get(b as usize), x.get(c as usize)];
             let sides = [corner[1] - corner[0], corner[2] - corner[0]];
             let stretched = Stretched::measure(x.token, sides, facet.frame());
             let bent = self.law.curvatures(x.token, stretched.stretches).positive(x.token);

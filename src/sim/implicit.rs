@@ -174,7 +174,7 @@ impl Step<'_> {
         let Some(tangent) = &kind.tangent else { return System::Shared(self.solver) };
         let mobility = dt / kind.drag;
         if !self.solver.own.is_empty() {
-            return System::Own { mobility, tangent, factor: &self.solver.own, lanes: (1, None) };
+            return System::Own { mobility, tangent, factor: &self.solver.own, lanes: 1 };
         }
         let elastic = self.forces.elastic_factors(block.number);
         let scales = Scales {
@@ -187,7 +187,7 @@ impl Step<'_> {
         if !has_factor {
             tangent.factor(&kind.forces, kind.lanes, block.start, scales, factor);
         }
-        System::Own { mobility, tangent, factor, lanes: (kind.lanes, None) }
+        System::Own { mobility, tangent, factor, lanes: kind.lanes }
     }
 
     /// Whether the step is as long as its error allows: one of a fixed size needs no estimate, which costs another solution.

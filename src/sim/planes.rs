@@ -54,6 +54,8 @@ pub struct TouchScratch {
     pressures: Vec<f64>,
     /// The matrix of the reactions and the right side beside it, row by row.
     system: Vec<f64>,
+    /// One cell's factor, gathered from the block.
+    factor: Vec<f64>,
     /// One cell's arrays, gathered from the block.
     cell: CellArrays,
     /// The same cell in every lane, to find several columns at once.
@@ -80,8 +82,6 @@ struct CellArrays {
     moved: Vec<f64>,
     /// Forces of planes, pN.
     pressed: Vec<f64>,
-    spare: Vec<f64>,
-    spare2: Vec<f64>,
 }
 
 /// An atom and a plane, by their numbers.
@@ -91,19 +91,12 @@ impl TouchScratch {
     /// Writes NaN over all scratch numbers.
     pub fn poison(&mut self) {
         let c = &mut self.cell;
-        for array in [&mut self.columns, &mut self.pressures, &mut self.system, &mut c.x, &mut c.first] {
+        for array in
+            [&mut self.columns, &mut self.pressures, &mut self.system, &mut self.factor, &mut c.x, &mut c.first]
+        {
             array.fill(f64::NAN);
         }
-        for array in [
-            &mut self.reactions,
-            &mut c.pressed,
-            &mut c.gradient,
-            &mut c.swell,
-            &mut c.free,
-            &mut c.moved,
-            &mut c.spare,
-            &mut c.spare2,
-        ] {
+        for array in [&mut self.reactions, &mut c.pressed, &mut c.gradient, &mut c.swell, &mut c.free, &mut c.moved] {
             array.fill(f64::NAN);
         }
         let copies = &mut self.copies;
@@ -139,8 +132,10 @@ pub fn correct_block(
             take_lane(from, lanes, lane, to);
         }
         take_lane(y, lanes, lane, &mut c.free);
-        let of_cell = Scene { system: scene.system.of_lane(lane), ..*scene };
+        let mut factor = std::mem::take(&mut scratch.factor);
+        let of_cell = Scene { system: scene.system.of_lane(lane, &mut factor), ..*scene };
         pressure[lane] += correct_cell(&of_cell, target[lane], scratch);
+        scratch.factor = factor;
         for (row, value) in y.chunks_exact_mut(lanes).zip(&scratch.cell.moved) {
             row[lane] = *value;
         }
@@ -315,19 +310,7 @@ fn reach(scene: &Scene, target: f64, from: usize, s: &mut TouchScratch) {
         column.fill(0.0);
         column[3 * atom..3 * atom + 3].copy_from_slice(scene.model.planes[*p].normal.as_slice());
     }
-    match scene.system {
-        System::Shared(_) => copies.solve(kind, &scene.system, &c.x, columns),
-        // The factor of a cell that stands alone serves many right sides at a time, too.
-        System::Own { lanes: (1, _), .. } => copies.solve(kind, &scene.system.of_all_lanes(), &c.x, columns),
-        System::Own { .. } => {
-            for array in [&mut c.spare, &mut c.spare2] {
-                array.resize(size, 0.0);
-            }
-            for column in columns.chunks_exact_mut(size) {
-                solve_block(kind, 1, &scene.system, &c.x, column, &mut c.spare, &mut c.spare2);
-            }
-        }
-    }
+    copies.solve(kind, &scene.system, &c.x, columns);
     for column in columns.chunks_exact_mut(size) {
         let mut held = 0.0;
         if kind.volume != VolumeRule::Free {

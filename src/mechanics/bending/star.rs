@@ -168,7 +168,7 @@ impl<T: Real> Facet<T> {
         let normal = sides[0].cross(sides[1]);
         let doubled = normal.squared().sqrt().max(T::constant(x.token, TINY));
         let (inverse, product) = (T::constant(x.token, 1.0) / doubled, sides[0].dot(sides[1]));
-        let squares @ [p, q] = sides.map(V3::squared);
+        let squares @ [p, q] = [sides[0].squared(), sides[1].squared()];
         // (|e|² cot + |e'|² cot')/8 with the angles across both sides.
         let voronoi = (p * q * 2.0 - product * (p + q)) * inverse * 0.125;
         Self { sides, squares, product, normal, doubled, inverse, voronoi }

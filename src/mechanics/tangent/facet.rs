@@ -88,7 +88,17 @@ impl<T: Real> Stretched<T> {
         let along = one.times(aa * ac + sum * bd) + other.times(ab * ad + difference * bc);
         let across = one.times(ab * bc + difference * ad) + other.times(bb * bd + sum * ac);
         let out = normal.times(of.out[0] * ac + of.out[1] * bd);
-        let row = |p: T, q: T, r: T| along.times(p) + across.times(q) + out.times(r);
-        [row(one.x, other.x, normal.x), row(one.y, other.y, normal.y), row(one.z, other.z, normal.z)]
+        let in_frame = [along, across, out];
+        [
+            row(in_frame, [one.x, other.x, normal.x]),
+            row(in_frame, [one.y, other.y, normal.y]),
+            row(in_frame, [one.z, other.z, normal.z]),
+        ]
     }
+}
+
+/// A sum of three vectors with weights. (A closure in its place is not compiled for wide registers.)
+#[inline(always)]
+fn row<T: Real>([a, b, c]: [V3<T>; 3], [p, q, r]: [T; 3]) -> V3<T> {
+    a.times(p) + b.times(q) + c.times(r)
 }

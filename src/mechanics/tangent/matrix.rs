@@ -18,6 +18,7 @@ pub struct Blocks<'a, T: Real> {
 
 impl<'a, T: Real> Blocks<'a, T> {
     /// Sees part `part` of the `stride` registers that the lanes of a block of cells fill.
+    #[inline(always)]
     pub fn new(token: T::Token, pattern: &'a Pattern, values: &'a mut [T::Raw], stride: usize, part: usize) -> Self {
         Self { token, pattern, values, stride, part }
     }
@@ -26,7 +27,9 @@ impl<'a, T: Real> Blocks<'a, T> {
     #[inline(always)]
     pub fn clear(&mut self) {
         let zero = T::constant(self.token, 0.0).raw();
-        self.values.iter_mut().skip(self.part).step_by(self.stride).for_each(|value| *value = zero);
+        for value in self.values.iter_mut().skip(self.part).step_by(self.stride) {
+            *value = zero;
+        }
     }
 
     /// A block.
@@ -108,14 +111,9 @@ impl<'a, T: Real> Blocks<'a, T> {
     #[inline(always)]
     pub fn hold(&mut self, held: &[f64]) {
         let pattern = self.pattern;
-        let of = |atom: usize| [0, 1, 2].map(|axis| held[3 * atom + axis]);
-        let kept = |row: V3<T>, [x, y, z]: [f64; 3], factor: f64| V3 {
-            x: row.x * (x * factor),
-            y: row.y * (y * factor),
-            z: row.z * (z * factor),
-        };
+        let held = held.as_chunks::<3>().0;
         for column in pattern.columns() {
-            let across = of(column.atom);
+            let across = held[column.atom];
             let mut diagonal = self.get(column.atom);
             for k in 0..3 {
                 diagonal[k] = kept(diagonal[k], across, across[k]);
@@ -125,8 +123,8 @@ impl<'a, T: Real> Blocks<'a, T> {
             diagonal[2].z += T::constant(self.token, 1.0 - across[2]);
             self.set(column.atom, diagonal);
             for (&row, number) in column.rows.iter().zip(column.first..) {
-                let (block, along) = (self.get(number), of(row as usize));
-                self.set(number, [0, 1, 2].map(|k| kept(block[k], across, along[k])));
+                let ([a, b, c], along) = (self.get(number), held[row as usize]);
+                self.set(number, [kept(a, across, along[0]), kept(b, across, along[1]), kept(c, across, along[2])]);
             }
         }
     }
@@ -138,6 +136,12 @@ impl<'a, T: Real> Blocks<'a, T> {
             *value = (T::load(self.token, *value) * factor).raw();
         }
     }
+}
+
+/// A row of a block whose columns are held or not, times whether the row is. (A closure in its place is not compiled for wide registers.)
+#[inline(always)]
+fn kept<T: Real>(row: V3<T>, [x, y, z]: [f64; 3], factor: f64) -> V3<T> {
+    V3 { x: row.x * (x * factor), y: row.y * (y * factor), z: row.z * (z * factor) }
 }
 
 /// Blocks that are only read.

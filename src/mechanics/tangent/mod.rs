@@ -78,12 +78,6 @@ impl Tangent {
     pub fn solve_columns(&self, factor: &[f64], values: &mut [f64]) {
         dispatch(LANES, SolveColumns { pattern: &self.pattern, factor, values });
     }
-
-    /// Solves in place for the cell of one lane of a block with the factor of all.
-    pub fn solve_lane(&self, (lanes, lane): (usize, usize), factor: &[f64], values: &mut [f64]) {
-        // Blocks of one lane are every so many-th number of all, as those of a part of a register's cells are.
-        solve_part::<f64>(&self.pattern, (), factor, (lanes, lane), values, (1, 0));
-    }
 }
 
 /// Several right sides of one cell side by side.
@@ -104,20 +98,6 @@ impl BlockWork for SolveColumns<'_> {
             factor::solve(self.pattern, &factor, &mut VectorsMut::<T>::new(token, &mut *values, stride, part));
         }
     }
-}
-
-/// Solves for a part of the cells of a block; factor and values have a stride and a part each. The factor is only read.
-#[inline(always)]
-fn solve_part<T: Real>(
-    pattern: &Pattern,
-    token: T::Token,
-    factor: &[T::Raw],
-    (stride, part): (usize, usize),
-    values: &mut [T::Raw],
-    (own_stride, own_part): (usize, usize),
-) {
-    let factor = matrix::Seen::new(token, factor, stride, part);
-    factor::solve(pattern, &factor, &mut VectorsMut::<T>::new(token, values, own_stride, own_part));
 }
 
 struct Make<'a> {
@@ -180,7 +160,8 @@ impl BlockWork for Solve<'_> {
     fn run<T: Real>(self, token: T::Token, stride: usize) {
         let (factor, values) = (T::view(token, self.factor), T::view_mut(token, self.values));
         for part in 0..stride {
-            solve_part::<T>(self.pattern, token, factor, (stride, part), &mut *values, (stride, part));
+            let factor = matrix::Seen::<T>::new(token, factor, stride, part);
+            factor::solve(self.pattern, &factor, &mut VectorsMut::<T>::new(token, &mut *values, stride, part));
         }
     }
 }

@@ -127,7 +127,7 @@ impl OfKind<'_> {
             [] => self.take_factor(tangent, cell, factor),
             own => own,
         };
-        let system = System::Own { mobility: self.dt / kind.drag, tangent, factor, lanes: (1, None) };
+        let system = System::Own { mobility: self.dt / kind.drag, tangent, factor, lanes: 1 };
         let (gradient, swell) = of_volume[..2 * size].split_at_mut(size);
         let mut volume = None;
         if kind.volume != VolumeRule::Free {
