@@ -67,7 +67,7 @@ pub use loads::{Applied, Fibre, Fixed, Link, Load, Rest, Spread};
 pub use mechanics::{Barrier, Form, Mechanics, Reaction, ShapeMemory, ShapeStrength, Springs};
 pub use membrane::{BendingRest, Law, Membrane};
 pub use motility::{Attraction, Brownian, Motility, Space};
-pub use pictures::{FieldLine, Picture, Plot, PlotKind, PlotTable, View};
+pub use pictures::{FieldLine, MeasureCurve, Picture, Plot, PlotKind, PlotTable, View};
 pub use placement::Placement;
 pub use population::{Added, Removed};
 pub use pseudopods::{PodFibres, Pseudopods};

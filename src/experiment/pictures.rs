@@ -150,6 +150,16 @@ pub enum PlotKind {
     },
     /// The persistence of each type of cells against its mean speed, with the line through their logarithms.
     SpeedPersistence,
+    /// Measures of the document against a number that each belongs to, such as the speed of types against what they stick with.
+    Measures {
+        /// The number that each measure belongs to.
+        x: Vec<f64>,
+        /// Whether x is drawn on a logarithmic axis.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        log_x: bool,
+        /// The curves.
+        curves: Vec<MeasureCurve>,
+    },
     /// Into which directions in the plane cells came, as sectors about a point, and the mean of these directions.
     Rose {
         /// Number of sectors; 16 when absent.
@@ -184,6 +194,26 @@ pub enum PlotKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         range: Option<[f64; 2]>,
     },
+}
+
+/// Measures that are joined by a line.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeasureCurve {
+    /// The entry in the legend.
+    #[serde(default)]
+    pub label: String,
+    /// The names of the measures, one for each x.
+    #[schemars(extend("x-text" = "measure"))]
+    pub y: OneOrMany<String>,
+    /// The measures at the lower ends of bars, one for each x.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-text" = "measure"))]
+    pub low: Option<OneOrMany<String>>,
+    /// The measures at the upper ends of bars, one for each x.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-text" = "measure"))]
+    pub high: Option<OneOrMany<String>>,
 }
 
 /// A field along a line.

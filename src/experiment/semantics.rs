@@ -58,6 +58,7 @@ impl Check<'_> {
             "file" => self.file(path, text),
             "cell type" => self.cell_type(path, text),
             "series" => self.series(path, text),
+            "measure" => self.measure(path, text),
             "field" => {
                 if let Some((name, _)) = text.split_once('.') {
                     self.system(path, name);
@@ -98,6 +99,20 @@ impl Check<'_> {
         let label = meant.map_or("unknown type".to_owned(), |meant| format!("did you mean \"{meant}\"?"));
         let help = format!("types of cells here are {}", words::all_of(known.keys().map(String::as_str)));
         self.fault(path, &label, format!("`{path}`: there is no type of cells \"{text}\""), help);
+    }
+
+    fn measure(&mut self, path: &str, text: &str) {
+        let known = &self.document.experiment.measure;
+        if known.contains_key(text) {
+            return;
+        }
+        let meant = words::meant(text, known.keys().map(String::as_str));
+        let label = meant.map_or("unknown measure".to_owned(), |meant| format!("did you mean \"{meant}\"?"));
+        let help = match known.is_empty() {
+            true => "declare it, as [measure.NAME]".to_owned(),
+            false => format!("measures here are {}", words::all_of(known.keys().map(String::as_str))),
+        };
+        self.fault(path, &label, format!("`{path}`: there is no measure \"{text}\""), help);
     }
 
     fn series(&mut self, path: &str, text: &str) {

@@ -1,6 +1,6 @@
 //! Charts of a result file, as the experiment or the command line asks for them.
 
-use super::chart::{Axis, Chart, Series, Stroke};
+use super::chart::{Axis, Chart, Scale, Series, Stroke};
 use super::colour::Colour;
 use super::field_plots;
 use super::field_view::{unit_text, with_unit};
@@ -11,7 +11,7 @@ use crate::analysis::table::Table;
 use crate::analysis::tracks::Tracks;
 use crate::cell::motility::Space;
 use crate::error::{Error, Fault, Result};
-use crate::experiment::{Document, Plot, PlotKind, PlotTable};
+use crate::experiment::{Document, MeasureCurve, OneOrMany, Plot, PlotKind, PlotTable};
 use crate::output::ResultFile;
 
 /// Colour of measured points.
@@ -50,6 +50,7 @@ pub fn chart_of(result: &ResultFile, document: &Document, plot: &Plot) -> Result
             let groups: Vec<Group> = groups(result, plot)?.into_iter().map(in_plane).collect();
             track_plots::speed_persistence(&groups, result.header().seed)?
         }
+        PlotKind::Measures { x, log_x, curves } => measures(result, x, *log_x, curves)?,
         PlotKind::Rose { sectors } => track_plots::rose(&groups(result, plot)?, sectors.unwrap_or(SECTORS))?,
         PlotKind::Histogram { quantity, bins } => track_plots::histogram(&groups(result, plot)?, *quantity, *bins)?,
         PlotKind::Profile { line, times } => field_plots::profile(result, line, times.as_ref())?,
@@ -156,11 +157,41 @@ fn groups(result: &ResultFile, plot: &Plot) -> Result<Vec<Group>> {
     types_of(result, plot).into_iter().map(group).collect()
 }
 
+/// Measures of a finished run against what each belongs to.
+fn measures(result: &ResultFile, x: &[f64], log_x: bool, curves: &[MeasureCurve]) -> Result<Chart> {
+    let found = result.summary()?;
+    let one = |name: &String| {
+        found.iter().find(|measure| measure.name == *name).ok_or_else(|| {
+            let fault = Fault::new(format!("the result has no measure \"{name}\""));
+            Error::input(fault.help("measures are taken where a run has come to its end: resume it, then plot again"))
+        })
+    };
+    let values = |names: &OneOrMany<String>| -> Result<Vec<f64>> {
+        names.as_slice().iter().map(|name| Ok(one(name)?.value)).collect()
+    };
+    let scale = if log_x { Scale::Log } else { Scale::Linear };
+    let mut chart = Chart { x: Axis { scale, ..Axis::linear("") }, ..Chart::default() };
+    for (number, curve) in curves.iter().enumerate() {
+        let points: Vec<[f64; 2]> = x.iter().zip(values(&curve.y)?).map(|(x, y)| [*x, y]).collect();
+        let bars = match (&curve.low, &curve.high) {
+            (Some(low), Some(high)) => values(low)?.into_iter().zip(values(high)?).map(|(l, h)| [l, h]).collect(),
+            _ => Vec::new(),
+        };
+        let colour = Colour::of_palette(number);
+        chart.series.push(Series::line(String::new(), points.clone()).coloured(colour));
+        chart.series.push(Series::measured(curve.label.clone(), points, bars).coloured(colour));
+    }
+    let first = curves.first().and_then(|curve| curve.y.as_slice().first());
+    let unit = first.map_or(Ok(String::new()), |name| one(name).map(|measure| unit_text(&measure.unit)))?;
+    chart.y = Axis::linear(unit);
+    Ok(chart)
+}
+
 /// The points and bars of a measured table.
 fn measured(document: &Document, text: &PlotTable) -> Result<Vec<Series>> {
     let table = Table::read(&document.resolve(&text.file))?;
     let x = table.column(&text.x)?;
-    let ends = |columns: &Option<crate::experiment::OneOrMany<String>>, i: usize| -> Result<Option<Vec<f64>>> {
+    let ends = |columns: &Option<OneOrMany<String>>, i: usize| -> Result<Option<Vec<f64>>> {
         let name = columns.as_ref().and_then(|columns| columns.as_slice().get(i));
         name.map(|name| Ok(table.column(name)?.to_vec())).transpose()
     };

@@ -225,6 +225,18 @@ fn drops_spread_on_glass_to_the_angle_of_young_and_dupre() {
 
 #[test]
 #[ignore = "slow: a minute"]
+fn cells_that_stick_too_little_or_too_much_get_nowhere() {
+    experiment_keeps_its_word("adhesion_speed", "experiment.toml");
+}
+
+#[test]
+#[ignore = "slow: a minute"]
+fn amoebae_gather_up_the_waves_that_they_relay() {
+    experiment_keeps_its_word("dictyostelium", "experiment.toml");
+}
+
+#[test]
+#[ignore = "slow: a minute"]
 fn faster_cells_go_straighter() {
     experiment_keeps_its_word("persistent_migration", "experiment.toml");
 }

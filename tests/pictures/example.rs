@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use pseudopod::geometry::icosphere;
 use pseudopod::output::{
-    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Overwrite, ResultWriter, SystemLayout, SystemScope,
+    Cell, CellRecord, CellType, FieldLayout, Frame, Header, Layout, Measure, Overwrite, ResultWriter, SystemLayout,
+    SystemScope,
 };
 
 pub const TEXT: &str = r#"
@@ -116,12 +117,18 @@ fn frame(layout: &Layout, number: usize) -> Frame {
 
 /// Writes the result into a folder.
 pub fn write(folder: &Path, extra: &str) -> PathBuf {
+    write_measured(folder, extra, &[])
+}
+
+/// Writes the result with these measures.
+pub fn write_measured(folder: &Path, extra: &str, measures: &[Measure]) -> PathBuf {
     let path = folder.join("made_up.vtkhdf");
     let layout = layout();
     let text = format!("{TEXT}{extra}");
     let header = Header::now("made_up.toml", "Cells on a patterned substrate", &text, &[], 1);
     let mut writer = ResultWriter::create(&path, &header, &layout, Overwrite::Replace).unwrap();
     (0..FRAMES).for_each(|number| writer.append(&frame(&layout, number)).unwrap());
+    writer.write_summary(measures).unwrap();
     writer.finish(1.0).unwrap();
     path
 }

@@ -1,8 +1,8 @@
 //! Charts of fields and chemistry.
 
 use pseudopod::experiment::{Document, Plot};
-use pseudopod::output::ResultFile;
-use pseudopod::picture::chart::{Chart, Series};
+use pseudopod::output::{Measure, ResultFile};
+use pseudopod::picture::chart::{Chart, Scale, Series};
 use pseudopod::picture::plots::chart_of;
 use pseudopod::picture::save_chart;
 use std::path::Path;
@@ -114,6 +114,39 @@ fn quantities_of_chemistry_are_series_with_a_line_for_each_cell() {
     assert!(!clocks.series.iter().any(|series| series.label() == "rester: clock.U (µM)"), "resters have no clock");
     assert_eq!(clocks.series.iter().filter(|series| series.label() == "bath.level").count(), 1);
     assert_eq!(points(&named(&charts, "phase").series[0]).len(), example::FRAMES);
+}
+
+const MEASURES: &str = r#"
+[measure.slow]
+kind = "mean_speed"
+unit = "um/s"
+[measure.fast]
+kind = "mean_speed"
+unit = "um/s"
+[[plot]]
+name = "speeds"
+kind = "measures"
+x = [1, 10]
+log_x = true
+curves = [{ label = "walkers", y = ["slow", "fast"], low = ["slow", "slow"], high = ["fast", "fast"] }]
+"#;
+
+#[test]
+fn measures_stand_at_what_they_belong_to_once_a_run_has_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!("{}{MEASURES}", example::TEXT);
+    let document = Document::parse("made_up.toml", &text, folder.path(), &[]).unwrap_or_else(|error| panic!("{error}"));
+    let chart = |path: &Path| chart_of(&ResultFile::open(path).unwrap(), &document, &document.experiment.plot[0]);
+    let unfinished = chart(&example::write(folder.path(), MEASURES)).unwrap_err().to_string();
+    assert!(unfinished.contains("the result has no measure \"slow\""), "{unfinished}");
+    let measure =
+        |name: &str, value| Measure { name: name.into(), value, unit: "um/s".into(), description: String::new() };
+    let path = example::write_measured(folder.path(), MEASURES, &[measure("slow", 2.0), measure("fast", 3.0)]);
+    let chart = chart(&path).unwrap();
+    assert_eq!(points(&chart.series[0]), [[1.0, 2.0], [10.0, 3.0]]);
+    let Series::Points { label, points, bars, .. } = &chart.series[1] else { panic!("points on the line") };
+    assert_eq!((label.as_str(), points.len(), bars.as_slice()), ("walkers", 2, &[[2.0, 3.0]; 2][..]));
+    assert_eq!((chart.y.label.as_str(), chart.x.scale), ("µm/s", Scale::Log));
 }
 
 #[test]

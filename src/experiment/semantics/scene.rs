@@ -1,7 +1,7 @@
 //! What must hold between planes, pictures, plots and the run.
 
 use super::Check;
-use crate::experiment::{OneOrMany, PlotKind, When};
+use crate::experiment::{MeasureCurve, OneOrMany, PlotKind, When};
 use crate::units::{Dimension, pretty};
 
 impl Check<'_> {
@@ -50,8 +50,35 @@ impl Check<'_> {
                         }
                     }
                 }
+                PlotKind::Measures { x, log_x, curves } => {
+                    self.measures_of_plot(&format!("plot[{index}]"), (x, *log_x), curves);
+                }
                 PlotKind::Kymograph { range, .. } => self.range(&format!("plot[{index}].range"), *range),
                 _ => {}
+            }
+        }
+    }
+
+    /// Each curve has a measure for each x, and a logarithm of each is there where it is drawn.
+    fn measures_of_plot(&mut self, plot: &str, (x, log_x): (&[f64], bool), curves: &[MeasureCurve]) {
+        if let Some(at) = x.iter().position(|x| !x.is_finite() || log_x && *x <= 0.0) {
+            let message = format!("`{plot}.x[{at}]` has no place on the axis");
+            let help = if log_x { "give numbers above 0, or leave out `log_x`" } else { "give finite numbers" };
+            self.fault(&format!("{plot}.x[{at}]"), "cannot be drawn", message, help);
+        }
+        for (number, curve) in curves.iter().enumerate() {
+            let lists = [("y", Some(&curve.y)), ("low", curve.low.as_ref()), ("high", curve.high.as_ref())];
+            for (key, names) in lists.into_iter().filter_map(|(key, names)| Some((key, names?.as_slice()))) {
+                if names.len() != x.len() {
+                    let path = format!("{plot}.curves[{number}].{key}");
+                    let message = format!("`{path}` has {} measures for {} numbers of x", names.len(), x.len());
+                    self.fault(&path, "not as many", message, "give one for each x");
+                }
+            }
+            if curve.low.is_some() != curve.high.is_some() {
+                let path = format!("{plot}.curves[{number}]");
+                let message = format!("`{path}` has only one end of its bars");
+                self.fault(&path, "one of `low` and `high`", message, "give both, or neither");
             }
         }
     }

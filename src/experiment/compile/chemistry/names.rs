@@ -13,6 +13,8 @@ pub(super) fn check(document: &Document, chemistry: &Chemistry, faults: &mut Vec
             // Their names were checked with the document.
             "series" if document.experiment.contact.is_some() && text.starts_with("contact.") => None,
             "series" => series(chemistry, path, text),
+            // What a picture has that shows no field.
+            "field" if path == "picture.field" && text == "none" => None,
             "field" => field(chemistry, path, text),
             _ => None,
         };
