@@ -128,6 +128,12 @@ fn without_a_trace_none_follows_and_five_follow_as_three_do() {
 }
 
 #[test]
+#[ignore = "slow: half a minute"]
+fn the_steeper_the_trace_the_faster_cells_drift() {
+    experiment_keeps_its_word("haptotaxis", "slopes.toml");
+}
+
+#[test]
 fn two_thousand_cells_wander_as_furth_says() {
     experiment_keeps_its_word("random_walk", "experiment.toml");
 }
