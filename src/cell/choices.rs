@@ -64,6 +64,6 @@ impl Pseudopods {
         state.number += 1;
         state.draws = stream.draw;
         let (phase, number) = (Phase::Protrusion, state.number);
-        Pod { phase, left: 0.0, direction, side, number, age: 0.0, turn, alone, abandoned: false }
+        Pod { phase, left: 0.0, direction, side, number, age: 0.0, turn, alone, abandoned: false, met: 0.0 }
     }
 }

@@ -69,10 +69,10 @@ pub enum AtomReading {
     Curvature,
     /// (A − A₀)/A₀ of the area of the atom, A₀ that of the mesh at rest.
     AreaStrain,
-    /// 1 where the atom is near another cell, as it is recorded, and else 0.
-    InContact,
-    /// 1 where the atom stands on a plane, and else 0.
-    OnPlane,
+    /// 1 where the atom is near another cell, as it is recorded, and else 0; of a kind with this number where there is one.
+    InContact(Option<usize>),
+    /// 1 where the atom stands on a plane, and else 0; on the one with this number where there is one.
+    OnPlane(Option<usize>),
     /// Force of the atom on planes and other cells over the last step over its area, pN/µm².
     Traction,
 }
@@ -84,6 +84,8 @@ pub enum AtomSetting {
     Protrusion,
     /// Tension of the surface, beside that of the type, pN/µm.
     Tension,
+    /// Factor of the moduli of the membrane.
+    Elasticity,
     /// Factor of the strength with which the atom sticks.
     Adhesion,
     /// Amount of a field's substance that is released in a second and on a µm²; negative: taken up.
@@ -113,7 +115,7 @@ pub enum Sense {
 }
 
 /// What can be read, as messages list it.
-pub const READABLE: [&str; 22] = [
+pub const READABLE: [&str; 24] = [
     "position.x",
     "atom[0].x",
     "velocity.x",
@@ -133,7 +135,9 @@ pub const READABLE: [&str; 22] = [
     "atoms.curvature",
     "atoms.area_strain",
     "atoms.in_contact",
+    "atoms.in_contact[TYPE]",
     "atoms.on_plane",
+    "atoms.on_plane[NAME]",
     "atoms.traction",
     "atoms.field[NAME]",
 ];
@@ -144,7 +148,8 @@ pub fn settable() -> Vec<String> {
     let pods = ["pseudopods.cue.x", "pseudopods.protrusion", "pseudopods.retraction"];
     let forces = CONTROLLED.map(|handle| format!("{}[NAME]", handle.word));
     let last = ["atom[0].x", "secretion[FIELD]"].map(String::from);
-    let atoms = ["protrusion", "tension", "adhesion", "secretion[FIELD]"].map(|word| format!("atoms.{word}"));
+    let atoms =
+        ["protrusion", "tension", "elasticity", "adhesion", "secretion[FIELD]"].map(|word| format!("atoms.{word}"));
     own.into_iter().chain(pods).map(String::from).chain(forces).chain(last).chain(atoms).collect()
 }
 
@@ -177,8 +182,8 @@ pub fn atom_reading(path: &[Step]) -> Option<AtomReading> {
         [("normal", None), (axis, None)] => AtomReading::Normal(component(axis)?),
         [("curvature", None)] => AtomReading::Curvature,
         [("area_strain", None)] => AtomReading::AreaStrain,
-        [("in_contact", None)] => AtomReading::InContact,
-        [("on_plane", None)] => AtomReading::OnPlane,
+        [("in_contact", None)] => AtomReading::InContact(None),
+        [("on_plane", None)] => AtomReading::OnPlane(None),
         [("traction", None)] => AtomReading::Traction,
         _ => return None,
     })
@@ -200,6 +205,7 @@ pub fn setting(path: &[Step]) -> Option<Setting> {
         [("secretion", Some(Index::Name(name)))] => Setting::Secretion(name.clone()),
         [("atoms", None), ("protrusion", None)] => Setting::Atoms(AtomSetting::Protrusion),
         [("atoms", None), ("tension", None)] => Setting::Atoms(AtomSetting::Tension),
+        [("atoms", None), ("elasticity", None)] => Setting::Atoms(AtomSetting::Elasticity),
         [("atoms", None), ("adhesion", None)] => Setting::Atoms(AtomSetting::Adhesion),
         [("atoms", None), ("secretion", Some(Index::Name(name)))] => {
             Setting::Atoms(AtomSetting::Secretion(name.clone()))
@@ -254,7 +260,8 @@ mod tests {
         for text in settable() {
             assert!(setting(&path(&text)).is_some(), "{text} can be set");
         }
-        let elsewhere = |text: &&str| text.contains("field") || text.starts_with("chemistry");
+        // What has the name of a field, a system, a type or a plane is looked up in the experiment.
+        let elsewhere = |text: &&str| text.contains("[NAME]") || text.contains("[TYPE]");
         for text in READABLE.into_iter().filter(|text| !elsewhere(text)) {
             let of_atoms = text.strip_prefix("atoms.").map(|text| atom_reading(&path(text)).is_some());
             assert!(of_atoms.unwrap_or_else(|| reading(&path(text)).is_some()), "{text} can be read");

@@ -6,6 +6,7 @@
 
 mod choices;
 pub mod ends;
+pub mod inhibition;
 pub mod motility;
 mod pods;
 pub mod pseudopods;
@@ -123,6 +124,7 @@ impl Behaviour {
 
 #[cfg(test)]
 mod tests {
+    use super::inhibition::{Inhibition, Touch};
     use super::motility::Space;
     use super::pseudopods::{Cycle, Several};
     use super::turning::Turning;
@@ -143,6 +145,7 @@ mod tests {
             turning,
             several: Several { most: 3, rate: 0.5 },
             abandon: Some(0.3),
+            inhibition: Some(Inhibition { share: 0.2, turn: 4.0, by: Touch::All }),
         };
         let all = vec![Behaviour::Brownian(walk), Behaviour::Bias, Behaviour::Pseudopods(pods)];
         for behaviour in &all {

@@ -93,6 +93,8 @@ pub struct Pod {
     pub alone: bool,
     /// Whether it is given up.
     pub abandoned: bool,
+    /// Share of its front that touched other cells where the last step ended; 0 without contact inhibition.
+    pub met: f64,
 }
 
 /// Where the pseudopods of one cell are.
@@ -110,6 +112,8 @@ pub struct PodState {
     pub number: u32,
     /// Draws made so far.
     pub draws: u64,
+    /// Mean of the directions to the atoms that touched other cells where the last step ended; 0 without contact inhibition.
+    pub touched: [f64; 3],
     /// What was done in the last step: by the pseudopod there was, by one that began, and by those beside.
     pub did: [Activity; BESIDE + 2],
 }

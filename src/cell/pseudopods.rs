@@ -6,6 +6,7 @@
 //! likelier by e to the power of its part along the direction, eq. (pseudopods.1). Others may begin beside it, and some are given up,
 //! eq. (pseudopods.10).
 
+use super::inhibition::Inhibition;
 use super::turning::{Turning, anywhere};
 use crate::random::{Purpose, Stream};
 
@@ -34,6 +35,8 @@ pub struct Pseudopods {
     pub several: Several,
     /// Share of those that are given up when their protrusion ends, where any are, eq. (pseudopods.10).
     pub abandon: Option<f64>,
+    /// What the cell makes of meeting others.
+    pub inhibition: Option<Inhibition>,
 }
 
 /// How many pseudopods there are at once.
@@ -78,12 +81,13 @@ impl Pseudopods {
         let left = share * self.cycle.means.iter().sum::<f64>();
         let (phase, alone, abandoned) = (Phase::Pause, true, false);
         let mut state = PodState {
-            pod: Pod { phase, left, direction, side: 0, number: 0, age: 0.0, turn: None, alone, abandoned },
+            pod: Pod { phase, left, direction, side: 0, number: 0, age: 0.0, turn: None, alone, abandoned, met: 0.0 },
             beside: [None; BESIDE],
             wait: f64::INFINITY,
             last: (direction, 0),
             number: 0,
             draws: stream.draw,
+            touched: [0.0; 3],
             did: Default::default(),
         };
         self.wait_anew(seed, cell, &mut state);
@@ -105,8 +109,12 @@ impl Pseudopods {
             return;
         }
         state.did = Default::default();
+        let told = &self.inhibition.map_or(*told, |inhibition| inhibition.heed(told, state));
+        let stopped = self.stop_fronts(seed, cell, state, |pod| ended(pod, 0.0));
         state.did[..2].fill(state.pod.did());
         if let Some([protrusion, retraction]) = told.activities() {
+            // A front that was stopped is not pushed on; if one is still to be pushed, that is another, in the next step.
+            let protrusion = if stopped { 0.0 } else { protrusion };
             return self.follow(seed, cell, told, state, (dt, [protrusion, retraction]), ended);
         }
         let (mut left, mut one) = (dt, 0);
@@ -139,6 +147,24 @@ impl Pseudopods {
                 self.begin_beside(seed, cell, told, state);
             }
         }
+    }
+
+    /// Gives up those that have met other cells: their fronts let go, and they are drawn in. Whether the first is one of them.
+    fn stop_fronts(&self, seed: u64, cell: u64, state: &mut PodState, mut ended: impl FnMut(EndedPseudopod)) -> bool {
+        let (Some(Inhibition { share, .. }), mut first) = (self.inhibition, false) else { return false };
+        for slot in 0..=state.beside.len() {
+            let beside = slot.checked_sub(1);
+            let pod = beside.map_or(Some(state.pod), |slot| state.beside[slot]);
+            let Some(mut pod) = pod.filter(|pod| pod.phase == Phase::Protrusion && pod.met >= share) else { continue };
+            pod.abandoned = true;
+            ended(pod.end());
+            (pod.phase, pod.left) = (Phase::Retraction, self.duration(seed, cell, Phase::Retraction, state));
+            match beside {
+                Some(slot) => state.beside[slot] = Some(pod),
+                None => (state.pod, first) = (pod, true),
+            }
+        }
+        first
     }
 
     /// What chemistry sets of the activities is what a single pseudopod does.

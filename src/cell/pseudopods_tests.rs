@@ -2,6 +2,7 @@ use super::super::motility::Space;
 use super::*;
 use crate::Vec3;
 use crate::cell::choices::CANDIDATES;
+use crate::cell::inhibition::Touch;
 
 const PODS: Pseudopods = Pseudopods {
     pressure: 50.0,
@@ -14,6 +15,7 @@ const PODS: Pseudopods = Pseudopods {
     turning: Turning { split: 0.7, angle: 1.0, spread: 0.2, alternation: 0.8, space: Space::Plane },
     several: Several::ONE,
     abandon: None,
+    inhibition: None,
 };
 
 /// The directions of so many pseudopods, with their sides.
@@ -254,4 +256,53 @@ fn one_that_is_given_up_lets_its_own_front_go() {
         }
     }
     assert!(seen > 50);
+}
+
+/// A cell that is touched from the right, where all of its front touches.
+fn touched(pods: &Pseudopods, state: &mut PodState) {
+    state.note_touch(Vec3::x(), |direction| if direction.x > 0.0 { 1.0 } else { 0.0 });
+    assert!(pods.inhibition.is_some());
+}
+
+#[test]
+fn a_front_that_meets_others_is_given_up_and_the_next_ones_lead_away() {
+    let inhibition = Some(Inhibition { share: 0.5, turn: 6.0, by: Touch::All });
+    let pods = Pseudopods { inhibition, ..TWO };
+    let (mut state, mut ends) = (pods.start(5, 6), Vec::new());
+    for _ in 0..20_000 {
+        touched(&pods, &mut state);
+        pods.advance(5, 6, &Told::NOTHING, &mut state, 0.1, |pod, _| ends.push(pod));
+    }
+    assert!(ends.len() > 200, "{}", ends.len());
+    // Those that lead to where it is touched are stopped in the step after they begin; the others are not given up.
+    for pod in &ends {
+        assert_eq!(pod.abandoned, pod.direction[0] > 0.0, "{pod:?}");
+        assert_eq!(pod.lifetime < 0.5, pod.abandoned, "{pod:?}");
+    }
+    let away = ends.iter().filter(|pod| !pod.abandoned).count() as f64 / ends.len() as f64;
+    assert!(away > 0.9, "{away} lead away");
+    // Without a touch, and without inhibition, half of them do.
+    let free = run(&pods, &Told::NOTHING, 2_000).iter().filter(|pod| pod.0.x < 0.0).count() as f64 / 2_000.0;
+    assert!((free - 0.5).abs() < 0.1, "{free}");
+}
+
+#[test]
+fn a_front_that_chemistry_pushes_into_others_is_stopped_and_another_one_begins() {
+    let inhibition = Some(Inhibition { share: 0.5, turn: 50.0, by: Touch::All });
+    let pods = Pseudopods { inhibition, ..PODS };
+    let (mut state, mut ends) = (pods.start(5, 6), Vec::new());
+    let told = Told { cue: [100.0, 0.0, 0.0], protrusion: 0.7, retraction: f64::NAN };
+    pods.advance(5, 6, &told, &mut state, 0.1, |_, _| panic!("it has just begun"));
+    assert!(state.pod.phase == Phase::Protrusion && state.pod.direction[0] > 0.5, "{state:?}");
+    touched(&pods, &mut state);
+    pods.advance(5, 6, &told, &mut state, 0.1, |pod, offset| ends.push((pod, offset)));
+    assert!(ends.len() == 1 && ends[0].0.abandoned && ends[0].1 == 0.0, "{ends:?}");
+    assert_eq!(state.did[0].protrusion, 0.0);
+    // The touch turns the cue around.
+    let told = Told { cue: [10.0, 0.0, 0.0], ..told };
+    (0..30).for_each(|_| {
+        touched(&pods, &mut state);
+        pods.advance(5, 6, &told, &mut state, 0.1, |pod, _| ends.push((pod, 0.0)));
+    });
+    assert!(state.pod.phase == Phase::Protrusion && state.pod.direction[0] < 0.0, "{:?} {ends:?}", state.pod);
 }

@@ -70,7 +70,7 @@ pub use motility::{Attraction, Brownian, Motility, Space};
 pub use pictures::{FieldLine, MeasureCurve, Picture, Plot, PlotKind, PlotTable, View};
 pub use placement::Placement;
 pub use population::{Added, Removed};
-pub use pseudopods::{PodFibres, Pseudopods};
+pub use pseudopods::{ContactInhibition, InhibitedBy, PodFibres, Pseudopods};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
 pub use schema::schema;
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};

@@ -1,6 +1,7 @@
 //! Pseudopods: what documents say of them, and what it means.
 
 use crate::cell::Behaviour;
+use crate::cell::inhibition::{Inhibition, Touch};
 use crate::cell::motility::Space;
 use crate::cell::pseudopods::{self as cell, Cycle, Several};
 use crate::cell::turning::Turning;
@@ -77,6 +78,40 @@ pub struct Pseudopods {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub abandon: Option<f64>,
+    /// What the cell makes of meeting other cells: a front that touches them is given up, and the next ones lead away. Nothing when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact_inhibition: Option<ContactInhibition>,
+}
+
+/// Contact inhibition of locomotion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ContactInhibition {
+    /// Share of the front that touches others at which the pseudopod is given up.
+    #[serde(default = "default_share")]
+    #[schemars(range(max = 1.0), extend("x-exclusive-minimum" = 0))]
+    pub share: f64,
+    /// How much directions away from where the cell is touched are likelier.
+    #[serde(default = "default_turn")]
+    #[schemars(range(min = 0.0, max = 1000.0))]
+    pub turn: f64,
+    /// Whose touch counts.
+    #[serde(default)]
+    pub by: InhibitedBy,
+}
+
+/// Whose touch counts for contact inhibition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum InhibitedBy {
+    /// That of every other cell.
+    #[default]
+    All,
+    /// That of other cells of the same type.
+    OwnType,
+    /// That of cells of other types.
+    OtherTypes,
 }
 
 /// Fibres between front and rear of a pseudopod.
@@ -89,6 +124,14 @@ pub struct PodFibres {
     /// Stiffness of each at full activation: it pulls with that times its length.
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub stiffness: LineStiffness,
+}
+
+const fn default_share() -> f64 {
+    0.2
+}
+
+const fn default_turn() -> f64 {
+    4.0
 }
 
 const fn one() -> u32 {
@@ -166,6 +209,19 @@ impl Pseudopods {
                 rate: self.beside.filter(|_| self.most > 1).map_or(0.0, |rate| rate.value()),
             },
             abandon: self.abandon,
+            inhibition: self.contact_inhibition.as_ref().map(ContactInhibition::meaning),
         })
+    }
+}
+
+impl ContactInhibition {
+    /// What it makes of meeting others.
+    fn meaning(&self) -> Inhibition {
+        let by = match self.by {
+            InhibitedBy::All => Touch::All,
+            InhibitedBy::OwnType => Touch::Own,
+            InhibitedBy::OtherTypes => Touch::Others,
+        };
+        Inhibition { share: self.share, turn: self.turn, by }
     }
 }

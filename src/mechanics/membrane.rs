@@ -6,7 +6,7 @@
 //! the force is its exact gradient, eq. (membrane.2). All laws have the same small-strain response: shear modulus µ
 //! and area modulus K. Sources: Skalak, Tözeren, Zarda & Chien 1973; Evans & Skalak 1980; Mills et al. 2004.
 
-use super::lanes::{Real, Vectors, VectorsMut};
+use super::lanes::{Real, V3, Vectors, VectorsMut};
 use super::stiffness::StiffnessMatrix;
 use super::tangent::facet::{Curvatures, Stretched};
 use super::tangent::matrix::Blocks;
@@ -195,23 +195,50 @@ impl Membrane {
         let mut energy = T::constant(x.token, 0.0);
         for facet in &self.facets {
             let [a, b, c] = facet.atoms.map(|atom| atom as usize);
-            let origin = x.get(a);
-            let (u, v) = (x.get(b) - origin, x.get(c) - origin);
-            let (uu, uv, vv) = (u.squared(), u.dot(v), v.squared());
-            let [g11, g12, g22] = facet.inverse;
-            let i = uu * g11 + uv * (2.0 * g12) + vv * g22;
-            let d = (uu * vv - uv * uv) * facet.inverse_determinant;
-            let (w, by_i, by_d) = self.law.energy_density(x.token, i, d);
-            energy += w * facet.area;
-            // ∂W/∂u = 2 W_I (g11 u + g12 v) + 2 W_D (vv u − uv v)/det G, and the same for v.
-            let by_i = by_i * (2.0 * facet.area);
-            let by_d = by_d * (2.0 * facet.area * facet.inverse_determinant);
-            let across = by_i * g12 - by_d * uv;
-            let on_b = u.times(by_i * g11 + by_d * vv) + v.times(across);
-            let on_c = v.times(by_i * g22 + by_d * uu) + u.times(across);
+            let (stored, [on_b, on_c]) = self.of_facet(facet, x);
+            energy += stored;
             f.sub(b, on_b);
             f.sub(c, on_c);
             f.add(a, on_b + on_c);
+        }
+        energy
+    }
+
+    /// The energy of a facet, pN·µm, and its derivatives by where its second and third atom are, pN.
+    #[inline(always)]
+    fn of_facet<T: Real>(&self, facet: &RestFacet, x: &Vectors<T>) -> (T, [V3<T>; 2]) {
+        let [a, b, c] = facet.atoms.map(|atom| atom as usize);
+        let origin = x.get(a);
+        let (u, v) = (x.get(b) - origin, x.get(c) - origin);
+        let (uu, uv, vv) = (u.squared(), u.dot(v), v.squared());
+        let [g11, g12, g22] = facet.inverse;
+        let i = uu * g11 + uv * (2.0 * g12) + vv * g22;
+        let d = (uu * vv - uv * uv) * facet.inverse_determinant;
+        let (w, by_i, by_d) = self.law.energy_density(x.token, i, d);
+        // ∂W/∂u = 2 W_I (g11 u + g12 v) + 2 W_D (vv u − uv v)/det G, and the same for v.
+        let by_i = by_i * (2.0 * facet.area);
+        let by_d = by_d * (2.0 * facet.area * facet.inverse_determinant);
+        let across = by_i * g12 - by_d * uv;
+        let on_b = u.times(by_i * g11 + by_d * vv) + v.times(across);
+        let on_c = v.times(by_i * g22 + by_d * uu) + u.times(across);
+        (w * facet.area, [on_b, on_c])
+    }
+
+    /// Adds what one cell's membrane does more than with its own moduli where atoms have factors of them, eq. (membrane.6), `whole` times,
+    /// and returns the energy of that, pN·µm.
+    pub fn add_excess(&self, whole: f64, factors: &[f64], x: &Vectors<f64>, f: &mut VectorsMut<f64>) -> f64 {
+        let mut energy = 0.0;
+        for facet in &self.facets {
+            let [a, b, c] = facet.atoms.map(|atom| atom as usize);
+            let excess = whole * ((factors[a] + factors[b] + factors[c]) / 3.0 - 1.0);
+            if excess == 0.0 {
+                continue;
+            }
+            let (stored, [on_b, on_c]) = self.of_facet(facet, x);
+            energy += excess * stored;
+            f.sub(b, on_b.scaled(excess));
+            f.sub(c, on_c.scaled(excess));
+            f.add(a, (on_b + on_c).scaled(excess));
         }
         energy
     }

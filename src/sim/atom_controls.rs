@@ -11,6 +11,8 @@ pub struct AtomControls {
     pub protrusion: Vec<f64>,
     /// Tension of the surface, beside that of the type, pN/µm.
     pub tension: Vec<f64>,
+    /// Factor of the moduli of the membrane.
+    pub elasticity: Vec<f64>,
     /// Factor of the strength with which an atom sticks.
     pub adhesion: Vec<f64>,
     /// Amount released per second and µm², one list for each species that the model secretes.
@@ -20,7 +22,8 @@ pub struct AtomControls {
 impl AtomControls {
     /// Makes the list that a control is written to as long as so many atoms need: numbers that change nothing until they are set.
     pub fn admit(&mut self, control: AtomControl, atoms: usize) {
-        let nothing = if control == AtomControl::Adhesion { 1.0 } else { 0.0 };
+        let is_factor = matches!(control, AtomControl::Elasticity | AtomControl::Adhesion);
+        let nothing = if is_factor { 1.0 } else { 0.0 };
         self.list(control).resize(atoms, nothing);
     }
 
@@ -29,6 +32,7 @@ impl AtomControls {
         match control {
             AtomControl::Protrusion => &mut self.protrusion,
             AtomControl::Tension => &mut self.tension,
+            AtomControl::Elasticity => &mut self.elasticity,
             AtomControl::Adhesion => &mut self.adhesion,
             AtomControl::Secretion(channel) => {
                 self.secretion.resize_with(self.secretion.len().max(channel + 1), Vec::new);
@@ -44,13 +48,14 @@ impl AtomControls {
 
     /// All lists, each with what changes nothing.
     pub fn lists(&mut self) -> impl Iterator<Item = (&mut Vec<f64>, f64)> {
-        let own = [(&mut self.protrusion, 0.0), (&mut self.tension, 0.0), (&mut self.adhesion, 1.0)];
-        own.into_iter().chain(self.secretion.iter_mut().map(|list| (list, 0.0)))
+        let factors = [(&mut self.elasticity, 1.0), (&mut self.adhesion, 1.0)];
+        let own = [(&mut self.protrusion, 0.0), (&mut self.tension, 0.0)].into_iter().chain(factors);
+        own.chain(self.secretion.iter_mut().map(|list| (list, 0.0)))
     }
 
     /// Whether every list is empty or has so many numbers.
     pub fn fits(&self, atoms: usize) -> bool {
-        let own = [&self.protrusion, &self.tension, &self.adhesion];
+        let own = [&self.protrusion, &self.tension, &self.elasticity, &self.adhesion];
         own.into_iter().chain(&self.secretion).all(|list| [0, atoms].contains(&list.len()))
     }
 
@@ -73,6 +78,7 @@ impl AtomControls {
     pub fn copy_from(&mut self, other: &Self) {
         self.protrusion.clone_from(&other.protrusion);
         self.tension.clone_from(&other.tension);
+        self.elasticity.clone_from(&other.elasticity);
         self.adhesion.clone_from(&other.adhesion);
         self.secretion.clone_from(&other.secretion);
     }

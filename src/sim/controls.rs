@@ -21,6 +21,9 @@ pub struct Controls {
     /// Factor of the strength with which each atom of all cells sticks, in their order; empty where none is set. Behaviours set it where a
     /// step ends.
     pub adhesion_of_atoms: Vec<f64>,
+    /// Factor of the moduli of the membrane at each atom of all cells, in their order; empty where none is set. Gathered from what is set
+    /// of atoms where a step ends, and before the first.
+    pub elasticity_of_atoms: Vec<f64>,
     /// What links set of atoms, one entry a kind; empty without such a link.
     pub of_atoms: Vec<AtomControls>,
     /// What pseudopods are told, one a cell; empty without a link to one.
@@ -64,6 +67,7 @@ impl Controls {
         self.stiffness.clone_from(&other.stiffness);
         self.adhesion.clone_from(&other.adhesion);
         self.adhesion_of_atoms.clone_from(&other.adhesion_of_atoms);
+        self.elasticity_of_atoms.clone_from(&other.elasticity_of_atoms);
         self.of_atoms.truncate(other.of_atoms.len());
         self.of_atoms.iter_mut().zip(&other.of_atoms).for_each(|(to, from)| to.copy_from(from));
         self.of_atoms.extend_from_slice(&other.of_atoms[self.of_atoms.len()..]);

@@ -24,6 +24,7 @@ const PODS: Pseudopods = Pseudopods {
     turning: Turning { split: 0.5, angle: 1.0, spread: 0.1, alternation: 0.7, space: Space::Plane },
     several: Several { most: 2, rate: 0.3 },
     abandon: None,
+    inhibition: None,
 };
 
 /// A kind without a budget yet, and cells of it, each bent in another way.

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::acting_fibres::ActingFibres;
 use super::contact::{ContactForces, add_contact_forces, pull_contacts};
 use super::controls::Controls;
+use super::elasticity::{self, add_local_elasticity};
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
 use super::state::{KindState, State};
@@ -53,6 +54,10 @@ impl Forces<'_> {
         if let Some(set) = self.controls.stiffness.get(numbers) {
             factors.iter_mut().zip(set).for_each(|(slot, factor)| *slot = *factor);
         }
+        if let Some(own) = elasticity::factors(self.kind, self.cells, self.controls) {
+            let of_cells = own.chunks_exact(self.kind.atoms()).skip(block * self.kind.lanes);
+            factors.iter_mut().zip(of_cells).for_each(|(slot, own)| *slot *= elasticity::largest_factor(own));
+        }
         factors
     }
 
@@ -70,6 +75,7 @@ impl Forces<'_> {
         let numbers = cells.numbers_of_block(kind, block);
         let context = context(kind, controls, numbers.clone(), time);
         measure_forces(&kind.forces, &context, kind.lanes, x, f, energy);
+        add_local_elasticity(kind, cells, (block, controls), x, f, energy);
         if cells.is_driven(kind) {
             add_drive(kind, &drive[numbers], f);
         }
@@ -165,11 +171,18 @@ fn for_each_kind(
 }
 
 /// Elastic energy of each cell of a kind alone, pN·µm, for observers.
-pub fn elastic_energy(kind: &Kind, cells: &KindState) -> Vec<f64> {
+pub fn elastic_energy(kind: &Kind, cells: &KindState, controls: &Controls) -> Vec<f64> {
     let mut energy = vec![0.0; cells.blocks(kind) * kind.lanes];
     let mut force = vec![0.0; kind.block_len()];
     for (x, energy) in cells.positions.chunks_exact(kind.block_len()).zip(energy.chunks_exact_mut(kind.lanes)) {
         measure_elastic(&kind.forces, kind.lanes, x, &mut force, energy);
+    }
+    for (cell, energy) in energy.iter_mut().enumerate().take(cells.cells()) {
+        *energy *= controls.stiffness_of(cells.first_cell + cell);
+    }
+    let blocks = cells.positions.chunks_exact(kind.block_len()).zip(energy.chunks_exact_mut(kind.lanes));
+    for (block, (x, energy)) in blocks.enumerate() {
+        add_local_elasticity(kind, cells, (block, controls), x, &mut force, energy);
     }
     energy.truncate(cells.cells());
     energy

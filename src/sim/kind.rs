@@ -199,6 +199,10 @@ impl Kind {
         };
         (0..self.atoms()).map(held).collect()
     }
+    /// Whether its surface resists shear and change of area as a membrane does.
+    pub fn has_membrane(&self) -> bool {
+        self.forces.iter().any(|force| matches!(force, Force::Membrane(_)))
+    }
     /// Whether any atom is held.
     pub fn is_held(&self) -> bool {
         !self.held.is_empty()

@@ -38,10 +38,7 @@ pub struct CellMeasure {
 pub fn measure_cells(model: &Model, state: &State) -> Vec<CellMeasure> {
     let mut all = Vec::with_capacity(state.cells());
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-        let mut energy = elastic_energy(kind, now);
-        for (cell, energy) in energy.iter_mut().enumerate() {
-            *energy *= state.chemistry.controls.stiffness_of(now.first_cell + cell);
-        }
+        let energy = elastic_energy(kind, now, &state.chemistry.controls);
         let rest_areas = geometry::facet_areas(&kind.rest);
         let factor = kind.volume.course().map_or(1.0, |course| course.at(state.time));
         let measured: Vec<CellMeasure> = (0..now.cells())

@@ -3,6 +3,7 @@
 
 use super::chemistry::begin_membranes;
 use super::contact::check_added;
+use super::elasticity::gather_elasticity;
 use super::kind::Kind;
 use super::model::{Change, Model, Removal};
 use super::population_trouble::PopulationTrouble;
@@ -161,6 +162,7 @@ fn check_new(model: &Model, state: &State, number: usize, cells: &[NewCell]) -> 
 fn settle(model: &Model, before: &State, next: &mut State, bodies: &[Option<u32>]) {
     next.number_cells(model);
     release_rears(model, next);
+    gather_elasticity(model, next);
     if let Some(contact) = &model.contact {
         let [old, new] = [&before.kinds, &next.kinds].map(|cells| contact.scene_of(cells));
         next.contact = before.contact.renumbered(&old, &new, bodies);

@@ -25,7 +25,7 @@ fn any_pushes(model: &Model, from: &State) -> bool {
 }
 
 /// The pseudopods of a kind, and the number of that behaviour.
-fn pseudopods_of(kind: &Kind) -> Option<(usize, &Pseudopods)> {
+pub(super) fn pseudopods_of(kind: &Kind) -> Option<(usize, &Pseudopods)> {
     kind.behaviours.iter().enumerate().find_map(|(number, behaviour)| match behaviour {
         Behaviour::Pseudopods(pods) => Some((number, pods)),
         _ => None,

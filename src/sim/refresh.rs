@@ -7,6 +7,7 @@
 //! steps are stable. A kind of one cell therefore makes K again for the shape that the cell has now, whenever an edge has changed enough
 //! since K was last made.
 
+use super::elasticity;
 use super::kind::Kind;
 use super::model::Model;
 use super::state::{KindState, State};
@@ -63,6 +64,9 @@ fn cover_stiffening(model: &Model, from: &State, ws: &mut Workspace) {
             Some(cells) => cells.iter().copied().fold(1.0, f64::max).log2().ceil().exp2(),
             None => 1.0,
         };
+        if let Some(own) = elasticity::factors(kind, now, controls) {
+            w.stiffening *= elasticity::largest_factor(own).log2().ceil().exp2();
+        }
     }
 }
 

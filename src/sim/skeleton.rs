@@ -20,7 +20,8 @@ pub(super) struct Positions<'a> {
 }
 
 impl Positions<'_> {
-    fn of(&self, atom: usize) -> Vec3 {
+    /// Where an atom is, µm.
+    pub fn of(&self, atom: usize) -> Vec3 {
         vector(self.kind, &self.now.positions, self.cell, atom)
     }
 

@@ -16,6 +16,7 @@ const PODS: Pseudopods = Pseudopods {
     turning: Turning { split: 0.5, angle: 1.0, spread: 0.1, alternation: 0.7, space: Space::Plane },
     several: Several::ONE,
     abandon: None,
+    inhibition: None,
 };
 
 /// A cell that is not round, and where its atoms are.

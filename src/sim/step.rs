@@ -10,10 +10,12 @@ use super::constraints::make_exact;
 use super::contact::{
     carry_forces, check_depth, hold_contacts, keep_contacts, locate_contacts, look_for_depth, travel, turn_over_bonds,
 };
+use super::elasticity::gather_elasticity;
 use super::fibres::act_fibres;
 use super::finite::check_finite;
 use super::gain::{energy_before, has_gained};
 use super::inertial::correct_velocities;
+use super::meet::note_meetings;
 use super::model::Model;
 use super::motility::advance_behaviours;
 use super::motion::move_freely;
@@ -58,6 +60,7 @@ fn begun<'a>(model: &Model, state: &'a State, ws: &mut Workspace) -> Result<Cow<
     }
     let mut begun = state.clone();
     carry_first(model, &mut begun, ws)?;
+    gather_elasticity(model, &mut begun);
     Ok(Cow::Owned(begun))
 }
 
@@ -75,6 +78,8 @@ fn make_step(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) ->
     keep_tractions(model, plan.dt, from, to, ws);
     advance_chemistry(model, plan.dt, from, to, ws)?;
     release_rears(model, to);
+    note_meetings(model, to, ws);
+    gather_elasticity(model, to);
     advance_clock(model, &plan, to);
     Ok(plan.report())
 }

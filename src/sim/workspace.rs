@@ -31,6 +31,8 @@ pub struct Workspace {
     pub fibres: ActingFibres,
     /// How much each atom grips what its cell touches, pN; none in a model without pseudopods.
     pub grips: Vec<f64>,
+    /// Which atoms of a cell touch others; used in models with contact inhibition.
+    pub touched: Vec<bool>,
     /// Scratch of chemistry.
     pub chemistry: ChemistryScratch,
     /// Scratch of contacts.
@@ -194,6 +196,7 @@ impl Workspace {
             pushes: Vec::new(),
             fibres: ActingFibres::default(),
             grips: Vec::new(),
+            touched: Vec::new(),
             chemistry: ChemistryScratch::new(model),
             contact: ContactScratch::default(),
             buffers: ThreadBuffers::default(),

@@ -60,6 +60,7 @@ fn check_controls(model: &Model, state: &State, controls: &Controls) -> Result<(
         stiffness,
         adhesion,
         adhesion_of_atoms,
+        elasticity_of_atoms,
         of_atoms,
         pseudopods,
         forces,
@@ -77,6 +78,10 @@ fn check_controls(model: &Model, state: &State, controls: &Controls) -> Result<(
     if ![0, atoms].contains(&adhesion_of_atoms.len()) {
         let length = adhesion_of_atoms.len();
         return Err(SimulationError::Mismatch(format!("adhesion is set of {length} atoms, not {atoms}")));
+    }
+    if ![0, atoms].contains(&elasticity_of_atoms.len()) {
+        let length = elasticity_of_atoms.len();
+        return Err(SimulationError::Mismatch(format!("elasticity is set of {length} atoms, not {atoms}")));
     }
     let numbers = |kind: usize| state.kinds[kind].cells() * model.kinds[kind].atoms();
     let kinds = model.kinds.len();

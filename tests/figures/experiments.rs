@@ -230,6 +230,34 @@ fn drops_spread_on_glass_to_the_angle_of_young_and_dupre() {
 }
 
 #[test]
+fn strokes_that_use_up_their_stores_are_of_one_length_whatever_the_period() {
+    experiment_keeps_its_word("motility", "periods.toml");
+}
+
+#[test]
+#[ignore = "slow: a minute"]
+fn cells_that_heed_each_other_keep_apart() {
+    experiment_keeps_its_word("contact_inhibition", "experiment.toml");
+}
+
+#[test]
+#[ignore = "slow: half a minute each"]
+fn cells_crawl_on_sheets_and_up_a_step() {
+    experiment_keeps_its_word("substrates", "experiment.toml");
+    experiment_keeps_its_word("substrates", "step.toml");
+}
+
+#[test]
+fn a_cell_crawls_over_others_by_what_it_pulls_at_them() {
+    experiment_keeps_its_word("substrates", "cells.toml");
+}
+
+#[test]
+fn a_cell_crawls_into_a_channel_and_gets_as_narrow() {
+    experiment_keeps_its_word("substrates", "channel.toml");
+}
+
+#[test]
 #[ignore = "slow: a minute"]
 fn cells_that_stick_too_little_or_too_much_get_nowhere() {
     experiment_keeps_its_word("adhesion_speed", "experiment.toml");

@@ -2,7 +2,10 @@
 
 use crate::coupled_scene::{Scene, scene};
 use pseudopod::Vec3;
+use pseudopod::experiment::Compiled;
 use pseudopod::sim::add_cells;
+use pseudopod::sim::forces::add_forces;
+use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::remove_cells;
 
 /// One cell, a sphere of radius 5 µm around (10, 0, 0) that has the membrane `own`; steps of 0.1 s.
@@ -92,6 +95,37 @@ fn an_atom_knows_what_it_touches() {
 }
 
 #[test]
+fn an_atom_tells_apart_whom_and_on_what_it_touches() {
+    let own = r#"<eml name="own" level="membrane"><input id="like" default="0" level="membrane"/><input id="unlike" default="0" level="membrane"/>
+        <input id="low" default="0" level="membrane"/><input id="high" default="0" level="membrane"/>
+        <variable id="a" initial="0" rate="0"/><define id="all">like + 2*unlike + 4*low + 8*high</define>
+        <link from="cell.atoms.in_contact[cell]" to="system.like"/><link from="cell.atoms.in_contact[other]" to="system.unlike"/>
+        <link from="cell.atoms.on_plane[ground]" to="system.low"/><link from="cell.atoms.on_plane[lid]" to="system.high"/>
+        <link from="system.all" to="cell.atoms.protrusion" gain="0.001"/></eml>"#;
+    // Two cells of the type in a row along x, the other type to the left of the first; ground and lid are a little nearer than they are high.
+    let more = "placement = { at = [[\"0 um\", \"0 um\", \"5 um\"], [\"10.02 um\", \"0 um\", \"5 um\"]] }\n\
+        [cells.other]\nmesh = { shape = \"icosphere\", radius = \"5 um\", level = 2 }\nplacement = { at = [[\"-10.02 um\", \"0 um\", \"5 um\"]] }\n\
+        mechanics = { drag = \"20 pN s/um\", shape_memory = { shape_modulus = \"10 pN/um\" } }\n\
+        [[planes]]\nname = \"ground\"\npoint = [\"0 um\", \"0 um\", \"0.05 um\"]\nnormal = [0, 0, 1]\n\
+        [[planes]]\nname = \"lid\"\npoint = [\"0 um\", \"0 um\", \"9.95 um\"]\nnormal = [0, 0, -1]\n\
+        [contact]\nstrength = \"1 Pa\"\nmodel = \"adhesives\"\n";
+    let text = ball(ROUND, more).replace("placement = { at = [[\"10 um\", \"0 um\", \"0 um\"]] }\n", "");
+    let mut scene = scene(&[("own", own)], &text);
+    scene.run();
+    let mut seen = [0; 4];
+    for (x, told) in atoms(&scene, 0).iter().zip(pressures(&scene)) {
+        let told = (told * 1000.0).round() as usize;
+        // Who touches on the right is of the own type, on the left of the other.
+        for (bit, may_be) in [x.x > 3.0, x.x < -3.0, x.z < 1.0, x.z > 9.0].into_iter().enumerate() {
+            let is_told = told & (1 << bit) != 0;
+            assert!(!is_told || may_be, "{x} is told {told}");
+            seen[bit] += usize::from(is_told);
+        }
+    }
+    assert!(seen.iter().all(|count| *count >= 1), "{seen:?}");
+}
+
+#[test]
 fn a_tension_that_chemistry_sets_everywhere_is_that_of_the_type() {
     let own = r#"<eml name="own" level="membrane"><variable id="t" initial="6" rate="0"/><define id="even">6 + 0*t</define>
         <link from="system.even" to="cell.atoms.tension"/></eml>"#;
@@ -116,6 +150,69 @@ fn a_tension_that_chemistry_sets_everywhere_is_that_of_the_type() {
         apart(&of_type, &set)
     });
     assert!(errors[1] < 0.01 && errors[1] < 0.7 * errors[0], "{errors:?}");
+}
+
+/// Puts the atoms of the only cell where it is said.
+fn place(scene: &mut Scene, positions: &[Vec3]) {
+    let lanes = scene.compiled.model.kinds[0].lanes;
+    let x = &mut scene.compiled.state.kinds[0].positions;
+    for (atom, position) in positions.iter().enumerate() {
+        (0..3).for_each(|axis| x[(3 * atom + axis) * lanes] = position[axis]);
+    }
+}
+
+/// The forces on its atoms, pN.
+fn forces(scene: &mut Scene) -> Vec<Vec3> {
+    let Compiled { model, state, .. } = &scene.compiled;
+    add_forces(model, state.time, state, &mut scene.ws);
+    let (lanes, f) = (model.kinds[0].lanes, &scene.ws.kinds[0].force);
+    (0..model.kinds[0].atoms()).map(|atom| Vec3::from_fn(|axis, _| f[(3 * atom + axis) * lanes])).collect()
+}
+
+/// A membrane cell that is stretched, with factors of the elasticity of its atoms as they follow from the height n of the normal; and the
+/// forces on its atoms.
+fn stretched(factor: &str) -> (Scene, Vec<Vec3>) {
+    let own = format!(
+        "<eml name=\"own\" level=\"membrane\"><input id=\"n\" default=\"0\" level=\"membrane\"/><variable id=\"a\" initial=\"0\" rate=\"0\"/>\
+         <link from=\"cell.atoms.normal.z\" to=\"system.n\"/><define id=\"s\">{factor} + 0*a</define>\
+         <link from=\"system.s\" to=\"cell.atoms.elasticity\"/></eml>"
+    );
+    let membrane = "membrane = { law = \"skalak\", shear = \"5 pN/um\", area = \"20 pN/um\" }";
+    let mut scene = scene(&[("own", &own)], &ball(membrane, ""));
+    scene.begin();
+    let bent = |x: &Vec3| Vec3::new(10.0 + 1.1 * (x.x - 10.0), x.y, 0.95 * x.z);
+    let positions: Vec<Vec3> = atoms(&scene, 0).iter().map(bent).collect();
+    place(&mut scene, &positions);
+    let found = forces(&mut scene);
+    (scene, found)
+}
+
+#[test]
+fn a_factor_at_every_atom_is_that_of_the_cell_and_one_that_differs_is_a_gradient() {
+    let (_, once) = stretched("1");
+    let (_, twice) = stretched("2");
+    let size = once.iter().fold(0.0_f64, |size, f| size.max(f.norm()));
+    assert!(size > 0.1, "{size} pN");
+    assert!(once.iter().zip(&twice).all(|(one, two)| (two - 2.0 * one).norm() < 1e-12 * size));
+    let (mut scene, found) = stretched("1.5 + n");
+    let here = atoms(&scene, 0);
+    let (sum, torque) = here.iter().zip(&found).fold((Vec3::zeros(), Vec3::zeros()), |(sum, torque), (x, f)| {
+        (sum + f, torque + (x - Vec3::new(10.0, 0.0, 0.0)).cross(f))
+    });
+    assert!(sum.norm() < 1e-11 * size && torque.norm() < 1e-10 * size, "{sum} {torque}");
+    assert!(found.iter().zip(&once).any(|(local, one)| (local - one).norm() > 0.1 * size), "it is another force");
+    // Central differences of the energy; their own error is some 1e-7 of a force.
+    for (atom, axis) in [(0, 0), (7, 1), (40, 2), (161, 0)] {
+        let mut energy = |by: f64| {
+            let mut moved = here.clone();
+            moved[atom][axis] += by;
+            place(&mut scene, &moved);
+            measure_cells(&scene.compiled.model, scene.state())[0].energy
+        };
+        let slope = (energy(1e-5) - energy(-1e-5)) / 2e-5;
+        let force = found[atom][axis];
+        assert!((force + slope).abs() < 1e-6 * size, "{atom}, {axis}: {force} and {slope}");
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod bonds;
 mod cohesion;
 mod contact;
 mod contact_fuzz;
+mod contact_inhibition;
 mod contact_models;
 mod contact_order;
 mod coupling;

@@ -7,6 +7,7 @@ mod chemotactic_index;
 mod comparison;
 mod declared;
 mod distance;
+mod engulfment;
 mod field_value;
 mod finished;
 mod fit;
@@ -43,6 +44,7 @@ pub use chemotactic_index::ChemotacticIndex;
 pub use comparison::Comparison;
 pub use declared::Declared;
 pub use distance::Distance;
+pub use engulfment::{Engulfment, EngulfmentStatistic};
 pub use field_value::FieldValue;
 pub use finished::Finished;
 pub use fit::Fit;
@@ -160,6 +162,9 @@ pub enum MeasureKind {
     /// How much cells of a type touch each other beyond chance: the segregation index, from below 0 (mixed) to 1 (apart),
     /// or what permutations of the types say of it.
     Segregation(Segregation),
+    /// Whether cells of a type are inside those of others: how near to the middle, from 1 (the innermost) over 0 (at random) to below 0
+    /// (outside), or the segregation index that they would have there.
+    Engulfment(Engulfment),
     /// How the pseudopods of `[cells.NAME.pseudopods]` follow each other: how many, per second and cell, or another number of them.
     Pseudopods(PseudopodTurns),
     /// How regions of the surface where a substance on membranes is above a threshold come and go: how many begin, per second and cell, or another
@@ -193,6 +198,7 @@ impl MeasureKind {
             Self::Period(period) => period.series(),
             Self::WaveSpeed(wave) => wave.series(),
             Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) => Vec::new(),
+            Self::Engulfment(_) => Vec::new(),
             Self::Fronts(_) | Self::Gaps(_) | Self::Pseudopods(_) | Self::Traction(_) => Vec::new(),
         };
         names.into_iter().filter(|name| *name != "time").collect()
@@ -219,6 +225,7 @@ impl MeasureKind {
             Self::WaveSpeed(wave) => wave.check(at),
             Self::Wavelength(pattern) => pattern.check(at),
             Self::Segregation(segregation) => segregation.check(at),
+            Self::Engulfment(engulfment) => engulfment.check(at),
             Self::Pseudopods(pods) => pods.check(at),
             Self::Fronts(fronts) => fronts.check(at),
             Self::Gaps(gaps) => gaps.check(at),
@@ -258,6 +265,7 @@ impl MeasureKind {
             Self::WaveSpeed(wave) => wave.evaluate(run),
             Self::Wavelength(pattern) => pattern.evaluate(run),
             Self::Segregation(segregation) => segregation.evaluate(run),
+            Self::Engulfment(engulfment) => engulfment.evaluate(run),
             Self::Pseudopods(pods) => pods.evaluate(run),
             Self::Fronts(fronts) => fronts.evaluate(run),
             Self::Gaps(gaps) => gaps.evaluate(run),

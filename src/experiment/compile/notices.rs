@@ -157,7 +157,9 @@ fn spreading_shape(model: &Model, number: usize) -> Option<String> {
     let kinds = model.kinds.len();
     let of_pair = &table.between[number * kinds..(number + 1) * kinds];
     let work = of_pair.iter().filter(|pair| pair.strength > 0.0).map(|pair| pair.work).fold(0.0, f64::max);
-    if !kind.closed || work == 0.0 {
+    // What is held everywhere spreads nowhere.
+    let is_held = !kind.held.is_empty() && kind.held.iter().all(|factor| *factor == 0.0);
+    if !kind.closed || work == 0.0 || is_held {
         return None;
     }
     // Each of the two surfaces that stick has half of the work.

@@ -17,7 +17,17 @@ pub fn atoms(
     let count = rest.positions.len();
     let mut chosen: Vec<u32> = match selection {
         Selection::All(_) => (0..count as u32).collect(),
-        Selection::Cap(cap) => cap_atoms(cap, rest),
+        Selection::Cap(cap) => {
+            if let CapExtent::Number(number) = cap.extent
+                && number as usize > count
+            {
+                let fault = Fault::new(format!("a cap of {number} atoms does not exist: the mesh has {count} atoms"))
+                    .help(format!("give a number up to {count}, or `{{ all = true }}`"));
+                let location = document.location(&format!("{key}.cap.number"), "more than there are");
+                faults.push(location.into_iter().fold(fault, Fault::at));
+            }
+            cap_atoms(cap, rest)
+        }
         Selection::Atoms(list) => {
             for (i, &atom) in list.iter().enumerate().filter(|(_, atom)| **atom as usize >= count) {
                 let fault = Fault::new(format!("atom {atom} does not exist: the mesh has {count} atoms"))

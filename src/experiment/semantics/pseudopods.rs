@@ -18,6 +18,11 @@ impl Check<'_> {
         self.fibres_of_pseudopods(&path, cell, pods);
         self.several_pseudopods(&path, pods);
         self.steps_in_cycles(&path, pods);
+        if pods.contact_inhibition.is_some() && self.document.experiment.contact.is_none() {
+            let message = format!("`{path}.contact_inhibition` asks what cells touch, and there are no contacts");
+            let help = "add a [contact] table, or remove it";
+            self.fault(&format!("{path}.contact_inhibition"), "nothing is touched", message, help);
+        }
     }
 
     /// Only some models of contact say what an atom bears along a surface.

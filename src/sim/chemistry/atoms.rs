@@ -1,12 +1,13 @@
 //! Links that carry a number for each atom of the cells that have a system.
 
 use super::super::balance::AtomBalance;
+use super::super::contact::near_cell;
 use super::super::model::Model;
 use super::super::state::{State, vector};
 use super::super::trouble::Trouble;
 use super::expected::missed;
 use super::links::{AtAtoms, AtomControl, Control, Owner, Source, Target};
-use super::measure::{is_on_plane, near_cell};
+use super::measure::is_on_plane;
 use super::model::Members;
 use super::observe::pick;
 use super::scratch::ChemistryScratch;
@@ -109,13 +110,17 @@ fn read(
         positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
         let truth = |holds: bool| if holds { 1.0 } else { 0.0 };
         match what {
-            AtomReading::OnPlane => numbers.extend(positions.iter().map(|x| truth(is_on_plane(model, kind, x)))),
-            AtomReading::InContact => {
+            AtomReading::OnPlane(which) => {
+                let planes = which.map_or(&model.planes[..], |number| &model.planes[number..=number]);
+                numbers.extend(positions.iter().map(|x| truth(is_on_plane(planes, kind, x))));
+            }
+            AtomReading::InContact(with) => {
                 let (begin, near) = near_cell(kind, now, found, cell);
                 let own = now.first_cell + cell;
+                let is_meant = |body: usize| body != own && with.is_none_or(|number| state.kind_of(body).0 == number);
                 let touches = |atom: usize| {
-                    let of_atom = near.iter().filter(|contact| contact.atom as usize == begin as usize + atom);
-                    scene.is_some_and(|scene| of_atom.into_iter().any(|near| near.body(scene) as usize != own))
+                    let mut of_atom = near.iter().filter(|contact| contact.atom as usize == begin as usize + atom);
+                    scene.is_some_and(|scene| of_atom.any(|near| is_meant(near.body(scene) as usize)))
                 };
                 numbers.extend((0..atoms).map(|atom| truth(touches(atom))));
             }

@@ -235,6 +235,8 @@ pub enum AtomControl {
     Protrusion,
     /// Tension of the surface, beside that of the type, pN/µm.
     Tension,
+    /// Factor of the moduli of the membrane.
+    Elasticity,
     /// Factor of the strength of contacts.
     Adhesion,
     /// Amount released per second and µm² into a channel of [`Chemistry::secreted`].

@@ -2,16 +2,18 @@
 
 use rayon::prelude::*;
 
-use super::super::contact::ContactScene;
+use super::super::contact::{ContactScene, near_cell};
 use super::super::kind::Kind;
 use super::super::model::Model;
-use super::super::state::{KindState, State, vector};
+use super::super::plane::Plane;
+use super::super::state::{State, vector};
 use crate::Vec3;
 use crate::cell::ends::Reading;
 use crate::contact::AtomContact;
 
-/// An atom touches a plane when it is nearer to it than this part of the mean edge: planes put atoms exactly on them.
-const TOUCHING: f64 = 1e-6;
+/// An atom touches a plane when it is nearer to it than this part of the mean edge: planes put atoms exactly on them, but where cells touch
+/// each other, too, atoms that are pressed on a plane are off it by what sweeps leave, some 10⁻⁴ of an edge.
+const TOUCHING: f64 = 1e-3;
 
 /// Measures of one cell at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -84,21 +86,9 @@ pub(super) fn measure_cells(
     }
 }
 
-/// Whether an atom of a kind stands on a plane.
-pub(super) fn is_on_plane(model: &Model, kind: &Kind, atom: &Vec3) -> bool {
-    model.planes.iter().any(|plane| (atom - plane.point).dot(&plane.normal) < TOUCHING * kind.edge)
-}
-
-/// The number of the first atom of a cell among all, and the contacts of its atoms.
-pub(super) fn near_cell<'a>(
-    kind: &Kind,
-    now: &KindState,
-    found: &'a [AtomContact],
-    cell: usize,
-) -> (u32, &'a [AtomContact]) {
-    let begin = |cell: usize| (now.first_atom + cell * kind.atoms()) as u32;
-    let of_cell = [begin(cell), begin(cell + 1)].map(|atom| found.partition_point(|contact| contact.atom < atom));
-    (begin(cell), &found[of_cell[0]..of_cell[1]])
+/// Whether an atom of a kind stands on one of these planes.
+pub(super) fn is_on_plane(planes: &[Plane], kind: &Kind, atom: &Vec3) -> bool {
+    planes.iter().any(|plane| (atom - plane.point).dot(&plane.normal) < TOUCHING * kind.edge)
 }
 
 fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(u32) -> bool) -> CellNumbers {
@@ -109,7 +99,7 @@ fn measure(model: &Model, kind: &Kind, x: &[f64], cell: usize, is_near: impl Fn(
     for atom in 0..kind.atoms() {
         let p = position(atom);
         (low, high, sum) = (low.inf(&p), high.sup(&p), sum + (p - base));
-        on_planes += usize::from(is_on_plane(model, kind, &p));
+        on_planes += usize::from(is_on_plane(&model.planes, kind, &p));
         near_cells += usize::from(is_near(atom as u32));
     }
     let (mut area, mut volume, mut moment) = (0.0, 0.0, Vec3::zeros());

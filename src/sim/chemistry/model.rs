@@ -129,7 +129,7 @@ impl Chemistry {
 
     /// Whether some link reads what touches.
     pub fn reads_contact(&self) -> bool {
-        let at_atoms = |link: &Link| matches!(link.from, Source::Atoms(AtAtoms::Read(AtomReading::InContact)));
+        let at_atoms = |link: &Link| matches!(link.from, Source::Atoms(AtAtoms::Read(AtomReading::InContact(_))));
         self.measures_cells || self.links.iter().any(at_atoms)
     }
 

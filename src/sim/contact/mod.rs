@@ -38,6 +38,7 @@ mod sweep;
 #[cfg(test)]
 mod sweep_tests;
 mod together;
+mod touch;
 mod tractions;
 mod turnover;
 mod turns;
@@ -62,5 +63,6 @@ pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
 pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, PlaneBond, SurfaceBonds};
+pub use touch::near_cell;
 pub use tractions::ContactTractions;
 pub use turnover::turn_over_bonds;

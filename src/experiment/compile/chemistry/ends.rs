@@ -1,7 +1,7 @@
 //! The meaning of a link's ends in this experiment: which cells, which atom, which field.
 
 use super::{Part, within};
-use crate::cell::ends::{self, AtomSetting, PodSetting, Reading, Sense, Setting};
+use crate::cell::ends::{self, AtomReading, AtomSetting, PodSetting, Reading, Sense, Setting};
 use crate::equations::eml::{Endpoint, Index, LinkDescription, Root, Step};
 use crate::error::words;
 use crate::error::{Fault, short};
@@ -29,6 +29,8 @@ pub(super) struct Ends<'a, 'b> {
     pub(super) chemistry: &'b mut Chemistry,
     /// Whether the experiment has contacts.
     pub(super) touching: bool,
+    /// The names of the planes.
+    pub(super) planes: &'b [&'b str],
 }
 
 impl Ends<'_, '_> {
@@ -148,6 +150,7 @@ impl Ends<'_, '_> {
             Setting::Atoms(what) => Control::Atoms(match what {
                 AtomSetting::Protrusion => AtomControl::Protrusion,
                 AtomSetting::Tension => AtomControl::Tension,
+                AtomSetting::Elasticity => AtomControl::Elasticity,
                 AtomSetting::Adhesion => AtomControl::Adhesion,
                 AtomSetting::Secretion(name) => AtomControl::Secretion(self.secreted(end, name)?),
             }),
@@ -180,7 +183,14 @@ impl Ends<'_, '_> {
             let sense = ends::sense(&end.path[2..]).ok_or_else(|| unknown_of_field(end))?;
             return Ok(Source::Atoms(AtAtoms::Sensed(field, species, sense)));
         }
-        let Some(reading) = ends::atom_reading(&end.path[1..]) else {
+        let named = match parts_of(&end.path)[1..] {
+            [("in_contact", Some(index))] => {
+                Some(AtomReading::InContact(Some(self.numbered_type(end, index, "in_contact[TYPE]")?)))
+            }
+            [("on_plane", Some(index))] => Some(AtomReading::OnPlane(Some(self.numbered_plane(end, index)?))),
+            _ => None,
+        };
+        let Some(reading) = named.or_else(|| ends::atom_reading(&end.path[1..])) else {
             let known = || ends::READABLE.into_iter().filter(|word| word.starts_with("atoms."));
             let message = format!("atoms have nothing to read that is called `{}`", end.text);
             let help = format!("there is {}", words::all_of(known()));
@@ -212,6 +222,10 @@ impl Ends<'_, '_> {
                 Setting::Atoms(_) if kind.rest.facets.is_empty() => {
                     ("has no surface", "give the type a mesh with facets")
                 }
+                Setting::Atoms(AtomSetting::Elasticity) if !kind.has_membrane() => (
+                    "has no membrane whose moduli could differ from atom to atom",
+                    "give it `membrane` in its mechanics, or set cell.stiffness",
+                ),
                 Setting::Adhesion | Setting::Atoms(AtomSetting::Adhesion) if !self.touching => {
                     ("touches nothing in this experiment", "add a [contact] table with a strength")
                 }
@@ -306,20 +320,7 @@ impl Ends<'_, '_> {
                 let help = format!("write cell[0], or type[{name}] for all cells of a type");
                 return Err(within(&end.location, "not a number", message, help));
             }
-            Root::Type(Index::Name(name)) => match self.kinds.iter().position(|kind| kind.name == *name) {
-                Some(kind) => Whose::Kind(kind),
-                None => {
-                    let known = || self.kinds.iter().map(|kind| kind.name.as_str());
-                    let label = words::meant(name, known()).map(|near| format!("did you mean `{near}`?"));
-                    let help = format!("types of cells here are {}", words::all_of(known()));
-                    let message = format!("there is no type of cells `{name}`");
-                    return Err(within(&end.location, label.as_deref().unwrap_or("unknown type"), message, help));
-                }
-            },
-            Root::Type(Index::Number(_)) => {
-                let message = "types of cells have names, not numbers".to_owned();
-                return Err(within(&end.location, "not a name", message, "write type[NAME]"));
-            }
+            Root::Type(index) => Whose::Kind(self.numbered_type(end, index, "type[NAME]")?),
             _ if shared => {
                 let message = format!("{} is of the cell that has the system, but the scene has it", end.text);
                 let help = format!(
@@ -340,6 +341,39 @@ impl Ends<'_, '_> {
             ));
         }
         Ok(whose)
+    }
+
+    /// The number of the type of cells with a name.
+    fn numbered_type(&self, end: &Endpoint, index: &Index, written: &str) -> Result<usize, Fault> {
+        let Index::Name(name) = index else {
+            let message = "types of cells have names, not numbers".to_owned();
+            return Err(within(&end.location, "not a name", message, format!("write {written}")));
+        };
+        let known = || self.kinds.iter().map(|kind| kind.name.as_str());
+        known().position(|kind| kind == name).ok_or_else(|| {
+            let label = words::meant(name, known()).map(|near| format!("did you mean `{near}`?"));
+            let help = format!("types of cells here are {}", words::all_of(known()));
+            let message = format!("there is no type of cells `{name}`");
+            within(&end.location, label.as_deref().unwrap_or("unknown type"), message, help)
+        })
+    }
+
+    /// The number of the plane with a name.
+    fn numbered_plane(&self, end: &Endpoint, index: &Index) -> Result<usize, Fault> {
+        let Index::Name(name) = index else {
+            let message = "planes have names, not numbers".to_owned();
+            return Err(within(&end.location, "not a name", message, "write on_plane[NAME]"));
+        };
+        let known = || self.planes.iter().copied();
+        known().position(|plane| plane == name).ok_or_else(|| {
+            let label = words::meant(name, known()).map(|near| format!("did you mean `{near}`?"));
+            let help = match self.planes.is_empty() {
+                true => "the experiment has no [[planes]]".to_owned(),
+                false => format!("planes here are {}", words::all_of(known())),
+            };
+            let message = format!("there is no plane `{name}`");
+            within(&end.location, label.as_deref().unwrap_or("unknown plane"), message, help)
+        })
     }
 
     /// The kinds of the cells that an end names.

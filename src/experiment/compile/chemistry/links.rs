@@ -40,6 +40,7 @@ pub(super) fn links(
 ) {
     let before = faults.len();
     let mut links: Vec<(Link, Location)> = Vec::new();
+    let planes: Vec<&str> = document.experiment.planes.iter().map(|plane| plane.name.as_str()).collect();
     for part in parts {
         let mut shown = Vec::new();
         let described = part.document.links.iter().map(|link| (link.clone(), Ok(link.location.clone())));
@@ -47,7 +48,7 @@ pub(super) fn links(
         for (description, location) in own {
             let location = location.unwrap_or_else(|key| nowhere(document, &key));
             let touching = document.experiment.contact.is_some();
-            let mut ends = Ends { parts, part, kinds, counts, chemistry, touching };
+            let mut ends = Ends { parts, part, kinds, counts, chemistry, touching, planes: &planes };
             match link(&mut ends, &mut shown, &description) {
                 Ok(link) => links.push((link, location)),
                 Err(fault) => faults.push(fault),
