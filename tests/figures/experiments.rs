@@ -230,6 +230,19 @@ fn drops_spread_on_glass_to_the_angle_of_young_and_dupre() {
 }
 
 #[test]
+#[ignore = "slow: some three minutes"]
+fn the_more_cohesive_cells_come_to_be_inside() {
+    experiment_keeps_its_word("sorting", "engulfment.toml");
+}
+
+#[test]
+#[ignore = "slow: two minutes together"]
+fn cells_that_stick_to_the_other_type_mix_and_those_that_stick_to_their_own_part() {
+    experiment_keeps_its_word("sorting", "mixture.toml");
+    experiment_keeps_its_word("sorting", "apart.toml");
+}
+
+#[test]
 fn strokes_that_use_up_their_stores_are_of_one_length_whatever_the_period() {
     experiment_keeps_its_word("motility", "periods.toml");
 }
@@ -242,14 +255,10 @@ fn cells_that_heed_each_other_keep_apart() {
 
 #[test]
 #[ignore = "slow: half a minute each"]
-fn cells_crawl_on_sheets_and_up_a_step() {
+fn cells_crawl_on_sheets_over_others_and_up_a_step() {
     experiment_keeps_its_word("substrates", "experiment.toml");
-    experiment_keeps_its_word("substrates", "step.toml");
-}
-
-#[test]
-fn a_cell_crawls_over_others_by_what_it_pulls_at_them() {
     experiment_keeps_its_word("substrates", "cells.toml");
+    experiment_keeps_its_word("substrates", "step.toml");
 }
 
 #[test]
