@@ -52,7 +52,7 @@ impl PodState {
     pub fn note_touch(&mut self, touched: Vec3, met: impl Fn(&Vec3) -> f64) {
         self.touched = touched.into();
         for pod in [&mut self.pod].into_iter().chain(self.beside.iter_mut().flatten()) {
-            pod.met = if touched == Vec3::zeros() { 0.0 } else { met(&pod.direction.into()) };
+            pod.met = met(&pod.direction.into());
         }
     }
 }

@@ -89,7 +89,7 @@ pub struct Pseudopods {
 pub struct ContactInhibition {
     /// Share of the front that touches others at which the pseudopod is given up.
     #[serde(default = "default_share")]
-    #[schemars(range(max = 1.0), extend("x-exclusive-minimum" = 0))]
+    #[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0))]
     pub share: f64,
     /// How much directions away from where the cell is touched are likelier.
     #[serde(default = "default_turn")]

@@ -3,11 +3,13 @@
 use super::declared::Declared;
 use super::finished::Finished;
 use crate::Vec3;
+use crate::analysis::recording::POSITION;
 use crate::error::{Error, Fault, Result};
-use crate::output::segregation;
+use crate::output::{segregation, touching_cells};
 use crate::values::When;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 
 /// Whether cells of a type are inside those of others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -61,11 +63,11 @@ impl Engulfment {
         };
         recording.cells_of(Some(&self.inner))?;
         let frame = recording.frame_at(self.time);
-        let axes = ["position_x", "position_y", "position_z"].map(|name| file.cell_values(name, frame));
-        let [x, y, z] = axes;
+        let [x, y, z] = POSITION.map(|name| file.cell_values(name, frame));
         let (x, y, z) = (x?, y?, z?);
         let cells = file.cells(frame);
-        let number = |id: u64| cells.iter().position(|cell| cell.id == id).map(|at| at as u32);
+        let numbers: HashMap<u64, u32> = (0..).zip(&cells).map(|(number, cell)| (cell.id, number)).collect();
+        let number = |id: u64| numbers.get(&id).copied();
         let pairs = file.pairs(frame)?;
         let pairs: Vec<[u32; 2]> =
             pairs.iter().filter_map(|pair| Some([number(pair.cell)?, number(pair.other)?])).collect();
@@ -73,8 +75,11 @@ impl Engulfment {
         let position = |cell: u32| Vec3::new(x[cell as usize], y[cell as usize], z[cell as usize]);
         let layers = Layers::of(&pairs, is_inner, position).ok_or_else(|| {
             let (time, inner) = (recording.times[frame], &self.inner);
-            let message = format!("at {time} s no cells of \"{inner}\" and others touch any");
-            Error::input(Fault::new(message).help("give a time at which cells of both touch others"))
+            let message =
+                format!("at {time} s the cells that touch another are not both of \"{inner}\" and of other types");
+            Error::input(
+                Fault::new(message).help("give a time at which cells of \"inner\" and of others touch some cell"),
+            )
         })?;
         Ok(match self.statistic {
             EngulfmentStatistic::Order => layers.order(),
@@ -94,7 +99,7 @@ struct Layers {
 impl Layers {
     /// None where all are inner ones or none is.
     fn of(pairs: &[[u32; 2]], is_inner: impl Fn(u32) -> bool, position: impl Fn(u32) -> Vec3) -> Option<Self> {
-        let touching = crate::output::touching_cells(pairs);
+        let touching = touching_cells(pairs);
         let middle = touching.iter().map(|cell| position(*cell)).sum::<Vec3>() / touching.len().max(1) as f64;
         let of_cell = |cell: &u32| (*cell, (position(*cell) - middle).norm(), is_inner(*cell));
         let mut cells: Vec<_> = touching.iter().map(of_cell).collect();
