@@ -58,7 +58,7 @@ fn append(bencher: Bencher, cells: usize) {
         frame.time += 0.5;
         writer.append(&frame).unwrap();
     });
-    writer.flush().unwrap();
+    writer.renew().unwrap();
     let frames = writer.frames() as u64;
     drop(writer);
     let bytes = std::fs::metadata(&path).unwrap().len();
@@ -83,7 +83,7 @@ fn append_field(bencher: Bencher, side: usize) {
         frame.step += 1;
         writer.append(&frame).unwrap();
     });
-    writer.flush().unwrap();
+    writer.renew().unwrap();
     let bytes = std::fs::metadata(&path).unwrap().len();
     eprintln!("{side}: {} bytes a frame for {} of numbers", bytes / frame.step, 16 * side * side);
 }

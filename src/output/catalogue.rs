@@ -62,8 +62,6 @@ pub enum Filled {
     Scene,
     /// One number per measure, written when the run ends; `<name>` in the path.
     Measure,
-    /// A number that says whether a flush is under way.
-    Mark,
     /// Bytes written when the run ends.
     Bytes,
 }
@@ -240,7 +238,6 @@ pub const CATALOGUE: &[Entry] = &[
     row("/provenance/equation_files", "1", "document", OnceTexts, "Documents of equations, as the experiment names them."),
     row("/provenance/equations", "1", "document", OnceTexts, "The texts of these documents, verbatim."),
     row("/provenance/sets", "1", "setting", OnceTexts, "Settings of the command line."),
-    row("/provenance/flushing", "1", "scalar", Filled::Mark, "1 while the file is brought up to date: a run that was killed meanwhile, and its file mended when it is resumed."),
     row("/summary/<name>", "of the measure", "scalar", Filled::Measure, "A measure that the experiment declares."),
     row("/checkpoint", "1", "byte", Bytes, "The state at the end of the run, to resume from."),
 ];

@@ -68,12 +68,4 @@ impl CellColumn {
             Self::Many(column) => column.rows(),
         }
     }
-
-    /// See [`PackedColumn::renewed`].
-    pub fn renewed(self, file: &File) -> hdf5::Result<Self> {
-        Ok(match self {
-            Self::Few(column) => Self::Few(column),
-            Self::Many(column) => Self::Many(column.renewed(file)?),
-        })
-    }
 }

@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use super::Layout;
 
 /// A type of cells: all of one type have the same mesh.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CellType {
     /// Its name.
     pub name: String,
@@ -18,7 +20,7 @@ pub struct CellType {
 }
 
 /// A cell of a frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Cell {
     /// Its id, which no other cell of the run ever has.
     pub id: u64,

@@ -10,12 +10,13 @@ use serde::{Deserialize, Serialize};
 
 use super::container::{self, Access, machine_error};
 use super::header::Header;
+use super::replacement::{Replacement, beside};
 use crate::error::{Error, Fault, Result};
 
 /// First bytes of a checkpoint.
 const MAGIC: &[u8; 8] = b"PSEUDCKP";
 /// Version of the arrangement of the bytes.
-const VERSION: u32 = 15;
+const VERSION: u32 = 16;
 /// Where the checkpoint of a finished run stands in the result file.
 pub(super) const DATASET: &str = "/checkpoint";
 
@@ -26,6 +27,8 @@ pub struct CheckpointMeta {
     pub step: u64,
     /// Simulated time, s.
     pub time: f64,
+    /// Frames recorded up to there.
+    pub frames: usize,
     /// [`Header::experiment_hash`] of the run.
     pub experiment_hash: u64,
     /// The header of the run.
@@ -34,8 +37,8 @@ pub struct CheckpointMeta {
 
 impl CheckpointMeta {
     /// Describes a checkpoint of the run with this header.
-    pub fn new(header: &Header, step: u64, time: f64) -> Self {
-        Self { step, time, experiment_hash: header.experiment_hash(), header: header.clone() }
+    pub fn new(header: &Header, step: u64, time: f64, frames: usize) -> Self {
+        Self { step, time, frames, experiment_hash: header.experiment_hash(), header: header.clone() }
     }
 }
 
@@ -50,9 +53,7 @@ pub struct Checkpoint {
 
 /// The path of the file that keeps the checkpoint of an unfinished run: `<result>.checkpoint`.
 pub fn checkpoint_path(result: &Path) -> PathBuf {
-    let mut name = result.as_os_str().to_owned();
-    name.push(".checkpoint");
-    name.into()
+    beside(result, ".checkpoint")
 }
 
 /// Replaces the checkpoint of an unfinished run. A kill at any moment leaves the old one or the new one, whole.
@@ -60,17 +61,17 @@ pub fn checkpoint_path(result: &Path) -> PathBuf {
 /// # Errors
 /// [`Error::Machine`] if the disk refuses.
 pub fn save_checkpoint(result: &Path, meta: &CheckpointMeta, payload: &[u8]) -> Result<()> {
+    put(result, &encode(meta, payload))
+}
+
+/// Puts the bytes of a checkpoint beside a result.
+pub(super) fn put(result: &Path, bytes: &[u8]) -> Result<()> {
     let path = checkpoint_path(result);
-    let mut temporary = path.clone().into_os_string();
-    temporary.push(".new");
-    let temporary = PathBuf::from(temporary);
-    let written = std::fs::File::create(&temporary)
-        .and_then(|mut file| file.write_all(&encode(meta, payload)).and_then(|()| file.sync_all()))
-        .and_then(|()| std::fs::rename(&temporary, &path));
-    written.map_err(|error| {
-        let _ = std::fs::remove_file(&temporary);
-        machine_error(&path, "could not be written", &error.to_string())
-    })
+    let written = Replacement::of(&path).and_then(|new| {
+        new.create()?.write_all(bytes)?;
+        new.put()
+    });
+    written.map_err(|error| machine_error(&path, "could not be written", &error.to_string()))
 }
 
 /// The checkpoint of a run: from its own file, or from the finished result. `None` if there is neither.
@@ -143,7 +144,7 @@ mod tests {
 
     fn example() -> (CheckpointMeta, Vec<u8>) {
         let header = Header::now("a.toml", "A", "title = 'A'", &["seed=3".into()], 3);
-        (CheckpointMeta::new(&header, 120, 0.5), (0..=255).cycle().take(5000).collect())
+        (CheckpointMeta::new(&header, 120, 0.5, 4), (0..=255).cycle().take(5000).collect())
     }
 
     #[test]

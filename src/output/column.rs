@@ -2,9 +2,8 @@
 //! large ones that take whole compressed pieces per frame.
 //!
 //! Large ones begin every frame with a piece, the last of which is filled up: so a piece belongs to one frame alone.
-//! Neither ever gives space of the file back while it grows. A piece of a small dataset is rewritten where it lies,
-//! its old numbers unchanged; a piece of a large one is written once. So what is on disk after a flush stays true
-//! until the next flush, whenever the program is killed.
+//! Neither ever gives space of the file back while it grows: a piece of a small dataset is rewritten where it lies, a piece
+//! of a large one is written once.
 
 use std::borrow::Cow;
 
@@ -16,7 +15,7 @@ use rayon::prelude::*;
 use super::container::set_text;
 use super::packing::{LEVEL, pack, packer};
 
-/// Most numbers in a piece of a small dataset: 8 kB, rewritten at most once a second.
+/// Most numbers in a piece of a small dataset: 8 kB.
 pub(super) const SMALL_PIECE: usize = 1024;
 /// Rows in a piece of a small dataset that gets a row per frame.
 pub(super) const SMALL_ROWS: usize = 256;
@@ -99,7 +98,7 @@ enum Packing {
 }
 
 /// A small dataset that grows by a row at a time. The rows of its last piece are kept in memory and written when the
-/// piece is full or the file is flushed.
+/// piece is full or all frames have come.
 pub(super) struct Column {
     dataset: Dataset,
     row: Vec<usize>,
@@ -190,14 +189,6 @@ impl Column {
         write_piece(&self.dataset, self.rows - self.tail_rows, self.row.len(), pointer, bytes)
     }
 
-    /// See [`PackedColumn::renewed`].
-    pub fn renewed(self, file: &Group) -> hdf5::Result<Self> {
-        let Self { dataset, row, number, piece_rows, rows, tail, tail_rows } = self;
-        let path = dataset.name();
-        drop(dataset);
-        Ok(Self { dataset: file.dataset(&path)?, row, number, piece_rows, rows, tail, tail_rows })
-    }
-
     /// Sets the number of rows in the file.
     pub fn resize(&mut self, rows: usize) -> hdf5::Result<()> {
         self.rows = rows;
@@ -237,11 +228,6 @@ impl PackedColumn {
         self.rows
     }
 
-    /// Pieces so far.
-    pub fn pieces(&self) -> usize {
-        self.rows / self.piece_rows
-    }
-
     /// Makes the dataset longer by a block of this many rows. The new size comes first: a piece outside the dataset is
     /// refused.
     fn grow(&mut self, rows: usize) -> hdf5::Result<()> {
@@ -269,15 +255,6 @@ impl PackedColumn {
             }
         }
         Ok(())
-    }
-
-    /// Closes the dataset and opens it again, so that HDF5 forgets where all its pieces lie: it keeps some 300 bytes
-    /// for each. To be called right after a flush, when nothing of it waits to be written.
-    pub fn renewed(self, file: &Group) -> hdf5::Result<Self> {
-        let Self { dataset, row, number, piece_rows, rows } = self;
-        let path = dataset.name();
-        drop(dataset);
-        Ok(Self { dataset: file.dataset(&path)?, row, number, piece_rows, rows })
     }
 }
 

@@ -1,7 +1,6 @@
 //! All datasets that grow with the run, made and filled as the catalogue says.
 
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
 
 use hdf5::File;
 
@@ -9,16 +8,14 @@ use super::catalogue::{CATALOGUE, CONTACT, Entry, FIBRE, FORCE, Filled, Instant,
 use super::cell_column::{CellColumn, CellSource};
 use super::column::{Column, Number, Numbers, PackedColumn, Plan, SMALL_ROWS, push_frames};
 use super::container::set_number;
-use super::fields::{FieldColumns, field_view_path};
+use super::fields::FieldColumns;
 use super::membranes::ORDER;
 use super::pieces::{Pieces, has_frames};
 use super::population::{Population, Shared};
 use super::systems::{SystemScope, create_groups};
 use super::whole::Ends;
-use super::{Frame, Layout, Tractions};
+use super::{Frame, Layout};
 
-/// Frames and pieces of frames after which HDF5 is made to forget where the pieces lie, a few MB.
-const REMEMBERED: usize = 10_000;
 /// Populations in a piece: most runs have one.
 const POPULATION_ROWS: usize = 16;
 
@@ -69,9 +66,6 @@ pub(super) struct Columns {
     are_made: bool,
     forces: bool,
     fields: FieldColumns,
-    /// Frames and their pieces at the last [`Columns::forget_history`].
-    forgotten: usize,
-    pieces: usize,
 }
 
 /// Whether datasets are made or opened and cut.
@@ -86,16 +80,6 @@ impl Columns {
     pub fn create(file: &File, layout: &Layout) -> hdf5::Result<Self> {
         let fields = FieldColumns::create(file, layout)?;
         Ok(Self { layout: layout.clone(), fields, ..Self::default() })
-    }
-
-    /// Makes all datasets, those of the forces if they are wanted.
-    pub fn create_all(file: &File, layout: &Layout, pieces: &Pieces, forces: bool) -> hdf5::Result<Self> {
-        let mut columns = Self::create(file, layout)?;
-        columns.start(file, Start::New(pieces))?;
-        if forces {
-            columns.add_forces(file, Start::New(pieces))?;
-        }
-        Ok(columns)
     }
 
     /// Opens all datasets and cuts them to their first frames.
@@ -186,7 +170,7 @@ impl Columns {
             }
             Filled::Link(target) => link(file, target, entry.path)?,
             Filled::OnceIntegers | Filled::OnceFloats | Filled::OnceTexts => {}
-            Filled::Scene | Filled::Measure | Filled::Mark | Filled::Bytes => {}
+            Filled::Scene | Filled::Measure | Filled::Bytes => {}
         }
         Ok(())
     }
@@ -247,11 +231,6 @@ impl Columns {
         FORCE.iter().try_for_each(|entry| self.add(file, entry, start))
     }
 
-    /// The small files that lead to the fields of a result.
-    pub fn views(&self, result: &Path) -> impl Iterator<Item = PathBuf> {
-        self.layout.fields.iter().map(move |field| field_view_path(result, &field.name))
-    }
-
     /// Frames so far.
     pub fn frames(&self) -> usize {
         self.frames
@@ -272,7 +251,6 @@ impl Columns {
                 self.add_forces(file, Start::New(&pieces))?;
             }
         }
-        self.check_sizes(frame);
         if let Some(population) = population {
             self.begin_population(population)?;
         }
@@ -326,10 +304,7 @@ impl Columns {
                 large.push((column, source.values(frame)));
             }
         }
-        let before: usize = large.iter().map(|(column, _)| column.pieces()).sum();
-        push_frames(&mut large)?;
-        self.pieces += large.iter().map(|(column, _)| column.pieces()).sum::<usize>() - before;
-        Ok(())
+        push_frames(&mut large)
     }
 
     fn append_small(&mut self, frame: &Frame) -> hdf5::Result<()> {
@@ -361,29 +336,6 @@ impl Columns {
         Ok(())
     }
 
-    fn check_sizes(&self, frame: &Frame) {
-        let (atoms, cells) = (self.layout.atoms(&frame.cells), frame.cells.len());
-        let expected = (atoms, if self.forces { atoms } else { 0 }, cells, self.layout.scene_series.len());
-        let found = (frame.positions.len(), frame.forces.len(), frame.records.len(), frame.scene.len());
-        assert_eq!(found, expected, "positions, forces, cells and scene values of a frame must fit the layout");
-        let Tractions { traction, of_cells, drag, outer, inertia } = &frame.tractions;
-        let kept = if self.layout.tractions { atoms } else { 0 };
-        let fits = [traction, of_cells, drag, outer, inertia].iter().all(|list| list.len() == kept);
-        assert!(fits, "tractions of a frame must fit the layout");
-        assert!(self.layout.fibres || frame.fibres.is_empty(), "fibres of a frame must fit the layout");
-        let sizes = frame.membranes.iter().map(Vec::len);
-        assert!(
-            sizes.eq(self.layout.membranes.iter().map(|_| atoms)),
-            "substances on membranes of a frame must fit the layout"
-        );
-        assert_eq!(frame.systems.len(), self.layout.systems.len(), "the systems of a frame must fit the layout");
-        for (system, quantities) in self.layout.systems.iter().zip(&frame.systems) {
-            let members = if system.scope == SystemScope::Scene { 1 } else { cells };
-            let fits = quantities.len() == system.quantities.len() && quantities.iter().all(|q| q.len() == members);
-            assert!(fits, "the quantities of {} must fit the layout and the cells of the frame", system.name);
-        }
-    }
-
     /// Hands all rows that are still in memory to the file.
     pub fn write(&mut self) -> hdf5::Result<()> {
         let frames = self.counters.iter_mut().map(|(_, column)| column);
@@ -400,30 +352,6 @@ impl Columns {
         self.fields.write_counts(self.frames)
     }
 
-    /// Lets go of what HDF5 keeps in memory about the frames so far, when it has become much. To be called right
-    /// after a flush.
-    pub fn forget_history(&mut self, file: &File) -> hdf5::Result<()> {
-        if self.frames + self.pieces < self.forgotten + REMEMBERED {
-            return Ok(());
-        }
-        self.forgotten = self.frames + self.pieces;
-        for (value, column) in std::mem::take(&mut self.atom_vectors) {
-            self.atom_vectors.push((value, column.renewed(file)?));
-        }
-        for column in std::mem::take(&mut self.membranes) {
-            self.membranes.push(column.renewed(file)?);
-        }
-        for (source, column) in std::mem::take(&mut self.cells) {
-            self.cells.push((source, column.renewed(file)?));
-        }
-        for (shared, column) in std::mem::take(&mut self.blocks) {
-            self.blocks.push((shared, column.renewed(file)?));
-        }
-        for (list, source, column) in std::mem::take(&mut self.row_numbers) {
-            self.row_numbers.push((list, source, column.renewed(file)?));
-        }
-        self.fields.renew(file)
-    }
 }
 
 fn per_frame(file: &File, plan: &Plan, row: &[usize], start: Start) -> hdf5::Result<Column> {

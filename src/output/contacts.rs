@@ -4,10 +4,11 @@
 use super::changes::Change;
 use super::{Cell, Layout};
 use crate::recorded::Touch;
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 /// A cell that touches another, or a plane.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Touching {
     /// Id of the cell; of two the smaller one.
     pub cell: u64,

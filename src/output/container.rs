@@ -1,11 +1,8 @@
-//! The few things that the result file needs of HDF5: files that survive a kill, texts, and errors people understand.
+//! The few things that the result file needs of HDF5: how files are opened, texts, and errors people understand.
 
 use std::path::Path;
-use std::sync::OnceLock;
 
-use hdf5::file::{CacheDecreaseMode, CacheIncreaseMode, FileBuilder, FlashIncreaseMode, MetadataCacheConfig};
-use hdf5::plist::FileAccess;
-use hdf5::plist::file_access::FileAccessBuilder;
+use hdf5::file::FileBuilder;
 use hdf5::types::VarLenUnicode;
 use hdf5::{File, Group, H5Type, Location};
 use ndarray::Array1;
@@ -21,35 +18,17 @@ pub(super) const FORMAT: i64 = 2;
 /// Attribute of the root that says whose file it is.
 pub(super) const FORMAT_ATTRIBUTE: &str = "pseudopod_format";
 
-/// How a file is opened for writing. The oldest format has no mark that says "in use", so a file whose writer was
-/// killed opens like any other. Metadata stay in memory until a flush, so between two flushes the file on disk is
-/// the one of the last flush. A dataset that is closed takes its metadata with it.
-fn kill_safe() -> FileBuilder {
-    let cache = MetadataCacheConfig {
-        evictions_enabled: false,
-        incr_mode: CacheIncreaseMode::Off,
-        flash_incr_mode: FlashIncreaseMode::Off,
-        decr_mode: CacheDecreaseMode::Off,
-        ..MetadataCacheConfig::default()
-    };
+/// How a file is opened for writing. Nobody else sees it before it is whole, so that HDF5 may keep and write what it likes.
+/// Space is taken as it is needed: blocks ahead would be lost each time the file is closed.
+fn for_writing() -> FileBuilder {
     let mut builder = FileBuilder::new();
-    builder.with_fapl(|access| forgetful(access.libver_earliest().mdc_config(&cache)));
+    builder.with_fapl(|access| access.libver_earliest().meta_block_size(0).small_data_block_size(0));
     builder
 }
 
-/// Lets a dataset that is closed take its metadata with it. An HDF5 that is built for MPI cannot do that, and refuses to
-/// be asked: with it the metadata of long results stay in memory, and all else is as usual.
-fn forgetful(access: &mut FileAccessBuilder) -> &mut FileAccessBuilder {
-    static IS_KNOWN: OnceLock<bool> = OnceLock::new();
-    match IS_KNOWN.get_or_init(|| FileAccess::build().evict_on_close(true).finish().is_ok()) {
-        true => access.evict_on_close(true),
-        false => access,
-    }
-}
-
-/// Makes the file, or empties one that is there.
+/// Makes a file where there is none.
 pub(super) fn create(path: &Path) -> Result<File> {
-    kill_safe().create(path).map_err(|error| failed(path, "could not be made", &error))
+    for_writing().create_excl(path).map_err(|error| failed(path, "could not be made", &error))
 }
 
 /// What an open file is wanted for.
@@ -66,9 +45,8 @@ pub(super) enum Access {
 pub(super) fn open(path: &Path, access: Access) -> Result<File> {
     check_signature(path)?;
     let opened = match access {
-        // As for writing, or HDF5 would refuse a file that this process is writing.
-        Access::Read => FileBuilder::new().with_fapl(forgetful).open(path),
-        Access::Append => kill_safe().open_rw(path),
+        Access::Read => FileBuilder::new().open(path),
+        Access::Append => for_writing().open_rw(path),
     };
     let file = opened.map_err(|error| refused(path, access, &error))?;
     let format = file.attr(FORMAT_ATTRIBUTE).and_then(|attribute| attribute.read_scalar::<i64>());
@@ -95,7 +73,7 @@ fn not_ours(path: &Path) -> Error {
 }
 
 /// Looks at the first bytes before HDF5 does: its own words for these cases help nobody.
-fn check_signature(path: &Path) -> Result<()> {
+pub(super) fn check_signature(path: &Path) -> Result<()> {
     use std::io::Read as _;
     let name = path.display();
     if path.is_dir() {
@@ -126,8 +104,8 @@ fn check_signature(path: &Path) -> Result<()> {
 fn refused(path: &Path, access: Access, error: &hdf5::Error) -> Error {
     let (name, text) = (path.display(), whole_text(error));
     if text.contains("unable to lock file") || text.contains("already open") {
-        let help = "wait until the run has ended, or stop it with Ctrl-C; it can be resumed";
-        return Error::input(Fault::new(format!("{name} is being written by a running simulation")).help(help));
+        let help = "close it there first; pseudopod itself never keeps a result open for writing";
+        return Error::input(Fault::new(format!("{name} is open for writing in another program")).help(help));
     }
     if access == Access::Append && text.contains("Permission denied") {
         return Error::input(

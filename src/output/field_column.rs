@@ -106,15 +106,6 @@ impl FieldColumn {
         self.frames += 1;
         Ok(())
     }
-
-    /// Closes the dataset and opens it again, so that HDF5 forgets where all its pieces lie. To be called right after
-    /// a flush.
-    pub fn renewed(self, file: &Group) -> hdf5::Result<Self> {
-        let Self { dataset, boxes, piece, frames } = self;
-        let path = dataset.name();
-        drop(dataset);
-        Ok(Self { dataset: file.dataset(&path)?, boxes, piece, frames })
-    }
 }
 
 fn boxes_of(field: &FieldLayout) -> [usize; 3] {

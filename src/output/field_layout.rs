@@ -1,7 +1,9 @@
 //! The grid of a field and its species: how the values of a frame are to be read.
 
+use serde::{Deserialize, Serialize};
+
 /// A grid of equal boxes and the species that have a value in each.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FieldLayout {
     /// Name of the field's document, and of its group in the file.
     pub name: String,

@@ -9,9 +9,10 @@ use hdf5::types::FixedAscii;
 use hdf5::{Attribute, File, Group};
 
 use super::Layout;
-use super::container::{self, failed, set_number, set_text, text};
+use super::container::{set_number, set_text, text};
 use super::field_column::FieldColumn;
 use super::field_layout::FieldLayout;
+use super::renewal::make;
 use crate::error::{Error, Fault, Result};
 
 /// The small file beside a result by which VTK and ParaView find a field.
@@ -24,10 +25,9 @@ pub(super) fn write_views(result: &Path, layout: &Layout) -> Result<()> {
     let Some(target) = result.file_name().and_then(|name| name.to_str()) else { return Ok(()) };
     for field in &layout.fields {
         let path = field_view_path(result, &field.name);
-        let file = container::create(&path)?;
         // The target is looked for in the folder of the small file, so that both can be moved together.
-        let linked = file.link_external(target, &format!("/fields/{}", field.name), "VTKHDF");
-        linked.and_then(|()| file.flush()).map_err(|error| failed(&path, "could not be made", &error))?;
+        let link = |file: &File| file.link_external(target, &format!("/fields/{}", field.name), "VTKHDF");
+        make(&path, link)?;
     }
     Ok(())
 }
@@ -115,15 +115,6 @@ impl FieldColumns {
     /// Tells VTK how many frames there are.
     pub fn write_counts(&self, frames: usize) -> hdf5::Result<()> {
         self.frame_counts.iter().try_for_each(|count| count.write_scalar(&(frames as i64)))
-    }
-
-    /// See [`FieldColumn::renewed`].
-    pub fn renew(&mut self, file: &File) -> hdf5::Result<()> {
-        for columns in &mut self.columns {
-            let before = std::mem::take(columns);
-            *columns = before.into_iter().map(|column| column.renewed(file)).collect::<hdf5::Result<_>>()?;
-        }
-        Ok(())
     }
 }
 

@@ -80,6 +80,7 @@ pub fn describe(result: &ResultFile) -> Result<String> {
     let state = match (ending.finished, ending.wall_time) {
         (true, Some(seconds)) => format!("finished in {seconds:.1} s"),
         (true, None) => "finished".into(),
+        (false, _) if ending.running => "being run; what was recorded up to a moment ago".into(),
         (false, _) => "interrupted; `pseudopod resume` goes on from its checkpoint".into(),
     };
     let resumed = if ending.resumed > 0 { format!(", resumed {} times", ending.resumed) } else { String::new() };
@@ -118,6 +119,7 @@ pub fn to_json(result: &ResultFile) -> Result<Value> {
         "bytes": bytes(result),
         "header": header,
         "finished": ending.finished,
+        "running": ending.running,
         "wall_time": ending.wall_time,
         "resumed": ending.resumed,
         "cells": cells.len(),

@@ -7,7 +7,6 @@ use super::catalogue::{CATALOGUE, Entry, Filled, TRACTION, entry};
 use super::column::{Number, Plan, write_integers, write_vectors};
 use super::container::{self, FORMAT, FORMAT_ATTRIBUTE, read_texts, set_number, set_text, text, write_texts};
 use super::header::Header;
-use super::mark::FlushMark;
 use super::{CellType, Layout};
 
 impl Entry {
@@ -45,8 +44,7 @@ pub(super) fn write_header(file: &File, header: &Header) -> hdf5::Result<()> {
     // A dataset, because an attribute may not be longer than 64 kB.
     let experiment = file.new_dataset::<VarLenUnicode>().obj_track_times(false).create("/provenance/experiment")?;
     experiment.write_scalar(&container::stored(&header.experiment))?;
-    described(&experiment, "/provenance/experiment")?;
-    FlushMark::create(file)
+    described(&experiment, "/provenance/experiment")
 }
 
 /// Reads the header.

@@ -2,11 +2,12 @@
 //! colours the surfaces by them.
 
 use hdf5::File;
+use serde::{Deserialize, Serialize};
 
 use super::container::text;
 
 /// A substance on membranes that is recorded.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MembraneLayout {
     /// Its name in the file, `SYSTEM.VARIABLE`.
     pub name: String,
@@ -30,11 +31,6 @@ impl MembraneLayout {
     pub(super) fn offsets(&self) -> String {
         format!("{OFFSETS}/{}", self.name)
     }
-}
-
-/// Whether a path is a second name of a list of where frames begin; names of substances have a dot, others have none.
-pub(super) fn is_offsets(path: &str) -> bool {
-    path.strip_prefix(OFFSETS).is_some_and(|name| name.contains('.'))
 }
 
 /// Reads which substances there are, in the order in which they were written.

@@ -1,6 +1,7 @@
 //! The result file: one HDF5 file per run that ParaView, PyVista and h5py open directly.
 //!
-//! [`catalogue`] lists what is in it. [`ResultWriter`] writes it frame by frame, [`ResultFile`] reads it, and
+//! [`catalogue`] lists what is in it. [`ResultWriter`] writes it: frames go into a log beside it, from which they are taken
+//! into the next version of the file, which takes the place of the one before as a whole. [`ResultFile`] reads it, and
 //! [`save_checkpoint`] keeps the state to resume from. Fields and systems of chemistry stand beside the cells. This
 //! module is the only one that knows HDF5.
 
@@ -12,6 +13,7 @@ mod cells_reader;
 mod census;
 mod changes;
 mod checkpoint;
+mod claim;
 mod column;
 mod columns;
 mod contacts;
@@ -22,43 +24,50 @@ mod field_export;
 mod field_layout;
 mod fields;
 mod fields_reader;
-mod free_space;
+mod fits;
+mod frame_log;
 mod header;
 mod info;
 mod instant;
 mod layout_io;
-mod mark;
 mod membranes;
-mod mend;
 mod packing;
 mod pieces;
 mod population;
 mod reader;
+mod renewal;
+mod reopening;
+mod replacement;
 mod systems;
 mod tables;
 mod whole;
 mod writer;
 
+use serde::{Deserialize, Serialize};
+
 pub use crate::recorded::{CellRecord, OnDemand};
 pub use cells::{Cell, CellType, Known};
 pub use changes::{Change, Event, changes};
 pub use checkpoint::{Checkpoint, CheckpointMeta, checkpoint_path, load_checkpoint, save_checkpoint};
+pub use claim::Overwrite;
 pub use contacts::{Alike, Touching, clusters, count_alike, segregation, touching_cells};
 pub use field_export::{write_field_image, write_field_table};
 pub use field_layout::{Along, FieldLayout};
 pub use fields::field_view_path;
+pub use frame_log::frames_path;
 pub use header::{Header, Measure};
 pub use info::{describe, to_json};
 pub use instant::{SeriesInfo, SeriesScope};
 pub use membranes::MembraneLayout;
 pub use population::{Part, Population, Shared};
 pub use reader::{Ending, ResultFile};
+pub use reopening::Kept;
 pub use systems::{SystemLayout, SystemScope};
 pub use tables::{Table, table_text, write_table, write_text};
-pub use writer::{Overwrite, ResultWriter};
+pub use writer::ResultWriter;
 
 /// What does not change during a run and says how the arrays of a frame are to be read.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Layout {
     /// The types of cells; a frame says which cells there are.
     pub types: Vec<CellType>,
@@ -88,7 +97,7 @@ impl Layout {
 }
 
 /// Forces between atoms and what is around them, in the mean over the last step, pN, atom after atom.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tractions {
     /// On planes.
     pub traction: Vec<[f64; 3]>,
@@ -103,7 +112,7 @@ pub struct Tractions {
 }
 
 /// A fibre of a cell that was made at run time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FibreRow {
     /// Id of the cell.
     pub cell: u64,
@@ -118,7 +127,7 @@ pub struct FibreRow {
 }
 
 /// A pseudopod whose protrusion ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PseudopodEvent {
     /// Id of the cell.
     pub cell: u64,
@@ -139,7 +148,7 @@ pub struct PseudopodEvent {
 }
 
 /// What is recorded at one instant. Its arrays follow its own list of cells, which may differ from frame to frame.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Frame {
     /// Simulated time, s.
     pub time: f64,

@@ -13,6 +13,7 @@ use super::contacts;
 use super::container::{self, Access, damaged, text};
 use super::header::{Header, Measure};
 use super::layout_io::{read_header, read_layout};
+use super::renewal::settle;
 use super::systems::SystemScope;
 use super::whole::whole_frames;
 use super::{Cell, FibreRow, Layout, PseudopodEvent, Tractions};
@@ -41,15 +42,20 @@ pub struct Ending {
     pub wall_time: Option<f64>,
     /// How often the run was resumed.
     pub resumed: i64,
+    /// Whether the run goes on and writes to the file.
+    pub running: bool,
 }
 
 impl ResultFile {
-    /// Opens a result file.
+    /// Opens a result file. Of a run that was killed it first takes in the frames that wait beside the file; of one that goes
+    /// on it shows the last version.
     ///
     /// # Errors
-    /// [`Error::Input`] for a file that is missing, not HDF5, not ours, truncated or damaged, still being written, or
-    /// without a single frame.
+    /// [`Error::Input`] for a file that is missing, not HDF5, not ours, truncated or damaged, or without a single
+    /// frame.
     pub fn open(path: &Path) -> Result<Self> {
+        container::check_signature(path)?;
+        let running = settle(path);
         let file = container::open(path, Access::Read)?;
         let read = || -> hdf5::Result<_> {
             let group = file.group("provenance")?;
@@ -58,6 +64,7 @@ impl ResultFile {
                 finished: group.attr("finished")?.read_scalar::<i64>()? == 1,
                 wall_time: wall_time.is_finite().then_some(wall_time),
                 resumed: group.attr("resumed")?.read_scalar()?,
+                running,
             };
             let layout = read_layout(&file)?;
             let frames = whole_frames(&file, &layout)?;

@@ -2,11 +2,12 @@
 //! quantities of cells like others, NaN for a cell without the system.
 
 use hdf5::File;
+use serde::{Deserialize, Serialize};
 
 use super::container::{set_number, set_text, text};
 
 /// A system of chemistry whose quantities are recorded.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SystemLayout {
     /// Name of the system, and of its group in the file.
     pub name: String,
@@ -17,7 +18,7 @@ pub struct SystemLayout {
 }
 
 /// Where a system lives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum SystemScope {
     /// There is one of it, in the scene.
     #[default]

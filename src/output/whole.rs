@@ -4,7 +4,6 @@ use hdf5::{Dataset, File};
 use ndarray::s;
 
 use super::catalogue::{CATALOGUE, CONTACT, FIBRE, FORCE, Filled, List, TRACTION, cell_entries};
-use super::mark::FlushMark;
 use super::pieces::has_frames;
 use super::population::{OfShared, Part, Population, Shared};
 use super::{Cell, Layout};
@@ -121,8 +120,8 @@ pub(super) fn rows_up_to(file: &File, frames: usize) -> hdf5::Result<[usize; Lis
     Ok(rows)
 }
 
-/// Frames that every growing dataset holds. A kill may leave the datasets a frame apart, or a dataset with space for
-/// a frame whose numbers never came; such frames are left out.
+/// Frames that every growing dataset holds. Damage may leave the datasets a frame apart, or a dataset with space for a frame
+/// whose numbers are missing; such frames at the end are left out.
 pub(super) fn whole_frames(file: &File, layout: &Layout) -> hdf5::Result<usize> {
     if !has_frames(file) {
         return Ok(0);
@@ -156,10 +155,6 @@ pub(super) fn whole_frames(file: &File, layout: &Layout) -> hdf5::Result<usize> 
         frames = frames.min(dataset.get_shape()?[0]);
     }
     let is_whole = |frame: usize| datasets.hold(file, layout, frame).unwrap_or(false);
-    if FlushMark::is_set(file) {
-        // Torn trees may miss frames anywhere.
-        return Ok((0..frames).take_while(|frame| is_whole(*frame)).count());
-    }
     while frames > 0 && !is_whole(frames - 1) {
         frames -= 1;
     }

@@ -1,60 +1,67 @@
-//! Writes the result of a run, frame by frame, so that a kill at any moment leaves a file that opens.
+//! Writes the result of a run, frame by frame, so that a kill at any moment loses no frame that was recorded.
+//!
+//! A frame goes into the [log](super::frame_log) beside the result; from there frames are taken into the next
+//! [version](super::renewal) of the file, at first once a second and then as often as that costs a twentieth of the time.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant as Clock};
 
-use hdf5::{Attribute, File};
+use hdf5::File;
 
+use super::catalogue::entry;
 use super::checkpoint::{CheckpointMeta, DATASET, checkpoint_path, save_checkpoint};
+use super::claim::{Overwrite, claim};
 use super::columns::Columns;
 use super::container::{self, Access, failed, machine_error, set_number, set_text};
 use super::fields::{check_layout, field_view_path, write_views};
-use super::free_space;
+use super::fits::misfit;
+use super::frame_log::{FrameLog, Owner, frames_path};
 use super::header::{Header, Measure};
-use super::layout_io::{read_header, read_layout, write_header, write_layout};
-use super::mark::FlushMark;
-use super::mend::mend;
-use super::pieces::has_frames;
+use super::layout_io::{write_header, write_layout};
 use super::reader::ResultFile;
-use super::whole::whole_frames;
+use super::renewal::{prepare, renew, take_in};
+use super::reopening::{Kept, Reopened, reopen};
 use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
 
-/// A flush costs about a millisecond and is the only time at which a kill can tear the file ([`mend`]), so it is rare.
-const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
+/// Least time between two versions of the file that [`ResultWriter::append`] makes by itself.
+const LEAST_INTERVAL: Duration = Duration::from_secs(1);
+/// How much longer the time to the next version is than the last one took.
+const PER_RENEWAL: u32 = 20;
 
-/// What to do with a result file that is already there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Overwrite {
-    /// Keep it: an error.
-    Refuse,
-    /// Replace it and its checkpoint.
-    Replace,
-}
-
-/// A result file being written. Dropping it flushes what was appended and leaves an unfinished, readable file.
+/// A result being written. Dropping it takes all frames into the file and leaves an unfinished, readable result.
 pub struct ResultWriter {
     path: PathBuf,
-    file: File,
     header: Header,
-    columns: Columns,
-    step_count: Attribute,
-    mark: FlushMark,
-    last_flush: Clock,
-    flush_interval: Duration,
-    /// Frames at the last flush.
-    flushed: usize,
-    /// Set when the disk refused a write: the file is left as it was at the last flush.
-    broken: bool,
+    layout: Layout,
+    log: FrameLog,
+    owner: Owner,
+    /// Steps made up to each frame.
+    steps: Vec<u64>,
+    /// Whether forces are recorded; unknown until there are atoms.
+    forces: Option<bool>,
+    /// Measures that are not in the file yet.
+    summary: Vec<Measure>,
+    renewed: Renewed,
+    least_interval: Duration,
+    /// Set when the disk refused a frame, or the run has ended: nothing more is written.
+    is_over: bool,
+}
+
+/// The version of the file that others see.
+struct Renewed {
+    frames: usize,
+    at: Clock,
+    took: Duration,
 }
 
 impl ResultWriter {
     /// Makes the file and writes all that does not change during the run.
     ///
     /// # Errors
-    /// [`Error::Input`] if the file or its checkpoint exists (with [`Overwrite::Refuse`]), its folder does not exist
-    /// or may not be written, the layout has neither cells nor chemistry, or fields or systems that the file cannot hold;
-    /// [`Error::Machine`] if the disk refuses.
+    /// [`Error::Input`] if the file or its checkpoint exists (with [`Overwrite::Refuse`]) or is being written, its folder does
+    /// not exist or may not be written, the layout has neither cells nor chemistry, or fields or systems that the file
+    /// cannot hold; [`Error::Machine`] if the disk refuses.
     pub fn create(path: &Path, header: &Header, layout: &Layout, overwrite: Overwrite) -> Result<Self> {
         if layout.types.is_empty() && layout.fields.is_empty() && layout.systems.is_empty() {
             let fault =
@@ -63,352 +70,259 @@ impl ResultWriter {
         }
         check_layout(layout)?;
         claim(path, overwrite, layout)?;
-        // A file that could not be begun is of no use, and would stand in the way of the next try.
-        Self::begin(path, header, layout).inspect_err(|_| drop(std::fs::remove_file(path)))
+        let log = FrameLog::take(path)?;
+        // Looked at again: whoever had the log may have made the result meanwhile.
+        claim(path, overwrite, layout).inspect_err(|_| log.remove_if_new())?;
+        Self::begin(path, header, layout, log)
     }
 
-    fn begin(path: &Path, header: &Header, layout: &Layout) -> Result<Self> {
-        let file = container::create(path)?;
-        let made = write_header(&file, header)
-            .and_then(|()| write_layout(&file, layout))
-            .and_then(|()| Columns::create(&file, layout));
-        let columns = made.map_err(|error| failed(path, "could not be made", &error))?;
-        write_views(path, layout)?;
-        Self::around(path, file, header, columns)
+    /// Makes the file anew. The old one stays, with its checkpoint, until the new one is whole.
+    fn begin(path: &Path, header: &Header, layout: &Layout, mut log: FrameLog) -> Result<Self> {
+        let fill = |file: &File| {
+            write_header(file, header).and_then(|()| write_layout(file, layout))?;
+            Columns::create(file, layout).map(|_| ())
+        };
+        let refused = |error: std::io::Error| machine_error(path, "could not be made", &error.to_string());
+        let new = prepare(path, fill).inspect_err(|_| log.remove_if_new())?;
+        remove(&checkpoint_path(path)).inspect_err(|_| log.remove_if_new())?;
+        let owner = Owner::of(header, 0);
+        let begun = new.put().and_then(|()| log.begin(&owner, layout)).map_err(refused);
+        begun.and_then(|()| write_views(path, layout)).inspect_err(|_| {
+            // A result that could not be begun is of no use, and would stand in the way of the next try.
+            remove_all(path, layout);
+            log.remove();
+        })?;
+        Ok(Self::around(path, header, layout, log, Reopened { owner, ..Reopened::default() }))
     }
 
-    /// Opens the file of an unfinished or finished run to go on after the given step: later frames are removed.
+    /// Opens the file of an unfinished or finished run to go on from where `kept` says: later frames are removed.
     ///
     /// # Errors
-    /// [`Error::Input`] if the file cannot be opened or belongs to another experiment; [`Error::Machine`] if the disk
-    /// refuses.
-    pub fn reopen(path: &Path, header: &Header, layout: &Layout, keep_until_step: u64) -> Result<Self> {
-        let damaged = |error: hdf5::Error| container::damaged(path, &error.to_string());
-        // Opened for reading first: a refusal changes nothing, not even the length of the file.
-        let seen = container::open(path, Access::Read)?;
-        let (found, known) = (read_header(&seen).map_err(damaged)?, read_layout(&seen).map_err(damaged)?);
-        let (torn, begun) = (FlushMark::is_set(&seen), has_frames(&seen));
-        drop(seen);
-        check_same_run(path, &found, header)?;
-        if !begun && !torn {
-            return Self::begin(path, header, layout);
+    /// [`Error::Input`] if the file cannot be opened, is being written, belongs to another experiment or has lost frames;
+    /// [`Error::Machine`] if the disk refuses. Nothing is changed then.
+    pub fn reopen(path: &Path, header: &Header, layout: &Layout, kept: Kept) -> Result<Self> {
+        // Looked at before anything is made beside it.
+        drop(container::open(path, Access::Read)?);
+        let mut log = FrameLog::take(path)?;
+        let reopened = reopen(path, header, layout, kept, &mut log).inspect_err(|_| log.remove_if_new())?;
+        match reopened {
+            Some(reopened) => {
+                write_views(path, layout)?;
+                Ok(Self::around(path, header, layout, log, reopened))
+            }
+            None => Self::begin(path, header, layout, log),
         }
-        if known != *layout {
-            return Err(Error::input(
-                Fault::new(format!("{} holds other cells than this experiment makes", path.display()))
-                    .help("resume with the version of pseudopod that began the run"),
-            ));
-        }
-        if torn {
-            mend(path, &found, layout, keep_until_step)?;
-        }
-        let file = container::open(path, Access::Append)?;
-        let whole = whole_frames(&file, layout).map_err(damaged)?;
-        let steps = file.dataset("/step").and_then(|steps| steps.read_raw::<i64>()).map_err(damaged)?;
-        let last = i64::try_from(keep_until_step).unwrap_or(i64::MAX);
-        let keep = steps[..whole].iter().take_while(|step| **step <= last).count();
-        let unfinished = remove_end(path, &file);
-        let columns = unfinished.and_then(|()| {
-            Columns::reopen(&file, layout, keep).map_err(|error| failed(path, "could not be changed", &error))
-        })?;
-        write_views(path, layout)?;
-        Self::around(path, file, header, columns)
     }
 
-    fn around(path: &Path, file: File, header: &Header, columns: Columns) -> Result<Self> {
-        let step_count = file.group("/VTKHDF/Steps").and_then(|steps| steps.attr("NSteps"));
-        let step_count = step_count.map_err(|error| failed(path, "could not be made", &error))?;
-        let mark = FlushMark::of(&file);
-        let mut writer = Self {
+    fn around(path: &Path, header: &Header, layout: &Layout, log: FrameLog, reopened: Reopened) -> Self {
+        let Reopened { owner, steps, forces } = reopened;
+        Self {
             path: path.to_path_buf(),
-            file,
             header: header.clone(),
-            columns,
-            step_count,
-            mark,
-            last_flush: Clock::now(),
-            flush_interval: FLUSH_INTERVAL,
-            flushed: 0,
-            broken: false,
-        };
-        writer.flush()?;
-        Ok(writer)
+            layout: layout.clone(),
+            log,
+            owner,
+            renewed: Renewed { frames: steps.len(), at: Clock::now(), took: Duration::ZERO },
+            steps,
+            forces,
+            summary: Vec::new(),
+            least_interval: LEAST_INTERVAL,
+            is_over: false,
+        }
     }
 
-    /// Sets the least time between two flushes that [`append`](Self::append) does by itself; one second if not set.
-    pub fn set_flush_interval(&mut self, interval: Duration) {
-        self.flush_interval = interval;
+    /// Sets the least time between two versions of the file that [`append`](Self::append) makes by itself; one second if not
+    /// set.
+    pub fn set_least_interval(&mut self, interval: Duration) {
+        self.least_interval = interval;
     }
 
     /// Frames appended so far, those kept by [`reopen`](Self::reopen) included.
     pub fn frames(&self) -> usize {
-        self.columns.frames()
+        self.steps.len()
     }
 
-    /// Appends a frame. It is on disk after the next flush, which comes by itself once a second.
+    /// Appends a frame. It survives a kill of the program from now on, and is seen by readers with the next version of the
+    /// file, see [`renew`](Self::renew).
     ///
     /// # Errors
-    /// [`Error::Machine`] if the disk refuses; the file then keeps the frames of the last flush, and is removed if there are
-    /// none.
+    /// [`Error::Machine`] if the disk refuses; all frames before are safe, and the file is removed if there are none.
     ///
     /// # Panics
     /// If the sizes of the frame are not those of the layout and of its own cells.
     pub fn append(&mut self, frame: &Frame) -> Result<()> {
-        self.check_whole()?;
-        let appended = self.columns.append(&self.file, frame);
-        self.settle(appended)?;
-        if self.frames() == 1 || self.last_flush.elapsed() >= self.flush_interval {
-            self.flush()?;
+        self.check_open()?;
+        if self.forces.is_none() && !frame.positions.is_empty() {
+            self.forces = Some(!frame.forces.is_empty());
+        }
+        if let Some(words) = misfit(&self.layout, self.forces == Some(true), frame) {
+            panic!("{words}");
+        }
+        if let Err(error) = self.log.append(self.frames(), frame) {
+            return Err(self.give_up(machine_error(&self.path, "could not be written", &error.to_string())));
+        }
+        self.steps.push(frame.step);
+        let Renewed { frames: seen, at, took } = self.renewed;
+        if seen == 0 {
+            return self.renew().map_err(|error| self.give_up(error));
+        }
+        if at.elapsed() >= self.least_interval.max(took * PER_RENEWAL) && self.renew().is_err() {
+            // There may be no space for a second file, or for now: the frames are safe in the log, and the run goes on. How
+            // it ends is told by `finish`.
+            self.renewed.at = Clock::now();
         }
         Ok(())
     }
 
-    /// Hands all frames so far to the system: they survive a kill of the program.
+    /// Takes all frames so far into the file, so that readers see them.
     ///
     /// # Errors
-    /// As [`append`](Self::append).
-    pub fn flush(&mut self) -> Result<()> {
-        self.check_whole()?;
-        let flushed = self.write_out();
-        self.settle(flushed)?;
-        self.flushed = self.frames();
-        self.last_flush = Clock::now();
+    /// [`Error::Machine`] if the disk refuses or the file has gone. The frames are safe, and the writer goes on.
+    pub fn renew(&mut self) -> Result<()> {
+        self.check_open()?;
+        if self.renewed.frames == self.frames() && self.summary.is_empty() {
+            return Ok(());
+        }
+        self.renew_with(|_| Ok(()))
+    }
+
+    /// Makes the next version of the file, with what else is to be changed in it.
+    fn renew_with(&mut self, change: impl FnOnce(&File) -> hdf5::Result<()>) -> Result<()> {
+        let Self { path, layout, owner, log, summary, renewed, .. } = self;
+        let (began, frames) = (Clock::now(), self.steps.len());
+        let failed = |error: hdf5::Error| failed(path, "could not be written", &error);
+        let replay = log.replay(owner, renewed.frames);
+        let replay = replay.map_err(|error| machine_error(&frames_path(path), "could not be read", &error.to_string()))?;
+        renew(path, |file| {
+            let taken = take_in(file, layout, renewed.frames, replay).map_err(failed)?;
+            if taken != frames {
+                return Err(machine_error(&frames_path(path), "was changed by another program", "frames are missing"));
+            }
+            summary.iter().try_for_each(|measure| write_measure(file, measure)).map_err(failed)?;
+            change(file).map_err(failed)
+        })?;
+        summary.clear();
+        let refused = |error: std::io::Error| machine_error(path, "could not be written", &error.to_string());
+        if log.is_there() {
+            log.clear().map_err(refused)?;
+        } else {
+            // Somebody has removed it; all that was in it is in the file by now.
+            *log = FrameLog::take(path)?;
+            log.begin(owner, layout).map_err(refused)?;
+        }
+        *renewed = Renewed { frames, at: Clock::now(), took: began.elapsed() };
         Ok(())
     }
 
-    fn write_out(&mut self) -> hdf5::Result<()> {
-        self.hand_over()?;
-        self.file.flush()?;
-        self.mark.set(&self.path, false)?;
-        self.columns.forget_history(&self.file)
-    }
-
-    /// All of a flush but what HDF5 itself knows of the file. From here on until the flush has ended a kill tears it.
-    fn hand_over(&mut self) -> hdf5::Result<()> {
-        self.columns.write()?;
-        self.step_count.write_scalar(&(self.columns.frames() as i64))?;
-        free_space::reserve(&self.path, self.file.size())?;
-        self.mark.set(&self.path, true)
-    }
-
-    /// The file as a kill in the middle of a flush may leave it.
-    #[cfg(test)]
-    pub(super) fn hand_over_now(&mut self) {
-        self.hand_over().unwrap();
-    }
-
-    /// Flushes, then saves the checkpoint of this instant beside the result, on the disk itself.
+    /// Saves the checkpoint of an instant beside the result, on the disk itself, as are the frames up to it.
     ///
     /// # Errors
     /// [`Error::Machine`] if the disk refuses.
     pub fn save_checkpoint(&mut self, step: u64, time: f64, payload: &[u8]) -> Result<()> {
-        self.flush()?;
-        self.sync()?;
-        save_checkpoint(&self.path, &CheckpointMeta::new(&self.header, step, time), payload)
+        self.check_open()?;
+        let synced = self.log.sync();
+        synced.map_err(|error| machine_error(&self.path, "could not be written", &error.to_string()))?;
+        let frames = self.steps.iter().take_while(|of_frame| **of_frame <= step).count();
+        save_checkpoint(&self.path, &CheckpointMeta::new(&self.header, step, time, frames), payload)
     }
 
     /// Opens what is recorded so far for reading, to find the measures before the file is finished.
     ///
     /// # Errors
-    /// As [`append`](Self::append) and [`ResultFile::open`]: there must be a frame.
+    /// As [`renew`](Self::renew) and [`ResultFile::open`]: there must be a frame.
     pub fn read(&mut self) -> Result<ResultFile> {
-        self.flush()?;
+        self.renew()?;
         ResultFile::open(&self.path)
     }
 
-    /// Writes the measures of the experiment under `/summary`; one of the same name is replaced.
-    ///
-    /// # Errors
-    /// [`Error::Machine`] if the disk refuses.
-    pub fn write_summary(&mut self, measures: &[Measure]) -> Result<()> {
-        self.check_whole()?;
-        let written = measures.iter().try_for_each(|measure| self.write_measure(measure));
-        self.settle(written)
+    /// Takes measures of the experiment in, to be written under `/summary` with the next version of the file; one of the same
+    /// name is replaced.
+    pub fn write_summary(&mut self, measures: &[Measure]) {
+        self.summary.extend_from_slice(measures);
     }
 
-    fn write_measure(&self, measure: &Measure) -> hdf5::Result<()> {
-        let group = self.file.group("summary").or_else(|_| self.file.create_group("summary"))?;
-        if group.link_exists(&measure.name) {
-            group.unlink(&measure.name)?;
-        }
-        let dataset = group.new_dataset::<f64>().obj_track_times(false).create(measure.name.as_str())?;
-        dataset.write_scalar(&measure.value)?;
-        set_text(&dataset, "unit", &measure.unit)?;
-        set_text(&dataset, "description", &measure.description)
-    }
-
-    /// Ends the file: takes in the checkpoint, marks the run as finished after `wall_time` seconds and closes.
+    /// Ends the file: takes in the checkpoint and marks the run as finished after `wall_time` seconds.
     ///
     /// # Errors
-    /// [`Error::Machine`] if the disk refuses; the checkpoint then stays in its own file.
+    /// [`Error::Machine`] if the disk refuses; the checkpoint then stays in its own file, and the frames in theirs.
     pub fn finish(mut self, wall_time: f64) -> Result<()> {
-        self.check_whole()?;
+        self.check_open()?;
         let side = checkpoint_path(&self.path);
         let checkpoint = match std::fs::read(&side) {
             Ok(bytes) => Some(bytes),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
             Err(error) => return Err(machine_error(&side, "could not be read", &error.to_string())),
         };
-        let ended = self.write_end(checkpoint.as_deref(), wall_time);
-        self.settle(ended)?;
-        self.flush()?;
-        self.sync()?;
-        if checkpoint.is_some() {
-            std::fs::remove_file(&side)
-                .map_err(|error| machine_error(&side, "could not be removed", &error.to_string()))?;
-        }
-        Ok(())
+        let ended = self.renew_with(|file| write_end(file, checkpoint.as_deref(), wall_time));
+        self.is_over = true;
+        ended?;
+        self.log.remove();
+        remove(&side)
     }
 
-    fn write_end(&self, checkpoint: Option<&[u8]>, wall_time: f64) -> hdf5::Result<()> {
-        if let Some(bytes) = checkpoint {
-            let row = super::catalogue::entry(DATASET);
-            let dataset = self.file.new_dataset_builder().with_data(bytes).obj_track_times(false).create(DATASET)?;
-            set_text(&dataset, "unit", row.unit)?;
-            set_text(&dataset, "description", row.description)?;
-        }
-        let group = self.file.group("provenance")?;
-        set_number(&group, "wall_time", wall_time)?;
-        set_number(&group, "finished", 1_i64)
-    }
-
-    /// Waits until the disk itself has the file.
-    fn sync(&self) -> Result<()> {
-        std::fs::File::open(&self.path)
-            .and_then(|file| file.sync_all())
-            .map_err(|error| machine_error(&self.path, "could not be written", &error.to_string()))
-    }
-
-    fn check_whole(&self) -> Result<()> {
-        match self.broken {
+    fn check_open(&self) -> Result<()> {
+        match self.is_over {
             false => Ok(()),
             true => Err(machine_error(&self.path, "could not be written", "an earlier write failed")),
         }
     }
 
-    /// Passes success on. After a failure nothing more is written, so that the file stays as it was at the last flush.
-    fn settle(&mut self, outcome: hdf5::Result<()>) -> Result<()> {
-        let Err(error) = outcome else { return Ok(()) };
-        let error = failed(&self.path, "could not be written", &error);
-        self.broken = true;
-        // A file without a frame is of no use, and would stand in the way of the next try.
-        if self.flushed == 0 {
-            self.columns.views(&self.path).chain([self.path.clone()]).for_each(|path| drop(std::fs::remove_file(path)));
+    /// Writes nothing more.
+    fn give_up(&mut self, error: Error) -> Error {
+        self.is_over = true;
+        // A result without a frame is of no use, and would stand in the way of the next try.
+        if self.renewed.frames == 0 {
+            remove_all(&self.path, &self.layout);
+            self.log.remove();
         }
-        Err(error)
+        error
     }
 }
 
 impl Drop for ResultWriter {
     fn drop(&mut self) {
-        // Nobody is left to hear of a failure; the file then keeps the frames of the last flush.
-        if !self.broken && self.flush().is_ok() {
-            return;
+        // Nobody is left to hear of a failure; the frames then stay in the log, from where the next reader takes them.
+        if !self.is_over && self.renew().is_ok() {
+            self.log.remove();
         }
-        // Closing would make HDF5 write what it has in memory, of which the disk took only a part. What is never
-        // closed is never written: to the file this is a kill, which it survives.
-        std::mem::forget(self.file.clone());
-        std::mem::forget(self.step_count.clone());
-        std::mem::forget(std::mem::take(&mut self.columns));
     }
 }
 
-/// Makes sure that the path may be written, with errors that HDF5 does not tell apart.
-fn claim(path: &Path, overwrite: Overwrite, layout: &Layout) -> Result<()> {
-    use std::io::ErrorKind;
-    let name = path.display();
-    let side = checkpoint_path(path);
-    let fault = |found: String, help: &str| Err(Error::input(Fault::new(found).help(help)));
-    let force = "use --force to replace it, or another -o";
-    if path.is_dir() {
-        return fault(format!("{name} is a folder"), "name a file in it with -o");
+fn write_measure(file: &File, measure: &Measure) -> hdf5::Result<()> {
+    let group = file.group("summary").or_else(|_| file.create_group("summary"))?;
+    if group.link_exists(&measure.name) {
+        group.unlink(&measure.name)?;
     }
-    if overwrite == Overwrite::Refuse && path.exists() {
-        return fault(format!("{name} exists"), force);
+    let dataset = group.new_dataset::<f64>().obj_track_times(false).create(measure.name.as_str())?;
+    dataset.write_scalar(&measure.value)?;
+    set_text(&dataset, "unit", &measure.unit)?;
+    set_text(&dataset, "description", &measure.description)
+}
+
+fn write_end(file: &File, checkpoint: Option<&[u8]>, wall_time: f64) -> hdf5::Result<()> {
+    if let Some(bytes) = checkpoint {
+        let row = entry(DATASET);
+        let dataset = file.new_dataset_builder().with_data(bytes).obj_track_times(false).create(DATASET)?;
+        set_text(&dataset, "unit", row.unit)?;
+        set_text(&dataset, "description", row.description)?;
     }
-    if overwrite == Overwrite::Refuse && side.exists() {
-        return fault(format!("{} exists: the checkpoint of a run that can be resumed", side.display()), force);
-    }
-    let views = layout.fields.iter().map(|field| field_view_path(path, &field.name));
-    if let Some(view) = views.filter(|view| view.exists()).find(|_| overwrite == Overwrite::Refuse) {
-        return fault(format!("{} exists: it would lead to a field of the result", view.display()), force);
-    }
-    let mut options = std::fs::OpenOptions::new();
-    match overwrite {
-        Overwrite::Refuse => options.write(true).create_new(true),
-        Overwrite::Replace => options.write(true).create(true).truncate(false),
-    };
-    match options.open(path) {
-        Ok(_) => {}
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => return fault(format!("{name} exists"), force),
-        Err(error) if error.kind() == ErrorKind::NotFound => {
-            return fault(
-                format!("{name} could not be made: its folder does not exist"),
-                "make the folder first, or use another -o",
-            );
-        }
-        Err(error) if error.kind() == ErrorKind::PermissionDenied => {
-            return fault(
-                format!("{name} may not be written: permission denied"),
-                "write to a folder that is yours with -o",
-            );
-        }
-        Err(error) if error.kind() == ErrorKind::NotADirectory => {
-            return fault(
-                format!("{name} could not be made: a part of its path is a file, not a folder"),
-                "use another -o",
-            );
-        }
-        Err(error) => return Err(machine_error(path, "could not be made", &error.to_string())),
-    }
-    match std::fs::remove_file(&side) {
-        Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(machine_error(&side, "could not be removed", &error.to_string()))
+    let group = file.group("provenance")?;
+    set_number(&group, "wall_time", wall_time)?;
+    set_number(&group, "finished", 1_i64)
+}
+
+/// Removes a file, if it is there.
+fn remove(path: &Path) -> Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(machine_error(path, "could not be removed", &error.to_string()))
         }
         _ => Ok(()),
     }
 }
 
-/// A run goes on only with what it began with.
-fn check_same_run(path: &Path, found: &Header, wanted: &Header) -> Result<()> {
-    let differs = match () {
-        () if found.experiment != wanted.experiment => "another experiment document",
-        () if found.sets != wanted.sets => "other --set options",
-        () if found.seed != wanted.seed => "another seed",
-        () => return Ok(()),
-    };
-    let (name, side) = (path.display(), checkpoint_path(path));
-    let (document, seed) = (&found.document, found.seed);
-    Err(Error::input(
-        Fault::new(format!("{name} ({document}, seed {seed}) was made with {differs} than what is to be resumed"))
-            .help(format!("if {} came from another run, put the right one back or move it away", side.display())),
-    ))
-}
-
-/// Takes the end of a finished run out of its file, so that it can go on. Its checkpoint goes back to a file of its
-/// own first: at no moment is there none.
-fn remove_end(path: &Path, file: &File) -> Result<()> {
-    if file.link_exists("checkpoint") {
-        let bytes = file.dataset(DATASET).and_then(|dataset| dataset.read_raw::<u8>());
-        let bytes = bytes.map_err(|error| container::damaged(path, &error.to_string()))?;
-        let side = checkpoint_path(path);
-        if !side.exists() {
-            std::fs::write(&side, bytes)
-                .and_then(|()| std::fs::File::open(&side)?.sync_all())
-                .map_err(|error| machine_error(&side, "could not be written", &error.to_string()))?;
-        }
-    }
-    let removed = || -> hdf5::Result<()> {
-        for name in ["checkpoint", "summary"] {
-            if file.link_exists(name) {
-                file.unlink(name)?;
-            }
-        }
-        let group = file.group("provenance")?;
-        let resumed: i64 = group.attr("resumed")?.read_scalar()?;
-        set_number(&group, "resumed", resumed + 1)?;
-        set_number(&group, "finished", 0_i64)?;
-        set_number(&group, "wall_time", f64::NAN)
-    };
-    removed().map_err(|error| failed(path, "could not be changed", &error))
+/// Removes a result that holds nothing, with what lies beside it.
+fn remove_all(path: &Path, layout: &Layout) {
+    let views = layout.fields.iter().map(|field| field_view_path(path, &field.name));
+    views.chain([path.to_path_buf(), checkpoint_path(path)]).for_each(|path| drop(std::fs::remove_file(path)));
 }

@@ -1,7 +1,9 @@
 //! Forces between a cell and what is around it, as they are recorded.
 
+use serde::{Deserialize, Serialize};
+
 /// What one cell does to what is around it, and what acts on it from outside.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct TractionRecord {
     /// Force on planes, pN.
     pub traction: [f64; 3],

@@ -1,9 +1,11 @@
 //! Quantities of cells: what is recorded of each at each instant.
 
+use serde::{Deserialize, Serialize};
+
 use super::balance::TractionRecord;
 
 /// What is recorded of one cell at one instant.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct CellRecord {
     /// Centre of volume (mean of the atoms for an open surface), µm.
     pub position: [f64; 3],
@@ -36,7 +38,7 @@ pub struct CellRecord {
 }
 
 /// What the fibres of a cell are like that were made at run time.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct FibresRecord {
     /// How many there are.
     pub count: f64,

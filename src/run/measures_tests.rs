@@ -60,8 +60,8 @@ fn recorded(path: &Path) -> ResultFile {
         writer.append(&frame).unwrap();
     }
     let stretch = Measure { name: "stretch".into(), value: 375.0, unit: "nm/pN".into(), description: String::new() };
-    writer.write_summary(&[stretch]).unwrap();
-    writer.flush().unwrap();
+    writer.write_summary(&[stretch]);
+    writer.renew().unwrap();
     drop(writer);
     ResultFile::open(path).unwrap()
 }

@@ -116,7 +116,7 @@ pub fn resume(result: &Path, threads: Option<usize>, cancel: &CancelToken, repor
     let mut ready = builder.ready_to_restore(&document)?;
     ready.simulation.restore(&checkpoint.payload).map_err(|error| cannot_restore(&error, result))?;
     let layout = layout_of(ready.simulation.model());
-    let writer = ResultWriter::reopen(result, &header, &layout, checkpoint.meta.step)?;
+    let writer = ResultWriter::reopen(result, &header, &layout, (&checkpoint.meta).into())?;
     drive(ready, writer, result, report, Start::Resumed).map_err(|error| can_go_on(error, result))
 }
 
@@ -200,7 +200,7 @@ fn finish(mut writer: ResultWriter, result: &Path, wall_time: f64) -> Result<()>
     let document = document_of(file.header(), result)?;
     let (measures, faults) = measure_result(&file, &document)?;
     drop(file);
-    writer.write_summary(&measures)?;
+    writer.write_summary(&measures);
     writer.finish(wall_time)?;
     // A measure that cannot be computed is told once the run and all other measures are safe.
     if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }

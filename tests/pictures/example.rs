@@ -128,7 +128,7 @@ pub fn write_measured(folder: &Path, extra: &str, measures: &[Measure]) -> PathB
     let header = Header::now("made_up.toml", "Cells on a patterned substrate", &text, &[], 1);
     let mut writer = ResultWriter::create(&path, &header, &layout, Overwrite::Replace).unwrap();
     (0..FRAMES).for_each(|number| writer.append(&frame(&layout, number)).unwrap());
-    writer.write_summary(measures).unwrap();
+    writer.write_summary(measures);
     writer.finish(1.0).unwrap();
     path
 }

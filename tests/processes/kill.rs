@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use pseudopod::output::{Overwrite, ResultFile, ResultWriter, load_checkpoint};
+use pseudopod::output::{Kept, Overwrite, ResultFile, ResultWriter, load_checkpoint};
 
 use crate::result_example::{cells, frame_with_fields as frame, header, layout_with_fields as layout, stored};
 use crate::turns::take_turn;
@@ -20,7 +20,7 @@ fn child_that_writes_until_it_is_killed() {
     let (interval, path) = task.split_once(' ').unwrap();
     let cells = cells(CELLS);
     let mut writer = ResultWriter::create(Path::new(path), &header(), &layout(), Overwrite::Replace).unwrap();
-    writer.set_flush_interval(Duration::from_millis(interval.parse().unwrap()));
+    writer.set_least_interval(Duration::from_millis(interval.parse().unwrap()));
     for number in 0.. {
         writer.append(&frame(&cells, number)).unwrap();
         if number == 0 {
@@ -80,7 +80,7 @@ fn survivors(interval: Duration, lives: impl Iterator<Item = Duration>) -> (usiz
 fn resume(path: &Path) -> Result<(), String> {
     let state = load_checkpoint(path).map_err(|error| error.to_string())?;
     let step = state.map_or(0, |state| state.meta.step);
-    let writer = ResultWriter::reopen(path, &header(), &layout(), step).map_err(|error| error.to_string())?;
+    let writer = ResultWriter::reopen(path, &header(), &layout(), Kept::until(step)).map_err(|error| error.to_string())?;
     match (writer.frames() as u64, step / 10 + 1) {
         (found, expected) if found == expected => Ok(()),
         (found, expected) => Err(format!("{found} frames instead of {expected}")),

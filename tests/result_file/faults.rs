@@ -124,7 +124,7 @@ fn a_full_disk_is_reported_and_keeps_the_frames_before() {
         let path = Path::new(&disk).join(format!("{number}.h5"));
         let cells = cells(number);
         let mut writer = ResultWriter::create(&path, &header(), &layout(), Overwrite::Replace).unwrap();
-        writer.set_flush_interval(std::time::Duration::ZERO);
+        writer.set_least_interval(std::time::Duration::ZERO);
         let mut appended = 0;
         let error = loop {
             match writer.append(&frame(&cells, appended)) {

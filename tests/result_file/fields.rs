@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pseudopod::output::{
-    Along, FieldLayout, Frame, Layout, Overwrite, ResultFile, ResultWriter, SystemLayout, SystemScope, describe,
+    Along, FieldLayout, Frame, Kept, Layout, Overwrite, ResultFile, ResultWriter, SystemLayout, SystemScope, describe,
     field_view_path, to_json,
 };
 
@@ -108,7 +108,7 @@ fn a_resumed_file_goes_on_after_the_checkpoint() {
     let layout = layout();
     drop(write(&path, 2, 9));
     std::fs::remove_file(field_view_path(&path, "attractant")).unwrap();
-    let mut writer = ResultWriter::reopen(&path, &example::header(), &layout, 40).unwrap();
+    let mut writer = ResultWriter::reopen(&path, &example::header(), &layout, Kept::until(40)).unwrap();
     assert_eq!(writer.frames(), 5);
     (5..12).for_each(|index| writer.append(&frame(&cells(2), index)).unwrap());
     writer.finish(1.0).unwrap();
@@ -133,7 +133,7 @@ fn a_resumed_file_goes_on_after_the_checkpoint() {
     assert!(field_view_path(&path, "attractant").exists(), "the small file that was lost is made again");
     let mut other = layout.clone();
     other.fields[0].cells[0] += 1;
-    let text = ResultWriter::reopen(&path, &example::header(), &other, 40).err().unwrap().to_string();
+    let text = ResultWriter::reopen(&path, &example::header(), &other, Kept::until(40)).err().unwrap().to_string();
     assert!(text.contains("other cells"), "{text}");
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pseudopod::output::{Cell, Frame, ResultFile, ResultWriter, Table, describe, table_text, to_json};
+use pseudopod::output::{Cell, Frame, Kept, ResultFile, ResultWriter, Table, describe, table_text, to_json};
 
 use crate::example::{cells, frame, header, layout, lineage, write};
 use crate::fields;
@@ -63,7 +63,7 @@ fn a_run_that_grows_or_shrinks_beyond_the_pieces_of_its_first_frame_is_read_as_i
         assert_holds(&result, &frames[..4]);
         drop(result);
         // Goes on after the third frame.
-        let mut writer = ResultWriter::reopen(&path, &header(), &layout(), 20).unwrap();
+        let mut writer = ResultWriter::reopen(&path, &header(), &layout(), Kept::until(20)).unwrap();
         assert_eq!(writer.frames(), 3, "{name}");
         frames[3..].iter().for_each(|frame| writer.append(frame).unwrap());
         drop(writer);
@@ -78,7 +78,7 @@ fn a_run_resumed_anywhere_in_a_lineage_leaves_the_file_of_one_that_never_stopped
     for kept in 1..frames.len() {
         let _ = std::fs::remove_file(&path);
         drop(write_lineage(&path));
-        let mut writer = ResultWriter::reopen(&path, &header(), &layout(), 10 * (kept as u64 - 1)).unwrap();
+        let mut writer = ResultWriter::reopen(&path, &header(), &layout(), Kept::until(10 * (kept as u64 - 1))).unwrap();
         assert_eq!(writer.frames(), kept);
         frames[kept..].iter().for_each(|frame| writer.append(frame).unwrap());
         writer.finish(1.0).unwrap();

@@ -1,6 +1,6 @@
 //! A run that goes on leaves the file of a run that never stopped.
 
-use pseudopod::output::{Frame, Measure, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
+use pseudopod::output::{Frame, Measure, Kept, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
 
 use crate::example::{cells, frame, header, layout, write};
 use crate::round_trip::assert_holds;
@@ -17,7 +17,7 @@ fn a_resumed_file_equals_an_uninterrupted_one() {
     for (number, first, keep, all) in [(3, 10, 6, 12), (3, 600, 300, 700), (3, 600, 512, 520), (1500, 4, 2, 5)] {
         let path = folder.path().join(format!("{number}-{first}-{keep}.h5"));
         drop(write(&path, number, first));
-        let mut writer = ResultWriter::reopen(&path, &header(), &layout(), 10 * (keep as u64 - 1)).unwrap();
+        let mut writer = ResultWriter::reopen(&path, &header(), &layout(), Kept::until(10 * (keep as u64 - 1))).unwrap();
         assert_eq!(writer.frames(), keep);
         (keep..all).for_each(|index| writer.append(&frame(&cells(number), index)).unwrap());
         writer.finish(3.0).unwrap();
@@ -32,7 +32,7 @@ fn a_run_resumed_before_its_first_frame_begins_anew() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.h5");
     drop(write(&path, 2, 0));
-    let mut writer = ResultWriter::reopen(&path, &header(), &layout(), 0).unwrap();
+    let mut writer = ResultWriter::reopen(&path, &header(), &layout(), Kept::until(0)).unwrap();
     (0..3).for_each(|index| writer.append(&frame(&cells(2), index)).unwrap());
     drop(writer);
     assert_holds(&ResultFile::open(&path).unwrap(), &frames(2, 3));
@@ -45,7 +45,7 @@ fn the_checkpoint_moves_into_the_finished_file_and_out_again() {
     let mut writer = write(&path, 2, 5);
     writer.save_checkpoint(40, 1.0, b"state at 40").unwrap();
     let measure = Measure { name: "m".into(), value: 1.0, unit: "1".into(), description: "Number.".into() };
-    writer.write_summary(&[measure]).unwrap();
+    writer.write_summary(&[measure]);
     assert!(checkpoint_path(&path).exists());
     writer.finish(1.0).unwrap();
     assert!(!checkpoint_path(&path).exists(), "the finished file stands alone");
@@ -55,7 +55,7 @@ fn the_checkpoint_moves_into_the_finished_file_and_out_again() {
     assert_eq!(inside.meta.header.experiment, header().experiment);
     assert_eq!(inside.meta.experiment_hash, header().experiment_hash());
 
-    let writer = ResultWriter::reopen(&path, &header(), &layout(), 40).unwrap();
+    let writer = ResultWriter::reopen(&path, &header(), &layout(), Kept::until(40)).unwrap();
     drop(writer);
     assert!(checkpoint_path(&path).exists(), "a run that goes on always has a checkpoint");
     assert_eq!(load_checkpoint(&path).unwrap().unwrap(), inside);
@@ -71,15 +71,15 @@ fn another_experiment_cannot_resume() {
     let mut other = header();
     other.seed += 1;
     let refusal = |outcome: pseudopod::error::Result<ResultWriter>| outcome.err().unwrap().to_string();
-    let text = refusal(ResultWriter::reopen(&path, &other, &layout(), 10));
+    let text = refusal(ResultWriter::reopen(&path, &other, &layout(), Kept::until(10)));
     assert!(text.contains("another seed"), "{text}");
     other = header();
     other.experiment.push('#');
-    let text = refusal(ResultWriter::reopen(&path, &other, &layout(), 10));
+    let text = refusal(ResultWriter::reopen(&path, &other, &layout(), Kept::until(10)));
     assert!(text.contains("another experiment document"), "{text}");
     let mut others = layout();
     others.types[1].atoms += 1;
-    let text = refusal(ResultWriter::reopen(&path, &header(), &others, 10));
+    let text = refusal(ResultWriter::reopen(&path, &header(), &others, Kept::until(10)));
     assert!(text.contains("other cells"), "{text}");
     assert_eq!(ResultFile::open(&path).unwrap().frames(), 3, "a refusal loses nothing");
 }

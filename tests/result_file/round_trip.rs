@@ -50,8 +50,8 @@ fn a_finished_run_is_read_as_it_was_written() {
         let mut writer = write(&path, number, frames);
         let measure =
             |name: &str, value| Measure { name: name.into(), value, unit: "um".into(), description: "How far.".into() };
-        writer.write_summary(&[measure("reach", 1.0), measure("drift", 0.5)]).unwrap();
-        writer.write_summary(&[measure("reach", 2.5)]).unwrap();
+        writer.write_summary(&[measure("reach", 1.0), measure("drift", 0.5)]);
+        writer.write_summary(&[measure("reach", 2.5)]);
         writer.finish(12.5).unwrap();
 
         let result = ResultFile::open(&path).unwrap();
@@ -131,7 +131,7 @@ fn json_tells_all_but_the_arrays() {
     let path = folder.path().join("run.h5");
     let mut writer: ResultWriter = write(&path, 2, 5);
     let measure = Measure { name: "reach".into(), value: 2.0, unit: "um".into(), description: "How far.".into() };
-    writer.write_summary(&[measure]).unwrap();
+    writer.write_summary(&[measure]);
     writer.save_checkpoint(40, 1.0, b"state").unwrap();
     writer.finish(1.0).unwrap();
     let json = to_json(&ResultFile::open(&path).unwrap()).unwrap();

@@ -1,0 +1,140 @@
+//! The next version of a result file, made beside it and put in its place as a whole.
+//!
+//! HDF5 changes a file in many small writes, and a file of which a kill left only some can be beyond repair. So a result
+//! file is never written to: what is to be changed is changed in a copy. Others read the file at any moment, and keep
+//! the version that they have opened.
+
+use std::cell::Cell;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use hdf5::File;
+
+use super::columns::Columns;
+use super::container::{self, Access, failed, machine_error, set_number};
+use super::fits::misfit;
+use super::frame_log::{Found, FrameLog, Owner};
+use super::layout_io::{read_header, read_layout};
+use super::replacement::Replacement;
+use super::whole::whole_frames;
+use super::{Frame, Layout};
+use crate::error::{Error, Result};
+
+/// Makes a new file with what `fill` writes into it; what was at the path is replaced.
+///
+/// # Errors
+/// [`Error::Machine`] if the disk refuses; what was there then stays.
+pub(super) fn make(path: &Path, fill: impl FnOnce(&File) -> hdf5::Result<()>) -> Result<()> {
+    let new = prepare(path, fill)?;
+    new.put().map_err(|error| refused(path, "could not be made", &error))
+}
+
+/// Makes a new file beside the path, to be put there.
+///
+/// # Errors
+/// As [`make`].
+pub(super) fn prepare(path: &Path, fill: impl FnOnce(&File) -> hdf5::Result<()>) -> Result<Replacement> {
+    let new = Replacement::of(path).map_err(|error| refused(path, "could not be made", &error))?;
+    let file = container::create(new.temporary())?;
+    let made = fill(&file).and_then(|()| file.close());
+    made.map_err(|error| failed(path, "could not be made", &error))?;
+    Ok(new)
+}
+
+/// Changes a file: `change` is done to a copy, which then takes its place.
+///
+/// # Errors
+/// [`Error::Machine`] if the file has gone or the disk refuses, and what `change` returns; nothing is changed then.
+pub(super) fn renew<T>(path: &Path, change: impl FnOnce(&File) -> Result<T>) -> Result<T> {
+    let new = Replacement::of(path).map_err(|error| refused(path, "could not be written", &error))?;
+    copy(path, &new)?;
+    let file = container::open(new.temporary(), Access::Append)?;
+    let changed = change(&file)?;
+    file.close().map_err(|error| failed(path, "could not be written", &error))?;
+    new.put().map_err(|error| refused(path, "could not be written", &error))?;
+    Ok(changed)
+}
+
+fn copy(path: &Path, new: &Replacement) -> Result<()> {
+    let mut old = fs::File::open(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => Error::Machine {
+            message: format!("{} is gone: it was removed or moved while it was being written", path.display()),
+            help: "put it back; frames that it does not hold are in the file beside it that ends in .frames".into(),
+        },
+        _ => refused(path, "could not be read", &error),
+    })?;
+    let copied = new.create().and_then(|mut file| io::copy(&mut old, &mut file));
+    copied.map(|_| ()).map_err(|error| refused(path, "could not be written", &error))
+}
+
+fn refused(path: &Path, what: &str, error: &io::Error) -> Error {
+    machine_error(path, what, &error.to_string())
+}
+
+/// Cuts the datasets of a file to its first frames and appends others. How many frames there are then.
+pub(super) fn take_in(
+    file: &File,
+    layout: &Layout,
+    keep: usize,
+    frames: impl Iterator<Item = Frame>,
+) -> hdf5::Result<usize> {
+    let mut columns = Columns::reopen(file, layout, keep)?;
+    for frame in frames {
+        columns.append(file, &frame)?;
+    }
+    columns.write()?;
+    let steps = file.group("/VTKHDF/Steps")?;
+    set_number(&steps, "NSteps", columns.frames() as i64)?;
+    Ok(columns.frames())
+}
+
+/// Takes the frames that a run has left in its log, because it was killed, into its result file. Nothing is done where the
+/// file cannot be changed: it is then read as it is.
+///
+/// Whether a run goes on that writes the file.
+pub(super) fn settle(path: &Path) -> bool {
+    match FrameLog::look(path) {
+        Found::Nothing => false,
+        Found::Taken => true,
+        Found::Free(mut log) => {
+            if settle_from(path, &mut log).is_ok_and(|is_settled| is_settled) {
+                log.remove();
+            }
+            false
+        }
+    }
+}
+
+/// Whether the log was of this file, so that all of it is in the file now.
+fn settle_from(path: &Path, log: &mut FrameLog) -> Result<bool> {
+    let damaged = |error: hdf5::Error| container::damaged(path, &error.to_string());
+    let (layout, owner, known) = {
+        let file = container::open(path, Access::Read)?;
+        let read = || -> hdf5::Result<_> {
+            let layout = read_layout(&file)?;
+            let resumed = file.group("provenance")?.attr("resumed")?.read_scalar::<i64>()?;
+            let known = whole_frames(&file, &layout)?;
+            Ok((layout, Owner::of(&read_header(&file)?, resumed), known))
+        };
+        read().map_err(damaged)?
+    };
+    let replay = log.replay(&owner, known).map_err(|error| refused(path, "could not be read", &error))?;
+    // A file without a frame does not know yet what frames bring with them.
+    let Some(layout) = replay.layout().filter(|found| known == 0 || **found == layout).cloned() else {
+        return Ok(false);
+    };
+    let all_fit = Cell::new(true);
+    let mut frames = replay.take_while(|frame| fits(&layout, frame, &all_fit)).peekable();
+    if frames.peek().is_some() {
+        renew(path, |file| take_in(file, &layout, known, frames).map_err(damaged))?;
+    }
+    Ok(all_fit.get())
+}
+
+/// Whether a frame of a log is one of the layout; notes it in `all` if it is not, which no program of ours has written.
+pub(super) fn fits(layout: &Layout, frame: &Frame, all: &Cell<bool>) -> bool {
+    let fits = misfit(layout, !frame.forces.is_empty(), frame).is_none();
+    all.set(all.get() && fits);
+    fits
+}
