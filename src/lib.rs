@@ -20,6 +20,7 @@ pub mod equations;
 pub mod error;
 pub mod experiment;
 pub mod field;
+pub mod files;
 pub mod geometry;
 pub mod mechanics;
 pub mod membrane;

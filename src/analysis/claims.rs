@@ -104,7 +104,7 @@ struct Document {
 /// # Errors
 /// When the file cannot be read, and as [`parse`].
 pub fn read(path: &Path) -> Result<Vec<Claim>> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
+    let text = crate::files::read_text(path).map_err(|error| {
         let found = format!("the claims {} cannot be read: {error}", path.display());
         Error::input(Fault::new(found).help("give the path of a TOML file with [[claim]] tables"))
     })?;

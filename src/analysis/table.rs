@@ -22,7 +22,7 @@ impl Table {
     /// # Errors
     /// When the file cannot be read, and as [`Table::parse`].
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        let text = crate::files::read_text(path).map_err(|error| {
             let found = format!("the table {} cannot be read: {error}", path.display());
             Error::input(Fault::new(found).help("give the path of a CSV file with a line of column names"))
         })?;

@@ -1,7 +1,7 @@
 //! `pseudopod export`: a frame of a result as a mesh or as the values of a field, or its numbers as a table.
 
+use super::files::{Named, refuse_existing, refuse_same};
 use super::frames::FrameArgs;
-use super::render::{Named, refuse_existing};
 use super::report::Report;
 use crate::Vec3;
 use crate::analysis::aggregates::table_of_changes;
@@ -86,6 +86,7 @@ pub fn run(args: &ExportArgs) -> Result<Report> {
     };
     refuse_unused(args, what)?;
     let result = ResultFile::open(&args.result)?;
+    refuse_same(&[&args.result, &args.output])?;
     refuse_existing(&args.output, args.force, Named::ByUser)?;
     match what {
         What::Table => match table_of(args) {

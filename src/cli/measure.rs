@@ -1,6 +1,6 @@
 //! `pseudopod measure`: the measures of cell migration of tracks, simulated or measured.
 
-use super::render::{Named, refuse_existing};
+use super::files::{Named, refuse_existing, refuse_same};
 use super::report::Report;
 use super::track_file::{Told, TrackArgs};
 use crate::analysis::bootstrap::{self, Estimate};
@@ -71,6 +71,7 @@ pub enum TableKind {
 /// Tracks that cannot be read; a cue without a length; a file that exists or cannot be written.
 pub fn run(args: &MeasureArgs) -> Result<Report> {
     if let Some(output) = &args.output {
+        refuse_same(&[&args.tracks.file, output])?;
         refuse_existing(output, args.force, Named::ByUser)?;
     }
     let cue = match (args.cue, args.towards) {

@@ -1,8 +1,10 @@
 //! The command line: one file per command. Names and exit codes are a contract.
 
 pub mod check;
+mod crash;
 pub mod eml;
 pub mod export;
+pub mod files;
 pub mod frames;
 pub mod info;
 pub mod measure;
@@ -76,7 +78,7 @@ impl Command {
 /// Does what the arguments say; returns the exit status.
 pub fn main(arguments: Arguments) -> i32 {
     let (name, form) = arguments.command.manner();
-    let outcome = act(arguments.command).and_then(|report| report.print(name, form));
+    let outcome = act(arguments.command, name, form).and_then(|report| report.print(name, form));
     let Err(error) = outcome else { return 0 };
     let paint = if std::io::stderr().is_terminal() { Paint::Coloured } else { Paint::Plain };
     let words = render(&error, paint);
@@ -88,16 +90,16 @@ pub fn main(arguments: Arguments) -> i32 {
     error.exit_code()
 }
 
-fn act(command: Command) -> Result<Report> {
+fn act(command: Command, name: &str, form: Form) -> Result<Report> {
     match command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => resume::run(&args),
         Command::Check(args) => check::run(&args),
-        Command::Info(args) => info::run(&args),
-        Command::Render(args) => render::run(&args),
-        Command::Plot(args) => plot::run(&args),
-        Command::Measure(args) => measure::run(&args),
-        Command::Export(args) => export::run(&args),
+        Command::Info(args) => crash::told_as_damage(name, form, &args.result, || info::run(&args)),
+        Command::Render(args) => crash::told_as_damage(name, form, &args.result, || render::run(&args)),
+        Command::Plot(args) => crash::told_as_damage(name, form, &args.result, || plot::run(&args)),
+        Command::Measure(args) => crash::told_as_damage(name, form, &args.tracks.file, || measure::run(&args)),
+        Command::Export(args) => crash::told_as_damage(name, form, &args.result, || export::run(&args)),
         Command::Eml(args) => eml::run(&args),
         Command::Schema(args) => schema::run(&args),
     }

@@ -1,6 +1,6 @@
 //! `pseudopod plot`: charts of a result file.
 
-use super::render::{Named, refuse_existing};
+use super::files::{Named, refuse_existing};
 use super::report::Report;
 use super::track_file::Known;
 use crate::analysis::tracks::Tracks;

@@ -1,14 +1,15 @@
 //! `pseudopod render`: pictures and movies of a result file.
 
+use super::files::{Named, refuse_existing, refuse_same};
 use super::frames::FrameArgs;
 use super::report::Report;
-use crate::error::{Error, Fault, Result, say};
+use crate::error::{Result, say};
 use crate::experiment::When;
 use crate::output::ResultFile;
 use crate::picture::Movie;
 use crate::picture::from_file::{beside, check_colour, check_field, film, still};
 use crate::units::{Length, Time};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What a picture may measure along a side: from an icon to the largest that fits in memory with ease.
 const PIXELS: std::ops::RangeInclusive<i64> = 16..=16_384;
@@ -88,6 +89,7 @@ pub fn run(args: &RenderArgs) -> Result<Report> {
     picture.time = When::At(Time::new(result.times()?[frame]));
     let named = if args.output.is_some() { Named::ByUser } else { Named::ByItself };
     let output = args.output.clone().unwrap_or_else(|| beside(&args.result, "png"));
+    refuse_same(&[&args.result, &output])?;
     refuse_existing(&output, args.force, named)?;
     if output.extension().is_some_and(|ending| ending == "png") {
         still(&result, &document, &picture)?.save_png(&output)?;
@@ -117,39 +119,4 @@ pub(super) fn ends(text: &str) -> std::result::Result<[f64; 2], String> {
         [low, high] if low < high && low.is_finite() && high.is_finite() => Ok([low, high]),
         _ => Err("give two numbers, the smaller first, as in 0,2.5".to_owned()),
     }
-}
-
-/// Who named a file that is about to be written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Named {
-    /// The user, with -o.
-    ByUser,
-    /// The program, after the result.
-    ByItself,
-}
-
-/// Nothing is overwritten unless asked for, and nothing is computed for a folder that is not there.
-///
-/// # Errors
-/// [`Error::Input`] if the file exists and `force` is not set, or if its folder does not exist.
-pub fn refuse_existing(path: &Path, force: bool, named: Named) -> Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-        let fault =
-            Fault::new(format!("{} cannot be written: there is no folder {}", path.display(), folder.display()))
-                .help("make the folder first, or name another file with -o");
-        return Err(Error::input(fault));
-    }
-    if path.is_dir() && path.extension().is_some() {
-        let fault = Fault::new(format!("{} is a folder", path.display())).help("name a file in it with -o");
-        return Err(Error::input(fault));
-    }
-    if force || !path.exists() {
-        return Ok(());
-    }
-    let help = match named {
-        Named::ByUser => "name another file with -o, or use --force to replace it",
-        Named::ByItself => "use --force to replace it, or move it away",
-    };
-    Err(Error::input(Fault::new(format!("{} exists", path.display())).help(help)))
 }

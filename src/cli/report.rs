@@ -53,6 +53,11 @@ impl Report {
 /// # Errors
 /// As [`Report::print`].
 pub fn print_failure(command: &str, error: &Error) -> Result<()> {
+    print(&failure_text(command, error))
+}
+
+/// The same as a text.
+pub fn failure_text(command: &str, error: &Error) -> String {
     let mut facts = Map::new();
     facts.insert("exit".to_owned(), error.exit_code().into());
     let faults = match error {
@@ -69,7 +74,7 @@ pub fn print_failure(command: &str, error: &Error) -> Result<()> {
         Error::Machine { message, help } => vec![json!({ "message": message, "help": help })],
     };
     facts.insert("faults".to_owned(), faults.into());
-    print_object(command, false, facts)
+    object_text(command, false, facts)
 }
 
 /// A fault with its location: line and column from 1, in characters.
@@ -86,11 +91,15 @@ fn fault_object(fault: &Fault) -> Value {
 }
 
 fn print_object(command: &str, ok: bool, facts: Map<String, Value>) -> Result<()> {
+    print(&object_text(command, ok, facts))
+}
+
+fn object_text(command: &str, ok: bool, facts: Map<String, Value>) -> String {
     let mut object = Map::new();
     object.insert("command".to_owned(), command.into());
     object.insert("ok".to_owned(), ok.into());
     object.extend(facts);
-    print(&format!("{:#}\n", Value::Object(object)))
+    format!("{:#}\n", Value::Object(object))
 }
 
 fn print(text: &str) -> Result<()> {

@@ -1,9 +1,11 @@
 //! `pseudopod resume`: goes on with a run from its last checkpoint.
 
-use super::report::Report;
+use super::crash;
+use super::report::{Form, Report};
 use super::run::{How, cancelled_by_signals, reporter, tell};
 use crate::error::Result;
-use std::path::PathBuf;
+use crate::output::{ResultFile, to_json};
+use std::path::{Path, PathBuf};
 
 /// Goes on with a run that was stopped or killed.
 #[derive(Debug, Clone, clap::Args)]
@@ -20,7 +22,14 @@ pub struct ResumeArgs {
 /// # Errors
 /// As [`crate::run::resume`].
 pub fn run(args: &ResumeArgs) -> Result<Report> {
-    if crate::run::finished_already(&args.result)?.is_some() {
+    let form = if args.how.json { Form::Json } else { Form::Words };
+    let finished = crash::told_as_damage("resume", form, &args.result, || {
+        if args.result.exists() {
+            read_through(&args.result);
+        }
+        crate::run::finished_already(&args.result)
+    })?;
+    if finished.is_some() {
         let words = match args.how.quiet {
             true => String::new(),
             false => format!("{}: finished already, nothing to resume\n", args.result.display()),
@@ -30,4 +39,15 @@ pub fn run(args: &ResumeArgs) -> Result<Report> {
     let (threads, cancel) = (args.how.threads, cancelled_by_signals());
     let outcome = crate::run::resume(&args.result, threads, &cancel, &mut *reporter(&args.how))?;
     tell(&args.result, &outcome, &args.how)
+}
+
+/// Reads what going on will read, so that a damaged file is told of before anything of it is changed. What is wrong with it in an
+/// orderly way is told by whoever reads it next.
+fn read_through(result: &Path) {
+    if let Ok(file) = ResultFile::open(result) {
+        let _ = to_json(&file);
+        let last = file.frames() - 1;
+        let _ = file.positions(last).and_then(|_| file.forces(last));
+        file.series_names().iter().for_each(|name| drop(file.cell_values(name, last)));
+    }
 }

@@ -1,5 +1,6 @@
 //! `pseudopod run`: runs an experiment and leaves its result, picture and charts.
 
+use super::files::{Named, refuse_existing};
 use super::progress::Progress;
 use super::report::{Report, path_text, paths};
 use crate::error::{Error, Result, say};
@@ -65,6 +66,12 @@ pub fn run(args: &RunArgs) -> Result<Report> {
     let folder = result.parent().filter(|folder| args.output.is_none() && !folder.exists());
     folder.map_or(Ok(()), make_folder)?;
     let overwrite = if args.force { Overwrite::Replace } else { Overwrite::Refuse };
+    // That the result itself exists is told by whoever makes it.
+    if !args.how.no_pictures && !args.force && !result.exists() {
+        for picture in crate::picture::default_files(&document, &result) {
+            refuse_existing(&picture, false, Named::ByItself)?;
+        }
+    }
     let options =
         RunOptions { result: result.clone(), overwrite, threads: args.how.threads, cancel: cancelled_by_signals() };
     let outcome = run::run(&document, &options, &mut *reporter(&args.how)).inspect_err(|_| {

@@ -1,6 +1,6 @@
 //! `pseudopod schema`: prints the JSON schema of the experiment document.
 
-use super::render::{Named, refuse_existing};
+use super::files::{Named, refuse_existing};
 use super::report::Report;
 use crate::error::{Error, Result};
 use std::path::PathBuf;

@@ -54,7 +54,14 @@ impl Document {
             let words = format!("it has {size} bytes, and at most {largest} are read");
             return Err(std::io::Error::new(std::io::ErrorKind::FileTooLarge, words));
         }
-        std::fs::read(file)
+        crate::files::read(&file)
+    }
+
+    /// The files that the document reads, itself included where it came from one, as the system can open them.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let named = self.references.iter().filter(|reference| reference.kind == "file");
+        let named = named.map(|reference| self.resolve(Path::new(&reference.text)));
+        std::iter::once(PathBuf::from(&self.source.name)).chain(named).collect()
     }
 
     /// A path of the document as the system can open it.

@@ -16,7 +16,7 @@ impl Document {
     /// [`Error::Input`] with all faults of the text in its order, or with the reason why there is no text.
     pub fn read(path: &Path, sets: &[String]) -> Result<Self> {
         let name = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|error| Error::input(unreadable(path, &error)))?;
+        let bytes = crate::files::read(path).map_err(|error| Error::input(unreadable(path, &error)))?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let offset = error.utf8_error().valid_up_to();
             let line = 1 + error.as_bytes()[..offset].iter().filter(|byte| **byte == b'\n').count();
@@ -133,6 +133,9 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Fault {
         }
         std::io::ErrorKind::PermissionDenied => {
             Fault::new(format!("{name} may not be read")).help("change its permissions, such as with chmod u+r")
+        }
+        std::io::ErrorKind::InvalidInput => {
+            Fault::new(format!("{name} cannot be read: {error}")).help("save the document to a file first")
         }
         _ => Fault::new(format!("{name} cannot be read: {error}")).help("check the file and the disk it is on"),
     }

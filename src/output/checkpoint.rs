@@ -80,7 +80,7 @@ pub(super) fn put(result: &Path, bytes: &[u8]) -> Result<()> {
 /// A damaged checkpoint, or a result file that cannot be opened.
 pub fn load_checkpoint(result: &Path) -> Result<Option<Checkpoint>> {
     let path = checkpoint_path(result);
-    match std::fs::read(&path) {
+    match crate::files::read(&path) {
         Ok(bytes) => return decode(&bytes, &path).map(Some),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
         Err(error) => return Err(machine_error(&path, "could not be read", &error.to_string())),

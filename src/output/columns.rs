@@ -351,7 +351,6 @@ impl Columns {
         }
         self.fields.write_counts(self.frames)
     }
-
 }
 
 fn per_frame(file: &File, plan: &Plan, row: &[usize], start: Start) -> hdf5::Result<Column> {

@@ -7,6 +7,7 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{File, Group, H5Type, Location};
 use ndarray::Array1;
 
+use super::vetting::vet;
 use crate::error::{Error, Fault, Result};
 
 /// The first bytes of every HDF5 file.
@@ -51,7 +52,12 @@ pub(super) fn open(path: &Path, access: Access) -> Result<File> {
     let file = opened.map_err(|error| refused(path, access, &error))?;
     let format = file.attr(FORMAT_ATTRIBUTE).and_then(|attribute| attribute.read_scalar::<i64>());
     match format {
-        Ok(FORMAT) => Ok(file),
+        // What is opened for writing is a copy of a file that was looked over.
+        Ok(FORMAT) if access == Access::Append => Ok(file),
+        Ok(FORMAT) => match vet(&file) {
+            Ok(()) => Ok(file),
+            Err(error) => Err(damaged(path, &error.to_string())),
+        },
         Ok(other) => Err(Error::input(
             Fault::new(format!("{} has format {other}, this program knows format {FORMAT}", path.display())).help(
                 match other < FORMAT {
@@ -80,7 +86,8 @@ pub(super) fn check_signature(path: &Path) -> Result<()> {
         return Err(Error::input(Fault::new(format!("{name} is a folder")).help("give the result file inside it")));
     }
     let mut start = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(8).read_to_end(&mut start));
+    let read = crate::files::check_plain(path).and_then(|()| std::fs::File::open(path));
+    let read = read.and_then(|file| file.take(8).read_to_end(&mut start));
     match read {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(Error::input(
             Fault::new(format!("there is no file {name}")).help("check the path; `pseudopod run` says where it writes"),
@@ -164,6 +171,11 @@ pub(super) fn stored(text: &str) -> VarLenUnicode {
     text.replace('\0', "\u{fffd}").parse().unwrap_or_default()
 }
 
+/// A text of a file: its bytes need not be what they claim to be.
+pub(super) fn checked(text: &VarLenUnicode) -> hdf5::Result<String> {
+    String::from_utf8(text.as_bytes().to_vec()).map_err(|_| "a text in it is not UTF-8".into())
+}
+
 /// Sets an attribute that is a text.
 pub(super) fn set_text(on: &Location, name: &str, text: &str) -> hdf5::Result<()> {
     on.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&stored(text))
@@ -171,7 +183,7 @@ pub(super) fn set_text(on: &Location, name: &str, text: &str) -> hdf5::Result<()
 
 /// Reads an attribute that is a text.
 pub(super) fn text(on: &Location, name: &str) -> hdf5::Result<String> {
-    Ok(on.attr(name)?.read_scalar::<VarLenUnicode>()?.as_str().to_string())
+    checked(&on.attr(name)?.read_scalar::<VarLenUnicode>()?)
 }
 
 /// Sets an attribute that is a number, new or not.
@@ -193,7 +205,7 @@ pub(super) fn write_texts(file: &Group, path: &str, texts: &[&str]) -> hdf5::Res
 /// Reads a list of texts.
 pub(super) fn read_texts(file: &Group, path: &str) -> hdf5::Result<Vec<String>> {
     let texts = file.dataset(path)?.read_raw::<VarLenUnicode>()?;
-    Ok(texts.iter().map(|text| text.as_str().to_string()).collect())
+    texts.iter().map(checked).collect()
 }
 
 #[cfg(test)]

@@ -15,10 +15,10 @@ use std::time::{Duration, Instant};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::{Frame, Layout};
 use super::container::machine_error;
 use super::header::Header;
 use super::replacement::beside;
+use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
 
 /// First bytes of a log.
@@ -300,10 +300,9 @@ fn cannot_make(result: &Path, error: &io::Error) -> Error {
         io::ErrorKind::PermissionDenied => {
             fault(format!("{name} may not be written: permission denied"), "write to a folder that is yours with -o")
         }
-        io::ErrorKind::NotADirectory => fault(
-            format!("{name} could not be made: a part of its path is a file, not a folder"),
-            "use another -o",
-        ),
+        io::ErrorKind::NotADirectory => {
+            fault(format!("{name} could not be made: a part of its path is a file, not a folder"), "use another -o")
+        }
         io::ErrorKind::InvalidInput => {
             fault(format!("{name} could not be made: {error}"), "remove what is there, or use another -o")
         }

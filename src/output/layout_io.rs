@@ -54,7 +54,7 @@ pub(super) fn read_header(file: &File) -> hdf5::Result<Header> {
     Ok(Header {
         document: text(&group, "document")?,
         title: text(&group, "title")?,
-        experiment: experiment.as_str().to_string(),
+        experiment: container::checked(&experiment)?,
         sets: read_texts(file, "/provenance/sets")?,
         equations: match file.link_exists("/provenance/equations") {
             true => read_texts(file, "/provenance/equation_files")?
@@ -73,6 +73,11 @@ pub(super) fn read_header(file: &File) -> hdf5::Result<Header> {
 fn described(dataset: &hdf5::Dataset, path: &str) -> hdf5::Result<()> {
     set_text(dataset, "unit", entry(path).unit)?;
     set_text(dataset, "description", entry(path).description)
+}
+
+/// Whether this is where a field says when its frames are, by the name of the list of times.
+pub(super) fn is_time_link(path: &str) -> bool {
+    path.starts_with("/fields/") && path.ends_with("/Steps/Values")
 }
 
 /// Writes all that the layout says.

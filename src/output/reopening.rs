@@ -5,7 +5,6 @@ use std::path::Path;
 
 use hdf5::File;
 
-use super::{Frame, Layout};
 use super::catalogue::FORCE;
 use super::checkpoint::{self, CheckpointMeta, DATASET, checkpoint_path};
 use super::container::{self, Access, failed, machine_error, set_number};
@@ -15,6 +14,7 @@ use super::layout_io::{read_header, read_layout};
 use super::pieces::has_frames;
 use super::renewal::{fits, renew, take_in};
 use super::whole::whole_frames;
+use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
 
 /// From where a run goes on.
@@ -97,7 +97,8 @@ pub(super) fn reopen(
     let more = more.take_while(wanted);
     let more = more.inspect(|frame| steps.push(i64::try_from(frame.step).unwrap_or(i64::MAX)));
     let forces = renew(path, |file| {
-        let frames = take_in(file, layout, in_file, more).map_err(|error| failed(path, "could not be changed", &error))?;
+        let frames =
+            take_in(file, layout, in_file, more).map_err(|error| failed(path, "could not be changed", &error))?;
         if frames < kept.frames {
             return Err(lost(path, frames, kept));
         }
@@ -105,7 +106,7 @@ pub(super) fn reopen(
         let there = |path: &str| file.dataset(path).is_ok_and(|dataset| dataset.shape()[0] > 0);
         Ok(there("/VTKHDF/Points").then(|| there(FORCE[0].path)))
     })?;
-    let owner = Owner::of(header, resumed + 1);
+    let owner = Owner::of(&found, resumed + 1);
     log.begin(&owner, layout).map_err(|error| machine_error(path, "could not be changed", &error.to_string()))?;
     let steps = steps.into_iter().map(|step| u64::try_from(step).unwrap_or(0)).collect();
     Ok(Some(Reopened { owner, steps, forces }))
@@ -119,7 +120,10 @@ fn lost(path: &Path, found: usize, kept: Kept) -> Error {
             "{missing} of the {} frames that were recorded before the checkpoint of {name} are missing",
             kept.frames
         ))
-        .help(format!("put {} back beside the result if it was left elsewhere, or run the experiment again", log.display())),
+        .help(format!(
+            "put {} back beside the result if it was left elsewhere, or run the experiment again",
+            log.display()
+        )),
     )
 }
 

@@ -192,7 +192,8 @@ impl ResultWriter {
         let (began, frames) = (Clock::now(), self.steps.len());
         let failed = |error: hdf5::Error| failed(path, "could not be written", &error);
         let replay = log.replay(owner, renewed.frames);
-        let replay = replay.map_err(|error| machine_error(&frames_path(path), "could not be read", &error.to_string()))?;
+        let replay =
+            replay.map_err(|error| machine_error(&frames_path(path), "could not be read", &error.to_string()))?;
         renew(path, |file| {
             let taken = take_in(file, layout, renewed.frames, replay).map_err(failed)?;
             if taken != frames {

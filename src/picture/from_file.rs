@@ -232,6 +232,14 @@ pub fn beside(result: &Path, ending: &str) -> PathBuf {
     result.with_extension(ending)
 }
 
+/// The paths of what [`make_defaults`] makes for a result of a document.
+pub fn default_files(document: &Document, result: &Path) -> Vec<PathBuf> {
+    let charts = document.experiment.plot.iter();
+    let charts =
+        charts.flat_map(|plot| ["svg", "png"].map(|ending| beside(result, &format!("{}.{ending}", plot.name))));
+    std::iter::once(beside(result, "png")).chain(charts).collect()
+}
+
 /// Makes the picture and the charts that the experiment of a result asks for, beside it; returns their paths.
 ///
 /// # Errors

@@ -24,7 +24,7 @@ pub mod track_plots;
 
 pub use chart::{Axis, Chart, Series, save_chart};
 pub use colour::{Colour, ColourMap};
-pub use from_file::make_defaults;
+pub use from_file::{default_files, make_defaults};
 pub use image::Image;
 pub use movie::Movie;
 pub use render::{Camera, Overlay, Scene, draw};

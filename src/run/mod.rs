@@ -64,6 +64,11 @@ pub struct Outcome {
 pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -> Result<Outcome> {
     let RunOptions { result, overwrite, threads, cancel } = options;
     let document = &document.with_equations();
+    if let Some(input) = document.files().into_iter().find(|input| crate::files::are_same(input, result)) {
+        let fault =
+            Fault::new(format!("{} is what the run reads: its result cannot be written there", input.display()));
+        return Err(Error::input(fault.help("name another file with -o")));
+    }
     let builder = Simulation::builder().threads_or_all(*threads).cancel_token(cancel.clone());
     let ready = {
         let told = Mutex::new(&mut *report);

@@ -100,8 +100,12 @@ impl<'a> Recording<'a> {
         self.writer.save_checkpoint(simulation.steps(), simulation.time(), &simulation.checkpoint())
     }
 
-    /// Keeps the last good state, as a frame and to resume from: it is what the user wants to look at.
+    /// Keeps the last good state, as a frame and to resume from: it is what the user wants to look at. Where cells have come
+    /// into each other since they were looked at last it is the one of then.
     pub fn keep_last(&mut self, trouble: impl Into<SimulationError>, simulation: &mut Simulation) -> Error {
+        if check_passed(simulation.model(), simulation.state()).is_err() {
+            return self.keep_good(trouble, simulation);
+        }
         let unseen = simulation.steps() > self.recorded;
         let frame = if unseen { self.writer.append(&simulation.record(&mut self.recorder)) } else { Ok(()) };
         let kept = frame.and_then(|()| self.save(simulation));

@@ -3,11 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// A module and the modules that it may use. Every module may use itself and those that see nothing else: `error`, `units`,
+/// A module and the modules that it may use. Every module may use itself and those that see nothing else: `error`, `units`, `files`,
 /// `elementary`, `random`, `recorded`, and the crate's own `Vec3`.
 const TABLE: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("units", &[]),
+    ("files", &[]),
     ("elementary", &[]),
     ("random", &["elementary"]),
     ("recorded", &[]),
@@ -65,7 +66,7 @@ const TABLE: &[(&str, &[&str])] = &[
 ];
 
 /// What every module may use.
-const GROUND: [&str; 5] = ["error", "units", "elementary", "random", "recorded"];
+const GROUND: [&str; 6] = ["error", "units", "files", "elementary", "random", "recorded"];
 
 /// Modules that must not touch files or clocks, and the words that would show it.
 const PURE: [&str; 8] = ["geometry", "mechanics", "contact", "cell", "sim", "units", "elementary", "random"];

@@ -1,7 +1,10 @@
 //! The program as others start it, kill it and read its files.
 
 mod commands;
+#[cfg(target_os = "linux")]
+mod every_write;
 mod kill;
+mod killed_runs;
 mod python;
 
 #[path = "../pictures/example.rs"]

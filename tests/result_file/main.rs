@@ -1,5 +1,6 @@
 //! What the result file promises: what was recorded is read back, whatever happened to the run.
 
+mod crafted;
 mod example;
 mod faults;
 mod fields;

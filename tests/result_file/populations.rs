@@ -78,7 +78,8 @@ fn a_run_resumed_anywhere_in_a_lineage_leaves_the_file_of_one_that_never_stopped
     for kept in 1..frames.len() {
         let _ = std::fs::remove_file(&path);
         drop(write_lineage(&path));
-        let mut writer = ResultWriter::reopen(&path, &header(), &layout(), Kept::until(10 * (kept as u64 - 1))).unwrap();
+        let mut writer =
+            ResultWriter::reopen(&path, &header(), &layout(), Kept::until(10 * (kept as u64 - 1))).unwrap();
         assert_eq!(writer.frames(), kept);
         frames[kept..].iter().for_each(|frame| writer.append(frame).unwrap());
         writer.finish(1.0).unwrap();

@@ -1,6 +1,6 @@
 //! A run that goes on leaves the file of a run that never stopped.
 
-use pseudopod::output::{Frame, Measure, Kept, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
+use pseudopod::output::{Frame, Kept, Measure, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
 
 use crate::example::{cells, frame, header, layout, write};
 use crate::round_trip::assert_holds;
@@ -17,7 +17,8 @@ fn a_resumed_file_equals_an_uninterrupted_one() {
     for (number, first, keep, all) in [(3, 10, 6, 12), (3, 600, 300, 700), (3, 600, 512, 520), (1500, 4, 2, 5)] {
         let path = folder.path().join(format!("{number}-{first}-{keep}.h5"));
         drop(write(&path, number, first));
-        let mut writer = ResultWriter::reopen(&path, &header(), &layout(), Kept::until(10 * (keep as u64 - 1))).unwrap();
+        let mut writer =
+            ResultWriter::reopen(&path, &header(), &layout(), Kept::until(10 * (keep as u64 - 1))).unwrap();
         assert_eq!(writer.frames(), keep);
         (keep..all).for_each(|index| writer.append(&frame(&cells(number), index)).unwrap());
         writer.finish(3.0).unwrap();

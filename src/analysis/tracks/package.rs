@@ -29,7 +29,7 @@ pub fn description(path: &Path) -> Option<PathBuf> {
 /// A description or table that cannot be read or lacks what the layout asks for, times that are not known, and as [`assemble`].
 pub fn read(description: &Path, options: &Options) -> Result<Read> {
     let name = description.display().to_string();
-    let text = std::fs::read_to_string(description)
+    let text = crate::files::read_text(description)
         .map_err(|error| fault(format!("{name} cannot be read: {error}"), "give the folder of a biotracks package"))?;
     let package: Value = serde_json::from_str(&text).map_err(|error| {
         fault(format!("{name} is not JSON: {error}"), "give the description of a biotracks package")

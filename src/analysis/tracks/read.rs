@@ -24,7 +24,7 @@ pub struct Read {
 /// # Errors
 /// When the file cannot be read, and as [`parse`].
 pub fn read(path: &Path, options: &Options) -> Result<Read> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
+    let text = crate::files::read_text(path).map_err(|error| {
         let fault = Fault::new(format!("the tracks {} cannot be read: {error}", path.display()));
         Error::input(fault.help("give the path of a CSV file with a row for each track and frame"))
     })?;

@@ -1,7 +1,7 @@
 //! `pseudopod eml from-sbml`: writes an SBML model as an EML document.
 
 use super::read::read;
-use crate::cli::render::{Named, refuse_existing};
+use crate::cli::files::{Named, refuse_existing, refuse_same};
 use crate::cli::report::{Report, path_text, paths};
 use crate::equations::eml::{self, Written};
 use crate::error::{Error, Fault, Result, Source};
@@ -31,7 +31,7 @@ pub struct FromSbmlArgs {
 /// A model that cannot be read, or says what EML cannot; a file that exists or cannot be written.
 pub fn run(args: &FromSbmlArgs) -> Result<Report> {
     if let Some(path) = &args.output {
-        super::refuse_same(&[&args.model, path])?;
+        refuse_same(&[&args.model, path])?;
         refuse_existing(path, args.force, Named::ByUser)?;
     }
     let (text, notices) = convert(&args.model)?;

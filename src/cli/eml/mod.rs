@@ -9,9 +9,8 @@ mod read;
 pub mod solve;
 
 use super::report::Report;
-use crate::error::{Error, Fault, Result};
+use crate::error::Result;
 use clap::Subcommand;
-use std::path::Path;
 
 /// Checks, solves and converts documents of equations: EML, and SBML models.
 #[derive(Debug, Clone, clap::Args)]
@@ -53,25 +52,4 @@ pub fn run(args: &EmlArgs) -> Result<Report> {
         EmlCommand::Solve(args) => solve::run(args),
         EmlCommand::FromSbml(args) => from_sbml::run(args),
     }
-}
-
-/// Refuses files that a command would read and write, or write twice.
-///
-/// # Errors
-/// Two paths that lead to the same file, whether it is there or not.
-fn refuse_same(files: &[&Path]) -> Result<()> {
-    let resolved = |path: &Path| {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let whole = std::fs::canonicalize(path);
-        whole.unwrap_or_else(|_| {
-            std::fs::canonicalize(folder).unwrap_or_default().join(path.file_name().unwrap_or_default())
-        })
-    };
-    for (number, path) in files.iter().enumerate() {
-        if files[..number].iter().any(|other| resolved(other) == resolved(path)) {
-            let fault = Fault::new(format!("{} is named twice", path.display()));
-            return Err(Error::input(fault.help("give each file that is read or written a name of its own")));
-        }
-    }
-    Ok(())
 }

@@ -25,6 +25,7 @@ fn text(path: &Path, name: &str) -> Result<String> {
         Error::input(Fault::new(message).help("name an EML document or an SBML model"))
     };
     let failed = |error: std::io::Error| Error::input(unreadable(path, &error));
+    crate::files::check_plain(path).map_err(failed)?;
     let file = std::fs::File::open(path).map_err(failed)?;
     let size = file.metadata().map_err(failed)?.len();
     if size > most {

@@ -4,9 +4,8 @@ use super::columns::{Table, columns, set};
 use super::draw::Drawing;
 use super::options::{SolveArgs, options, points};
 use super::read::read;
-use super::refuse_same;
 
-use crate::cli::render::{Named, refuse_existing};
+use crate::cli::files::{Named, refuse_existing, refuse_same};
 use crate::cli::report::{Report, path_text, paths};
 use crate::error::{Error, Fault, Result, say};
 use crate::ode::solve_each;

@@ -41,7 +41,7 @@ pub fn read_surface(path: &Path, scale_to_um: f64) -> Result<Surface> {
         let fault = Fault::new(format!("mesh file `{name}` {found}, which names no format that can be read"));
         return Err(Error::input(fault.help("mesh files end in .obj, .ply or .stl")));
     }
-    let bytes = std::fs::read(path).map_err(|failure| Error::input(not_readable(path, &failure)))?;
+    let bytes = crate::files::read(path).map_err(|failure| Error::input(not_readable(path, &failure)))?;
     let mut surface = match format {
         "obj" => obj::parse(&name, &bytes),
         "ply" => ply::parse(&name, &bytes),
