@@ -92,6 +92,9 @@ pub(super) fn check_signature(path: &Path) -> Result<()> {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(Error::input(
             Fault::new(format!("there is no file {name}")).help("check the path; `pseudopod run` says where it writes"),
         )),
+        Err(error) if error.kind() == std::io::ErrorKind::InvalidInput => Err(Error::input(
+            Fault::new(format!("{name} cannot be read: {error}")).help("give the file that `pseudopod run` wrote"),
+        )),
         Err(error) => Err(Error::Machine {
             message: format!("{name} could not be read: {error}"),
             help: "check its permissions and the disk it lies on".into(),

@@ -166,12 +166,19 @@ impl ResultWriter {
         if seen == 0 {
             return self.renew().map_err(|error| self.give_up(error));
         }
-        if at.elapsed() >= self.least_interval.max(took * PER_RENEWAL) && self.renew().is_err() {
-            // There may be no space for a second file, or for now: the frames are safe in the log, and the run goes on. How
-            // it ends is told by `finish`.
-            self.renewed.at = Clock::now();
+        if at.elapsed() < self.least_interval.max(took * PER_RENEWAL) {
+            return Ok(());
         }
-        Ok(())
+        match self.renew() {
+            Err(error) if !self.path.exists() => Err(self.give_up(error)),
+            // There may be no space for a second file, or not for now: the frames are safe in the log, and the run goes on.
+            // How it ends is told by `finish`.
+            Err(_) => {
+                self.renewed.at = Clock::now();
+                Ok(())
+            }
+            Ok(()) => Ok(()),
+        }
     }
 
     /// Takes all frames so far into the file, so that readers see them.

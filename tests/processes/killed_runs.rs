@@ -9,11 +9,13 @@ use pseudopod::output::ResultFile;
 
 use crate::turns::take_turn;
 
+/// The document of the runs.
 const DOCUMENT: &str = r#"
 title = "Cells that stick, secrete and vanish"
 seed = 11
 [run]
 until = "UNTIL"
+integrator = { max_step = "0.1 s" }
 [cells.white]
 number = 8
 mesh = { shape = "icosphere", radius = "5 um", level = 1 }
@@ -22,7 +24,7 @@ motility = { brownian = { speed = "20 um/min", persistence = "5 s" } }
 placement = { grid = [2, 2, 2], spacing = "10.5 um" }
 chemistry = ["clock"]
 [[cells.white.removed]]
-time = "2 s"
+time = "0.6 s"
 number = 1
 [contact]
 strength = "0.1 pN/um^2"
@@ -39,14 +41,16 @@ const CLOCK: &str = r#"<eml name="clock" level="cell"><input id="c" default="0"/
 const FIELD: &str = r#"<eml name="field"><grid dimension="2" spacing="4" origin="-40 -40" size="80 80"/>
     <field id="c" diffusion="30" decay="0.1" initial="2 + 0.02*x"/></eml>"#;
 
-fn pseudopod(folder: &Path, arguments: &[&str]) -> Command {
+/// The program, quiet, on one thread and without pictures.
+pub fn pseudopod(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_pseudopod"));
     command.args(arguments).args(["-q", "--threads", "1", "--no-pictures"]).current_dir(folder);
     command.stdout(Stdio::null());
     command
 }
 
-fn write_document(folder: &Path, until: &str) {
+/// Writes the document and its equations.
+pub fn write_document(folder: &Path, until: &str) {
     std::fs::write(folder.join("cells.toml"), DOCUMENT.replace("UNTIL", until)).unwrap();
     std::fs::write(folder.join("clock.eml"), CLOCK).unwrap();
     std::fs::write(folder.join("field.eml"), FIELD).unwrap();

@@ -1,11 +1,13 @@
 //! The program as others start it, kill it and read its files.
 
 mod commands;
+mod damaged;
 #[cfg(target_os = "linux")]
 mod every_write;
 mod kill;
 mod killed_runs;
 mod python;
+mod running;
 
 #[path = "../pictures/example.rs"]
 mod fields_example;

@@ -1,4 +1,4 @@
-//! A scene that has everything: two types, contacts that stick by bonds that close and open, walks that turn, pseudopods with fibres and without, a plane, loads, fibres, a field that cells secrete into
+//! A scene that has everything: two types, contacts that stick by bonds that close and open, walks that turn, pseudopods with fibres and without that heed what they touch, membranes whose moduli chemistry sets, a plane, loads, fibres, a field that cells secrete into
 //! and climb, noise at all levels, systems with events, links both ways, membranes that sense and push at every atom, an atom that is put somewhere.
 
 use pseudopod::experiment::{Compiled, Document, compile};
@@ -39,7 +39,8 @@ const SKIN: &str = r#"<eml name="skin" level="membrane"><input id="c" default="0
     <link from="cell.atoms.curvature" to="system.bent"/><link from="cell.atoms.area_strain" to="system.wide" transfer="value + 0*inside"/>
     <link from="cell.atoms.in_contact" to="system.near"/><link from="cell.atoms.on_plane" to="system.low"/><link from="cell.atoms.traction" to="system.pull"/>
     <link from="system.push" to="cell.atoms.protrusion"/><link from="system.a" to="cell.atoms.tension" gain="0.2"/>
-    <link from="system.h" to="cell.atoms.adhesion" transfer="1/(1 + value^2)"/><link from="system.a" to="cell.atoms.secretion[c]" gain="0.01"/></eml>"#;
+    <link from="system.h" to="cell.atoms.adhesion" transfer="1/(1 + value^2)"/><link from="system.a" to="cell.atoms.secretion[c]" gain="0.01"/>
+    <link from="system.h" to="cell.atoms.elasticity" transfer="1 + 0.2*tanh(value)"/></eml>"#;
 
 /// What the ball has: it moves one of its atoms.
 const PIN: &str = r#"<eml name="pin" level="cell"><variable id="t" initial="0" rate="1"/><input id="seen" default="0"/>
@@ -63,9 +64,9 @@ tractions = true
 [cells.walker]
 mesh = { shape = "icosphere", radius = "5 um", level = 1 }
 placement = { at = [["0 um", "0 um", "5.02 um"], ["9.9 um", "0 um", "5.02 um"], ["0 um", "9.9 um", "5.02 um"]] }
-mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
+mechanics = { drag = "20 pN s/um", shape_memory = { shape_modulus = "10 pN/um" }, membrane = { law = "neo_hookean", shear = "4 pN/um", area = "4 pN/um" } }
 motility = { brownian = { speed = "2 um/min", persistence = "PERSISTENCE" } }
-pseudopods = { pressure = "0.5 Pa", fibres = { number = 3, stiffness = "0.02 pN/um" }, pause = "0.1 s", protrusion = "0.4 s", retraction = "0.4 s" }
+pseudopods = { pressure = "0.5 Pa", fibres = { number = 3, stiffness = "0.02 pN/um" }, pause = "0.1 s", protrusion = "0.4 s", retraction = "0.4 s", contact_inhibition = { share = 0.1, turn = 1 } }
 loads = [{ name = "push", all = true, direction = [0, 0, -1], force = "4 pN" }]
 fibres = [{ name = "trunk", pairs = [[0, 20]], stiffness = "1 pN/um" }]
 chemistry = ["own", "skin"]
@@ -73,7 +74,7 @@ chemistry = ["own", "skin"]
 [cells.ball]
 mesh = { shape = "icosphere", radius = "4 um", level = 1 }
 placement = { at = [["9 um", "9 um", "4.02 um"]] }
-mechanics = { drag = "15 pN s/um", shape_memory = { shape_modulus = "10 pN/um" } }
+mechanics = { drag = "15 pN s/um", shape_memory = { shape_modulus = "10 pN/um" }, membrane = { law = "neo_hookean", shear = "4 pN/um", area = "4 pN/um" } }
 pseudopods = { pressure = "0.3 Pa", contraction = "1 pN", pause = "0.1 s", protrusion = "0.3 s", retraction = "0.3 s" }
 loads = [{ name = "press", all = true, direction = [-0.7, -0.7, -0.2], force = [["0 s", "8 pN"], ["3.05 s", "9 pN"]] }]
 chemistry = ["pin", "skin"]
