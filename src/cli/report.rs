@@ -88,7 +88,7 @@ struct Counter {
 
 impl Counter {
     /// Line and column of a location, from 1, in characters; those of the end of the text where the location is beyond it.
-    fn place(&mut self, location: &Location) -> (usize, usize) {
+    fn line_and_column(&mut self, location: &Location) -> (usize, usize) {
         let text = location.source.text.as_str();
         let is_behind = location.start >= self.at;
         if !is_behind || !self.source.as_ref().is_some_and(|source| Arc::ptr_eq(source, &location.source)) {
@@ -107,7 +107,7 @@ impl Counter {
 fn fault_object(fault: &Fault, counter: &mut Counter) -> Value {
     let mut object = json!({ "message": fault.message, "help": fault.help });
     if let Some(location) = &fault.location {
-        let (line, column) = counter.place(location);
+        let (line, column) = counter.line_and_column(location);
         object["file"] = location.source.name.clone().into();
         object["line"] = line.into();
         object["column"] = column.into();
@@ -149,15 +149,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_are_counted_on_and_anew() {
+    fn locations_are_counted_on_and_anew() {
         let source = Arc::new(Source { name: "a".into(), text: "aß\nbc\nd".into() });
         let other = Arc::new(Source { name: "b".into(), text: "x\ny".into() });
         let mut counter = Counter::default();
-        let mut place = |source: &Arc<Source>, start: usize| {
-            counter.place(&Location { source: source.clone(), start, length: 0, label: String::new() })
+        let mut found = |source: &Arc<Source>, start: usize| {
+            counter.line_and_column(&Location { source: source.clone(), start, length: 0, label: String::new() })
         };
-        assert_eq!([1, 2, 5, 5, 0].map(|start| place(&source, start)), [(1, 2), (1, 2), (2, 2), (2, 2), (1, 1)]);
-        assert_eq!([(&other, 2), (&source, 7)].map(|(source, start)| place(source, start)), [(2, 1), (3, 1)]);
-        assert_eq!(place(&source, usize::MAX), (3, 2));
+        assert_eq!([1, 2, 5, 5, 0].map(|start| found(&source, start)), [(1, 2), (1, 2), (2, 2), (2, 2), (1, 1)]);
+        assert_eq!([(&other, 2), (&source, 7)].map(|(source, start)| found(source, start)), [(2, 1), (3, 1)]);
+        assert_eq!(found(&source, usize::MAX), (3, 2));
     }
 }

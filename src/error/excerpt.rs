@@ -50,6 +50,8 @@ impl Excerpt {
             let after = &text[line_end + 1..];
             excerpt.text.push('\n');
             excerpt.add(&after[..after.find('\n').unwrap_or(after.len())], 0);
+            // The end of a line is what shows that there is an empty one.
+            excerpt.text.extend(after.contains('\n').then_some('\n'));
         }
         excerpt
     }
@@ -85,7 +87,7 @@ impl Excerpt {
         let lengths: Vec<usize> = self.text[first..].chars().map(char::len_utf8).collect();
         // In characters, since some are shown as others of another length.
         let begin = line[from..start].chars().count() + usize::from(from > 0);
-        let marked = line[start..end].chars().take(WINDOW).count();
+        let marked = line[start..end].chars().take(if is_long { WINDOW } else { LONGEST_LINE }).count();
         let bytes = |from: usize, to: usize| lengths.iter().take(to).skip(from).sum::<usize>();
         self.span = (first + bytes(0, begin), bytes(begin, begin + marked));
     }
@@ -156,7 +158,7 @@ mod tests {
     #[test]
     fn the_line_and_its_neighbours_are_kept() {
         let found = excerpt("one\ntwo\nthree four\r\nfive\nsix\n", 14, 4);
-        assert_eq!((found.text.as_str(), found.line, found.column), ("two\nthree four\nfive", 1, 6));
+        assert_eq!((found.text.as_str(), found.line, found.column), ("two\nthree four\nfive\n", 1, 6));
         assert_eq!(marked(&found), "four");
         let last = excerpt("one\n", 4, 3);
         assert_eq!((last.text.as_str(), last.line, last.column, last.span), ("one\n", 0, 0, (4, 0)));

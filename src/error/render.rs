@@ -8,7 +8,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnost
 const WIDTH: usize = 110;
 
 /// The most faults that are drawn: nobody reads more at once, and a document can have a hundred thousand.
-const MOST_DRAWN: usize = 100;
+const MOST_DRAWN: usize = 200;
 
 /// Whether messages are coloured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub fn render(error: &Error, paint: Paint) -> String {
             let drawn = faults.iter().take(MOST_DRAWN);
             let mut text: String = drawn.map(|fault| fault_text(fault, paint) + "\n").collect();
             if faults.len() > MOST_DRAWN {
-                text.push_str(&format!("{} more are not shown: correct these first\n", faults.len() - MOST_DRAWN));
+                text.push_str(&format!("{} more: correct these first\n", faults.len() - MOST_DRAWN));
             }
             text.push_str(&count(faults));
             text
@@ -124,6 +124,6 @@ mod tests {
     fn many_faults_are_drawn_in_part_and_counted_in_whole() {
         let text = render(&Error::Input(vec![Fault::new("wrong"); 40_000]), Paint::Plain);
         assert_eq!(text.matches("wrong").count(), MOST_DRAWN);
-        assert!(text.ends_with("39900 more are not shown: correct these first\n40000 faults\n"), "{text}");
+        assert!(text.ends_with("39800 more: correct these first\n40000 faults\n"), "{text}");
     }
 }
