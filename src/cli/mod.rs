@@ -6,6 +6,7 @@ pub mod export;
 pub mod frames;
 pub mod info;
 pub mod measure;
+pub mod memory;
 pub mod own_fault;
 pub mod plot;
 pub mod progress;
