@@ -120,3 +120,17 @@ impl Neighbours {
         4 * (self.first.capacity() + self.bodies.capacity() + self.widths.capacity()) + 16 * self.entries.capacity()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_without_end_take_no_more_of_the_grid_than_others() {
+        let boxed = |low: f32, high: f32| Bounds { low: [low; 3], high: [high; 3] };
+        let bounds = [boxed(f32::NEG_INFINITY, f32::INFINITY), boxed(0.0, 1.0), boxed(5.0, 6.0)];
+        let mut neighbours = Neighbours::default();
+        neighbours.find(&bounds);
+        assert_eq!([0, 1, 2].map(|body| neighbours.of(body)), [&[0, 1, 2][..], &[0, 1], &[0, 2]]);
+    }
+}
