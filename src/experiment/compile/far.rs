@@ -47,7 +47,7 @@ fn farthest(placement: Option<&Placement>, number: usize, rest: &Surface) -> (St
             distances.max_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or_default()
         }
         Some(Placement::Grid { grid, spacing, origin }) => {
-            let half = grid.map(|n| 0.5 * f64::from(n - 1) * spacing.value());
+            let half = grid.map(|n| 0.5 * (f64::from(n) - 1.0) * spacing.value());
             let at = if largest(half) > largest(origin.map(|x| x.value())) { ".spacing" } else { ".origin" };
             (at.to_owned(), largest([0, 1, 2].map(|axis| origin[axis].value().abs() + half[axis])))
         }
@@ -57,7 +57,7 @@ fn farthest(placement: Option<&Placement>, number: usize, rest: &Surface) -> (St
         }
         None => {
             let (side, spacing) = default_grid(number, rest);
-            (String::new(), 0.5 * f64::from(side - 1) * spacing)
+            (String::new(), 0.5 * (f64::from(side) - 1.0) * spacing)
         }
     }
 }

@@ -59,7 +59,7 @@ pub fn default_grid(number: usize, rest: &Surface) -> (u32, f64) {
 
 /// The positions of a grid one after the other: it may have many more of them than there are cells.
 fn grid_positions(grid: [u32; 3], spacing: f64, origin: Vec3) -> impl Iterator<Item = Vec3> {
-    let middle = Vec3::from(grid.map(|n| 0.5 * f64::from(n - 1)));
+    let middle = Vec3::from(grid.map(|n| 0.5 * (f64::from(n) - 1.0)));
     let along_y_and_z = (0..grid[2]).flat_map(move |z| (0..grid[1]).map(move |y| (y, z)));
     let indices = along_y_and_z.flat_map(move |(y, z)| (0..grid[0]).map(move |x| [x, y, z]));
     indices.map(move |index| origin + spacing * (Vec3::from(index.map(f64::from)) - middle))
