@@ -1,6 +1,8 @@
 //! What can go wrong, told so that the reader knows where, what was found, what was expected and what to do.
 
 #[cfg(feature = "cli")]
+mod excerpt;
+#[cfg(feature = "cli")]
 mod render;
 pub mod words;
 

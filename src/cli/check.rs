@@ -1,13 +1,14 @@
 //! `pseudopod check`: finds all faults of experiment documents without running them.
 
+use super::memory;
 use super::progress::Progress;
 use super::report::{Report, path_text};
-use crate::error::{Error, Result};
-use crate::experiment::{Document, Prepared, PushedApart, notices, prepare, settle_start_told};
+use crate::error::{Error, Result, say};
+use crate::experiment::{Document, Prepared, PushedApart, Size, notices, prepare, settle_start_told};
 use crate::run::Report as _;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Checks experiment documents and reports all their faults.
@@ -19,6 +20,9 @@ pub struct CheckArgs {
     /// Changes a key before checking, as in --set run.until="10 s".
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub sets: Vec<String>,
+    /// The most memory that they may take by an estimate, as in "8 GB"; by default what the machine has.
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<String>,
     /// Prints what was found as JSON.
     #[arg(long)]
     pub json: bool,
@@ -31,17 +35,21 @@ pub struct CheckArgs {
 /// [`Error::Input`] with the faults of all documents.
 pub fn run(args: &CheckArgs) -> Result<Report> {
     let (mut words, mut good, mut faults) = (String::new(), Vec::<Value>::new(), Vec::new());
+    let memory = memory::allowed(args.memory.as_deref())?;
     for path in &args.documents {
         // Faults of meshes and steps show only once the cells are built.
-        let checked = Document::read(path, &args.sets).and_then(|document| {
+        let checked = Document::read(path, &args.sets).and_then(|mut document| {
+            document.memory = memory;
+            tell_of_fine_meshes(path, &document);
             let prepared = prepare(&document)?;
+            let size = prepared.size;
             let mut said = notices(&document, &prepared);
             let pushed = settled(&document, prepared)?;
             said.extend(pushed.notice());
-            Ok((document, pushed, said))
+            Ok((document, size, pushed, said))
         });
         match checked {
-            Ok((document, pushed, said)) => {
+            Ok((document, size, pushed, said)) => {
                 let cells: usize = document.experiment.cells.values().map(|cell| cell.count()).sum();
                 let (types, title) = (document.experiment.cells.len(), &document.experiment.title);
                 // Writing to a text cannot fail.
@@ -54,6 +62,9 @@ pub fn run(args: &CheckArgs) -> Result<Report> {
                     "title": title,
                     "cells": cells,
                     "types": types,
+                    "atoms": size.atoms as u64,
+                    "memory_bytes": size.memory as u64,
+                    "result_bytes": size.result as u64,
                     "cells_pushed_apart": pushed.cells,
                     "notices": said,
                 }));
@@ -70,6 +81,17 @@ pub fn run(args: &CheckArgs) -> Result<Report> {
         report.print("check", super::report::Form::Words)?;
     }
     Err(Error::Input(faults))
+}
+
+/// Atoms of a mesh above which it takes long to work out how stiff it is: half a minute for 40 000.
+const FINE: f64 = 20_000.0;
+
+/// Says what is waited for where a mesh is so fine that to check it takes long.
+fn tell_of_fine_meshes(path: &Path, document: &Document) {
+    let finest = Size::of_cells(document).finest;
+    if finest > FINE && document.memory.is_none_or(|most| Size::of_cells(document).memory <= most as f64) {
+        say(&format!("{}: working out how stiff a mesh of {finest:.0} atoms is, which takes its time", path.display()));
+    }
 }
 
 /// Looks whether cells overlap at the start, where they touch: only then they have to be built.

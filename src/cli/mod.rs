@@ -8,6 +8,8 @@ pub mod files;
 pub mod frames;
 pub mod info;
 pub mod measure;
+pub mod memory;
+pub mod own_fault;
 pub mod plot;
 pub mod progress;
 pub mod render;
@@ -78,15 +80,15 @@ impl Command {
 /// Does what the arguments say; returns the exit status.
 pub fn main(arguments: Arguments) -> i32 {
     let (name, form) = arguments.command.manner();
-    let outcome = act(arguments.command, name, form).and_then(|report| report.print(name, form));
-    let Err(error) = outcome else { return 0 };
-    let paint = if std::io::stderr().is_terminal() { Paint::Coloured } else { Paint::Plain };
-    let words = render(&error, paint);
-    say(words.strip_suffix('\n').unwrap_or(&words));
+    let work = || act(arguments.command, name, form).and_then(|report| report.print(name, form));
+    let Err(error) = own_fault::guarded(work).and_then(|outcome| outcome) else { return 0 };
     if form == Form::Json {
-        // Standard error has told everything already.
+        // First of all, so that scripts get their object whatever becomes of the words; these tell the same.
         let _ = report::print_failure(name, &error);
     }
+    let paint = if std::io::stderr().is_terminal() { Paint::Coloured } else { Paint::Plain };
+    let words = own_fault::guarded(|| render(&error, paint)).unwrap_or_else(|_| format!("{error}\n"));
+    say(words.strip_suffix('\n').unwrap_or(&words));
     error.exit_code()
 }
 

@@ -1,9 +1,10 @@
 //! What a command has to tell when it ends: a page for people, or one JSON object for scripts.
 
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Fault, Location, Result, Source};
 use serde_json::{Map, Value, json};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// How a command tells what it did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,7 +62,10 @@ pub fn failure_text(command: &str, error: &Error) -> String {
     let mut facts = Map::new();
     facts.insert("exit".to_owned(), error.exit_code().into());
     let faults = match error {
-        Error::Input(faults) => faults.iter().map(fault_object).collect(),
+        Error::Input(faults) => {
+            let mut counter = Counter::default();
+            faults.iter().map(|fault| fault_object(fault, &mut counter)).collect()
+        }
         Error::Numbers { message, help, kept } => {
             facts.insert("kept".to_owned(), kept.as_deref().map(path_text).into());
             vec![json!({ "message": message, "help": help })]
@@ -77,15 +81,41 @@ pub fn failure_text(command: &str, error: &Error) -> String {
     object_text(command, false, facts)
 }
 
+/// Counts lines and columns, from the last location on: faults come in the order of the text, and a hundred thousand of them in one
+/// line take no longer than the line.
+#[derive(Default)]
+struct Counter {
+    source: Option<Arc<Source>>,
+    at: usize,
+    line: usize,
+    column: usize,
+}
+
+impl Counter {
+    /// Line and column of a location, from 1, in characters; those of the end of the text where the location is beyond it.
+    fn line_and_column(&mut self, location: &Location) -> (usize, usize) {
+        let text = location.source.text.as_str();
+        let is_behind = location.start >= self.at;
+        if !is_behind || !self.source.as_ref().is_some_and(|source| Arc::ptr_eq(source, &location.source)) {
+            *self = Self { source: Some(location.source.clone()), ..Self::default() };
+        }
+        let end = (self.at..=location.start.min(text.len())).rev().find(|at| text.is_char_boundary(*at));
+        for c in text[self.at..end.unwrap_or(self.at)].chars() {
+            (self.line, self.column) = if c == '\n' { (self.line + 1, 0) } else { (self.line, self.column + 1) };
+            self.at += c.len_utf8();
+        }
+        (self.line + 1, self.column + 1)
+    }
+}
+
 /// A fault with its location: line and column from 1, in characters.
-fn fault_object(fault: &Fault) -> Value {
+fn fault_object(fault: &Fault, counter: &mut Counter) -> Value {
     let mut object = json!({ "message": fault.message, "help": fault.help });
     if let Some(location) = &fault.location {
-        let text = &location.source.text;
-        let before = text.get(..location.start).unwrap_or(text);
+        let (line, column) = counter.line_and_column(location);
         object["file"] = location.source.name.clone().into();
-        object["line"] = (1 + before.matches('\n').count()).into();
-        object["column"] = (1 + before.rsplit('\n').next().unwrap_or_default().chars().count()).into();
+        object["line"] = line.into();
+        object["column"] = column.into();
     }
     object
 }
@@ -121,4 +151,22 @@ pub fn paths(files: &[PathBuf]) -> Vec<String> {
 /// A path as a JSON text.
 pub fn path_text(path: &Path) -> String {
     path.display().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn locations_are_counted_on_and_anew() {
+        let source = Arc::new(Source { name: "a".into(), text: "aß\nbc\nd".into() });
+        let other = Arc::new(Source { name: "b".into(), text: "x\ny".into() });
+        let mut counter = Counter::default();
+        let mut found = |source: &Arc<Source>, start: usize| {
+            counter.line_and_column(&Location { source: source.clone(), start, length: 0, label: String::new() })
+        };
+        assert_eq!([1, 2, 5, 5, 0].map(|start| found(&source, start)), [(1, 2), (1, 2), (2, 2), (2, 2), (1, 1)]);
+        assert_eq!([(&other, 2), (&source, 7)].map(|(source, start)| found(source, start)), [(2, 1), (3, 1)]);
+        assert_eq!(found(&source, usize::MAX), (3, 2));
+    }
 }

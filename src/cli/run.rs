@@ -1,6 +1,7 @@
 //! `pseudopod run`: runs an experiment and leaves its result, picture and charts.
 
 use super::files::{Named, refuse_existing};
+use super::memory;
 use super::progress::Progress;
 use super::report::{Report, path_text, paths};
 use crate::error::{Error, Result, say};
@@ -28,6 +29,9 @@ pub struct RunArgs {
     /// Another end of the run, as in "10 s".
     #[arg(long, value_name = "TIME")]
     pub until: Option<String>,
+    /// The most memory that it may take by an estimate, as in "8 GB"; by default what the machine has.
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<String>,
     /// Replaces a result that is there.
     #[arg(long)]
     pub force: bool,
@@ -61,7 +65,8 @@ pub fn run(args: &RunArgs) -> Result<Report> {
     let mut sets = args.sets.clone();
     sets.extend(args.seed.map(|seed| format!("seed={seed}")));
     sets.extend(args.until.as_ref().map(|until| format!("run.until={until}")));
-    let document = Document::read(&args.experiment, &sets)?;
+    let mut document = Document::read(&args.experiment, &sets)?;
+    document.memory = memory::allowed(args.memory.as_deref())?;
     let result = args.output.clone().unwrap_or_else(|| default_result(&args.experiment));
     let folder = result.parent().filter(|folder| args.output.is_none() && !folder.exists());
     folder.map_or(Ok(()), make_folder)?;

@@ -94,16 +94,17 @@ impl Neighbours {
         }
     }
 
-    /// The median of the longest extents of bodies, doubled until large bodies do not fill the grid.
+    /// The median of the longest extents of bodies, doubled until large bodies do not fill the grid: without end where a box has none, and then
+    /// all bodies share a cell of the grid.
     fn width(&mut self, bounds: &[Bounds]) -> f32 {
         let extent = |bounds: &Bounds| (0..3).map(|axis| bounds.high[axis] - bounds.low[axis]).fold(0.0, f32::max);
         self.widths.clear();
         self.widths.extend(bounds.iter().map(extent).filter(|width| width.is_finite() && *width > 0.0));
-        if self.widths.is_empty() {
-            return 1.0;
-        }
         let middle = self.widths.len() / 2;
-        let mut width = *self.widths.select_nth_unstable_by(middle, f32::total_cmp).1;
+        let mut width = match self.widths.as_mut_slice() {
+            [] => 1.0,
+            widths => *widths.select_nth_unstable_by(middle, f32::total_cmp).1,
+        };
         let entries = |width: f32| -> f64 {
             let count = |along: &std::ops::RangeInclusive<i64>| (along.end() - along.start() + 1).max(0) as f64;
             bounds.iter().map(|bounds| grid_cells_of(bounds, width).iter().map(count).product::<f64>()).sum()
@@ -117,5 +118,19 @@ impl Neighbours {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         4 * (self.first.capacity() + self.bodies.capacity() + self.widths.capacity()) + 16 * self.entries.capacity()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_without_end_take_no_more_of_the_grid_than_others() {
+        let boxed = |low: f32, high: f32| Bounds { low: [low; 3], high: [high; 3] };
+        let bounds = [boxed(f32::NEG_INFINITY, f32::INFINITY), boxed(0.0, 1.0), boxed(5.0, 6.0)];
+        let mut neighbours = Neighbours::default();
+        neighbours.find(&bounds);
+        assert_eq!([0, 1, 2].map(|body| neighbours.of(body)), [&[0, 1, 2][..], &[0, 1], &[0, 2]]);
     }
 }

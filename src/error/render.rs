@@ -1,10 +1,14 @@
 //! Errors as the terminal shows them: the location in the text, what was found, what to do.
 
+use super::excerpt::{Excerpt, shortened};
 use super::{Error, Fault};
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic};
 
 /// The width of messages, in characters; fixed, so that a message looks the same everywhere.
 const WIDTH: usize = 110;
+
+/// The most faults that are drawn: nobody reads more at once, and a document can have a hundred thousand.
+const MOST_DRAWN: usize = 200;
 
 /// Whether messages are coloured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,7 +23,11 @@ pub enum Paint {
 pub fn render(error: &Error, paint: Paint) -> String {
     match error {
         Error::Input(faults) => {
-            let mut text: String = faults.iter().map(|fault| fault_text(fault, paint) + "\n").collect();
+            let drawn = faults.iter().take(MOST_DRAWN);
+            let mut text: String = drawn.map(|fault| fault_text(fault, paint) + "\n").collect();
+            if faults.len() > MOST_DRAWN {
+                text.push_str(&format!("{} more: correct these first\n", faults.len() - MOST_DRAWN));
+            }
             text.push_str(&count(faults));
             text
         }
@@ -40,8 +48,8 @@ fn plain_text(message: &str, help: &str, paint: Paint) -> String {
 }
 
 fn fault_text(fault: &Fault, paint: Paint) -> String {
-    let mut diagnostic = MietteDiagnostic::new(&fault.message);
-    diagnostic.help.clone_from(&fault.help);
+    let mut diagnostic = MietteDiagnostic::new(shortened(&fault.message));
+    diagnostic.help = fault.help.as_deref().map(shortened);
     let theme = match paint {
         Paint::Coloured => GraphicalTheme::unicode(),
         Paint::Plain => GraphicalTheme::unicode_nocolor(),
@@ -50,13 +58,10 @@ fn fault_text(fault: &Fault, paint: Paint) -> String {
     let mut text = String::new();
     let rendered = match &fault.location {
         Some(location) => {
-            let label = (!location.label.is_empty()).then(|| location.label.clone());
-            let end = location.source.text.len();
-            let start = location.start.min(end);
-            let span = (start, location.length.min(end - start));
-            let diagnostic = diagnostic.with_label(LabeledSpan::new_primary_with_span(label, span));
-            let source = NamedSource::new(&location.source.name, location.source.text.clone());
-            handler.render_report(&mut text, miette::Report::new(diagnostic).with_source_code(source).as_ref())
+            let label = (!location.label.is_empty()).then(|| shortened(&location.label));
+            let excerpt = Excerpt::around(location);
+            let diagnostic = diagnostic.with_label(LabeledSpan::new_primary_with_span(label, excerpt.span()));
+            handler.render_report(&mut text, miette::Report::new(diagnostic).with_source_code(excerpt).as_ref())
         }
         None => handler.render_report(&mut text, &diagnostic),
     };
@@ -106,5 +111,19 @@ mod tests {
         let source = Arc::new(Source { name: "a.toml".into(), text: String::new() });
         let location = Location { source, start: 8, length: 5, label: "here".into() };
         assert!(render(&Error::input(Fault::new("lost").at(location)), Paint::Plain).contains("lost"));
+    }
+    #[test]
+    fn a_fault_beyond_the_widest_terminal_is_drawn_with_its_place() {
+        let source = Arc::new(Source { name: "a.toml".into(), text: format!("{}untl = 1", " ".repeat(70_000)) });
+        let location = Location { source, start: 70_000, length: 4, label: "did you mean `until`?".into() };
+        let text = render(&Error::input(Fault::new("unknown key").at(location)), Paint::Plain);
+        assert!(text.contains("a.toml:1:70001") && text.contains("untl = 1") && text.len() < 2000, "{text}");
+    }
+
+    #[test]
+    fn many_faults_are_drawn_in_part_and_counted_in_whole() {
+        let text = render(&Error::Input(vec![Fault::new("wrong"); 40_000]), Paint::Plain);
+        assert_eq!(text.matches("wrong").count(), MOST_DRAWN);
+        assert!(text.ends_with("39800 more: correct these first\n40000 faults\n"), "{text}");
     }
 }

@@ -103,7 +103,7 @@ pub enum Mesh {
     /// The biconcave red cell of Evans and Fung (1972) on an icosphere, its axis along z.
     RedCell {
         /// Diameter of the disc.
-        #[schemars(extend("x-exclusive-minimum" = 0))]
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
         diameter: Length,
         /// Refinement: 12, 42, 162, 642, 2562 … atoms.
         #[schemars(range(min = 0, max = 6))]
@@ -112,7 +112,7 @@ pub enum Mesh {
     /// A sphere refined from an icosahedron.
     Icosphere {
         /// Distance of every atom from the centre.
-        #[schemars(extend("x-exclusive-minimum" = 0))]
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
         radius: Length,
         /// Refinement: 12, 42, 162, 642, 2562 … atoms.
         #[schemars(range(min = 0, max = 6))]
@@ -121,7 +121,7 @@ pub enum Mesh {
     /// A sphere refined from an octahedron; 66 atoms with 4 divisions.
     Octasphere {
         /// Distance of every atom from the centre.
-        #[schemars(extend("x-exclusive-minimum" = 0))]
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
         radius: Length,
         /// Parts that every edge of the octahedron is divided into.
         #[schemars(range(min = 1, max = 64))]
@@ -130,7 +130,7 @@ pub enum Mesh {
     /// A closed rectangular box, centred.
     Box {
         /// Lengths of its edges along x, y and z.
-        #[schemars(extend("x-exclusive-minimum" = 0))]
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
         size: [Length; 3],
         /// Parts that the edges are divided into.
         #[schemars(inner(range(min = 1, max = 1000)))]
@@ -139,7 +139,7 @@ pub enum Mesh {
     /// An open flat sheet in the plane z = 0, centred.
     Sheet {
         /// Lengths of its sides along x and y.
-        #[schemars(extend("x-exclusive-minimum" = 0))]
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
         size: [Length; 2],
         /// Parts that the sides are divided into.
         #[schemars(inner(range(min = 1, max = 10000)))]
@@ -148,7 +148,7 @@ pub enum Mesh {
     /// A single open equilateral facet, for studies of stability.
     Triangle {
         /// Length of its sides.
-        #[schemars(extend("x-exclusive-minimum" = 0))]
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
         side: Length,
     },
     /// A surface from a file: OBJ, STL or PLY.

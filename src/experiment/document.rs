@@ -20,6 +20,8 @@ pub struct Document {
     pub experiment: Experiment,
     /// Texts of documents of equations, by the path that the experiment writes; they stand in place of the files.
     pub equations: BTreeMap<String, String>,
+    /// Bytes of memory that the experiment may take, by an estimate; [`compile`](super::compile()) refuses more. Any number when absent.
+    pub memory: Option<u64>,
     /// The texts in it that mean something elsewhere.
     pub(super) references: Vec<check::Reference>,
     pub(super) tree: Node,

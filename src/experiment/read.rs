@@ -64,7 +64,7 @@ impl Document {
             let experiment = experiment_of(&tree)?;
             let (sets, base_dir) = (sets.to_vec(), base_dir.to_owned());
             let references = found.references;
-            let document = Self { source, sets, base_dir, experiment, equations, references, tree };
+            let document = Self { source, sets, base_dir, experiment, equations, memory: None, references, tree };
             faults = semantics::check(&document);
             if faults.is_empty() {
                 return Ok(document);

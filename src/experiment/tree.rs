@@ -166,13 +166,15 @@ fn table_value(source: &Arc<Source>, shift: usize, table: &DeTable, faults: &mut
 /// Faults of syntax, one for each line: what follows on the same line is mostly an echo.
 fn syntax_faults(source: &Arc<Source>, errors: &[toml::de::Error]) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let mut last_line = None;
+    let (mut last_line, mut line, mut counted) = (None, 0, 0);
     let mut errors: Vec<_> = errors.iter().collect();
     errors.sort_by_key(|error| error.span().map(|span| span.start));
     for error in errors {
         let span = error.span().unwrap_or(0..0);
-        let start = span.start.min(source.text.len());
-        let line = source.text[..start].matches('\n').count();
+        let start =
+            (0..=span.start.min(source.text.len())).rev().find(|at| source.text.is_char_boundary(*at)).unwrap_or(0);
+        line += source.text[counted..start].matches('\n').count();
+        counted = start;
         if last_line.replace(line) == Some(line) {
             continue;
         }
@@ -181,14 +183,20 @@ fn syntax_faults(source: &Arc<Source>, errors: &[toml::de::Error]) -> Vec<Fault>
         let message = error.message().lines().collect::<Vec<_>>().join("; ");
         let location = Location { source: source.clone(), start, length, label: "here".into() };
         let fault = Fault::new(format!("this is not TOML: {message}")).at(location);
-        faults.push(fault.help(syntax_help(source, line, &message)));
+        faults.push(fault.help(syntax_help(line_at(&source.text, start), &message)));
     }
     faults
 }
 
+/// The line of a text that has a position between characters.
+fn line_at(text: &str, at: usize) -> &str {
+    let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    &text[start..text[at..].find('\n').map_or(text.len(), |length| at + length)]
+}
+
 /// What to do about a fault of syntax, guessed from its line.
-fn syntax_help(source: &Source, line: usize, message: &str) -> String {
-    let text = source.text.lines().nth(line).unwrap_or("").trim();
+fn syntax_help(line: &str, message: &str) -> String {
+    let text = line.trim();
     if message.contains("duplicate key") {
         return "a key and a [table] may be given once only: keep one of them, or merge the two".to_owned();
     }

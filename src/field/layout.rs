@@ -23,7 +23,7 @@ const MOST: f64 = (1_u64 << 31) as f64;
 /// A size that is a multiple of the spacing but for round-off counts as one.
 const ROUND_OFF: f64 = 1e-9;
 /// Arrays as large as the values that moving the fields needs, the values included.
-const ARRAYS: usize = 6;
+pub const ARRAYS: usize = 6;
 
 /// The grid of a document in µm, if memory holds its fields.
 pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {

@@ -45,6 +45,7 @@ pub mod workspace;
 
 pub use balance::AtomBalance;
 pub use chemistry::Chemistry;
+pub use constraints::VOLUME_TOLERANCE;
 pub use kind::{Kind, VolumeRule, kinks};
 pub use model::{Change, Model, PopulationChange, Removal};
 pub use plan::StepReport;

@@ -6,6 +6,10 @@ use crate::experiment::tree::Node;
 use crate::units::{self, Dimension};
 use serde_json::{Map, Value as Json};
 
+/// The longest that a length is in any direction where the schema says nothing else, µm: a kilometre. Squares and cubes of what is longer, and
+/// the boxes of four bytes a number in which contacts are looked for, would be no numbers any more.
+const LONGEST: f64 = 1e9;
+
 impl Walk<'_> {
     /// A plain number against `minimum`, `exclusiveMinimum`, `maximum`.
     pub(super) fn number_bounds(&mut self, node: &Node, value: f64, schema: &Map<String, Json>, path: &str) {
@@ -27,8 +31,13 @@ impl Walk<'_> {
         path: &str,
     ) {
         let bounds = ["x-exclusive-minimum", "x-minimum", "x-maximum"];
+        let mut schema = schema.clone();
+        if dimension == Dimension::LENGTH {
+            schema.entry("x-minimum").or_insert((-LONGEST).into());
+            schema.entry("x-maximum").or_insert(LONGEST.into());
+        }
         let shown = |bound: f64| if bound == 0.0 { "0".to_owned() } else { units::pretty(bound, dimension) };
-        self.bounds(node, value, bounds, shown, schema, path);
+        self.bounds(node, value, bounds, shown, &schema, path);
     }
 
     fn bounds(

@@ -2,6 +2,7 @@
 
 use super::super::{CellType, Document, Mesh, VolumeRule};
 use super::builder::Built;
+use super::far;
 use super::numbers::unit;
 use crate::Vec3;
 use crate::error::{Error, Fault};
@@ -40,6 +41,11 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
             }
         }
     };
+    let before = faults.len();
+    far::check_width(document, &format!("cells.{name}"), &cell.mesh, &plain, faults);
+    if faults.len() > before {
+        return None;
+    }
     let mut turned = plain.clone();
     if let Some(orientation) = &cell.orientation {
         let axis = Unit::new_unchecked(unit(orientation.axis));

@@ -4,6 +4,7 @@ mod bonds;
 mod builder;
 mod chemistry;
 mod contact;
+mod far;
 mod forces;
 mod mesh;
 mod notices;
@@ -13,6 +14,7 @@ mod population;
 mod positions;
 mod pseudopods;
 mod select;
+mod size;
 mod spacing;
 mod start;
 mod steps;
@@ -20,6 +22,7 @@ mod steps;
 pub(super) use builder::Builder;
 pub use notices::notices;
 pub(super) use numbers::{course, unit};
+pub use size::Size;
 pub use start::{PushedApart, settle_start, settle_start_told};
 
 use super::{CellType, Document, Experiment, VolumeRule as Rule};
@@ -66,6 +69,8 @@ pub struct Prepared {
     pub schedule: Schedule,
     /// Where the centres of the cells start, µm: `[kind][cell]`.
     pub centres: Vec<Vec<Vec3>>,
+    /// How large it is, by an estimate.
+    pub size: Size,
     /// Where the fields start.
     fields: Vec<Fields>,
 }
@@ -73,7 +78,7 @@ pub struct Prepared {
 impl Prepared {
     /// Builds the cells where they start.
     pub fn build(self) -> Compiled {
-        let Self { model, schedule, centres, fields } = self;
+        let Self { model, schedule, centres, fields, .. } = self;
         let cells = model.kinds.iter().zip(&centres);
         let positions: Vec<_> = cells.map(|(kind, centres)| positions::atoms_at(kind, centres)).collect();
         let mut state = State::new(&model, &positions);
@@ -93,10 +98,11 @@ pub fn compile(document: &Document) -> Result<Compiled> {
 /// Compiles a checked document but for building its cells.
 ///
 /// # Errors
-/// [`Error::Input`] with every fault that shows only once meshes are built: files that cannot be read, atoms that do
-/// not exist, a step that is not stable.
+/// [`Error::Input`] where it is too large to be made at all, or with every fault that shows only once meshes are built:
+/// files that cannot be read, atoms that do not exist, a step that is not stable.
 pub fn prepare(document: &Document) -> Result<Prepared> {
     let experiment = &document.experiment;
+    let mut size = size::of_cells(document)?;
     let (mut kinds, mut faults) = (Vec::new(), Vec::new());
     let mut counts = Vec::new();
     for (name, cell) in &experiment.cells {
@@ -111,7 +117,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     }
     // Atoms that do not exist have been told; links look at kinds and must see them all.
     let (chemistry, fields) = if faults.is_empty() {
-        chemistry::chemistry(document, &counts, &mut kinds, &mut faults)
+        chemistry::chemistry(document, &counts, &mut kinds, &mut size, &mut faults)
     } else {
         Default::default()
     };
@@ -148,7 +154,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         keeps_tractions,
     };
     let schedule = steps::schedule(document, &model)?;
-    Ok(Prepared { model, schedule, centres, fields })
+    Ok(Prepared { model, schedule, centres, size, fields })
 }
 
 fn compile_kind(document: &Document, name: &str, cell: &CellType, surface: Built, faults: &mut Vec<Fault>) -> Kind {
@@ -161,6 +167,7 @@ fn compile_kind(document: &Document, name: &str, cell: &CellType, surface: Built
     kind.drawn_links = drawn;
     kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
+    far::check(document, &key, cell, &kind.rest, kind.closed, faults);
     kind.held = held(document, &key, cell, &kind.rest, faults);
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
     kind.behaviours = cell.motility.behaviours();

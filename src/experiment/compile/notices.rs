@@ -1,6 +1,7 @@
 //! What is worth a word before a run though nothing is wrong: sizes that no cell has, cells that nothing keeps apart.
 
-use super::super::{CellType, Document, Mesh};
+use super::super::{CellType, Document, LengthUnit, Mesh};
+use super::size::{Size, bytes};
 use super::{Prepared, bonds};
 use crate::Vec3;
 use crate::cell::Behaviour;
@@ -29,6 +30,7 @@ const KEPT_IN_ORDER: f64 = 0.3;
 pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
     let Prepared { model, centres, .. } = prepared;
     let mut notices: Vec<String> = model.kinds.iter().filter_map(|kind| unusual_width(document, kind)).collect();
+    notices.extend(large_result(&prepared.size));
     notices.extend(model.kinds.iter().filter_map(|kind| unordered_skin(document, kind)));
     notices.extend(model.kinds.iter().filter_map(|kind| pushes_off_nothing(document, kind)));
     if model.contact.is_some() {
@@ -44,6 +46,21 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
         notices.push(words.to_owned());
     }
     notices
+}
+
+/// Bytes of a result that are worth a word: more than most disks have to spare.
+const LARGE_RESULT: f64 = 1e11;
+
+/// That the result will be large.
+fn large_result(size: &Size) -> Option<String> {
+    (size.result > LARGE_RESULT).then(|| {
+        format!(
+            "the result may take {}, {:.0} frames of {}: a longer `output.every` makes it smaller",
+            bytes(size.result),
+            size.frames,
+            bytes(size.result / size.frames)
+        )
+    })
 }
 
 /// That the pseudopods of a kind have nothing that resists sliding to push off from.
@@ -71,6 +88,17 @@ fn pushes_off_nothing(document: &Document, kind: &Kind) -> Option<String> {
     })
 }
 
+/// Which unit the coordinates of a mesh file may be in that is so wide, µm, where they are taken in another one.
+pub(super) fn unit_advice(unit: LengthUnit, width: f64) -> String {
+    let written = width / unit.micrometres();
+    let away = |size: f64| (written * size / USUAL).ln().abs();
+    let fits = UNITS.into_iter().filter(|(_, size)| WIDTHS.contains(&(written * size)));
+    match fits.min_by(|one, other| away(one.1).total_cmp(&away(other.1))) {
+        Some((unit, _)) => format!("write `unit = \"{unit}\"` beside the path if its coordinates are in that"),
+        None => "give the `unit` of its coordinates beside the path".to_owned(),
+    }
+}
+
 /// That cells of a kind are not of the size of cells: mostly a unit that was meant and not written.
 fn unusual_width(document: &Document, kind: &Kind) -> Option<String> {
     let (low, high) = bounding_box(&kind.rest.positions)?;
@@ -79,15 +107,7 @@ fn unusual_width(document: &Document, kind: &Kind) -> Option<String> {
         return None;
     }
     let advice = match &document.experiment.cells.get(&kind.name)?.mesh {
-        Mesh::File { unit, .. } => {
-            let written = width / unit.micrometres();
-            let away = |size: f64| (written * size / USUAL).ln().abs();
-            let fits = UNITS.into_iter().filter(|(_, size)| WIDTHS.contains(&(written * size)));
-            match fits.min_by(|one, other| away(one.1).total_cmp(&away(other.1))) {
-                Some((unit, _)) => format!("write `unit = \"{unit}\"` beside the path if its coordinates are in that"),
-                None => "give the `unit` of its coordinates beside the path".to_owned(),
-            }
-        }
+        Mesh::File { unit, .. } => unit_advice(*unit, width),
         _ => "check the sizes of its mesh and their units".to_owned(),
     };
     let told = |length: f64| pretty(length, Dimension::LENGTH);

@@ -3,7 +3,7 @@
 use super::super::{CellType, Experiment, Placement};
 use super::numbers::vector;
 use crate::Vec3;
-use crate::geometry::point_in_box;
+use crate::geometry::{Surface, point_in_box};
 use crate::random::{Purpose, Stream};
 use crate::sim::Kind;
 
@@ -39,30 +39,30 @@ pub fn positions_of(placement: Option<&Placement>, number: usize, kind: &Kind) -
     let mut positions: Vec<Vec3> = match placement {
         Some(Placement::At { at }) => at.iter().map(|x| vector(x.map(|x| x.value()))).collect(),
         Some(Placement::Grid { grid, spacing, origin }) => {
-            grid_positions(*grid, spacing.value(), vector(origin.map(|x| x.value())))
+            grid_positions(*grid, spacing.value(), vector(origin.map(|x| x.value()))).take(number).collect()
         }
         Some(Placement::Random { .. }) => Vec::new(),
         None => {
-            let side = (number as f64).sqrt().ceil() as u32;
-            let extent = crate::geometry::bounding_box(&kind.rest.positions).map_or(1.0, |(a, b)| (b - a).max());
-            grid_positions([side, side, 1], GRID_SPACING * extent, Vec3::zeros())
+            let (side, spacing) = default_grid(number, &kind.rest);
+            grid_positions([side, side, 1], spacing, Vec3::zeros()).take(number).collect()
         }
     };
     positions.truncate(number);
     positions
 }
 
-fn grid_positions(grid: [u32; 3], spacing: f64, origin: Vec3) -> Vec<Vec3> {
-    let middle = Vec3::from(grid.map(|n| 0.5 * f64::from(n - 1)));
-    let mut positions = Vec::new();
-    for z in 0..grid[2] {
-        for y in 0..grid[1] {
-            for x in 0..grid[0] {
-                positions.push(origin + spacing * (Vec3::new(f64::from(x), f64::from(y), f64::from(z)) - middle));
-            }
-        }
-    }
-    positions
+/// Cells along each side of the grid where a document gives no positions, and their distance, µm.
+pub fn default_grid(number: usize, rest: &Surface) -> (u32, f64) {
+    let extent = crate::geometry::bounding_box(&rest.positions).map_or(1.0, |(a, b)| (b - a).max());
+    ((number as f64).sqrt().ceil() as u32, GRID_SPACING * extent)
+}
+
+/// The positions of a grid one after the other: it may have many more of them than there are cells.
+fn grid_positions(grid: [u32; 3], spacing: f64, origin: Vec3) -> impl Iterator<Item = Vec3> {
+    let middle = Vec3::from(grid.map(|n| 0.5 * (f64::from(n) - 1.0)));
+    let along_y_and_z = (0..grid[2]).flat_map(move |z| (0..grid[1]).map(move |y| (y, z)));
+    let indices = along_y_and_z.flat_map(move |(y, z)| (0..grid[0]).map(move |x| [x, y, z]));
+    indices.map(move |index| origin + spacing * (Vec3::from(index.map(f64::from)) - middle))
 }
 
 fn random_position(seed: u64, cell: u32, low: Vec3, high: Vec3) -> Vec3 {

@@ -2,6 +2,7 @@
 
 use super::Check;
 use crate::experiment::{CellType, Course, Linked, Placement, Selection, VolumeRule};
+use std::collections::HashSet;
 
 impl Check<'_> {
     pub(super) fn drag_and_mass(&mut self, path: &str, cell: &CellType) {
@@ -163,8 +164,8 @@ impl Check<'_> {
         match selection {
             Selection::Cap(cap) => self.direction(&format!("{path}.cap.direction"), cap.direction),
             Selection::Atoms(atoms) => {
-                let twice = (1..atoms.len()).find(|index| atoms[..*index].contains(&atoms[*index]));
-                if let Some(index) = twice {
+                let mut named = HashSet::with_capacity(atoms.len());
+                if let Some(index) = atoms.iter().position(|atom| !named.insert(*atom)) {
                     let message = format!("`{path}.atoms` names atom {} twice", atoms[index]);
                     self.fault(&format!("{path}.atoms[{index}]"), "named before", message, "name every atom once");
                 }

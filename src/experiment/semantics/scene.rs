@@ -3,13 +3,15 @@
 use super::Check;
 use crate::experiment::{MeasureCurve, OneOrMany, PlotKind, When};
 use crate::units::{Dimension, pretty};
+use std::collections::HashSet;
 
 impl Check<'_> {
     pub(super) fn scene(&mut self) {
         let experiment = &self.document.experiment;
+        let mut names = HashSet::new();
         for (index, plane) in experiment.planes.iter().enumerate() {
             self.direction(&format!("planes[{index}].normal"), plane.normal);
-            if experiment.planes[..index].iter().any(|other| other.name == plane.name) {
+            if !names.insert(plane.name.as_str()) {
                 let message = format!("`planes[{index}].name` is the name of another plane too");
                 self.fault(&format!("planes[{index}].name"), "taken", message, "give every plane its own name");
             }

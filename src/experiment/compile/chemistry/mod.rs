@@ -9,6 +9,7 @@ mod profile;
 mod read;
 
 use super::super::{Chemistry as Entry, Document, Scheme};
+use super::size::{self, Size};
 use crate::equations::eml::{self, Level};
 use crate::equations::program::{Program, initial_values};
 use crate::equations::tree::{QuantityId, Role};
@@ -51,6 +52,17 @@ impl Part<'_> {
         eml::SURFACE.contains(&id) || membrane.totals.iter().any(|total| total.quantity == quantity)
     }
 
+    /// How many numbers a copy of the system has, and how many copies there are at most.
+    fn numbers(&self, document: &Document, kinds: &[Kind]) -> [f64; 2] {
+        let of_kind = |kind: &usize| {
+            let kind = &kinds[*kind];
+            let each = if self.document.level == Level::Membrane { kind.atoms() } else { 1 };
+            document.experiment.cells.get(&kind.name).map_or(0.0, |cell| cell.most() as f64 * each as f64)
+        };
+        let copies = if self.kinds.is_empty() { 1.0 } else { self.kinds.iter().map(of_kind).sum() };
+        [self.document.system.quantities.len() as f64, copies]
+    }
+
     /// The key of the experiment that says something of it.
     fn key(&self, of: &str) -> String {
         format!("chemistry.{}.{of}", self.name)
@@ -63,6 +75,7 @@ pub fn chemistry(
     document: &Document,
     counts: &[usize],
     kinds: &mut [Kind],
+    size: &mut Size,
     faults: &mut Vec<Fault>,
 ) -> (Chemistry, Vec<Fields>) {
     let before = faults.len();
@@ -83,13 +96,17 @@ pub fn chemistry(
         .collect();
     let mut fields = Vec::new();
     for part in parts.iter().filter(|part| part.is_field()) {
-        if let Some((reactor, start)) = field(document, part, faults) {
+        if let Some((reactor, start)) = field(document, part, size, faults) {
             chemistry.fields.push(reactor);
             fields.push(start);
         }
     }
     links::open_linked_parameters(&mut parts);
     for part in parts.iter().filter(|part| !part.is_field()) {
+        match size::with_system(document, part.name, *size, part.numbers(document, kinds)) {
+            Ok(with) => *size = with,
+            Err(error) => tell(error, faults),
+        }
         chemistry.reactors.extend(match part.document.level {
             Level::Membrane => membrane::reactor(document, part, kinds, faults),
             _ => reactor(document, part, faults),
@@ -252,7 +269,7 @@ fn with_scheme(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> eml
     eml
 }
 
-fn field(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<(FieldReactor, Fields)> {
+fn field(document: &Document, part: &Part, size: &mut Size, faults: &mut Vec<Fault>) -> Option<(FieldReactor, Fields)> {
     let (entry, eml) = (part.entry, &with_scheme(document, part, faults));
     if entry.exchange.is_some() {
         let fault = Fault::new(format!("`{}` has no meaning for fields", part.key("exchange")))
@@ -275,6 +292,8 @@ fn field(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<(F
         }
     };
     let system = FieldSystem::new(eml, placing.as_ref()).map_err(|error| tell(error, faults)).ok()?;
+    let of_field = [system.grid().len(), eml.fields.len()];
+    *size = size::with_field(document, part.name, *size, of_field).map_err(|error| tell(error, faults)).ok()?;
     let folder = document.resolve(&entry.document);
     let load = |profile: &eml::Profile, grid: &_| profile::load(&folder, profile, grid);
     let start = system.start(&load).map_err(|error| tell(error, faults)).ok()?;
