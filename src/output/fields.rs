@@ -12,7 +12,7 @@ use super::Layout;
 use super::container::{set_number, set_text, text};
 use super::field_column::FieldColumn;
 use super::field_layout::FieldLayout;
-use super::renewal::make;
+use super::versions::make;
 use crate::error::{Error, Fault, Result};
 
 /// The small file beside a result by which VTK and ParaView find a field.

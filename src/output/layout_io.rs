@@ -75,11 +75,6 @@ fn described(dataset: &hdf5::Dataset, path: &str) -> hdf5::Result<()> {
     set_text(dataset, "description", entry(path).description)
 }
 
-/// Whether this is where a field says when its frames are, by the name of the list of times.
-pub(super) fn is_time_link(path: &str) -> bool {
-    path.starts_with("/fields/") && path.ends_with("/Steps/Values")
-}
-
 /// Writes all that the layout says.
 pub(super) fn write_layout(file: &File, layout: &Layout) -> hdf5::Result<()> {
     let vtk = file.create_group("VTKHDF")?;

@@ -40,6 +40,7 @@ mod reopening;
 mod replacement;
 mod systems;
 mod tables;
+mod versions;
 mod vetting;
 mod whole;
 mod writer;

@@ -1,76 +1,19 @@
-//! The next version of a result file, made beside it and put in its place as a whole.
-//!
-//! HDF5 changes a file in many small writes, and a file of which a kill left only some can be beyond repair. So a result
-//! file is never written to: what is to be changed is changed in a copy. Others read the file at any moment, and keep
-//! the version that they have opened.
+//! Takes frames into the next version of a result file.
 
 use std::cell::Cell;
-use std::fs;
-use std::io;
 use std::path::Path;
 
 use hdf5::File;
 
 use super::columns::Columns;
-use super::container::{self, Access, failed, machine_error, set_number};
+use super::container::{self, Access, machine_error, set_number};
 use super::fits::misfit;
 use super::frame_log::{Found, FrameLog, Owner};
 use super::layout_io::{read_header, read_layout};
-use super::replacement::Replacement;
+use super::versions::renew;
 use super::whole::whole_frames;
 use super::{Frame, Layout};
-use crate::error::{Error, Result};
-
-/// Makes a new file with what `fill` writes into it; what was at the path is replaced.
-///
-/// # Errors
-/// [`Error::Machine`] if the disk refuses; what was there then stays.
-pub(super) fn make(path: &Path, fill: impl FnOnce(&File) -> hdf5::Result<()>) -> Result<()> {
-    let new = prepare(path, fill)?;
-    new.put().map_err(|error| refused(path, "could not be made", &error))
-}
-
-/// Makes a new file beside the path, to be put there.
-///
-/// # Errors
-/// As [`make`].
-pub(super) fn prepare(path: &Path, fill: impl FnOnce(&File) -> hdf5::Result<()>) -> Result<Replacement> {
-    let new = Replacement::of(path).map_err(|error| refused(path, "could not be made", &error))?;
-    let file = container::create(new.temporary())?;
-    let made = fill(&file).and_then(|()| file.close());
-    made.map_err(|error| failed(path, "could not be made", &error))?;
-    Ok(new)
-}
-
-/// Changes a file: `change` is done to a copy, which then takes its place.
-///
-/// # Errors
-/// [`Error::Machine`] if the file has gone or the disk refuses, and what `change` returns; nothing is changed then.
-pub(super) fn renew<T>(path: &Path, change: impl FnOnce(&File) -> Result<T>) -> Result<T> {
-    let new = Replacement::of(path).map_err(|error| refused(path, "could not be written", &error))?;
-    copy(path, &new)?;
-    let file = container::open(new.temporary(), Access::Append)?;
-    let changed = change(&file)?;
-    file.close().map_err(|error| failed(path, "could not be written", &error))?;
-    new.put().map_err(|error| refused(path, "could not be written", &error))?;
-    Ok(changed)
-}
-
-fn copy(path: &Path, new: &Replacement) -> Result<()> {
-    let mut old = fs::File::open(path).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => Error::Machine {
-            message: format!("{} is gone: it was removed or moved while it was being written", path.display()),
-            help: "put it back; frames that it does not hold are in the file beside it that ends in .frames".into(),
-        },
-        _ => refused(path, "could not be read", &error),
-    })?;
-    let copied = new.create().and_then(|mut file| io::copy(&mut old, &mut file));
-    copied.map(|_| ()).map_err(|error| refused(path, "could not be written", &error))
-}
-
-fn refused(path: &Path, what: &str, error: &io::Error) -> Error {
-    machine_error(path, what, &error.to_string())
-}
+use crate::error::Result;
 
 /// Cuts the datasets of a file to its first frames and appends others. How many frames there are then.
 pub(super) fn take_in(
@@ -119,7 +62,8 @@ fn settle_from(path: &Path, log: &mut FrameLog) -> Result<bool> {
         };
         read().map_err(damaged)?
     };
-    let replay = log.replay(&owner, known).map_err(|error| refused(path, "could not be read", &error))?;
+    let replay =
+        log.replay(&owner, known).map_err(|error| machine_error(path, "could not be read", &error.to_string()))?;
     // A file without a frame does not know yet what frames bring with them.
     let Some(layout) = replay.layout().filter(|found| known == 0 || **found == layout).cloned() else {
         return Ok(false);

@@ -12,7 +12,6 @@ use hdf5::types::TypeDescriptor;
 use hdf5::{Dataset, File, Group, LinkType, LocationType};
 
 use super::catalogue::{CATALOGUE, CONTACT, Entry, FIBRE, FORCE, Filled, TRACTION};
-use super::layout_io::is_time_link;
 use crate::recorded::{OnDemand, Values, cell_quantities};
 
 /// Groups within groups: three are needed.
@@ -93,6 +92,11 @@ impl Walk<'_> {
             _ => Err(fault(path, "is neither a group nor a dataset")),
         }
     }
+}
+
+/// Whether this is where a field says when its frames are, by the name of the list of times.
+fn is_time_link(path: &str) -> bool {
+    path.starts_with("/fields/") && path.ends_with("/Steps/Values")
 }
 
 fn fault(path: &str, words: &str) -> hdf5::Error {

@@ -1,7 +1,7 @@
 //! Writes the result of a run, frame by frame, so that a kill at any moment loses no frame that was recorded.
 //!
 //! A frame goes into the [log](super::frame_log) beside the result; from there frames are taken into the next
-//! [version](super::renewal) of the file, at first once a second and then as often as that costs a twentieth of the time.
+//! [version](super::versions) of the file, at first once a second and then as often as that costs a twentieth of the time.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant as Clock};
@@ -19,8 +19,9 @@ use super::frame_log::{FrameLog, Owner, frames_path};
 use super::header::{Header, Measure};
 use super::layout_io::{write_header, write_layout};
 use super::reader::ResultFile;
-use super::renewal::{prepare, renew, take_in};
+use super::renewal::take_in;
 use super::reopening::{Kept, Reopened, reopen};
+use super::versions::{prepare, renew};
 use super::{Frame, Layout};
 use crate::error::{Error, Fault, Result};
 
