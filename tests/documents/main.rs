@@ -1,6 +1,8 @@
 //! The experiment document: what is understood, and where it makes a run start.
 
 mod contact;
+mod damaged;
 mod meaning;
 mod population;
+mod random_scenes;
 mod start;

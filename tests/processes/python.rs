@@ -202,3 +202,19 @@ fn python_reads_frames_with_different_cells() {
         run(SCRIPT, &[path.as_ref(), counts.as_ref()]);
     }
 }
+
+#[test]
+#[ignore = "slow: needs python3 with h5py, vtk and pyvista"]
+fn python_reads_a_file_while_it_is_written() {
+    let _turn = take_turn();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("running.vtkhdf");
+    let mut writer = write(&path, 3, 20);
+    for frames in [20, 30, 40] {
+        (writer.frames()..frames).for_each(|number| writer.append(&frame(&cells(3), number)).unwrap());
+        writer.renew().unwrap();
+        // Later frames wait in the log while others read.
+        (frames..frames + 5).for_each(|number| writer.append(&frame(&cells(3), number)).unwrap());
+        run(SCRIPT, &[path.as_ref(), vec!["3"; frames].join(",").as_ref()]);
+    }
+}
