@@ -26,6 +26,7 @@ mod scheme;
 pub(crate) mod scratch;
 mod solve;
 mod stepper;
+mod stops;
 mod substeps;
 pub mod tableau;
 mod wide;

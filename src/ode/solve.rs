@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::control::Tolerances;
 use super::course::{Course, CourseBuffers, LONGEST_SHARE};
-use super::events::{EventBuffers, EventPlan, Events};
+use super::events::{Chooser, EventBuffers, EventPlan, Events};
 #[cfg(feature = "diffsol")]
 use super::multistep;
 use super::scheme::Scheme;
 use super::stepper::Stepper;
-use super::{Method, OdeTrouble, Reason, Work};
+use super::{Method, Numbers, OdeTrouble, Reason, Work};
 use crate::equations::tree::System;
 
 /// Scheme and tolerances.
@@ -23,13 +23,15 @@ pub struct SolveOptions {
     pub absolute: f64,
     /// Most steps in all.
     pub max_steps: u32,
+    /// Seed of the choices between events of one time and one priority.
+    pub seed: u64,
 }
 
 impl Default for SolveOptions {
     /// The Rosenbrock method, which takes stiff and other systems, with and without events.
     fn default() -> Self {
         let scheme = Scheme::OneStep(Method::Rosenbrock);
-        Self { scheme, relative: 1e-7, absolute: 1e-14, max_steps: 2_000_000 }
+        Self { scheme, relative: 1e-7, absolute: 1e-14, max_steps: 2_000_000, seed: 0 }
     }
 }
 
@@ -103,7 +105,8 @@ pub fn solve_each(
         Scheme::OneStep(method) => {
             let mut stepper = Stepper::new(&program, method, tolerances, from);
             let (mut memory, mut buffers) = (plan.before_start(), EventBuffers::default());
-            let mut events = Events::new(&plan, &mut memory, &mut buffers);
+            let choices = Numbers { seed: options.seed, system: &system.name }.choices();
+            let mut events = Events::new(&plan, &mut memory, &mut buffers, Chooser { choices, cell: 0 });
             if !plan.is_empty() {
                 stepper.longest = LONGEST_SHARE * (until - from);
             }
