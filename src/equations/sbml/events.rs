@@ -1,10 +1,10 @@
 //! Events: what they set, in amounts.
 
 use super::document;
-use super::pieces::{binary, number, product, quantity, replaced};
+use super::pieces::{binary, number, product, quantity, quotient, replaced};
 use super::plan::{Change, Kind, Plan};
 use crate::equations::tree::{Binary, Event, Expr, QuantityId, Role};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// New values that an event sets at once.
 type Values = HashMap<QuantityId, Expr>;
@@ -45,8 +45,7 @@ impl<'a> Plan<'_, 'a> {
         event.id.map(str::to_owned).or((number + 1..).map(made).find(free)).unwrap_or_default()
     }
 
-    /// What an event sets; and, when that takes the size of a compartment at the execution and values of the firing,
-    /// a second event that follows at once.
+    /// What an event sets; and, when values of the firing meet sizes of the execution, a second event that follows at once.
     fn assignments(&self, event: &document::Event<'a>, id: &str) -> (Vec<(QuantityId, Expr)>, Option<Event>) {
         let mut values = Values::new();
         let mut order = Vec::new();
@@ -59,68 +58,62 @@ impl<'a> Plan<'_, 'a> {
             }
             order.push((quantity_id, assignment.symbol));
         }
-        let (mut made, mut later) = (Vec::new(), Vec::new());
-        for (quantity_id, symbol) in order {
-            let value = values[&quantity_id].clone();
-            let Some(Kind::Species(number)) = self.kinds.get(symbol).copied() else {
-                made.push((quantity_id, value));
-                continue;
-            };
-            let species = &self.document.species[number];
-            let ids = self.species_ids(number);
-            if species.only_amount || self.keeps_concentration(species) {
-                made.push((quantity_id, value));
-                continue;
-            }
-            if self.mixes_times(event, symbol) {
-                later.push((ids, value));
-            } else {
-                let size = self.after(&ids.size(), &values);
-                made.push((ids.amount, product(value, size)));
-            }
+        if !self.mixes_times(event) {
+            return (self.amounts_set(&order, &values), None);
         }
-        let follower = if later.is_empty() { None } else { Some(self.follower(id, later, &mut made)) };
-        (made, follower)
-    }
-
-    /// Keeps the concentrations of the firing until the execution, when a second event turns them into amounts.
-    fn follower(
-        &self,
-        id: &str,
-        later: Vec<(super::species::SpeciesIds, Expr)>,
-        made: &mut Vec<(QuantityId, Expr)>,
-    ) -> Event {
-        let mut assignments = Vec::new();
-        for (ids, value) in later {
-            let kept = self.helper(&format!("{id}.{}", self.quantities[ids.amount as usize].id));
-            made.push((kept, value));
-            assignments.push((ids.amount, product(quantity(kept), ids.size())));
+        let mut kept = Vec::new();
+        for &(quantity_id, symbol) in &order {
+            let helper = self.helper(&format!("{id}.{symbol}"));
+            let value = values.insert(quantity_id, quantity(helper));
+            kept.extend(value.map(|value| (helper, value)));
         }
         let due = self.helper(&format!("{id}.due"));
-        made.push((due, number(1.0)));
+        kept.push((due, number(1.0)));
+        let mut assignments = self.amounts_set(&order, &values);
         assignments.push((due, number(0.0)));
-        Event {
-            id: format!("{id}.amounts"),
-            trigger: binary(Binary::Gt, quantity(due), number(0.5)),
-            true_before_start: false,
-            delay: None,
-            priority: Some(number(f64::INFINITY)),
-            values_from_firing: true,
-            persistent: true,
-            assignments,
+        (kept, Some(follower(id, due, assignments)))
+    }
+
+    /// What is set when symbols get values: amounts for concentrations, by the sizes that compartments have before. Where the
+    /// state is a concentration, it jumps when the event changes the size, and the amount stays.
+    fn amounts_set(&self, order: &[(QuantityId, &str)], values: &Values) -> Vec<(QuantityId, Expr)> {
+        let jumped = |concentration: Expr, size: Expr| match self.depends(&size, values) {
+            true => quotient(product(concentration, size.clone()), self.after(&size, values)),
+            false => concentration,
+        };
+        let mut made = Vec::new();
+        for &(quantity_id, symbol) in order {
+            let value = values[&quantity_id].clone();
+            match self.kinds.get(symbol) {
+                Some(&Kind::Species(index)) if !self.document.species[index].only_amount => {
+                    let ids = self.species_ids(index);
+                    made.push(match self.keeps_concentration(&self.document.species[index]) {
+                        true => (quantity_id, jumped(value, ids.size())),
+                        false => (ids.amount, product(value, ids.size())),
+                    });
+                }
+                _ => made.push((quantity_id, value)),
+            }
         }
+        for (index, species) in self.document.species.iter().enumerate() {
+            let ids = self.species_ids(index);
+            let others = self.keeps_concentration(species) && !values.contains_key(&ids.concentration);
+            if others && self.depends(&ids.size(), values) {
+                made.push((ids.concentration, jumped(quantity(ids.concentration), ids.size())));
+            }
+        }
+        made
     }
 
     /// Adds quantities for what followers keep, before rates of change are numbered.
     pub fn declare_helpers(&mut self) {
         let document = self.document;
         for (index, event) in document.events.iter().enumerate() {
+            if !self.mixes_times(event) {
+                continue;
+            }
             let id = self.event_id(event, index);
-            let symbols = event.assignments.iter().filter(|assignment| assignment.math.is_some());
-            let kept: Vec<&str> = symbols.map(|assignment| assignment.symbol).collect();
-            let kept: Vec<&str> = kept.into_iter().filter(|symbol| self.mixes_times(event, symbol)).collect();
-            let due = (!kept.is_empty()).then_some("due");
-            for name in kept.into_iter().chain(due) {
+            for name in set_by(event).chain(["due"]) {
                 let quantity_id = self.quantity(format!("{id}.{name}"), event.node);
                 let entry = &mut self.quantities[quantity_id as usize];
                 entry.name.clear();
@@ -129,15 +122,23 @@ impl<'a> Plan<'_, 'a> {
         }
     }
 
-    /// Whether an event sets a concentration with values of the firing when the size at the execution is not known yet.
-    fn mixes_times(&self, event: &document::Event<'a>, symbol: &str) -> bool {
-        let Some(Kind::Species(number)) = self.kinds.get(symbol).copied() else { return false };
-        let species = &self.document.species[number];
-        let is_amount = species.only_amount || self.keeps_concentration(species);
-        let sets_size =
-            event.assignments.iter().any(|other| other.symbol == species.compartment && other.math.is_some());
-        let steady = sets_size || self.change(species.compartment) == Change::Never;
-        event.trigger.is_some() && event.delay.is_some() && event.values_from_trigger && !is_amount && !steady
+    /// Whether an event has values of its firing and sets a concentration by a size that may be another at its execution.
+    fn mixes_times(&self, event: &document::Event<'a>) -> bool {
+        if event.trigger.is_none() || !event.values_from_trigger {
+            return false;
+        }
+        let others = self.document.events.iter().filter(|other| !std::ptr::eq(*other, event));
+        let later: HashSet<&str> = others.flat_map(set_by).collect();
+        let varies = |compartment: &'a str| match event.delay {
+            Some(_) => self.change(compartment) != Change::Never,
+            None => self.rests_on(compartment, &later),
+        };
+        let own: HashSet<&str> = set_by(event).collect();
+        self.document.species.iter().any(|species| {
+            let sets = own.contains(species.id) && !species.only_amount;
+            let jumps = self.keeps_concentration(species) && self.rests_on(species.compartment, &own);
+            (sets || jumps) && varies(species.compartment)
+        })
     }
 
     /// The number of a quantity that only a follower uses.
@@ -170,5 +171,25 @@ impl<'a> Plan<'_, 'a> {
             };
             values.contains_key(&quantity_id) || by_rule
         })
+    }
+}
+
+/// The symbols that an event sets.
+fn set_by<'d, 'a>(event: &'d document::Event<'a>) -> impl Iterator<Item = &'a str> + use<'d, 'a> {
+    event.assignments.iter().filter(|assignment| assignment.math.is_some()).map(|assignment| assignment.symbol)
+}
+
+/// The second event of one that keeps the values of its firing until the execution: it sets them by the sizes that compartments
+/// have then.
+fn follower(id: &str, due: QuantityId, assignments: Vec<(QuantityId, Expr)>) -> Event {
+    Event {
+        id: format!("{id}.amounts"),
+        trigger: binary(Binary::Gt, quantity(due), number(0.5)),
+        true_before_start: false,
+        delay: None,
+        priority: Some(number(f64::INFINITY)),
+        values_from_firing: true,
+        persistent: true,
+        assignments,
     }
 }

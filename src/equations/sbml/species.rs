@@ -91,7 +91,7 @@ impl<'a> Plan<'_, 'a> {
         let as_amount = Role::Defined { rule: product(quantity(ids.concentration), size.clone()) };
         match self.rules.get(species.id) {
             Some((RuleKind::Assignment, math)) => {
-                let rule = Role::Defined { rule: self.reader.formula(*math) };
+                let rule = Role::Defined { rule: self.rule(species.id, *math) };
                 if species.only_amount { (rule, as_concentration) } else { (as_amount, rule) }
             }
             Some((RuleKind::Rate, math)) => {
