@@ -14,6 +14,7 @@ mod noise;
 mod sbml;
 mod sbml_algebraic;
 mod sbml_events;
+mod sbml_fast;
 mod sbml_features;
 mod xml;
 

@@ -56,6 +56,8 @@ pub struct Law<'a> {
 pub struct Reaction<'a> {
     pub node: Node<'a>,
     pub id: &'a str,
+    /// Its equilibrium holds at all times.
+    pub fast: bool,
     pub participants: Vec<Participant<'a>>,
     pub law: Option<Law<'a>>,
 }
@@ -297,11 +299,8 @@ fn rule<'a>(page: &Page<'a>, node: Node<'a>, document: &mut Document<'a>) {
 }
 
 fn reaction<'a>(page: &Page<'a>, node: Node<'a>) -> Reaction<'a> {
-    let mut read = Reaction { node, id: id(page, node), participants: Vec::new(), law: None };
-    if page.flag(node, "fast", false) {
-        let help = "write its equilibrium with rules, or give it a kinetic law much quicker than the others";
-        page.fault_in(node, "fast", format!("reaction `{}` is fast: fast reactions are not supported", read.id), help);
-    }
+    let (id, fast) = (id(page, node), page.flag(node, "fast", false));
+    let mut read = Reaction { node, id, fast, participants: Vec::new(), law: None };
     for child in page.children(node) {
         match child.name() {
             "listOfReactants" => {

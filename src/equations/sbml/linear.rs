@@ -5,13 +5,18 @@ use crate::equations::tree::{Binary, Expr, QuantityId, Unary};
 
 /// What a quantity is equal to where an expression is zero; none when the expression is not linear in it, or does not depend on it.
 pub fn root(expr: &Expr, of: QuantityId) -> Option<Expr> {
-    let Line { slope, rest } = line(expr, of)?;
+    let (slope, rest) = line(expr, of)?;
     match slope {
         Expr::Number(0.0) => None,
         Expr::Number(-1.0) => Some(rest),
         Expr::Number(slope) => Some(quotient(negative(rest), Expr::Number(slope))),
         slope => Some(quotient(negative(rest), slope)),
     }
+}
+
+/// Slope and rest of an expression that is linear in a quantity x: slope · x + rest; none when it is not.
+pub fn line(expr: &Expr, x: QuantityId) -> Option<(Expr, Expr)> {
+    parts(expr, x).map(|Line { slope, rest }| (slope, rest))
 }
 
 /// Whether an expression uses a quantity.
@@ -27,7 +32,7 @@ struct Line {
     rest: Expr,
 }
 
-fn line(expr: &Expr, x: QuantityId) -> Option<Line> {
+fn parts(expr: &Expr, x: QuantityId) -> Option<Line> {
     const ZERO: Expr = Expr::Number(0.0);
     if !uses(expr, x) {
         return Some(Line { slope: ZERO, rest: expr.clone() });
@@ -35,22 +40,22 @@ fn line(expr: &Expr, x: QuantityId) -> Option<Line> {
     match expr {
         Expr::Number(_) | Expr::Time => None,
         Expr::Quantity(_) => Some(Line { slope: Expr::Number(1.0), rest: ZERO }),
-        Expr::Unary(Unary::Neg, a) => line(a, x).map(|a| Line { slope: negative(a.slope), rest: negative(a.rest) }),
+        Expr::Unary(Unary::Neg, a) => parts(a, x).map(|a| Line { slope: negative(a.slope), rest: negative(a.rest) }),
         Expr::Unary(..) => None,
         Expr::Binary(Binary::Add, a, b) => {
-            let (a, b) = (line(a, x)?, line(b, x)?);
+            let (a, b) = (parts(a, x)?, parts(b, x)?);
             Some(Line { slope: folded(sum(a.slope, b.slope)), rest: sum(a.rest, b.rest) })
         }
         Expr::Binary(Binary::Sub, a, b) => {
-            let (a, b) = (line(a, x)?, line(b, x)?);
+            let (a, b) = (parts(a, x)?, parts(b, x)?);
             Some(Line { slope: folded(difference(a.slope, b.slope)), rest: difference(a.rest, b.rest) })
         }
         Expr::Binary(Binary::Mul, a, b) => match uses(a, x) {
-            true => line(a, x).filter(|_| !uses(b, x)).map(|a| a.each(|part| scaled(part, b))),
-            false => line(b, x).map(|b| b.each(|part| scaled(part, a))),
+            true => parts(a, x).filter(|_| !uses(b, x)).map(|a| a.each(|part| scaled(part, b))),
+            false => parts(b, x).map(|b| b.each(|part| scaled(part, a))),
         },
         Expr::Binary(Binary::Div, a, b) => {
-            let a = line(a, x).filter(|_| !uses(b, x))?;
+            let a = parts(a, x).filter(|_| !uses(b, x))?;
             Some(a.each(|part| if part == ZERO { part } else { quotient(part, (**b).clone()) }))
         }
         Expr::Binary(..) => None,
@@ -84,11 +89,11 @@ fn scaled(part: Expr, by: &Expr) -> Expr {
 fn pieces(branches: &[(Expr, Expr)], otherwise: &Expr, x: QuantityId) -> Option<Line> {
     let (mut slopes, mut rests) = (Vec::new(), Vec::new());
     for (condition, value) in branches {
-        let line = line(value, x).filter(|_| !uses(condition, x))?;
+        let line = parts(value, x).filter(|_| !uses(condition, x))?;
         slopes.push((condition.clone(), line.slope));
         rests.push((condition.clone(), line.rest));
     }
-    let last = line(otherwise, x)?;
+    let last = parts(otherwise, x)?;
     let joined = |branches, last| Expr::Piecewise { branches, otherwise: Box::new(last) };
     Some(Line { slope: joined(slopes, last.slope), rest: joined(rests, last.rest) })
 }

@@ -8,6 +8,7 @@ mod algebraic;
 mod checks;
 mod document;
 mod events;
+mod fast;
 mod linear;
 mod math;
 mod notes;
@@ -84,7 +85,7 @@ pub fn is_sbml(text: &str) -> bool {
 ///
 /// # Errors
 /// [`crate::error::Error::Input`] with all faults found, each at its location: XML that is hostile or not well formed,
-/// constructs that are not supported (delays, fast reactions, packages that the model needs, algebraic rules that are not
+/// constructs that are not supported (delays, packages that the model needs, algebraic rules and fast reactions that are not
 /// linear in what they determine), names
 /// that are not known, contradicting statements, definitions in a circle.
 pub fn read(source: &Arc<Source>) -> Result<Model> {

@@ -31,6 +31,17 @@ pub enum Change {
     Defined,
 }
 
+/// A fast reaction whose equilibrium holds.
+#[derive(Clone, Copy)]
+pub struct Equilibrium {
+    /// The index of the reaction.
+    pub reaction: usize,
+    /// The indices of the species that is used up and of the one that is made.
+    pub species: [usize; 2],
+    /// The total of the two, which the reaction keeps; none where one of them is at the boundary.
+    pub total: Option<QuantityId>,
+}
+
 /// A model between the document and the system.
 pub struct Plan<'p, 'a> {
     pub page: &'p Page<'a>,
@@ -54,6 +65,8 @@ pub struct Plan<'p, 'a> {
     pub locals: HashMap<usize, QuantityId>,
     /// Quantities without a value of their own.
     pub unset: Vec<QuantityId>,
+    /// Fast reactions that are solved for.
+    pub equilibria: Vec<Equilibrium>,
 }
 
 impl<'p, 'a> Plan<'p, 'a> {
@@ -73,6 +86,7 @@ impl<'p, 'a> Plan<'p, 'a> {
             amounts: Vec::new(),
             locals: HashMap::new(),
             unset: Vec::new(),
+            equilibria: Vec::new(),
         };
         plan.declare();
         plan.statements();
@@ -80,6 +94,7 @@ impl<'p, 'a> Plan<'p, 'a> {
         plan.reader.first_rate = QuantityId::MAX / 2;
         let determined = plan.algebraic_rules();
         plan.declare_helpers();
+        plan.declare_equilibria();
         plan.reader.first_rate = plan.quantities.len() as QuantityId;
         plan.solve(&determined);
         plan

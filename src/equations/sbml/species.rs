@@ -64,6 +64,7 @@ impl<'a> Plan<'_, 'a> {
                 (entry.role, entry.initial) = (role, initial);
             }
         }
+        self.solve_equilibria();
     }
 
     /// The amount at the start.
@@ -131,7 +132,7 @@ impl<'a> Plan<'_, 'a> {
                 };
                 let species = &document.species[index];
                 let stoichiometry = self.stoichiometry(number_of, position);
-                if species.boundary || species.constant || !happens {
+                if species.boundary || species.constant || !happens || reaction.fast {
                     continue;
                 }
                 if self.rules.contains_key(species.id) {
@@ -151,7 +152,7 @@ impl<'a> Plan<'_, 'a> {
     }
 
     /// What turns the extent of reactions into the amount of a species.
-    fn conversion(&self, species: &Species<'a>) -> Expr {
+    pub fn conversion(&self, species: &Species<'a>) -> Expr {
         let Some(id) = species.factor.or(self.document.factor) else { return number(1.0) };
         match (self.kinds.get(id), self.reader.symbols.get(id)) {
             (Some(Kind::Parameter(_)), Some(&quantity_id)) => quantity(quantity_id),
