@@ -30,16 +30,10 @@ const DEPTH_LIMIT: usize = 300;
 /// What has been solved for, and where it may hide.
 struct Known<'a> {
     solved: HashMap<QuantityId, Expr>,
-    /// Symbols that are solved for, now or later.
-    names: HashSet<&'a str>,
+    /// Symbols whose rules lead to what is solved for, now or later.
+    hiding: HashSet<&'a str>,
     /// How many nodes may still be put in.
     left: Cell<usize>,
-}
-
-impl<'a> Known<'a> {
-    fn new(names: HashSet<&'a str>) -> Self {
-        Self { solved: HashMap::new(), names, left: Cell::new(SIZE_LIMIT) }
-    }
 }
 
 /// The rules that use a quantity, by their indices.
@@ -59,7 +53,7 @@ impl<'a> Plan<'_, 'a> {
     /// the order in which they can be solved.
     pub fn algebraic_rules(&mut self) -> Vec<Determined<'a>> {
         let mut free = self.undetermined();
-        let mut known = Known::new(free.values().copied().collect());
+        let mut known = self.known(&free.values().copied().collect());
         let (mut open, mut uses): (Vec<Option<Open<'a>>>, Uses) = (Vec::new(), Uses::new());
         for rule in &self.document.algebraic {
             let Some(math) = rule.math else {
@@ -107,7 +101,7 @@ impl<'a> Plan<'_, 'a> {
 
     /// Solves the algebraic rules for what they determine, once all quantities have their numbers.
     pub fn solve(&mut self, determined: &[Determined<'a>]) {
-        let mut known = Known::new(determined.iter().map(|one| one.symbol).collect());
+        let mut known = self.known(&determined.iter().map(|one| one.symbol).collect());
         for &Determined { math, symbol } in determined {
             let x = self.reader.symbols[symbol];
             let formula = self.put_in(&self.reader.formula(math), &known, &[]);
@@ -115,6 +109,11 @@ impl<'a> Plan<'_, 'a> {
             self.solved.insert(symbol, solution.clone());
             known.solved.insert(x, solution);
         }
+    }
+
+    /// Nothing is solved for yet of some symbols.
+    fn known(&self, symbols: &HashSet<&'a str>) -> Known<'a> {
+        Known { solved: HashMap::new(), hiding: self.resting_on(symbols), left: Cell::new(SIZE_LIMIT) }
     }
 
     /// The symbols that nothing determines so far, by their quantities.
@@ -163,8 +162,7 @@ impl<'a> Plan<'_, 'a> {
                 None => {
                     let id = self.quantities.get(quantity_id as usize)?.id.trim_matches(['[', ']']);
                     let (&symbol, (kind, math)) = self.rules.get_key_value(id)?;
-                    let hides = *kind == RuleKind::Assignment && !known.names.contains(symbol);
-                    if !hides || !self.rests_on(symbol, &known.names) {
+                    if *kind != RuleKind::Assignment || !known.hiding.contains(symbol) {
                         return None;
                     }
                     self.reader.formula(*math)

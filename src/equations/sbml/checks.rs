@@ -29,7 +29,7 @@ impl Plan<'_, '_> {
                 let found =
                     format!("a formula uses the rate of `{}`, which is fast: its equilibrium has no rate", reaction.id);
                 let help =
-                    "write the rate of what it turns into what as a parameter of its own, or make the reaction slow";
+                    "take it out of formulas, or make the reaction slow, with a law much quicker than the others";
                 self.page.fault_in(reaction.node, "fast", found, help);
             }
         }

@@ -4,7 +4,10 @@ use super::document::RuleKind;
 use super::plan::{Change, Kind, Plan};
 use super::xml::Node;
 use crate::equations::tree::Expr;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
+
+/// So many symbols are followed to find out what one rests on.
+const LONGEST_SEARCH: usize = 10_000;
 
 impl<'a> Plan<'_, 'a> {
     /// Rules, initial assignments and event assignments by their symbols.
@@ -109,25 +112,43 @@ impl<'a> Plan<'_, 'a> {
         self.solved.get(symbol).cloned().unwrap_or_else(|| self.reader.formula(math))
     }
 
-    /// Whether what a symbol is may follow from one of some symbols, by rules and sizes.
-    pub fn rests_on(&self, symbol: &'a str, some: &HashSet<&str>) -> bool {
+    /// Whether what a symbol is may follow from one of some symbols, by rules and sizes; also where that is too long to find out.
+    pub fn rests_on(&self, symbol: &'a str, some: &dyn Fn(&str) -> bool) -> bool {
         let (mut open, mut seen) = (vec![symbol], HashSet::from([symbol]));
         while let Some(symbol) = open.pop() {
-            if some.contains(symbol) {
+            if some(symbol) || seen.len() > LONGEST_SEARCH {
                 return true;
             }
-            let law = |number: usize| self.document.reactions[number].law.as_ref().and_then(|law| law.math);
-            let (formula, compartment) = match (self.rules.get(symbol), self.kinds.get(symbol)) {
-                (Some((RuleKind::Assignment, math)), _) => (Some(*math), None),
-                (_, Some(&Kind::Reaction(number))) => (law(number), None),
-                (_, Some(&Kind::Species(number))) => (None, Some(self.document.species[number].compartment)),
-                _ => (None, None),
-            };
-            let names = formula.into_iter().flat_map(|math| math.descendants());
-            let names = names.filter(|node| node.is_element() && node.name() == "ci").map(super::math::name);
-            open.extend(names.chain(compartment).filter(|name| seen.insert(*name)));
+            open.extend(self.used_by(symbol).filter(|name| seen.insert(*name)));
         }
         false
+    }
+
+    /// The symbols that rest on one of some, by rules and sizes.
+    pub fn resting_on(&self, some: &HashSet<&'a str>) -> HashSet<&'a str> {
+        let mut users: HashMap<&str, Vec<&'a str>> = HashMap::new();
+        for symbol in self.kinds.keys().filter(|symbol| !some.contains(**symbol)) {
+            self.used_by(symbol).for_each(|used| users.entry(used).or_default().push(symbol));
+        }
+        let (mut open, mut found): (Vec<&str>, _) = (some.iter().copied().collect(), HashSet::new());
+        while let Some(used) = open.pop() {
+            open.extend(users.remove(used).unwrap_or_default().into_iter().filter(|user| found.insert(*user)));
+        }
+        found
+    }
+
+    /// What the formula of a symbol names: its assignment rule, its law, or the size by which an amount is a concentration.
+    fn used_by(&self, symbol: &str) -> impl Iterator<Item = &'a str> + use<'a> {
+        let law = |number: usize| self.document.reactions[number].law.as_ref().and_then(|law| law.math);
+        let (formula, compartment) = match (self.rules.get(symbol), self.kinds.get(symbol)) {
+            (Some((RuleKind::Assignment, math)), _) => (Some(*math), None),
+            (_, Some(&Kind::Reaction(number))) => (law(number), None),
+            (_, Some(&Kind::Species(number))) => (None, Some(self.document.species[number].compartment)),
+            _ => (None, None),
+        };
+        let names = formula.into_iter().flat_map(|math| math.descendants());
+        let names = names.filter(|node| node.is_element() && node.name() == "ci").map(super::math::name);
+        names.chain(compartment)
     }
 
     /// How a compartment's size changes.
