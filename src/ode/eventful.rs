@@ -54,7 +54,10 @@ impl Eventful<'_> {
         scratch.suit(self.program, population.method(), population.blocks());
         scratch.suit_events(self.program, self.plan, memories.len());
         let PopulationScratch { threads, arrived, .. } = scratch;
-        let given = arrived.iter_mut().zip(ids).map(|(arrived, id)| arrived.id = id as u32).count();
+        let mut given = 0;
+        for (arrived, id) in arrived.iter_mut().zip(ids) {
+            (arrived.id, given) = (id as u32, given + 1);
+        }
         assert_eq!(given, memories.len(), "one number a cell");
         let before = &*population;
         arrived.par_iter_mut().zip(memories.par_iter()).enumerate().for_each(|(cell, (arrived, memory))| {
