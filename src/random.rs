@@ -4,8 +4,10 @@
 //! answer on every machine, with any number of threads and after any resume. Key = seed, counter = (draw, cell and
 //! purpose), eq. (random.1).
 
+mod choices;
 mod normals;
 
+pub use choices::Choices;
 pub use normals::Normals;
 
 use std::convert::Infallible;
@@ -30,6 +32,8 @@ pub enum Purpose {
     Noise = 6,
     /// Which atoms the fibres of a pseudopod join; the number of the pseudopod and that of the fibre stand for the draw.
     Fibres = 7,
+    /// Which of the events of one time and one priority is executed next; see [`Choices`].
+    Events = 8,
     /// Which cells are drawn for an interval by the bootstrap; the number of the draw stands for the cell. Numbers of analysis begin with 100.
     Bootstrap = 100,
 }
@@ -62,6 +66,20 @@ fn philox_lanes<const L: usize>(mut counter: [[u32; L]; 4], mut key: [u32; 2]) -
         counter = next;
     }
     counter
+}
+
+/// The key of what has a name, written in parts, eq. (random.2).
+fn named_key(seed: u64, purpose: Purpose, name: &[&str]) -> [u32; 2] {
+    let label = label(name);
+    let counter = [label as u32, (label >> 32) as u32, 0, purpose as u32];
+    let [first, second, ..] = philox(counter, [seed as u32, (seed >> 32) as u32]);
+    [first, second]
+}
+
+/// FNV-1a in 64 bits of the parts of a name. 0xff, which never occurs in UTF-8, parts them.
+fn label(name: &[&str]) -> u64 {
+    let bytes = name.iter().flat_map(|part| part.bytes().chain([0xff]));
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// The numbers of one purpose and one cell, addressed by draw.

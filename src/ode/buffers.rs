@@ -47,6 +47,8 @@ pub(super) struct ThreadBuffers {
 /// A cell at the end of a window.
 #[derive(Debug, Default)]
 pub(super) struct Arrived {
+    /// The number of the cell, for choices between its events.
+    pub id: u32,
     pub state: Vec<f64>,
     pub open: Vec<f64>,
     pub pace: (f64, f64),

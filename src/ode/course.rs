@@ -30,6 +30,8 @@ pub struct CourseBuffers {
     /// The present state, and differences that are met exactly at three times.
     present: Vec<f64>,
     differences: [Vec<f64>; 3],
+    /// The largest that any variable has been, without its sign.
+    pub largest: f64,
 }
 
 impl<'c, 'a> Course<'c, 'a> {
@@ -43,6 +45,7 @@ impl<'c, 'a> Course<'c, 'a> {
         buffers: &'c mut CourseBuffers,
     ) -> Self {
         buffers.within.resize(stepper.program.size(), 0.0);
+        buffers.largest = 0.0;
         Self { stepper, events, points, written: 0, each, until, buffers }
     }
 
@@ -78,6 +81,7 @@ impl<'c, 'a> Course<'c, 'a> {
 
     /// What happens at the present time: triggers, executions, values asked for.
     fn arrive(&mut self) -> Result<(), OdeTrouble> {
+        self.note_largest();
         self.events.update(self.stepper);
         self.events.execute(self.stepper)?;
         self.write_present();
@@ -107,10 +111,17 @@ impl<'c, 'a> Course<'c, 'a> {
         }
         self.write_between(begin, reached, reached);
         self.stepper.commit(reached);
+        self.note_largest();
         if reached < end {
             self.write_present();
         }
         Ok(false)
+    }
+
+    /// Takes note of the present state's size.
+    fn note_largest(&mut self) {
+        let sizes = (0..self.stepper.program.size()).map(|v| self.stepper.state(v).abs());
+        self.buffers.largest = sizes.fold(self.buffers.largest, f64::max);
     }
 
     /// Whether a trigger that did not hold does at a share of the step. Takes note of triggers that no longer hold.

@@ -6,11 +6,11 @@ use rayon::prelude::*;
 
 use super::buffers::{Arrived, CellBuffers, PopulationScratch};
 use super::course::{Course, LONGEST_SHARE};
-use super::events::{EventPlan, Events};
+use super::events::{Chooser, EventPlan, Events};
 use super::memory::EventMemory;
 use super::population::Population;
 use super::stepper::{Stepper, StepperBuffers};
-use super::{OdeTrouble, Tolerances, Work};
+use super::{Numbers, OdeTrouble, Tolerances, Work};
 use crate::equations::program::Program;
 
 /// A system with events, and how it is advanced.
@@ -25,11 +25,13 @@ pub struct Eventful<'a> {
     /// The whole time, of which windows are parts, in the system's unit: with events no step is longer than a fiftieth
     /// of it.
     pub span: f64,
+    /// What chooses between events of one time and one priority.
+    pub numbers: Numbers<'a>,
 }
 
 impl Eventful<'_> {
     /// Advances all cells through a window, as [`Population::advance`] does for systems without events. `memories`
-    /// holds one entry a cell. Triggers that have turned true since the last window, because an open quantity was set
+    /// holds one entry a cell, `ids` one number a cell, which is never that of another. Triggers that have turned true since the last window, because an open quantity was set
     /// or because nothing was before, fire at `from`; what is due at `until` is executed. A window of no length
     /// does only that. Nothing is allocated after the first window with the same scratch, unless an event
     /// that waits fires again.
@@ -39,19 +41,24 @@ impl Eventful<'_> {
     /// begin; all others have reached the end.
     ///
     /// # Panics
-    /// When the population is of another program, or there is not one memory a cell.
+    /// When the population is of another program, or there is not one memory and one number a cell.
     pub fn advance(
         &self,
         population: &mut Population,
         memories: &mut [EventMemory],
-        from: f64,
-        until: f64,
+        ids: impl Iterator<Item = u64>,
+        (from, until): (f64, f64),
         scratch: &mut PopulationScratch,
     ) -> Result<Work, OdeTrouble> {
         assert_eq!(memories.len(), population.cells(), "one memory a cell");
         scratch.suit(self.program, population.method(), population.blocks());
         scratch.suit_events(self.program, self.plan, memories.len());
         let PopulationScratch { threads, arrived, .. } = scratch;
+        let mut given = 0;
+        for (arrived, id) in arrived.iter_mut().zip(ids) {
+            (arrived.id, given) = (id as u32, given + 1);
+        }
+        assert_eq!(given, memories.len(), "one number a cell");
         let before = &*population;
         arrived.par_iter_mut().zip(memories.par_iter()).enumerate().for_each(|(cell, (arrived, memory))| {
             let own = &threads[rayon::current_thread_index().unwrap_or(0)];
@@ -91,7 +98,8 @@ impl Eventful<'_> {
         let open = (0..program.open.len()).map(|position| population.open_value(cell, position));
         own.resume(from, state, open, population.pace(cell));
         own.longest = LONGEST_SHARE * self.span;
-        let mut events = Events::new(self.plan, &mut arrived.memory, events);
+        let chooser = Chooser { choices: self.numbers.choices(), cell: arrived.id };
+        let mut events = Events::new(self.plan, &mut arrived.memory, events, chooser);
         arrived.trouble = Course::new(&mut own, &mut events, until, &[], &mut |_, _| (), course).run().err();
         own.state_into(&mut arrived.state);
         arrived.open.clone_from(&own.open);

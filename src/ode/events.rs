@@ -2,12 +2,14 @@
 
 use super::memory::{EventMemory, reserve};
 use super::stepper::Stepper;
+use super::stops::stops;
 use super::{OdeTrouble, Reason};
 use crate::equations::program::Program;
-use crate::equations::tree::{Binary, Event, Expr, QuantityId, Role, System};
+use crate::equations::tree::{Event, Expr, QuantityId, Role, System};
+use crate::random::Choices;
 
 /// Executions at one time after which events count as endless.
-const MOST_AT_ONCE: usize = 10_000;
+const MOST_AT_ONCE: u32 = 10_000;
 
 /// Group of the triggers among [`Program::further`].
 pub const TRIGGERS: usize = 0;
@@ -63,6 +65,16 @@ pub struct Events<'a> {
     plan: &'a EventPlan,
     memory: &'a mut EventMemory,
     buffers: &'a mut EventBuffers,
+    chooser: Chooser,
+}
+
+/// What chooses between the events of a cell that have one time and one priority.
+#[derive(Debug, Clone, Copy)]
+pub struct Chooser {
+    /// The choices of the system.
+    pub choices: Choices,
+    /// The number of the cell.
+    pub cell: u32,
 }
 
 /// What [`Events`] work in.
@@ -107,68 +119,15 @@ fn groups(system: &System) -> Vec<Vec<Expr>> {
     groups
 }
 
-/// Differences of the sides of every comparison that depends on time but on no variable.
-fn stops(system: &System) -> Vec<Expr> {
-    let mut found = Vec::new();
-    let mut steady = vec![None; system.quantities.len()];
-    for quantity in &system.quantities {
-        match &quantity.role {
-            Role::Variable { rate } => comparisons(system, rate, &mut steady, &mut found),
-            Role::Defined { rule } => comparisons(system, rule, &mut steady, &mut found),
-            _ => {}
-        }
-    }
-    for event in &system.events {
-        comparisons(system, &event.trigger, &mut steady, &mut found);
-    }
-    found
-}
-
-fn comparisons(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>, found: &mut Vec<Expr>) {
-    match expression {
-        Expr::Number(_) | Expr::Time | Expr::Quantity(_) => {}
-        Expr::Unary(_, a) => comparisons(system, a, steady, found),
-        Expr::Binary(function, a, b) => {
-            let compares =
-                matches!(function, Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne);
-            if compares && is_steady(system, a, steady) && is_steady(system, b, steady) {
-                let difference = Expr::Binary(Binary::Sub, a.clone(), b.clone());
-                if !found.contains(&difference) {
-                    found.push(difference);
-                }
-            }
-            comparisons(system, a, steady, found);
-            comparisons(system, b, steady, found);
-        }
-        Expr::Piecewise { branches, otherwise } => {
-            for (condition, value) in branches {
-                comparisons(system, condition, steady, found);
-                comparisons(system, value, steady, found);
-            }
-            comparisons(system, otherwise, steady, found);
-        }
-    }
-}
-
-/// Whether an expression depends on no variable.
-fn is_steady(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>) -> bool {
-    let mut used = Vec::new();
-    expression.each_quantity(&mut |quantity| used.push(quantity));
-    used.into_iter().all(|quantity| match &system.quantities[quantity as usize].role {
-        Role::Variable { .. } => false,
-        Role::Parameter | Role::Input => true,
-        Role::Defined { rule } => steady[quantity as usize].unwrap_or_else(|| {
-            let answer = is_steady(system, rule, steady);
-            steady[quantity as usize] = Some(answer);
-            answer
-        }),
-    })
-}
-
 impl<'a> Events<'a> {
     /// The events of a system with what is known of them.
-    pub fn new(plan: &'a EventPlan, memory: &'a mut EventMemory, buffers: &'a mut EventBuffers) -> Self {
-        Self { plan, memory, buffers }
+    pub fn new(
+        plan: &'a EventPlan,
+        memory: &'a mut EventMemory,
+        buffers: &'a mut EventBuffers,
+        chooser: Chooser,
+    ) -> Self {
+        Self { plan, memory, buffers, chooser }
     }
 
     /// Whether there are none.
@@ -216,20 +175,13 @@ impl<'a> Events<'a> {
         }
     }
 
-    /// Executes all that is due, in the order of priorities worked out anew each time; events without one come last,
-    /// and equals in the order of their firing. Returns whether anything was executed.
+    /// Executes all that is due, in the order of priorities worked out anew each time. Returns whether anything was executed.
     pub fn execute(&mut self, stepper: &mut Stepper) -> Result<bool, OdeTrouble> {
-        let mut count = 0;
+        let mut count: u32 = 0;
         while self.next() <= stepper.time {
-            let EventBuffers { state, priorities, execution, .. } = &mut *self.buffers;
+            let Some(first) = self.first_due(stepper, count) else { break };
+            let EventBuffers { state, execution, .. } = &mut *self.buffers;
             let program = stepper.program;
-            stepper.state_into(state);
-            stepper.evaluate(&program.further[PRIORITIES], stepper.time, state, priorities);
-            let due = self.memory.waiting().iter().enumerate().filter(|(_, waiting)| waiting.time <= stepper.time);
-            // The first of equals: the later one must be strictly larger.
-            let first = due
-                .reduce(|best, other| if priorities[other.1.event] > priorities[best.1.event] { other } else { best });
-            let Some((first, _)) = first else { break };
             let executed = self.memory.take(first, execution);
             let values = match executed.kept {
                 Some(_) => &execution[..],
@@ -259,5 +211,25 @@ impl<'a> Events<'a> {
             stepper.restart();
         }
         Ok(count > 0)
+    }
+
+    /// Which of what waits and is due is executed next: that of the largest priority, of several equal ones any, as chance says.
+    /// Those without a priority come last, in the order of their firing. Leaves the state in its buffer.
+    fn first_due(&mut self, stepper: &mut Stepper, number: u32) -> Option<usize> {
+        let EventBuffers { state, priorities, .. } = &mut *self.buffers;
+        stepper.state_into(state);
+        stepper.evaluate(&stepper.program.further[PRIORITIES], stepper.time, state, priorities);
+        let mut due = self.memory.waiting().iter().enumerate().filter(|(_, waiting)| waiting.time <= stepper.time);
+        let largest = due.clone().map(|(_, waiting)| priorities[waiting.event]).fold(f64::NEG_INFINITY, f64::max);
+        if largest == f64::NEG_INFINITY {
+            return due.next().map(|(at, _)| at);
+        }
+        let mut equals = due.filter(|(_, waiting)| priorities[waiting.event] == largest);
+        let things = equals.clone().count();
+        let chosen = match things {
+            1 => 0,
+            _ => self.chooser.choices.one(stepper.time, (self.chooser.cell, number), things),
+        };
+        equals.nth(chosen).map(|(at, _)| at)
     }
 }

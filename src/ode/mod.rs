@@ -8,6 +8,7 @@ mod buffers;
 pub(crate) mod cells;
 mod control;
 mod course;
+mod digits;
 mod eventful;
 mod events;
 mod explicit;
@@ -26,6 +27,7 @@ mod scheme;
 pub(crate) mod scratch;
 mod solve;
 mod stepper;
+mod stops;
 mod substeps;
 pub mod tableau;
 mod wide;
@@ -125,6 +127,8 @@ pub enum Reason {
     TooManySteps,
     /// Events follow each other without end at one time.
     EndlessEvents,
+    /// A value has become so small that round-off is all that is left of it.
+    RoundOff,
     /// The solver gave up for a reason of its own.
     Solver,
 }
@@ -157,6 +161,7 @@ impl std::fmt::Display for OdeTrouble {
             Reason::StepUnderflow => write!(f, " needs steps shorter than the clock can tell apart")?,
             Reason::TooManySteps => write!(f, " needs more steps than allowed")?,
             Reason::EndlessEvents => write!(f, " has events that follow each other without end")?,
+            Reason::RoundOff => write!(f, " has a value of which round-off has left no digit")?,
             Reason::Solver => write!(f, " could not be solved")?,
         }
         write!(f, " at t = {}", self.time)?;
@@ -180,6 +185,10 @@ impl From<OdeTrouble> for Error {
             }
             Reason::TooManySteps => "use the stiff method, loosen the tolerances, or allow more steps",
             Reason::EndlessEvents => "let the events change what triggers them",
+            Reason::RoundOff => {
+                "let atol be above what is left of it; or where the equations keep a sum, let one of its variables follow from \
+                 the others in place of having a rate"
+            }
             Reason::Solver => "try the Rosenbrock method",
         };
         Self::Numbers { message: trouble.to_string(), help: help.into(), kept: None }

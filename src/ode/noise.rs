@@ -9,7 +9,7 @@ use super::substeps::Kick;
 use super::{OdeTrouble, Reason};
 use crate::equations::eml::Document;
 use crate::equations::program::{Lanes, Program, run};
-use crate::random::{Normals, Purpose};
+use crate::random::{Choices, Normals, Purpose};
 
 /// How strongly the variables of a system are kicked: compiled, and never changed.
 #[derive(Debug, Clone)]
@@ -20,7 +20,7 @@ pub struct Noise {
     variables: Vec<usize>,
 }
 
-/// Whose random numbers kick.
+/// Whose random numbers kick, and choose between events.
 #[derive(Debug, Clone, Copy)]
 pub struct Numbers<'a> {
     /// The seed of the run.
@@ -30,6 +30,11 @@ pub struct Numbers<'a> {
 }
 
 impl Numbers<'_> {
+    /// Those that choose between events of one time and one priority.
+    pub(super) fn choices(&self) -> Choices {
+        Choices::new(self.seed, Purpose::Events, &[self.system])
+    }
+
     /// The numbers of a variable.
     pub fn of(&self, variable: &str) -> Normals {
         Normals::new(self.seed, Purpose::Noise, &[self.system, variable])

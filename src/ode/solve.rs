@@ -4,12 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::control::Tolerances;
 use super::course::{Course, CourseBuffers, LONGEST_SHARE};
-use super::events::{EventBuffers, EventPlan, Events};
+use super::digits::Ended;
+use super::events::{Chooser, EventBuffers, EventPlan, Events};
 #[cfg(feature = "diffsol")]
 use super::multistep;
 use super::scheme::Scheme;
 use super::stepper::Stepper;
-use super::{Method, OdeTrouble, Reason, Work};
+use super::{Method, Numbers, OdeTrouble, Reason, Work};
+use crate::equations::program::Program;
 use crate::equations::tree::System;
 
 /// Scheme and tolerances.
@@ -23,13 +25,15 @@ pub struct SolveOptions {
     pub absolute: f64,
     /// Most steps in all.
     pub max_steps: u32,
+    /// Seed of the choices between events of one time and one priority.
+    pub seed: u64,
 }
 
 impl Default for SolveOptions {
     /// The Rosenbrock method, which takes stiff and other systems, with and without events.
     fn default() -> Self {
         let scheme = Scheme::OneStep(Method::Rosenbrock);
-        Self { scheme, relative: 1e-7, absolute: 1e-14, max_steps: 2_000_000 }
+        Self { scheme, relative: 1e-7, absolute: 1e-14, max_steps: 2_000_000, seed: 0 }
     }
 }
 
@@ -101,14 +105,8 @@ pub fn solve_each(
         Tolerances { relative: options.relative, absolute: options.absolute, max_steps: options.max_steps };
     match options.scheme {
         Scheme::OneStep(method) => {
-            let mut stepper = Stepper::new(&program, method, tolerances, from);
-            let (mut memory, mut buffers) = (plan.before_start(), EventBuffers::default());
-            let mut events = Events::new(&plan, &mut memory, &mut buffers);
-            if !plan.is_empty() {
-                stepper.longest = LONGEST_SHARE * (until - from);
-            }
-            Course::new(&mut stepper, &mut events, until, points, each, &mut CourseBuffers::default()).run()?;
-            Ok(stepper.work)
+            let solver = Solver { program: &program, plan: &plan, method, tolerances, seed: options.seed };
+            solver.solve((from, until), points, each)
         }
         _ if program.size() == 0 => {
             let options = SolveOptions { scheme: SolveOptions::default().scheme, ..*options };
@@ -121,5 +119,61 @@ pub fn solve_each(
         _ => Err(trouble("this program was built without diffsol: use rosenbrock, rk45, rk65, rk4 or euler".into())),
         #[cfg(feature = "diffsol")]
         scheme => multistep::solve(&program, scheme, from, until, points, &tolerances, each),
+    }
+}
+
+/// A system and how it is solved in one course.
+struct Solver<'a> {
+    program: &'a Program,
+    plan: &'a EventPlan,
+    method: Method,
+    tolerances: Tolerances,
+    seed: u64,
+}
+
+impl Solver<'_> {
+    /// The course, and a second one with half of the relative tolerance where variables have become so small that round-off may
+    /// be all that is left of them. With events it is not made: these happen at other times by their last bits.
+    fn solve(self, span: (f64, f64), points: &[f64], each: &mut dyn FnMut(f64, &[f64])) -> Result<Work, OdeTrouble> {
+        let (ended, mut work) = self.course(span, points, each)?;
+        let (program, tolerances) = (self.program, self.tolerances);
+        let fixed = matches!(self.method, Method::Rk4 { .. } | Method::Euler { .. });
+        if fixed || !self.plan.is_empty() || ended.small(&program.sizes, tolerances).next().is_none() {
+            return Ok(work);
+        }
+        let tighter = Tolerances { relative: 0.5 * tolerances.relative, ..tolerances };
+        let Ok((other, more)) = Self { tolerances: tighter, ..self }.course(span, &[], &mut |_, _| ()) else {
+            return Ok(work);
+        };
+        work.add(more);
+        let Some((v, value)) = ended.lost(&other, &program.sizes, tolerances) else { return Ok(work) };
+        Err(OdeTrouble {
+            system: program.name.clone(),
+            cell: None,
+            time: span.1,
+            variable: Some(program.names[program.variables[v] as usize].clone()),
+            reason: Reason::RoundOff,
+            detail: format!("{:e}, and {value:e} with half the relative tolerance", ended.state[v]),
+        })
+    }
+
+    fn course(
+        &self,
+        (from, until): (f64, f64),
+        points: &[f64],
+        each: &mut dyn FnMut(f64, &[f64]),
+    ) -> Result<(Ended, Work), OdeTrouble> {
+        let mut stepper = Stepper::new(self.program, self.method, self.tolerances, from);
+        let (mut memory, mut buffers) = (self.plan.before_start(), EventBuffers::default());
+        let choices = Numbers { seed: self.seed, system: &self.program.name }.choices();
+        let mut events = Events::new(self.plan, &mut memory, &mut buffers, Chooser { choices, cell: 0 });
+        if !self.plan.is_empty() {
+            stepper.longest = LONGEST_SHARE * (until - from);
+        }
+        let mut scratch = CourseBuffers::default();
+        Course::new(&mut stepper, &mut events, until, points, each, &mut scratch).run()?;
+        let mut state = Vec::new();
+        stepper.state_into(&mut state);
+        Ok((Ended { state, largest: scratch.largest }, stepper.work))
     }
 }

@@ -1,6 +1,6 @@
 //! Standard normal numbers, many side by side, from plain arithmetic: the same bits on every processor and for every number of lanes.
 
-use super::{Purpose, philox, philox_lanes};
+use super::{Purpose, named_key, philox_lanes};
 use crate::elementary::{ln, turn};
 
 /// Normal numbers of mean 0 and variance 1 that belong to (seed, purpose, name, counter, cell, element) and to nothing else: each can be
@@ -13,10 +13,7 @@ pub struct Normals {
 impl Normals {
     /// The numbers of what has this name, written in parts.
     pub fn new(seed: u64, purpose: Purpose, name: &[&str]) -> Self {
-        let label = label(name);
-        let counter = [label as u32, (label >> 32) as u32, 0, purpose as u32];
-        let [first, second, ..] = philox(counter, [seed as u32, (seed >> 32) as u32]);
-        Self { key: [first, second] }
+        Self { key: named_key(seed, purpose, name) }
     }
 
     /// Of each lane, a cell and a pair, the numbers of the elements 2·pair and 2·pair + 1.
@@ -39,12 +36,6 @@ impl Normals {
     pub fn one(&self, counter: u64, cell: u32, element: u32) -> f64 {
         self.pairs(counter, &[cell], &[element / 2])[element as usize % 2][0]
     }
-}
-
-/// FNV-1a in 64 bits of the parts of a name. 0xff, which never occurs in UTF-8, parts them.
-fn label(name: &[&str]) -> u64 {
-    let bytes = name.iter().flat_map(|part| part.bytes().chain([0xff]));
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// A number uniform in [1, 2) with 52 bits.

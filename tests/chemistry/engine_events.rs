@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use crate::ode_problems::{self, expression, system};
 use pseudopod::equations::tree::{Binary, Event, Expr, System};
 use pseudopod::ode::{
-    EventPlan, Eventful, Method, Population, PopulationScratch, Reason, Scheme, SolveOptions, Tolerances, solve,
+    EventPlan, Eventful, Method, Numbers, Population, PopulationScratch, Reason, Scheme, SolveOptions, Tolerances,
+    solve,
 };
 
 fn compare(function: Binary, a: Expr, b: Expr) -> Expr {
@@ -198,10 +199,12 @@ fn a_parameter_that_an_event_sets_stays_set_from_window_to_window() {
         let mut cells = Population::new(&program, 2, method);
         let (mut memories, mut scratch) = (vec![plan.before_start(); 2], PopulationScratch::default());
         cells.set_open(1, 0, 0.5);
-        let one = Eventful { program: &program, plan: &plan, tolerances: Tolerances::default(), span: 4.0 };
+        let numbers = Numbers { seed: 1, system: "switched" };
+        let one = Eventful { program: &program, plan: &plan, tolerances: Tolerances::default(), span: 4.0, numbers };
         for window in 0..10 {
             let (from, until) = (0.4 * f64::from(window), 0.4 * f64::from(window + 1));
-            one.advance(&mut cells, &mut memories, from, until, &mut scratch).expect("straight lines");
+            let moved = one.advance(&mut cells, &mut memories, 0..2, (from, until), &mut scratch);
+            moved.expect("straight lines");
         }
         // 1.5 at 2.5 and 3·1.5 after; with 0.5 at the start 1.5 at 2 and 3·2 after.
         for (cell, end) in [(0, 6.0), (1, 7.5)] {
@@ -209,4 +212,56 @@ fn a_parameter_that_an_event_sets_stays_set_from_window_to_window() {
             assert!((cells.state(cell, 0) - end).abs() < 1e-9, "{method:?}: {}", cells.state(cell, 0));
         }
     }
+}
+
+/// Two events of one trigger and one priority, each of which undoes the other's trigger: one of them counts at each turn of the clock.
+fn competing(priority: Option<f64>) -> System {
+    let variables = [("x", 0.0, "1"), ("y", 0.0, "0"), ("z", 0.0, "0"), ("last", 0.0, "0")];
+    let mut system = system("competing", &variables, &[]);
+    for winner in ["y", "z"] {
+        let trigger = compare(Binary::Ge, on(&system, "x-last"), Expr::Number(1.0));
+        let target = system.find(winner).expect("a variable");
+        let won = event(trigger, vec![(target, on(&system, &format!("{winner}+1"))), (3, on(&system, "x"))]);
+        system.events.push(Event { persistent: false, priority: priority.map(Expr::Number), ..won });
+    }
+    system
+}
+
+#[test]
+fn events_of_one_time_and_one_priority_go_in_an_order_at_random() {
+    let counts = |priority, seed| {
+        let options = SolveOptions { scheme: SCHEMES[1], seed, ..SolveOptions::default() };
+        let solution = solve(&competing(priority), 0.0, 400.5, &[400.5], &options).expect("straight lines");
+        (solution.values[0][1], solution.values[0][2])
+    };
+    let all = [0, 1, 2].map(|seed| counts(Some(1.0), seed));
+    for (y, z) in all {
+        // The standard deviation of the difference of 400 draws is 20.
+        assert!(y + z == 400.0 && (y - z).abs() < 80.0, "{all:?}");
+    }
+    assert_eq!(all[1], counts(Some(1.0), 1), "a seed gives the same order again");
+    assert!(all[0] != all[1] || all[1] != all[2], "{all:?}");
+    assert_eq!(counts(None, 0), (400.0, 0.0), "without a priority the first to fire goes first");
+}
+
+#[test]
+fn cells_choose_by_their_numbers_and_not_by_their_neighbours() {
+    let system = competing(Some(2.0));
+    let (program, plan) = EventPlan::compile(&system, 0.0).expect("a program");
+    let numbers = Numbers { seed: 5, system: "competing" };
+    let one = Eventful { program: &program, plan: &plan, tolerances: Tolerances::default(), span: 64.0, numbers };
+    // How often the first event won, in windows of a length.
+    let wins = |ids: &[u64], windows: u32| -> Vec<f64> {
+        let mut cells = Population::new(&program, ids.len(), Method::Rk45);
+        let (mut memories, mut scratch) = (vec![plan.before_start(); ids.len()], PopulationScratch::default());
+        for window in 0..windows {
+            let [from, until] = [window, window + 1].map(|end| 64.0 * f64::from(end) / f64::from(windows));
+            let moved = one.advance(&mut cells, &mut memories, ids.iter().copied(), (from, until), &mut scratch);
+            moved.expect("straight lines");
+        }
+        (0..ids.len()).map(|cell| cells.state(cell, 1)).collect()
+    };
+    let all = wins(&[7, 3, 11, 4], 1);
+    assert!(all.iter().any(|count| *count != all[0]), "{all:?}");
+    assert_eq!([wins(&[3], 1)[0], wins(&[4], 1)[0]], [all[1], all[3]]);
 }

@@ -2,7 +2,7 @@
 
 use crate::ode_problems::{martiel_goldbeter, system};
 use crate::shared::shared;
-use pseudopod::ode::{Method, Scheme, SolveOptions, Work, solve};
+use pseudopod::ode::{Method, OdeTrouble, Reason, Scheme, SolveOptions, Work, solve};
 use serde_json::Value;
 
 fn json(path: &str) -> Option<Value> {
@@ -109,4 +109,38 @@ fn the_cyclic_amp_oscillator_keeps_its_published_run() {
         // The reference was read off a grid of about 1e-3.
         assert!((period - wanted).abs() < 2e-3, "{period} instead of {wanted}");
     }
+}
+
+const E5: [(&str, f64, &str); 4] = [
+    ("y1", 1.76e-3, "0-A*y1-B*y1*y3"),
+    ("y2", 0.0, "A*y1-M*C*y2*y3"),
+    ("y3", 0.0, "A*y1-B*y1*y3-M*C*y2*y3+C*y4"),
+    ("y4", 0.0, "B*y1*y3-C*y4"),
+];
+
+/// E5 of the test set of Bari and CWI: the reactions keep y2 = y3 + y4, and all three fall from 10⁻¹⁰ to 9·10⁻²³.
+fn e5(variables: &[(&str, f64, &str)], (relative, absolute): (f64, f64)) -> Result<Vec<f64>, OdeTrouble> {
+    let system = system("E5", variables, &[("A", 7.89e-10), ("B", 1.1e7), ("C", 1.13e3), ("M", 1e6)]);
+    let options = SolveOptions { relative, absolute, ..SolveOptions::default() };
+    solve(&system, 0.0, 1e13, &[1e13], &options).map(|solution| solution.values[0].clone())
+}
+
+#[test]
+fn a_value_of_which_round_off_leaves_no_digit_is_told_of() {
+    for relative in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8] {
+        let trouble = e5(&E5, (relative, 1e-26)).expect_err("no digit is right");
+        assert!(trouble.reason == Reason::RoundOff && trouble.time == 1e13, "{relative:e}: {trouble}");
+        assert!(["y1", "y2", "y3"].contains(&trouble.variable.as_deref().unwrap_or_default()), "{trouble}");
+    }
+    // What is below the absolute tolerance is not asked for.
+    assert!(e5(&E5, (1e-7, 1e-14)).is_ok());
+    // With the sum in place of y2 nothing cancels.
+    let third = E5[2].2.replace("y2", "(y3+y4)");
+    let found = e5(&[E5[0], ("y3", 0.0, &third), E5[3]], (1e-7, 1e-26)).expect("all is known");
+    assert!((found[1] / 8.861_234e-23 - 1.0).abs() < 1e-4 && found[2] < 1e-26, "{found:?}");
+    // A decay is known to its digits however small it becomes.
+    let decay = system("decay", &[("x", 1.0, "0-x")], &[]);
+    let options = SolveOptions { relative: 1e-8, absolute: 1e-30, ..SolveOptions::default() };
+    let left = solve(&decay, 0.0, 46.0, &[46.0], &options).expect("a decay").values[0][0];
+    assert!((left / (-46.0_f64).exp() - 1.0).abs() < 1e-5, "{left:e}");
 }

@@ -12,6 +12,9 @@ mod fields;
 mod fields_analytic;
 mod noise;
 mod sbml;
+mod sbml_algebraic;
+mod sbml_events;
+mod sbml_fast;
 mod sbml_features;
 mod xml;
 
@@ -19,6 +22,8 @@ mod xml;
 mod every_function;
 #[path = "../support/ode_problems.rs"]
 mod ode_problems;
+#[path = "../support/sbml_models.rs"]
+mod sbml_models;
 #[path = "../support/sbml_suite.rs"]
 mod sbml_suite;
 #[path = "../support/shared.rs"]

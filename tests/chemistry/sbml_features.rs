@@ -1,89 +1,10 @@
 //! What single constructs of SBML mean, against solutions by hand.
 
-use pseudopod::equations::sbml::{self, Model};
+use crate::sbml_models::{
+    CHANGING, SYMBOLS, apply, at, cell, close, event, events, math, reaction, read, rule, rules, time,
+};
+use pseudopod::equations::sbml;
 use pseudopod::equations::tree::Role;
-use pseudopod::error::{Paint, Source, render};
-use pseudopod::ode::{Method, Scheme, SolveOptions, solve};
-use std::sync::Arc;
-
-const MATH: &str = "http://www.w3.org/1998/Math/MathML";
-const SYMBOLS: &str = "http://www.sbml.org/sbml/symbols";
-
-fn read(level: u32, version: u32, body: &str) -> Model {
-    let space = if level == 2 { format!("level2/version{version}") } else { format!("level3/version{version}/core") };
-    let text = format!(
-        r#"<sbml xmlns="http://www.sbml.org/sbml/{space}" level="{level}" version="{version}">
-        <model conversionFactor="one"><listOfParameters><parameter id="one" value="1"/><parameter id="two" value="2"/>
-        <parameter id="p" value="1" constant="false"/><parameter id="q" value="0" constant="false"/></listOfParameters>
-        {body}</model></sbml>"#
-    );
-    let source = Arc::new(Source { name: "model.xml".to_owned(), text });
-    sbml::read(&source).unwrap_or_else(|error| panic!("{}", render(&error, Paint::Plain)))
-}
-
-const OPTIONS: SolveOptions =
-    SolveOptions { scheme: Scheme::OneStep(Method::Rosenbrock), relative: 1e-9, absolute: 1e-12, max_steps: 1_000_000 };
-
-/// Values of columns at a time.
-fn at(model: &Model, until: f64, columns: &[&str]) -> Vec<f64> {
-    let rows = solve(&model.system, 0.0, until, &[0.0, until], &OPTIONS).expect("a solution").values;
-    columns.iter().map(|name| rows[1][model.column(name).expect(name) as usize]).collect()
-}
-
-/// Equal to what the solver's tolerance of 1e-9 leaves, ten thousand steps long.
-fn close(got: &[f64], expected: &[f64]) {
-    assert_eq!(got.len(), expected.len());
-    for (a, b) in got.iter().zip(expected) {
-        assert!((a - b).abs() <= 1e-6 * (1.0 + b.abs()), "{got:?} instead of {expected:?}");
-    }
-}
-
-fn math(formula: &str) -> String {
-    format!(r#"<math xmlns="{MATH}">{formula}</math>"#)
-}
-
-fn rule(kind: &str, variable: &str, formula: &str) -> String {
-    format!(r#"<{kind} variable="{variable}">{}</{kind}>"#, math(formula))
-}
-
-fn rules(all: &[String]) -> String {
-    format!("<listOfRules>{}</listOfRules>", all.concat())
-}
-
-fn time() -> String {
-    format!(r#"<csymbol encoding="text" definitionURL="{SYMBOLS}/time"> t </csymbol>"#)
-}
-
-fn apply(operator: &str, operands: &str) -> String {
-    format!("<apply><{operator}/>{operands}</apply>")
-}
-
-/// One species in one compartment.
-fn cell(compartment: &str, species: &str) -> String {
-    format!(
-        r#"<listOfCompartments><compartment id="V" {compartment}/></listOfCompartments>
-        <listOfSpecies><species id="S" compartment="V" {species}/></listOfSpecies>"#
-    )
-}
-
-fn event(rest: &str, delay: &str, trigger: &str, assignments: &[(&str, &str)]) -> String {
-    let one = |(variable, formula): &(&str, &str)| {
-        format!(r#"<eventAssignment variable="{variable}">{}</eventAssignment>"#, math(formula))
-    };
-    let all: String = assignments.iter().map(one).collect();
-    let delay = if delay.is_empty() { String::new() } else { format!("<delay>{}</delay>", math(delay)) };
-    format!(
-        r#"<event {rest}><trigger initialValue="true" persistent="true">{}</trigger>{delay}
-        <listOfEventAssignments>{all}</listOfEventAssignments></event>"#,
-        math(trigger)
-    )
-}
-
-fn events(all: &[String]) -> String {
-    format!("<listOfEvents>{}</listOfEvents>", all.concat())
-}
-
-const CHANGING: &str = r#"size="0.5" constant="false""#;
 
 #[test]
 fn a_concentration_rate_holds_in_a_growing_compartment() {
@@ -99,51 +20,6 @@ fn a_concentration_rate_holds_in_a_compartment_with_a_rule() {
         + &rules(&[rule("assignmentRule", "V", &size), rule("rateRule", "S", "<cn> 0.1 </cn>")]);
     close(&at(&read(3, 2, &body), 1.0, &["V", "[S]", "S"]), &[2.0, 6.1, 12.2]);
 }
-
-#[test]
-fn an_amount_stays_when_the_size_jumps() {
-    let trigger = apply("gt", &format!("{}<cn> 0.5 </cn>", time()));
-    for species in [r#"initialAmount="3""#, r#"initialAmount="3" constant="true""#] {
-        let body = cell(CHANGING, species) + &events(&[event("", "", &trigger, &[("V", "<cn> 2 </cn>")])]);
-        close(&at(&read(3, 2, &body), 1.0, &["S", "[S]"]), &[3.0, 1.5]);
-    }
-}
-
-#[test]
-fn an_event_sets_concentration_and_size_at_once() {
-    let trigger = apply("gt", &format!("{}<cn> 0.5 </cn>", time()));
-    let both = event("", "", &trigger, &[("S", "<ci> S </ci>"), ("V", "<cn> 2 </cn>")]);
-    let body = cell(CHANGING, r#"initialAmount="3""#) + &events(&[both]);
-    close(&at(&read(3, 2, &body), 1.0, &["[S]", "S"]), &[6.0, 12.0]);
-    // The same where the size follows from what the event sets.
-    let size = apply("times", "<ci> p </ci><cn> 0.5 </cn>");
-    let both = event("", "", &trigger, &[("S", "<ci> S </ci>"), ("p", "<cn> 4 </cn>")]);
-    let body =
-        cell(CHANGING, r#"initialAmount="3""#) + &rules(&[rule("assignmentRule", "V", &size)]) + &events(&[both]);
-    close(&at(&read(3, 2, &body), 1.0, &["[S]", "S"]), &[6.0, 12.0]);
-}
-
-#[test]
-fn a_delayed_concentration_meets_the_size_of_its_execution() {
-    let trigger = apply("gt", &format!("{}<cn> 1 </cn>", time()));
-    for values in ["true", "false"] {
-        let rest = format!(r#"useValuesFromTriggerTime="{values}""#);
-        let late = event(&rest, "<cn> 1 </cn>", &trigger, &[("S", &time())]);
-        let body = cell(CHANGING, r#"initialAmount="3""#)
-            + &rules(&[rule("rateRule", "V", "<cn> 1 </cn>")])
-            + &events(&[late]);
-        let expected = if values == "true" { 1.0 } else { 2.0 };
-        close(&at(&read(3, 2, &body), 2.0 + 1e-9, &["[S]", "S"]), &[expected, 2.5 * expected]);
-    }
-}
-
-fn reaction(participant: &str, law: &str) -> String {
-    format!(
-        r#"<listOfReactions><reaction id="J" reversible="false"><listOfProducts>{participant}</listOfProducts>
-        <kineticLaw>{law}</kineticLaw></reaction></listOfReactions>"#
-    )
-}
-
 #[test]
 fn stoichiometries_follow_rules_events_and_initial_assignments() {
     let body = |rest: &str| {

@@ -27,7 +27,7 @@ impl Column {
 }
 
 /// The columns with some names; without any the time and all variables. A species of an SBML model is its amount, in
-/// brackets its concentration.
+/// brackets its concentration. The first `time` is the clock, another one a quantity of that name, if there is one.
 pub(super) fn columns(names: &[String], read: &Read, faults: &mut Vec<Fault>) -> Vec<Column> {
     let system = &read.document.system;
     if names.is_empty() {
@@ -36,10 +36,12 @@ pub(super) fn columns(names: &[String], read: &Read, faults: &mut Vec<Fault>) ->
         let all = std::iter::once((TIME.to_owned(), None)).chain(named);
         return all.map(|(title, quantity)| Column { title, quantity }).collect();
     }
-    let mut found = Vec::new();
+    let mut found: Vec<Column> = Vec::new();
+    // A model of SBML may have a quantity of that name.
+    let clock = |found: &[Column]| found.iter().all(|column| column.title != TIME) || system.find(TIME).is_none();
     for name in names {
         let title = name.trim().to_owned();
-        if title == TIME {
+        if title == TIME && clock(&found) {
             found.push(Column { title, quantity: None });
         } else if let Some(number) = system.find(&title) {
             found.push(Column { title, quantity: Some(number) });

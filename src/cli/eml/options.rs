@@ -44,6 +44,9 @@ pub struct SolveArgs {
     /// The most steps that are taken.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_steps: Option<u32>,
+    /// The seed of the choices between events of one time and one priority.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0)]
+    pub seed: u64,
     /// The table to write, as CSV; the terminal when absent.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -109,6 +112,7 @@ pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fa
     options.relative = args.rtol.or(document.solver.rtol).unwrap_or(usual.relative);
     options.absolute = args.atol.or(document.solver.atol).unwrap_or(usual.absolute);
     options.max_steps = args.max_steps.unwrap_or(usual.max_steps);
+    options.seed = args.seed;
     let inner = args.inner_step.or(document.solver.inner_step);
     match Scheme::named(name, inner) {
         Some(scheme) => options.scheme = scheme,

@@ -23,6 +23,16 @@ impl Plan<'_, '_> {
             let values = event.assignments.iter().map(|(_, value)| value);
             formulas.into_iter().flatten().chain(values).for_each(|formula| formula.each_quantity(&mut mark));
         }
+        for equilibrium in &self.equilibria {
+            let reaction = &self.document.reactions[equilibrium.reaction];
+            if self.reader.symbols.get(reaction.id).is_some_and(|&rate| used[rate as usize]) {
+                let found =
+                    format!("a formula uses the rate of `{}`, which is fast: its equilibrium has no rate", reaction.id);
+                let help =
+                    "take it out of formulas, or make the reaction slow, with a law much quicker than the others";
+                self.page.fault_in(reaction.node, "fast", found, help);
+            }
+        }
         for &quantity_id in &self.unset {
             let quantity = &self.quantities[quantity_id as usize];
             let id = &quantity.id;

@@ -56,6 +56,8 @@ pub struct Law<'a> {
 pub struct Reaction<'a> {
     pub node: Node<'a>,
     pub id: &'a str,
+    /// Its equilibrium holds at all times.
+    pub fast: bool,
     pub participants: Vec<Participant<'a>>,
     pub law: Option<Law<'a>>,
 }
@@ -74,6 +76,13 @@ pub enum RuleKind {
 pub struct Assignment<'a> {
     pub node: Node<'a>,
     pub symbol: &'a str,
+    pub math: Option<Node<'a>>,
+}
+
+/// An algebraic rule as written: 0 = formula.
+#[derive(Clone, Copy)]
+pub struct Equation<'a> {
+    pub node: Node<'a>,
     pub math: Option<Node<'a>>,
 }
 
@@ -108,6 +117,7 @@ pub struct Document<'a> {
     pub parameters: Vec<Parameter<'a>>,
     pub initial: Vec<Assignment<'a>>,
     pub rules: Vec<(RuleKind, Assignment<'a>)>,
+    pub algebraic: Vec<Equation<'a>>,
     pub reactions: Vec<Reaction<'a>>,
     pub events: Vec<Event<'a>>,
 }
@@ -138,7 +148,7 @@ pub fn read<'a>(page: &Page<'a>, xml: &'a crate::xml::Document<'a>) -> Document<
                 document.initial =
                     items(page, list, "initialAssignment", |page, node| assignment(page, node, "symbol"));
             }
-            "listOfRules" => document.rules = page.children(list).filter_map(|node| rule(page, node)).collect(),
+            "listOfRules" => page.children(list).for_each(|node| rule(page, node, &mut document)),
             "listOfReactions" => document.reactions = items(page, list, "reaction", reaction),
             "listOfEvents" => document.events = items(page, list, "event", event),
             "listOfConstraints" => {
@@ -277,29 +287,20 @@ fn function<'a>(page: &Page<'a>, node: Node<'a>) -> Function<'a> {
     Function { node, id: id(page, node), lambda: page.math(node) }
 }
 
-fn rule<'a>(page: &Page<'a>, node: Node<'a>) -> Option<(RuleKind, Assignment<'a>)> {
-    match node.name() {
-        "assignmentRule" => Some((RuleKind::Assignment, assignment(page, node, "variable"))),
-        "rateRule" => Some((RuleKind::Rate, assignment(page, node, "variable"))),
-        "algebraicRule" => {
-            let help = "solve the equation for one of its variables and write an <assignmentRule> for it";
-            page.fault(node, "algebraic rules are not supported", help);
-            None
-        }
-        "notes" | "annotation" => None,
-        _ => {
-            unknown(page, node);
-            None
-        }
-    }
+fn rule<'a>(page: &Page<'a>, node: Node<'a>, document: &mut Document<'a>) {
+    let kind = match node.name() {
+        "assignmentRule" => RuleKind::Assignment,
+        "rateRule" => RuleKind::Rate,
+        "algebraicRule" => return document.algebraic.push(Equation { node, math: page.math(node) }),
+        "notes" | "annotation" => return,
+        _ => return unknown(page, node),
+    };
+    document.rules.push((kind, assignment(page, node, "variable")));
 }
 
 fn reaction<'a>(page: &Page<'a>, node: Node<'a>) -> Reaction<'a> {
-    let mut read = Reaction { node, id: id(page, node), participants: Vec::new(), law: None };
-    if page.flag(node, "fast", false) {
-        let help = "write its equilibrium with rules, or give it a kinetic law much quicker than the others";
-        page.fault_in(node, "fast", format!("reaction `{}` is fast: fast reactions are not supported", read.id), help);
-    }
+    let (id, fast) = (id(page, node), page.flag(node, "fast", false));
+    let mut read = Reaction { node, id, fast, participants: Vec::new(), law: None };
     for child in page.children(node) {
         match child.name() {
             "listOfReactants" => {

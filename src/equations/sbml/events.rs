@@ -1,19 +1,31 @@
 //! Events: what they set, in amounts.
 
 use super::document;
-use super::pieces::{binary, number, product, quantity, replaced};
+use super::pieces::{binary, extent, number, product, quantity, quotient, replaced};
 use super::plan::{Change, Kind, Plan};
+use super::xml::Node;
 use crate::equations::tree::{Binary, Event, Expr, QuantityId, Role};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// New values that an event sets at once.
 type Values = HashMap<QuantityId, Expr>;
+
+/// How deep rules may lead to what an event sets.
+const DEPTH: usize = 300;
+
+/// What must be known of all events to read one.
+struct Setters<'a> {
+    /// How many events set each symbol.
+    counts: HashMap<&'a str, usize>,
+    /// The species whose state is the concentration.
+    keepers: Vec<usize>,
+}
 
 impl<'a> Plan<'_, 'a> {
     /// All events of the model.
     pub fn events(&mut self) -> Vec<Event> {
         let document = self.document;
-        let mut made = Vec::new();
+        let (setters, mut made) = (self.setters(), Vec::new());
         for (index, event) in document.events.iter().enumerate() {
             let id = self.event_id(event, index);
             let Some(trigger) = event.trigger else {
@@ -23,7 +35,7 @@ impl<'a> Plan<'_, 'a> {
             let trigger = self.reader.formula(trigger);
             let delay = event.delay.map(|delay| self.reader.formula(delay));
             let priority = event.priority.map(|priority| self.reader.formula(priority));
-            let (assignments, follower) = self.assignments(event, &id);
+            let (assignments, follower) = self.assignments(event, &id, &setters);
             made.push(Event {
                 id,
                 trigger,
@@ -39,15 +51,32 @@ impl<'a> Plan<'_, 'a> {
         made
     }
 
+    fn setters(&self) -> Setters<'a> {
+        let mut counts = HashMap::new();
+        for event in &self.document.events {
+            set_by(event)
+                .collect::<HashSet<_>>()
+                .into_iter()
+                .for_each(|symbol| *counts.entry(symbol).or_default() += 1);
+        }
+        let species = self.document.species.iter().enumerate();
+        let keepers = species.filter(|(_, species)| self.keeps_concentration(species)).map(|(index, _)| index);
+        Setters { counts, keepers: keepers.collect() }
+    }
+
     fn event_id(&self, event: &document::Event<'a>, number: usize) -> String {
         let made = |number: usize| format!("event_{number}");
         let free = |id: &String| !self.kinds.contains_key(id.as_str());
         event.id.map(str::to_owned).or((number + 1..).map(made).find(free)).unwrap_or_default()
     }
 
-    /// What an event sets; and, when that takes the size of a compartment at the execution and values of the firing,
-    /// a second event that follows at once.
-    fn assignments(&self, event: &document::Event<'a>, id: &str) -> (Vec<(QuantityId, Expr)>, Option<Event>) {
+    /// What an event sets; and, when values of the firing meet sizes of the execution, a second event that follows at once.
+    fn assignments(
+        &self,
+        event: &document::Event<'a>,
+        id: &str,
+        setters: &Setters<'a>,
+    ) -> (Vec<(QuantityId, Expr)>, Option<Event>) {
         let mut values = Values::new();
         let mut order = Vec::new();
         for assignment in &event.assignments {
@@ -59,68 +88,70 @@ impl<'a> Plan<'_, 'a> {
             }
             order.push((quantity_id, assignment.symbol));
         }
-        let (mut made, mut later) = (Vec::new(), Vec::new());
-        for (quantity_id, symbol) in order {
-            let value = values[&quantity_id].clone();
-            let Some(Kind::Species(number)) = self.kinds.get(symbol).copied() else {
-                made.push((quantity_id, value));
-                continue;
-            };
-            let species = &self.document.species[number];
-            let ids = self.species_ids(number);
-            if species.only_amount || self.keeps_concentration(species) {
-                made.push((quantity_id, value));
-                continue;
-            }
-            if self.mixes_times(event, symbol) {
-                later.push((ids, value));
-            } else {
-                let size = self.after(&ids.size(), &values);
-                made.push((ids.amount, product(value, size)));
-            }
+        if !self.mixes_times(event, setters) {
+            return (self.amounts_set(event.node, (&order, &values), &setters.keepers), None);
         }
-        let follower = if later.is_empty() { None } else { Some(self.follower(id, later, &mut made)) };
-        (made, follower)
-    }
-
-    /// Keeps the concentrations of the firing until the execution, when a second event turns them into amounts.
-    fn follower(
-        &self,
-        id: &str,
-        later: Vec<(super::species::SpeciesIds, Expr)>,
-        made: &mut Vec<(QuantityId, Expr)>,
-    ) -> Event {
-        let mut assignments = Vec::new();
-        for (ids, value) in later {
-            let kept = self.helper(&format!("{id}.{}", self.quantities[ids.amount as usize].id));
-            made.push((kept, value));
-            assignments.push((ids.amount, product(quantity(kept), ids.size())));
+        let mut kept = Vec::new();
+        for &(quantity_id, symbol) in &order {
+            let helper = self.helper(&format!("{id}.{symbol}"));
+            let value = values.insert(quantity_id, quantity(helper));
+            kept.extend(value.map(|value| (helper, value)));
         }
         let due = self.helper(&format!("{id}.due"));
-        made.push((due, number(1.0)));
+        kept.push((due, number(1.0)));
+        let mut assignments = self.amounts_set(event.node, (&order, &values), &setters.keepers);
         assignments.push((due, number(0.0)));
-        Event {
-            id: format!("{id}.amounts"),
-            trigger: binary(Binary::Gt, quantity(due), number(0.5)),
-            true_before_start: false,
-            delay: None,
-            priority: Some(number(f64::INFINITY)),
-            values_from_firing: true,
-            persistent: true,
-            assignments,
+        (kept, Some(follower(id, due, assignments)))
+    }
+
+    /// What is set when symbols get values: amounts for concentrations, by the sizes that compartments have before. Where the
+    /// state is a concentration, it jumps when the event changes the size, and the amount stays.
+    fn amounts_set(
+        &self,
+        node: Node<'a>,
+        (order, values): (&[(QuantityId, &str)], &Values),
+        keepers: &[usize],
+    ) -> Vec<(QuantityId, Expr)> {
+        let jumped = |concentration: Expr, size: Expr| match self.depends(&size, values) {
+            true => quotient(product(concentration, size.clone()), self.after(&size, values, (node, DEPTH))),
+            false => concentration,
+        };
+        let mut made = Vec::new();
+        for &(quantity_id, symbol) in order {
+            let value = values[&quantity_id].clone();
+            match self.kinds.get(symbol) {
+                Some(&Kind::Species(index)) if !self.document.species[index].only_amount => {
+                    let ids = self.species_ids(index);
+                    made.push(match self.keeps_concentration(&self.document.species[index]) {
+                        true => (quantity_id, jumped(value, ids.size())),
+                        false => (ids.amount, product(value, ids.size())),
+                    });
+                }
+                _ => made.push((quantity_id, value)),
+            }
         }
+        for &index in keepers {
+            let ids = self.species_ids(index);
+            if !values.contains_key(&ids.concentration) && self.depends(&ids.size(), values) {
+                if !self.reader.take(1) {
+                    self.reader.too_large::<()>(node);
+                    break;
+                }
+                made.push((ids.concentration, jumped(quantity(ids.concentration), ids.size())));
+            }
+        }
+        made
     }
 
     /// Adds quantities for what followers keep, before rates of change are numbered.
     pub fn declare_helpers(&mut self) {
-        let document = self.document;
+        let (document, setters) = (self.document, self.setters());
         for (index, event) in document.events.iter().enumerate() {
+            if !self.mixes_times(event, &setters) {
+                continue;
+            }
             let id = self.event_id(event, index);
-            let symbols = event.assignments.iter().filter(|assignment| assignment.math.is_some());
-            let kept: Vec<&str> = symbols.map(|assignment| assignment.symbol).collect();
-            let kept: Vec<&str> = kept.into_iter().filter(|symbol| self.mixes_times(event, symbol)).collect();
-            let due = (!kept.is_empty()).then_some("due");
-            for name in kept.into_iter().chain(due) {
+            for name in set_by(event).chain(["due"]) {
                 let quantity_id = self.quantity(format!("{id}.{name}"), event.node);
                 let entry = &mut self.quantities[quantity_id as usize];
                 entry.name.clear();
@@ -129,15 +160,32 @@ impl<'a> Plan<'_, 'a> {
         }
     }
 
-    /// Whether an event sets a concentration with values of the firing when the size at the execution is not known yet.
-    fn mixes_times(&self, event: &document::Event<'a>, symbol: &str) -> bool {
-        let Some(Kind::Species(number)) = self.kinds.get(symbol).copied() else { return false };
-        let species = &self.document.species[number];
-        let is_amount = species.only_amount || self.keeps_concentration(species);
-        let sets_size =
-            event.assignments.iter().any(|other| other.symbol == species.compartment && other.math.is_some());
-        let steady = sets_size || self.change(species.compartment) == Change::Never;
-        event.trigger.is_some() && event.delay.is_some() && event.values_from_trigger && !is_amount && !steady
+    /// Whether an event has values of its firing and sets a concentration by a size that may be another at its execution.
+    fn mixes_times(&self, event: &document::Event<'a>, setters: &Setters<'a>) -> bool {
+        if event.trigger.is_none() || !event.values_from_trigger {
+            return false;
+        }
+        let own: HashSet<&str> = set_by(event).collect();
+        let by_another =
+            |symbol: &str| setters.counts.get(symbol).is_some_and(|&n| n > usize::from(own.contains(symbol)));
+        let varies = |index: usize| {
+            let compartment = self.document.species[index].compartment;
+            match event.delay {
+                Some(_) => self.change(compartment) != Change::Never,
+                None => self.rests_on(compartment, &by_another),
+            }
+        };
+        let sets = |symbol: &&str| match self.kinds.get(symbol) {
+            Some(&Kind::Species(index)) => !self.document.species[index].only_amount && varies(index),
+            _ => false,
+        };
+        let jumps = |&index: &usize| {
+            self.rests_on(self.document.species[index].compartment, &|symbol| own.contains(symbol)) && varies(index)
+        };
+        if !self.reader.take(setters.keepers.len()) {
+            return self.reader.too_large::<()>(event.node).is_some();
+        }
+        own.iter().any(sets) || setters.keepers.iter().any(jumps)
     }
 
     /// The number of a quantity that only a follower uses.
@@ -146,29 +194,58 @@ impl<'a> Plan<'_, 'a> {
         found.expect("helpers are declared") as QuantityId
     }
 
-    /// What an expression is worth after an event has given its values.
-    fn after(&self, expr: &Expr, values: &Values) -> Expr {
+    /// What an expression is worth after an event has set its values.
+    fn after(&self, expr: &Expr, values: &Values, (node, depth): (Node<'a>, usize)) -> Expr {
         replaced(expr, &|quantity_id| {
-            if let Some(value) = values.get(&quantity_id) {
-                return Some(value.clone());
-            }
-            match &self.quantities[quantity_id as usize].role {
-                Role::Defined { rule } if self.depends(rule, values) => Some(self.after(rule, values)),
+            let rule = match &self.quantities[quantity_id as usize].role {
+                Role::Defined { rule } if self.depends(rule, values) => Some(rule),
                 _ => None,
+            };
+            let by = values.get(&quantity_id).or(rule)?;
+            if depth == 0 || !self.reader.take(extent(by).1) {
+                return self.reader.too_large(node);
+            }
+            match values.get(&quantity_id) {
+                Some(value) => Some(value.clone()),
+                None => Some(self.after(by, values, (node, depth - 1))),
             }
         })
     }
 
     /// Whether an expression uses what an event sets, directly or by rules.
     fn depends(&self, expr: &Expr, values: &Values) -> bool {
-        let mut used = Vec::new();
-        expr.each_quantity(&mut |quantity_id| used.push(quantity_id));
-        used.into_iter().any(|quantity_id| {
-            let by_rule = match &self.quantities[quantity_id as usize].role {
-                Role::Defined { rule } => self.depends(rule, values),
-                _ => false,
-            };
-            values.contains_key(&quantity_id) || by_rule
-        })
+        let (mut open, mut seen) = (Vec::new(), HashSet::new());
+        expr.each_quantity(&mut |quantity_id| open.push(quantity_id));
+        while let Some(quantity_id) = open.pop() {
+            if values.contains_key(&quantity_id) {
+                return true;
+            }
+            if let Role::Defined { rule } = &self.quantities[quantity_id as usize].role
+                && seen.insert(quantity_id)
+            {
+                rule.each_quantity(&mut |other| open.push(other));
+            }
+        }
+        false
+    }
+}
+
+/// The symbols that an event sets.
+fn set_by<'d, 'a>(event: &'d document::Event<'a>) -> impl Iterator<Item = &'a str> + use<'d, 'a> {
+    event.assignments.iter().filter(|assignment| assignment.math.is_some()).map(|assignment| assignment.symbol)
+}
+
+/// The second event of one that keeps the values of its firing until the execution: it sets them by the sizes that compartments
+/// have then.
+fn follower(id: &str, due: QuantityId, assignments: Vec<(QuantityId, Expr)>) -> Event {
+    Event {
+        id: format!("{id}.amounts"),
+        trigger: binary(Binary::Gt, quantity(due), number(0.5)),
+        true_before_start: false,
+        delay: None,
+        priority: Some(number(f64::INFINITY)),
+        values_from_firing: true,
+        persistent: true,
+        assignments,
     }
 }

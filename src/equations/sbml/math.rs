@@ -107,11 +107,13 @@ impl<'p, 'a> Reader<'p, 'a> {
         self.notes.fault(node, found, help)
     }
 
-    fn too_large<T>(&self, node: Node<'a>) -> Option<T> {
+    /// Notes that the formulas are too large.
+    pub fn too_large<T>(&self, node: Node<'a>) -> Option<T> {
         self.notes.too_large(node)
     }
 
-    fn take(&self, count: usize) -> bool {
+    /// Takes from the nodes that may be made.
+    pub fn take(&self, count: usize) -> bool {
         self.notes.take(count)
     }
 

@@ -4,9 +4,12 @@
 //! reactions (their rates) and species references with an identifier keep theirs; the local parameter `k` of reaction
 //! `J` is `J.k`. What is read, and how it is meant, is told in the chapter on SBML of the book.
 
+mod algebraic;
 mod checks;
 mod document;
 mod events;
+mod fast;
+mod linear;
 mod math;
 mod notes;
 mod operators;
@@ -14,6 +17,7 @@ mod pieces;
 mod plan;
 mod quantities;
 mod species;
+mod statements;
 mod xml;
 
 pub use xml::LARGEST_DOCUMENT;
@@ -81,7 +85,8 @@ pub fn is_sbml(text: &str) -> bool {
 ///
 /// # Errors
 /// [`crate::error::Error::Input`] with all faults found, each at its location: XML that is hostile or not well formed,
-/// constructs that are not supported (algebraic rules, delays, fast reactions, packages that the model needs), names
+/// constructs that are not supported (delays, packages that the model needs, algebraic rules and fast reactions that are not
+/// linear in what they determine), names
 /// that are not known, contradicting statements, definitions in a circle.
 pub fn read(source: &Arc<Source>) -> Result<Model> {
     let xml = xml::parse(source)?;

@@ -18,10 +18,11 @@ pub fn binary(function: Binary, a: Expr, b: Expr) -> Expr {
     Expr::Binary(function, Box::new(a), Box::new(b))
 }
 
-/// Minus, at once for numbers.
+/// Minus, at once for numbers and for what has one already.
 pub fn negative(a: Expr) -> Expr {
     match a {
         Expr::Number(value) => number(-value),
+        Expr::Unary(Unary::Neg, a) => *a,
         a => unary(Unary::Neg, a),
     }
 }

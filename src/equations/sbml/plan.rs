@@ -31,6 +31,17 @@ pub enum Change {
     Defined,
 }
 
+/// A fast reaction whose equilibrium holds.
+#[derive(Clone, Copy)]
+pub struct Equilibrium {
+    /// The index of the reaction.
+    pub reaction: usize,
+    /// The indices of the species that is used up and of the one that is made.
+    pub species: [usize; 2],
+    /// The total of the two, which the reaction keeps; none where one of them is at the boundary.
+    pub total: Option<QuantityId>,
+}
+
 /// A model between the document and the system.
 pub struct Plan<'p, 'a> {
     pub page: &'p Page<'a>,
@@ -42,6 +53,8 @@ pub struct Plan<'p, 'a> {
     pub kinds: HashMap<&'a str, Kind>,
     /// Rules that have a formula, by the symbol they are for.
     pub rules: HashMap<&'a str, (RuleKind, Node<'a>)>,
+    /// What algebraic rules say of the symbols that they determine.
+    pub solved: HashMap<&'a str, Expr>,
     /// Initial assignments that have a formula.
     pub initial: HashMap<&'a str, Node<'a>>,
     /// What events set.
@@ -52,6 +65,8 @@ pub struct Plan<'p, 'a> {
     pub locals: HashMap<usize, QuantityId>,
     /// Quantities without a value of their own.
     pub unset: Vec<QuantityId>,
+    /// Fast reactions that are solved for.
+    pub equilibria: Vec<Equilibrium>,
 }
 
 impl<'p, 'a> Plan<'p, 'a> {
@@ -65,16 +80,23 @@ impl<'p, 'a> Plan<'p, 'a> {
             nodes: Vec::new(),
             kinds: HashMap::new(),
             rules: HashMap::new(),
+            solved: HashMap::new(),
             initial: HashMap::new(),
             set_by_events: HashSet::new(),
             amounts: Vec::new(),
             locals: HashMap::new(),
             unset: Vec::new(),
+            equilibria: Vec::new(),
         };
         plan.declare();
         plan.statements();
+        // Rates of change, which need not be known yet, have numbers beyond all others for now.
+        plan.reader.first_rate = QuantityId::MAX / 2;
+        let determined = plan.algebraic_rules();
         plan.declare_helpers();
+        plan.declare_equilibria();
         plan.reader.first_rate = plan.quantities.len() as QuantityId;
+        plan.solve(&determined);
         plan
     }
 
@@ -172,107 +194,5 @@ impl<'p, 'a> Plan<'p, 'a> {
             }
         }
         read
-    }
-
-    /// Rules, initial assignments and event assignments by their symbols.
-    fn statements(&mut self) {
-        let document = self.document;
-        for (kind, rule) in &document.rules {
-            if !self.may_change(rule.node, "variable", rule.symbol) {
-                continue;
-            }
-            let Some(math) = rule.math else {
-                self.page.notice(format!("the rule for `{}` has no formula and says nothing", rule.symbol));
-                continue;
-            };
-            if self.rules.insert(rule.symbol, (*kind, math)).is_some() {
-                let found = format!("there are two rules for `{}`", rule.symbol);
-                self.page.fault_in(rule.node, "variable", found, "keep one of them");
-            }
-        }
-        for assignment in &document.initial {
-            let symbol = assignment.symbol;
-            if !self.is_settable(assignment.node, "symbol", symbol) {
-                continue;
-            }
-            let Some(math) = assignment.math else {
-                self.page.notice(format!("the initial assignment to `{symbol}` has no formula and assigns nothing"));
-                continue;
-            };
-            if self.initial.insert(symbol, math).is_some() {
-                let found = format!("there are two initial assignments to `{symbol}`");
-                self.page.fault_in(assignment.node, "symbol", found, "keep one of them");
-            }
-            if self.is_defined(symbol) {
-                let found = format!("`{symbol}` has both an assignment rule and an initial assignment");
-                self.page.fault_in(assignment.node, "symbol", found, "the rule holds at the start too: delete this");
-            }
-        }
-        for assignment in document.events.iter().flat_map(|event| &event.assignments) {
-            let symbol = assignment.symbol;
-            if !self.may_change(assignment.node, "variable", symbol) {
-                continue;
-            }
-            if self.is_defined(symbol) {
-                let found = format!("an event sets `{symbol}`, which has an assignment rule");
-                self.page.fault_in(assignment.node, "variable", found, "the rule holds always: delete one of the two");
-            }
-            if assignment.math.is_some() {
-                self.set_by_events.insert(symbol);
-            } else {
-                self.page.notice(format!("an event assignment to `{symbol}` has no formula and assigns nothing"));
-            }
-        }
-    }
-
-    /// Whether a symbol has a value that can be set.
-    fn is_settable(&self, node: Node<'a>, attribute: &str, symbol: &str) -> bool {
-        let kind = self.kinds.get(symbol);
-        let settable =
-            matches!(kind, Some(Kind::Compartment(_) | Kind::Species(_) | Kind::Parameter(_) | Kind::Reference(..)));
-        if !settable && !symbol.is_empty() {
-            let found = match kind {
-                None => format!("`{symbol}` is not known"),
-                Some(_) => format!("`{symbol}` has no value that can be set"),
-            };
-            let help = "name a compartment, a species, a parameter or a species reference";
-            self.page.fault_in(node, attribute, found, help);
-        }
-        settable
-    }
-
-    /// Whether a symbol may change during a run.
-    fn may_change(&self, node: Node<'a>, attribute: &str, symbol: &'a str) -> bool {
-        if !self.is_settable(node, attribute, symbol) {
-            return false;
-        }
-        let document = self.document;
-        let constant = match self.kinds[symbol] {
-            Kind::Compartment(number) => document.compartments[number].constant,
-            Kind::Species(number) => document.species[number].constant,
-            Kind::Parameter(number) => document.parameters[number].constant,
-            Kind::Reference(reaction, position) => document.reactions[reaction].participants[position].constant,
-            Kind::Reaction(_) | Kind::Function | Kind::Event => true,
-        };
-        if constant {
-            let found = format!("`{symbol}` is constant and cannot be changed here");
-            self.page.fault_in(node, attribute, found, format!("declare `{symbol}` with `constant=\"false\"`"));
-        }
-        !constant
-    }
-
-    /// Whether an assignment rule says what a symbol is.
-    pub fn is_defined(&self, symbol: &str) -> bool {
-        matches!(self.rules.get(symbol), Some((RuleKind::Assignment, _)))
-    }
-
-    /// How a compartment's size changes.
-    pub fn change(&self, compartment: &str) -> Change {
-        match self.rules.get(compartment) {
-            Some((RuleKind::Assignment, _)) => Change::Defined,
-            Some((RuleKind::Rate, _)) => Change::Flows,
-            None if self.set_by_events.contains(compartment) => Change::Jumps,
-            None => Change::Never,
-        }
     }
 }

@@ -62,7 +62,7 @@ impl<'a> Plan<'_, 'a> {
             }
         };
         let role = match self.rules.get(id) {
-            Some((RuleKind::Assignment, math)) => Role::Defined { rule: self.reader.formula(*math) },
+            Some((RuleKind::Assignment, math)) => Role::Defined { rule: self.rule(id, *math) },
             Some((RuleKind::Rate, math)) => Role::Variable { rate: self.reader.formula(*math) },
             None if self.set_by_events.contains(id) => Role::Variable { rate: number(0.0) },
             None => Role::Parameter,

@@ -64,6 +64,7 @@ impl<'a> Plan<'_, 'a> {
                 (entry.role, entry.initial) = (role, initial);
             }
         }
+        self.solve_equilibria();
     }
 
     /// The amount at the start.
@@ -91,7 +92,7 @@ impl<'a> Plan<'_, 'a> {
         let as_amount = Role::Defined { rule: product(quantity(ids.concentration), size.clone()) };
         match self.rules.get(species.id) {
             Some((RuleKind::Assignment, math)) => {
-                let rule = Role::Defined { rule: self.reader.formula(*math) };
+                let rule = Role::Defined { rule: self.rule(species.id, *math) };
                 if species.only_amount { (rule, as_concentration) } else { (as_amount, rule) }
             }
             Some((RuleKind::Rate, math)) => {
@@ -131,7 +132,7 @@ impl<'a> Plan<'_, 'a> {
                 };
                 let species = &document.species[index];
                 let stoichiometry = self.stoichiometry(number_of, position);
-                if species.boundary || species.constant || !happens {
+                if species.boundary || species.constant || !happens || reaction.fast {
                     continue;
                 }
                 if self.rules.contains_key(species.id) {
@@ -151,7 +152,7 @@ impl<'a> Plan<'_, 'a> {
     }
 
     /// What turns the extent of reactions into the amount of a species.
-    fn conversion(&self, species: &Species<'a>) -> Expr {
+    pub fn conversion(&self, species: &Species<'a>) -> Expr {
         let Some(id) = species.factor.or(self.document.factor) else { return number(1.0) };
         match (self.kinds.get(id), self.reader.symbols.get(id)) {
             (Some(Kind::Parameter(_)), Some(&quantity_id)) => quantity(quantity_id),

@@ -9,7 +9,8 @@ use crate::ode::{Eventful, Numbers, OdeTrouble, PopulationScratch, Substep, Subs
 /// A system with events, as it is advanced in a run.
 pub(super) fn eventful<'a>(model: &Model, reactor: &'a Reactor) -> Eventful<'a> {
     let span = model.until / reactor.seconds;
-    Eventful { program: &reactor.program, plan: &reactor.events, tolerances: reactor.tolerances, span }
+    let numbers = Numbers { seed: model.seed, system: &reactor.name };
+    Eventful { program: &reactor.program, plan: &reactor.events, tolerances: reactor.tolerances, span, numbers }
 }
 
 /// Moves all members of a system through a window of its time.
@@ -33,7 +34,8 @@ pub(super) fn advance_population(
             true => population.advance(&reactor.program, begin, end, &reactor.tolerances, scratch)?,
             false => {
                 let events = &mut chemistry.events[number];
-                eventful(model, reactor).advance(population, events, begin, end, scratch)?
+                let ids = ids(kinds, &reactor.members);
+                eventful(model, reactor).advance(population, events, ids, (begin, end), scratch)?
             }
         };
     }
@@ -41,7 +43,7 @@ pub(super) fn advance_population(
 }
 
 /// The ids of the cells that have a system, in the order of its members; 0 for the scene.
-fn ids<'a>(cells: &'a [KindState], members: &'a Members) -> impl Iterator<Item = u64> + 'a {
+pub(super) fn ids<'a>(cells: &'a [KindState], members: &'a Members) -> impl Iterator<Item = u64> + 'a {
     let (kinds, scene) = match members {
         Members::Scene => (&[][..], Some(0)),
         Members::Kinds(kinds) => (&kinds[..], None),

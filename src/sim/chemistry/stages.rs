@@ -13,7 +13,7 @@ use super::census::cell_of_member;
 use super::exchange::is_due;
 use super::membranes::{advance_membrane, begin_membranes};
 use super::model::Reactor;
-use super::populations::{advance_population, eventful};
+use super::populations::{advance_population, eventful, ids};
 use super::scratch::ChemistryScratch;
 use crate::error::Error;
 use crate::ode::{Numbers, OdeTrouble, PopulationScratch, Substeps};
@@ -106,7 +106,8 @@ fn begin_events(model: &Model, state: &mut State, scratch: &mut [PopulationScrat
         let chemistry = &mut state.chemistry;
         let now = chemistry.times[number] / reactor.seconds;
         let (population, memories) = (&mut chemistry.populations[number], &mut chemistry.events[number]);
-        let advanced = eventful(model, reactor).advance(population, memories, now, now, &mut scratch[number]);
+        let (ids, scratch) = (ids(&state.kinds, &reactor.members), &mut scratch[number]);
+        let advanced = eventful(model, reactor).advance(population, memories, ids, (now, now), scratch);
         any |= advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?.events > 0;
     }
     Ok(any)
