@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use pseudopod::analysis::table::Table;
 use pseudopod::analysis::claims;
+use pseudopod::analysis::table::Table;
 use pseudopod::analysis::tracks::read as tracks;
 use pseudopod::equations;
 use pseudopod::error::{Error, Paint, Source, render};
@@ -18,12 +18,47 @@ use pseudopod::random::philox;
 
 /// What stands in place of a number.
 const NUMBERS: [&str; 14] = [
-    "0", "-1", "1e308", "-1e308", "1e-320", "1e999", "nan", "inf", "99999999999999999999", "0.1", "1e9", "2147483648", "-0", "1e",
+    "0",
+    "-1",
+    "1e308",
+    "-1e308",
+    "1e-320",
+    "1e999",
+    "nan",
+    "inf",
+    "99999999999999999999",
+    "0.1",
+    "1e9",
+    "2147483648",
+    "-0",
+    "1e",
 ];
 /// What stands in place of anything, or between.
 const SIGNS: [&str; 24] = [
-    "\"", "'", "\"\"\"", "[", "]", "[[", "{", "}", "<", ">", "</", "/>", "&", "&#x110000;", "]]>", "=", ",", "\0", "\u{7f}", "µ", "\u{1f9a0}",
-    "\u{202e}", "\r", "\u{feff}",
+    "\"",
+    "'",
+    "\"\"\"",
+    "[",
+    "]",
+    "[[",
+    "{",
+    "}",
+    "<",
+    ">",
+    "</",
+    "/>",
+    "&",
+    "&#x110000;",
+    "]]>",
+    "=",
+    ",",
+    "\0",
+    "\u{7f}",
+    "µ",
+    "\u{1f9a0}",
+    "\u{202e}",
+    "\r",
+    "\u{feff}",
 ];
 /// Longest time for a text: minutes would be a way to stop a server, and seconds are a user's patience. Programs without optimisation are
 /// given more.
@@ -87,7 +122,8 @@ fn damaged(text: &str, others: &[&str], chance: &mut Chance) -> String {
                 all.swap(at, other);
             }
             3 | 4 => {
-                let numbers: Vec<usize> = (0..all.len()).filter(|i| all[*i].starts_with(|c: char| c.is_ascii_digit())).collect();
+                let numbers: Vec<usize> =
+                    (0..all.len()).filter(|i| all[*i].starts_with(|c: char| c.is_ascii_digit())).collect();
                 if let Some(number) = numbers.get(chance.below(numbers.len())) {
                     all[*number] = chance.of(&NUMBERS);
                 }
@@ -109,7 +145,8 @@ type Reader = fn(&str, &Path) -> Result<(), Error>;
 
 fn files(ending: &str, folders: &[&str]) -> Vec<PathBuf> {
     let mut found = Vec::new();
-    let mut folders: Vec<PathBuf> = folders.iter().map(|folder| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).collect();
+    let mut folders: Vec<PathBuf> =
+        folders.iter().map(|folder| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).collect();
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
@@ -126,7 +163,11 @@ fn files(ending: &str, folders: &[&str]) -> Vec<PathBuf> {
 
 /// Damages texts of a kind so many times and reads them.
 fn read_damaged(kind: &str, corpus: &[PathBuf], times: u32, reader: Reader) {
-    let texts: Vec<String> = corpus.iter().filter_map(|path| std::fs::read_to_string(path).ok()).filter(|text| text.len() < 60_000).collect();
+    let texts: Vec<String> = corpus
+        .iter()
+        .filter_map(|path| std::fs::read_to_string(path).ok())
+        .filter(|text| text.len() < 60_000)
+        .collect();
     assert!(!texts.is_empty(), "no {kind} to damage");
     let words: Vec<&str> = texts.iter().flat_map(|text| parts(text)).filter(|part| part.len() > 1).collect();
     for number in 0..times {

@@ -109,12 +109,20 @@ fn scene(number: u32) -> Scene {
             1 + chance.below(2),
         );
         if chance.one_in(2) {
-            _ = writeln!(text, "motility = {{ brownian = {{ speed = \"{:.2} um/min\", persistence = \"2 s\" }} }}", chance.between(0.0, 20.0));
+            _ = writeln!(
+                text,
+                "motility = {{ brownian = {{ speed = \"{:.2} um/min\", persistence = \"2 s\" }} }}",
+                chance.between(0.0, 20.0)
+            );
         } else if chemistry {
             _ = writeln!(text, "motility = {{ brownian = {{ speed = \"3 um/min\", persistence = \"2 s\" }} }}");
         }
         if chance.one_in(3) {
-            _ = writeln!(text, "loads = [{{ name = \"push\", all = true, direction = [0, 0, -1], force = \"{:.2} pN\" }}]", chance.between(0.0, 5.0));
+            _ = writeln!(
+                text,
+                "loads = [{{ name = \"push\", all = true, direction = [0, 0, -1], force = \"{:.2} pN\" }}]",
+                chance.between(0.0, 5.0)
+            );
         }
         if chemistry && text.contains("motility") {
             _ = writeln!(text, "chemistry = [\"inside\"]");
@@ -125,7 +133,12 @@ fn scene(number: u32) -> Scene {
         text.push_str("[[planes]]\nname = \"floor\"\npoint = [\"0 um\", \"0 um\", \"0 um\"]\nnormal = [0, 0, 1]\n");
     }
     if touch || floor {
-        _ = write!(text, "[contact]\nstrength = \"{:.4} pN/um^2\"\nrange = \"{:.3} um\"\n", chance.between(0.0, 0.3), edge);
+        _ = write!(
+            text,
+            "[contact]\nstrength = \"{:.4} pN/um^2\"\nrange = \"{:.3} um\"\n",
+            chance.between(0.0, 0.3),
+            edge
+        );
     }
     if chemistry {
         text.push_str("[chemistry.field]\ndocument = \"field.eml\"\n[chemistry.inside]\ndocument = \"inside.eml\"\n");
