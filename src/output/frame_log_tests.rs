@@ -7,13 +7,18 @@ use super::*;
 mod example;
 use example::{cells, frame_with_fields, header, layout_with_fields as layout};
 
+/// A run: headers are made anew each time, and begin at another second.
+fn owner() -> Owner {
+    Owner::of(&Header { started: "2026-03-01T12:00:00Z".into(), ..header() }, 0)
+}
+
 fn frame(number: usize) -> Frame {
     frame_with_fields(&cells(3), number)
 }
 
 fn log_of(result: &Path, first: usize, frames: usize) -> FrameLog {
     let mut log = FrameLog::take(result).unwrap();
-    log.begin(&Owner::of(&header(), 0), &layout()).unwrap();
+    log.begin(&owner(), &layout()).unwrap();
     (first..first + frames).for_each(|number| log.append(number, &frame(number)).unwrap());
     log
 }
@@ -26,7 +31,7 @@ fn found(result: &Path) -> FrameLog {
 }
 
 fn replayed(log: &mut FrameLog, first: usize) -> Vec<Frame> {
-    log.replay(&Owner::of(&header(), 0), first).unwrap().collect()
+    log.replay(&owner(), first).unwrap().collect()
 }
 
 /// Frames hold numbers that are none, so that bits are compared.
@@ -83,9 +88,9 @@ fn a_log_cut_anywhere_holds_the_frames_before_and_a_wrong_byte_ends_it() {
 fn frames_of_another_run_are_no_frames() {
     let folder = tempfile::tempdir().unwrap();
     let mut log = log_of(&folder.path().join("run.h5"), 0, 3);
-    let mut later = header();
-    later.started.push('!');
-    for other in [Owner::of(&later, 0), Owner::of(&header(), 1)] {
+    let resumed = Owner { resumed: 1, ..owner() };
+    let later = Owner { started: "2026-03-01T12:00:01Z".into(), ..owner() };
+    for other in [resumed, later] {
         assert_eq!(log.replay(&other, 0).unwrap().count(), 0);
     }
 }

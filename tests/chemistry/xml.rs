@@ -272,7 +272,7 @@ fn faults_in_documents_of_one_long_line_are_told() {
     let sbml = format!("<sbml xmlns=\"{space}\" level=\"3\" version=\"1\"><model>{blanks}{compartment}</model></sbml>");
     let eml = format!("<eml name=\"a\">{blanks}<parameter id=\"a\"/></eml>");
     let unclosed = format!("<eml name=\"a\">{blanks}<parameter></eml>");
-    for (text, part) in [(sbml, "long:1:70129: "), (eml, "long:1:70016: "), (unclosed, "long:1:70026: ")] {
+    for (text, part) in [(sbml, "[long:1:70129]"), (eml, "[long:1:70016]"), (unclosed, "[long:1:70026]")] {
         let error = equations::read(Arc::new(Source { name: "long".into(), text })).expect_err("a fault");
         let message = render(&error, Paint::Plain);
         assert!(message.contains(part) && message.len() < 2000, "{part}: {message}");

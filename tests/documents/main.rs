@@ -2,6 +2,7 @@
 
 mod contact;
 mod damaged;
+mod kept_state;
 mod meaning;
 mod population;
 mod random_scenes;

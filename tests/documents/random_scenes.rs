@@ -58,15 +58,16 @@ struct Scene {
 /// A shape, its extents and its longest edge, µm.
 fn shape(chance: &mut Chance) -> (String, [f64; 2], f64) {
     let radius = chance.between(2.0, 6.0);
-    let sphere = |name: &str, level: usize, edge: f64| {
-        let mesh = format!("{{ shape = \"{name}\", radius = \"{radius:.3} um\", level = {level} }}");
+    let sphere = |name: &str, fineness: usize, edge: f64| {
+        let finer = if name == "icosphere" { "level" } else { "divisions" };
+        let mesh = format!("{{ shape = \"{name}\", radius = \"{radius:.3} um\", {finer} = {fineness} }}");
         (mesh, [2.0 * radius, 1.6 * radius], edge * radius)
     };
     match chance.below(5) {
         0 => sphere("icosphere", 0, 1.06),
         1 | 2 => sphere("icosphere", 1, 0.63),
         3 => sphere("icosphere", 2, 0.33),
-        _ => sphere("octasphere", 2, 0.6),
+        _ => sphere("octasphere", 3, 0.75),
     }
 }
 

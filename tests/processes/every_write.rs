@@ -196,7 +196,7 @@ fn stop_everywhere(first: usize, stride: usize, half: bool) -> usize {
 #[test]
 fn a_writer_stopped_at_a_write_loses_nothing() {
     for half in [false, true] {
-        let calls = stop_everywhere(3, 97, half);
+        let calls = stop_everywhere(3, 151, half);
         assert!(calls > 500, "{calls} calls are too few to tell");
     }
 }

@@ -76,11 +76,9 @@ fn a_result_that_is_removed_while_it_is_written_is_told_as_such() {
     let ended = run.wait_with_output().unwrap();
     assert_eq!(ended.status.code(), Some(1));
     insta::assert_snapshot!(words(&ended), @r"
-      × run.h5 is gone: it was removed or moved while it was being written
-      help: put it back; frames that it does not hold are in the file beside it that ends in .frames; then
-            go on with: pseudopod resume run.h5
-
-    1 error
+    × run.h5 is gone: it was removed or moved while it was being written
+    help: put it back; frames that it does not hold are in the file beside it that ends in .frames; then go on
+          with: pseudopod resume run.h5
     ");
     assert!(folder.path().join("run.h5.checkpoint").exists() && folder.path().join("run.h5.frames").exists());
 }
