@@ -14,8 +14,8 @@ use std::time::Instant;
 
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{Document, PushedApart};
-use crate::output::{Header, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
-use crate::simulation::{CancelToken, CheckpointFault, Ready, Simulation, SimulationError, layout_of};
+use crate::output::{Header, Kept, Overwrite, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
+use crate::simulation::{Builder, CancelToken, CheckpointFault, Ready, Simulation, SimulationError, layout_of};
 use recording::{Recording, Stop};
 
 /// How a run is to be made.
@@ -110,12 +110,7 @@ pub fn resume(result: &Path, threads: Option<usize>, cancel: &CancelToken, repor
     if let Some(outcome) = finished_already(result)? {
         return Ok(outcome);
     }
-    let Some(checkpoint) = load_checkpoint(result)? else {
-        let (name, side) = (result.display(), checkpoint_path(result));
-        let fault = Fault::new(format!("{name} is not finished, and its checkpoint {} is not there", side.display()))
-            .help("put the checkpoint back beside the result, or run the experiment again");
-        return Err(Error::input(fault));
-    };
+    let Some(checkpoint) = load_checkpoint(result)? else { return begin_again(&builder, result, report) };
     let header = checkpoint.meta.header.clone();
     let document = document_of(&header, result)?;
     let mut ready = builder.ready_to_restore(&document)?;
@@ -123,6 +118,22 @@ pub fn resume(result: &Path, threads: Option<usize>, cancel: &CancelToken, repor
     let layout = layout_of(ready.simulation.model());
     let writer = ResultWriter::reopen(result, &header, &layout, (&checkpoint.meta).into())?;
     drive(ready, writer, result, report, Start::Resumed).map_err(|error| can_go_on(error, result))
+}
+
+/// Goes on with a run that was killed before its first checkpoint, from its start, which is all that it has recorded.
+fn begin_again(builder: &Builder, result: &Path, report: &mut dyn Report) -> Result<Outcome> {
+    let file = ResultFile::open(result)?;
+    if file.steps()?.iter().any(|step| *step > 0) {
+        let (name, side) = (result.display(), checkpoint_path(result));
+        let fault = Fault::new(format!("{name} is not finished, and its checkpoint {} is not there", side.display()))
+            .help("put the checkpoint back beside the result, or run the experiment again");
+        return Err(Error::input(fault));
+    }
+    let header = file.header().clone();
+    drop(file);
+    let ready = builder.ready_told(&document_of(&header, result)?, &|_| ())?;
+    let writer = ResultWriter::reopen(result, &header, &layout_of(ready.simulation.model()), Kept::until(0))?;
+    drive(ready, writer, result, report, Start::Recorded).map_err(|error| can_go_on(error, result))
 }
 
 /// Why the state in a checkpoint cannot be taken up.
@@ -160,6 +171,8 @@ pub fn document_of(header: &Header, result: &Path) -> Result<Document> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Start {
     Fresh,
+    /// The start is recorded, and not saved yet.
+    Recorded,
     Resumed,
 }
 
@@ -172,8 +185,10 @@ fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Rep
         if let Err(trouble) = simulation.begin() {
             return Err(recording.keep_last(trouble, simulation));
         }
-        if start == Start::Fresh {
-            recording.record_start(simulation)?;
+        match start {
+            Start::Fresh => recording.record_start(simulation)?,
+            Start::Recorded => recording.save(simulation)?,
+            Start::Resumed => {}
         }
         recording.begin(simulation);
         let ended = simulation.run_with(until, |simulation, made| recording.look(simulation, made));

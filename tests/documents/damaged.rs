@@ -85,7 +85,7 @@ impl Chance {
 fn parts(text: &str) -> Vec<&str> {
     let kind = |c: char| match c {
         c if c.is_alphanumeric() || matches!(c, '_' | '.') => 0,
-        c if c == '\n' => 1,
+        '\n' => 1,
         c if c.is_whitespace() => 2,
         _ => 3,
     };
