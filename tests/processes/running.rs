@@ -33,7 +33,7 @@ fn words(output: &Output) -> String {
 
 /// Stops a run as Ctrl-C does; its exit code.
 fn interrupted(mut run: Child) -> Option<i32> {
-    assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
+    assert!(Command::new("sh").args(["-c", &format!("kill -INT {}", run.id())]).status().unwrap().success());
     run.wait().unwrap().code()
 }
 
