@@ -7,3 +7,6 @@ mod meaning;
 mod population;
 mod random_scenes;
 mod start;
+
+#[path = "../support/chance.rs"]
+mod chance;

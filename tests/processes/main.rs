@@ -8,7 +8,12 @@ mod kill;
 mod killed_runs;
 mod python;
 mod running;
+#[cfg(target_os = "linux")]
+mod shim;
 
+#[path = "../support/chance.rs"]
+#[allow(dead_code)]
+mod chance;
 #[path = "../pictures/example.rs"]
 mod fields_example;
 #[path = "../result_file/example.rs"]

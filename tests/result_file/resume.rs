@@ -1,6 +1,8 @@
 //! A run that goes on leaves the file of a run that never stopped.
 
-use pseudopod::output::{Frame, Kept, Measure, ResultFile, ResultWriter, checkpoint_path, load_checkpoint};
+use pseudopod::output::{
+    Frame, Kept, Measure, ResultFile, ResultWriter, checkpoint_path, frames_path, load_checkpoint,
+};
 
 use crate::example::{cells, frame, header, layout, write};
 use crate::round_trip::assert_holds;
@@ -83,4 +85,30 @@ fn another_experiment_cannot_resume() {
     let text = refusal(ResultWriter::reopen(&path, &header(), &others, Kept::until(10)));
     assert!(text.contains("other cells"), "{text}");
     assert_eq!(ResultFile::open(&path).unwrap().frames(), 3, "a refusal loses nothing");
+}
+
+#[test]
+fn a_result_that_lost_frames_from_before_its_checkpoint_is_not_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.h5");
+    let mut writer = write(&path, 2, 1);
+    writer.set_least_interval(std::time::Duration::from_secs(1000));
+    (1..5).for_each(|index| writer.append(&frame(&cells(2), index)).unwrap());
+    writer.save_checkpoint(40, 1.0, b"state at 40").unwrap();
+    // As a kill leaves it, copied without the log in which four of the frames wait.
+    let copy = folder.path().join("copy.h5");
+    std::fs::copy(&path, &copy).unwrap();
+    std::fs::copy(checkpoint_path(&path), checkpoint_path(&copy)).unwrap();
+    let before = std::fs::read(&copy).unwrap();
+    let meta = load_checkpoint(&copy).unwrap().unwrap().meta;
+    assert_eq!(meta.frames, 5);
+    let error = ResultWriter::reopen(&copy, &header(), &layout(), (&meta).into()).err().unwrap();
+    let words = error.to_string().replace(&copy.display().to_string(), "copy.h5");
+    assert_eq!(words, "4 of the 5 frames that were recorded before the checkpoint of copy.h5 are missing");
+    assert!(std::fs::read(&copy).unwrap() == before, "a refusal changes nothing");
+    assert!(!frames_path(&copy).exists(), "and leaves nothing behind");
+    // With the log they are there.
+    std::fs::copy(frames_path(&path), frames_path(&copy)).unwrap();
+    let writer = ResultWriter::reopen(&copy, &header(), &layout(), (&meta).into()).unwrap();
+    assert_eq!(writer.frames(), 5);
 }

@@ -1,6 +1,7 @@
 //! A library that is put before the system's (LD_PRELOAD) and kills the process in front of the Nth call by which files are
-//! changed: PSEUDOPOD_TEST_STOP says which. With PSEUDOPOD_TEST_HALF a write is half done first. Compiled by
-//! `tests/processes/every_write.rs`; it uses nothing but the C library.
+//! changed: PSEUDOPOD_TEST_STOP says which. With PSEUDOPOD_TEST_HALF a write is half done first. PSEUDOPOD_TEST_CRASH lets the
+//! process crash where HDF5 reads a file, as a damaged one may. Compiled by `tests/processes/shim.rs`; it uses nothing but the
+//! C library.
 
 use std::ffi::{CStr, c_char, c_int, c_long, c_uint, c_void};
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -16,6 +17,7 @@ unsafe extern "C" {
 /// The next library that has the name: the system's.
 const NEXT: *mut c_void = -1_isize as *mut c_void;
 const SIGKILL: c_int = 9;
+const SIGSEGV: c_int = 11;
 /// Calls that are still to be let through; negative: all.
 static LEFT: AtomicI64 = AtomicI64::new(i64::MIN);
 
@@ -71,6 +73,26 @@ macro_rules! changes {
             unsafe { call($($of),*) }
         }
     )*};
+}
+
+/// HDF5 reads at places; the standard library of Rust does not.
+macro_rules! reads {
+    ($($name:ident as $text:literal;)*) => {$(
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name(file: c_int, data: *mut c_void, length: usize, at: i64) -> isize {
+            type Call = unsafe extern "C" fn(c_int, *mut c_void, usize, i64) -> isize;
+            if number(c"PSEUDOPOD_TEST_CRASH") > 0 {
+                unsafe { kill(getpid(), SIGSEGV) };
+            }
+            let call: Call = unsafe { std::mem::transmute(dlsym(NEXT, $text.as_ptr())) };
+            unsafe { call(file, data, length, at) }
+        }
+    )*};
+}
+
+reads! {
+    pread as c"pread";
+    pread64 as c"pread64";
 }
 
 writes! {

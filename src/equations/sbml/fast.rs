@@ -129,7 +129,7 @@ impl<'a> Plan<'_, 'a> {
 
     /// The value of what never changes, but for the sizes of compartments if these may; not a number where it depends on more.
     fn steady_value(&self, expr: &Expr, sizes: bool, depth: usize) -> f64 {
-        let Some(depth) = depth.checked_sub(1).filter(|_| !uses_time(expr)) else { return f64::NAN };
+        let Some(depth) = depth.checked_sub(1).filter(|_| !expr.uses_time()) else { return f64::NAN };
         let varies = Cell::new(false);
         let value = expr.evaluate(f64::NAN, &|quantity_id: QuantityId| {
             let quantity = self.quantities.get(quantity_id as usize);
@@ -151,17 +151,5 @@ impl<'a> Plan<'_, 'a> {
         let help = "it is where one reactant becomes one product by a law linear in both, and no rule, event or other fast reaction \
                     changes these; else write the equilibrium with rules, or give the reaction a law much quicker than the others";
         self.page.fault_in(reaction.node, "fast", found, help);
-    }
-}
-
-fn uses_time(expr: &Expr) -> bool {
-    match expr {
-        Expr::Time => true,
-        Expr::Number(_) | Expr::Quantity(_) => false,
-        Expr::Unary(_, a) => uses_time(a),
-        Expr::Binary(_, a, b) => uses_time(a) || uses_time(b),
-        Expr::Piecewise { branches, otherwise } => {
-            uses_time(otherwise) || branches.iter().any(|(condition, value)| uses_time(condition) || uses_time(value))
-        }
     }
 }

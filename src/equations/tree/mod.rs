@@ -163,6 +163,19 @@ enum Mark {
 }
 
 impl Expr {
+    /// Whether it uses the time itself.
+    pub fn uses_time(&self) -> bool {
+        match self {
+            Self::Time => true,
+            Self::Number(_) | Self::Quantity(_) => false,
+            Self::Unary(_, a) => a.uses_time(),
+            Self::Binary(_, a, b) => a.uses_time() || b.uses_time(),
+            Self::Piecewise { branches, otherwise } => {
+                otherwise.uses_time() || branches.iter().any(|(a, b)| a.uses_time() || b.uses_time())
+            }
+        }
+    }
+
     /// Visits the number of every quantity used, as often as it is used.
     pub fn each_quantity(&self, visit: &mut impl FnMut(QuantityId)) {
         match self {

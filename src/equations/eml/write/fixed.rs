@@ -11,7 +11,7 @@ pub(super) fn fixed(document: &Document) -> Vec<bool> {
         fixed[*target as usize] = false;
     }
     for (number, quantity) in system.quantities.iter().enumerate() {
-        fixed[number] &= !uses_time(&quantity.initial);
+        fixed[number] &= !quantity.initial.uses_time();
     }
     loop {
         let found = (0..fixed.len())
@@ -29,17 +29,4 @@ pub(super) fn uses(expr: &Expr, is: &impl Fn(usize) -> bool) -> bool {
     let mut found = false;
     expr.each_quantity(&mut |number| found |= is(number as usize));
     found
-}
-
-/// Whether an expression uses the time.
-pub(super) fn uses_time(expr: &Expr) -> bool {
-    match expr {
-        Expr::Time => true,
-        Expr::Number(_) | Expr::Quantity(_) => false,
-        Expr::Unary(_, a) => uses_time(a),
-        Expr::Binary(_, a, b) => uses_time(a) || uses_time(b),
-        Expr::Piecewise { branches, otherwise } => {
-            branches.iter().any(|(a, b)| uses_time(a) || uses_time(b)) || uses_time(otherwise)
-        }
-    }
 }

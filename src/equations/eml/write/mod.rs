@@ -10,7 +10,7 @@ use crate::equations::expression;
 use crate::equations::program::initial_values;
 use crate::equations::tree::{Event, Expr, Quantity, QuantityId, Role};
 use crate::error::Source;
-use fixed::{fixed, uses, uses_time};
+use fixed::{fixed, uses};
 use names::Names;
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -182,7 +182,7 @@ impl<'a> Writer<'a> {
             return "0".to_owned();
         }
         let outside = matches!(quantity.role, Role::Input) && uses(&quantity.initial, &|other| !self.fixed[other]);
-        if uses_time(&quantity.initial) || outside {
+        if quantity.initial.uses_time() || outside {
             let values = initial_values(system, 0.0).unwrap_or_default();
             let value = values.get(number as usize).copied().unwrap_or(f64::NAN);
             return self.expression(&Expr::Number(value));
