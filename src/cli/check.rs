@@ -100,7 +100,7 @@ fn settled(document: &Document, prepared: Prepared) -> Result<PushedApart> {
         return Ok(PushedApart::default());
     }
     let progress = Mutex::new(Progress::default());
-    let tell = |share: f64| progress.lock().unwrap_or_else(PoisonError::into_inner).look(share);
+    let tell = |what| progress.lock().unwrap_or_else(PoisonError::into_inner).settle(what);
     let settled = settle_start_told(document, &mut prepared.build(), &tell);
     progress.into_inner().unwrap_or_else(PoisonError::into_inner).end();
     settled

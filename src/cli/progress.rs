@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::error::say;
+use crate::experiment::Settling;
 use crate::run::Report;
 
 /// Time between two plain lines.
@@ -55,16 +56,23 @@ impl Report for Progress {
         say(words);
     }
 
-    fn look(&mut self, share: f64) {
+    fn settle(&mut self, what: Settling) {
         if !self.is_due() {
             return;
         }
+        let (share, words) = match what {
+            Settling::Looking(share) => (share, format!("looking whether cells overlap: {:.0} %", 100.0 * share)),
+            Settling::Pushing { round, rounds, pairs } => {
+                let words = format!("pushing cells apart, {pairs} pairs overlap: round {round} of {rounds} at most");
+                (f64::from(round - 1) / f64::from(rounds), words)
+            }
+        };
         match &self.bar {
             Some(bar) => {
                 bar.set_position((share * BAR_PARTS as f64) as u64);
-                bar.set_message("looking whether cells overlap");
+                bar.set_message(words);
             }
-            None => say(&format!("looking whether cells overlap: {:.0} %", 100.0 * share)),
+            None => say(&words),
         }
     }
 

@@ -66,6 +66,33 @@ pub fn find_overlaps(scene: &Scene, positions: &[Vec3]) -> Vec<Overlap> {
 /// # Panics
 /// As [`find_overlaps`].
 pub fn find_overlaps_told(scene: &Scene, positions: &[Vec3], tell: &(dyn Fn(f64) + Sync)) -> Vec<Overlap> {
+    find_among(scene, positions, &|_| true, tell)
+}
+
+/// Overlaps after some bodies have moved: what `before` says of the others still holds.
+///
+/// # Panics
+/// As [`find_overlaps`].
+pub(super) fn find_overlaps_again(
+    scene: &Scene,
+    positions: &[Vec3],
+    before: &[Overlap],
+    moved: &(dyn Fn(u32) -> bool + Sync),
+) -> Vec<Overlap> {
+    let is_new = |bodies: [u32; 2]| bodies.into_iter().any(moved);
+    let mut overlaps = find_among(scene, positions, &is_new, &|_| ());
+    overlaps.extend(before.iter().filter(|overlap| !is_new(overlap.bodies)));
+    overlaps.sort_unstable_by_key(|overlap| overlap.bodies);
+    overlaps
+}
+
+/// Overlaps of the pairs of bodies that are asked for.
+fn find_among(
+    scene: &Scene,
+    positions: &[Vec3],
+    is_asked: &(dyn Fn([u32; 2]) -> bool + Sync),
+    tell: &(dyn Fn(f64) + Sync),
+) -> Vec<Overlap> {
     assert_eq!(positions.len(), scene.atoms, "one position per atom of the scene");
     let bounds = bounds_of_bodies(scene, positions);
     let mut neighbours = Neighbours::default();
@@ -77,7 +104,8 @@ pub fn find_overlaps_told(scene: &Scene, positions: &[Vec3], tell: &(dyn Fn(f64)
             tell(count as f64 / scene.bodies.len() as f64);
         }
         let later = neighbours.of(first).iter().filter(move |&&second| second > first);
-        later.filter_map(|&second| overlap_of(scene, positions, [first, second], &bounds)).collect::<Vec<_>>()
+        let pairs = later.map(|&second| [first, second]).filter(|pair| is_asked(*pair));
+        pairs.filter_map(|pair| overlap_of(scene, positions, pair, &bounds)).collect::<Vec<_>>()
     };
     let of_bodies: Vec<Vec<Overlap>> = (0..scene.bodies.len() as u32).into_par_iter().map(with_later).collect();
     of_bodies.concat()

@@ -57,7 +57,8 @@ pub use crate::values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};
 pub use cells::{CellType, Mesh, Orientation};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{
-    Compiled, Prepared, PushedApart, Schedule, Size, compile, notices, prepare, settle_start, settle_start_told,
+    Compiled, Prepared, PushedApart, Schedule, Settling, Size, compile, notices, prepare, settle_start,
+    settle_start_told,
 };
 pub use contact::{Between, Bonds, Catch, Contact, ContactModel, Zones};
 pub use document::Document;

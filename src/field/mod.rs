@@ -7,6 +7,7 @@ mod axis;
 mod broken;
 mod bundle;
 mod course;
+mod error;
 mod factors;
 pub mod grid;
 mod layout;

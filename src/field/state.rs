@@ -46,6 +46,12 @@ pub(super) struct Work {
     pub start: Vec<f64>,
     pub before: Vec<f64>,
     pub whole: Vec<f64>,
+    /// What diffusion and decay changed in a step in one piece; then its error, spread over the time in which reactions act.
+    pub spread: Vec<f64>,
+    /// The factors of that time, without decay.
+    spreading: Factors,
+    /// An error may be negative.
+    free: Vec<Range>,
 }
 
 impl Work {
@@ -64,15 +70,26 @@ impl Work {
             start: vec![0.0; grid.len() * species.len()],
             before: vec![0.0; grid.len() * species.len()],
             whole: vec![0.0; grid.len() * species.len()],
+            spread: vec![0.0; grid.len() * species.len()],
+            spreading: Factors::new(grid, species),
+            free: vec![Range::Free; species.len()],
         }
     }
 
     /// Writes NaN over all numbers and forgets what is kept.
     fn poison(&mut self) {
         self.factors.iter_mut().for_each(|factors| factors.dt = f64::NAN);
-        let lists = [&mut self.start, &mut self.before, &mut self.whole];
+        self.spreading.dt = f64::NAN;
+        let lists = [&mut self.start, &mut self.before, &mut self.whole, &mut self.spread];
         lists.into_iter().chain(&mut self.sweeping).for_each(|list| list.fill(f64::NAN));
         self.reacting.iter_mut().for_each(PartScratch::poison);
+    }
+
+    /// Spreads what stands in `spread` over a time, s, as differences spread: held walls hold zero, and nothing decays.
+    pub fn spread_out(&mut self, grid: &Grid, species: &[Species], time: f64) {
+        self.spreading.fill(grid, species, time);
+        self.spreading.decay.fill(1.0);
+        diffuse(grid, &self.spreading, &self.free, &mut self.spread, &mut self.sweeping);
     }
 
     /// The factors of a step size, made now or kept.

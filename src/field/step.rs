@@ -1,8 +1,10 @@
 //! Moves fields through a window of time: reactions for half a step, diffusion and decay for a step, reactions for
 //! half a step, eq. (field.1), with steps as small as the splitting asks.
 
+use super::error::{Change, error_of_rates, error_of_size};
 use super::react::{React, react};
 use super::state::{FINEST, Fields};
+use crate::equations::Range;
 use crate::error::{Error, Result, short};
 
 /// How a window is cut into steps.
@@ -10,9 +12,9 @@ use crate::error::{Error, Result, short};
 pub enum Stepping {
     /// Into so many equal steps, at least one.
     Fixed(u32),
-    /// Into 1, 2, 4, … parts, so that the error of a step, eq. (field.7), stays below the tolerance.
+    /// Into 1, 2, 4, … parts, so that the error of a step, eqs. (field.7) and (field.14), stays below the tolerance.
     Adaptive {
-        /// Part of the size of a species (root mean square) that a step may be wrong by, e.g. 1e-3.
+        /// Part of the size of a species, and of what reactions change, that a step may be wrong by, e.g. 3e-3.
         relative: f64,
         /// Value that a step may be wrong by whatever the size, e.g. 1e-6 of a usual concentration.
         absolute: f64,
@@ -101,7 +103,8 @@ impl Fields {
         react(grid, species, function, (*time, dt), values, &mut work.reacting);
     }
 
-    /// Steps of a window / 2^level. A step that is checked is taken whole and in halves; the halves are kept.
+    /// Steps of a window / 2^level. A step that is checked is taken whole and in halves; the halves are kept, or, where there are
+    /// reactions, what both say of steps that are shorter still. With reactions all are checked.
     fn adapt(&mut self, window: f64, tolerance: [f64; 2], reactions: Option<&React>) -> Result<Report> {
         let (mut report, mut done, began) = (Report::default(), 0_u32, self.time);
         while done < 1 << FINEST {
@@ -119,21 +122,14 @@ impl Fields {
                     continue;
                 }
                 report.error = report.error.max(error);
-                self.unchecked = if error > WATCH { 0 } else { CHECK_EVERY - 1 };
+                self.unchecked = if error > WATCH || reactions.is_some() { 0 } else { CHECK_EVERY - 1 };
                 done += 1 << (FINEST - self.level);
                 if error < CALM && self.level > 0 && done.is_multiple_of(1 << (FINEST + 1 - self.level)) {
                     self.level -= 1;
                     self.unchecked = 0;
                 }
             } else {
-                self.work.before.copy_from_slice(&self.values);
                 self.strang(dt, 1, reactions);
-                if reactions.is_some() && !self.is_finite() {
-                    // The step has become too long since the last check.
-                    std::mem::swap(&mut self.values, &mut self.work.before);
-                    self.unchecked = 0;
-                    continue;
-                }
                 self.unchecked -= 1;
                 done += 1 << (FINEST - self.level);
             }
@@ -142,42 +138,75 @@ impl Fields {
         Ok(report)
     }
 
-    /// A step in halves, and the error of the whole one; if that is above 1 the values are as before.
+    /// A step, and its error; if that is above 1 the values are as before.
     fn checked(&mut self, dt: f64, tolerance: [f64; 2], reactions: Option<&React>) -> f64 {
         let began = self.time;
         self.work.before.copy_from_slice(&self.values);
-        self.strang(dt, 1, reactions);
+        self.whole(dt, reactions);
         std::mem::swap(&mut self.values, &mut self.work.whole);
         self.values.copy_from_slice(&self.work.before);
         self.time = began;
         self.strang(0.5 * dt, 2, reactions);
-        let error = self.difference(tolerance);
+        let error = self.error(dt, tolerance, reactions.is_some());
         if too_large(error) {
             std::mem::swap(&mut self.values, &mut self.work.before);
             self.time = began;
+        } else if reactions.is_some() {
+            self.extrapolate();
         }
         error
     }
 
-    /// The error of the whole step in tolerances: the largest over the species of the root mean square.
-    fn difference(&self, [relative, absolute]: [f64; 2]) -> f64 {
-        let len = self.grid.len();
-        let mut worst: f64 = 0.0;
-        for (fine, whole) in self.values.chunks_exact(len).zip(self.work.whole.chunks_exact(len)) {
-            let (mut apart, mut size) = ([0.0; 8], [0.0; 8]);
-            for (at, (fine, whole)) in fine.iter().zip(whole).enumerate() {
-                apart[at % 8] += (fine - whole) * (fine - whole);
-                size[at % 8] += fine * fine;
-            }
-            let mean = |sums: [f64; 8]| (sums.iter().sum::<f64>() / len as f64).sqrt();
-            // The halves are wrong by a quarter of the whole step, so that their difference is three quarters of it.
-            let error = 4.0 / 3.0 * mean(apart) / (absolute + relative * mean(size)).max(f64::MIN_POSITIVE);
-            if error.is_nan() {
-                return error;
-            }
-            worst = error.max(worst);
+    /// A step in one piece. Where there are reactions what diffusion and decay changed in it is kept.
+    fn whole(&mut self, dt: f64, reactions: Option<&React>) {
+        if reactions.is_none() {
+            return self.strang(dt, 1, None);
         }
-        worst
+        let began = self.time;
+        self.react(0.5 * dt, reactions);
+        self.work.spread.copy_from_slice(&self.values);
+        self.diffuse(dt);
+        for (before, after) in self.work.spread.iter_mut().zip(&self.values) {
+            *before = after - *before;
+        }
+        self.time = began + 0.5 * dt;
+        self.react(0.5 * dt, reactions);
+        self.time = began + dt;
+    }
+
+    /// The error of the step that was taken whole and in halves, in tolerances.
+    fn error(&mut self, dt: f64, tolerance: [f64; 2], reacts: bool) -> f64 {
+        let Self { grid, species, values, work, .. } = self;
+        let of_size = error_of_size(grid.len(), values, &work.whole, tolerance);
+        if !reacts || too_large(of_size) {
+            return of_size;
+        }
+        let change = Change::new(grid.len(), values, [&work.before, &work.whole, &work.spread]);
+        if change.share == 0.0 {
+            return of_size;
+        }
+        for ((error, fine), whole) in work.spread.iter_mut().zip(&*values).zip(&work.whole) {
+            *error = 4.0 / 3.0 * (fine - whole);
+        }
+        work.spread_out(grid, species, dt / change.share);
+        let of_rates = error_of_rates(&work.spread, &change, tolerance);
+        if of_rates.is_nan() { of_rates } else { of_size.max(of_rates) }
+    }
+
+    /// What a step in halves and one in one piece say of shorter ones, eq. (field.15); where that is below zero and may not be, the halves
+    /// stand.
+    fn extrapolate(&mut self) {
+        let len = self.grid.len();
+        for (s, species) in self.species.iter().enumerate() {
+            let floor = if species.range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };
+            let whole = &self.work.whole[s * len..(s + 1) * len];
+            for (fine, whole) in self.values[s * len..(s + 1) * len].iter_mut().zip(whole) {
+                let further = *fine + (*fine - whole) / 3.0;
+                if further >= floor {
+                    *fine = further;
+                }
+            }
+        }
     }
 
     /// The box that is worst is told; its values in halves and whole stand where a refused step leaves them.

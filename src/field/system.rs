@@ -23,6 +23,13 @@ use crate::ode::{Kick, Numbers};
 /// Gives the values of a profile that lies in a file, its `scale` included: one for each box of the grid, x fastest.
 pub type LoadProfile<'a> = dyn Fn(&eml::Profile, &Grid) -> Result<Vec<f64>> + 'a;
 
+/// Relative and absolute tolerance of a step where no document says any and fields react: by a table of problems (the book, Fields); no
+/// absolute one, as nothing is known of units, so that no number is small by itself.
+const REACTING: (f64, f64) = (3e-3, 0.0);
+
+/// The same where nothing reacts, and what is wrong in a step spreads and decays.
+const SPREADING: (f64, f64) = (1e-3, 1e-6);
+
 /// The fields of one document on one grid. It never changes; what does is in [`Fields`].
 #[derive(Debug, Clone)]
 pub struct FieldSystem {
@@ -115,6 +122,11 @@ impl FieldSystem {
     /// What the fields are kicked by, to be looked at as a whole; none where there is no noise.
     pub fn noise(&self) -> Option<&impl std::fmt::Debug> {
         self.noise.as_ref()
+    }
+
+    /// The relative and absolute tolerance of a step where nobody says any.
+    pub fn usual_tolerance(&self) -> (f64, f64) {
+        if self.reactor.is_some() { REACTING } else { SPREADING }
     }
 
     /// The document's name.

@@ -72,7 +72,7 @@ pub fn run(document: &Document, options: &RunOptions, report: &mut dyn Report) -
     let builder = Simulation::builder().threads_or_all(*threads).cancel_token(cancel.clone());
     let ready = {
         let told = Mutex::new(&mut *report);
-        let tell = |share: f64| told.lock().unwrap_or_else(PoisonError::into_inner).look(share);
+        let tell = |what| told.lock().unwrap_or_else(PoisonError::into_inner).settle(what);
         builder.ready_told(document, &tell)?
     };
     let (source, title, simulation) = (&document.source, &document.experiment.title, &ready.simulation);

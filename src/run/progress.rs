@@ -1,12 +1,14 @@
 //! Who is told where a run is.
 
+use crate::experiment::Settling;
+
 /// Listens to a run.
 pub trait Report: Send {
     /// Something to know before the run begins.
     fn notice(&mut self, words: &str);
-    /// Before the run begins this share of the cells has been looked at, whether they overlap.
-    fn look(&mut self, share: f64) {
-        let _ = share;
+    /// Before the run begins cells are looked at, whether they overlap, and pushed apart.
+    fn settle(&mut self, what: Settling) {
+        let _ = what;
     }
     /// The run begins, or goes on, at `time` and will end at `until`, s.
     fn begin(&mut self, time: f64, until: f64);

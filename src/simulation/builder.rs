@@ -9,7 +9,7 @@ use super::error::SimulationError;
 use super::stepping::Simulation;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::{
-    Compiled, Document, Experiment, PushedApart, Schedule, compile, notices, prepare, settle_start_told,
+    Compiled, Document, Experiment, PushedApart, Schedule, Settling, compile, notices, prepare, settle_start_told,
 };
 
 /// What a simulation is made with: settings, a seed, threads, a token, texts of equations. Its last word says what from.
@@ -204,8 +204,8 @@ impl Builder {
         self.ready_told(document, &|_| ())
     }
 
-    /// The same, telling from time to time which share of the cells has been looked at.
-    pub(crate) fn ready_told(&self, document: &Document, tell: &(dyn Fn(f64) + Sync)) -> Result<Ready> {
+    /// The same, telling from time to time what is under way before the start.
+    pub(crate) fn ready_told(&self, document: &Document, tell: &(dyn Fn(Settling) + Sync)) -> Result<Ready> {
         let pool = self.threads.map(pool_of).transpose()?;
         let prepared = prepare(document)?;
         let mut notices = notices(document, &prepared);

@@ -7,6 +7,7 @@ mod engine_members;
 mod engine_order;
 mod engine_program;
 mod engine_stiff;
+mod field_defaults;
 mod field_system;
 mod fields;
 mod fields_analytic;

@@ -3,7 +3,7 @@
 use pseudopod::Vec3;
 use pseudopod::contact::find_overlaps;
 use pseudopod::error::{Paint, render};
-use pseudopod::experiment::{Compiled, Document, PushedApart, compile, settle_start};
+use pseudopod::experiment::{Compiled, Document, PushedApart, Settling, compile, settle_start, settle_start_told};
 use pseudopod::geometry::volume;
 use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, RunOptions, run};
@@ -257,4 +257,23 @@ fn a_volume_that_does_not_begin_at_rest_is_approached_and_then_exact() {
             (measured(&state, 1) / rest - 1.15).abs() < 1e-10 && (measured(&state, 0) / rest - ratio).abs() < 1e-10
         );
     }
+}
+
+#[test]
+fn pushing_is_told_round_by_round_until_no_pair_is_left() {
+    let document = document(&spheres("{ grid = [3, 2, 2], spacing = \"9 um\" }", "number = 12"));
+    let told = std::sync::Mutex::new(Vec::new());
+    let tell = |what| told.lock().expect("a list").push(what);
+    settle_start_told(&document, &mut compile(&document).expect("a good document"), &tell).expect("a way apart");
+    let rounds: Vec<(u32, usize)> = told
+        .into_inner()
+        .expect("a list")
+        .into_iter()
+        .filter_map(|what| match what {
+            Settling::Pushing { round, pairs, .. } => Some((round, pairs)),
+            Settling::Looking(_) => None,
+        })
+        .collect();
+    assert!(rounds.len() > 1 && rounds.iter().zip(1..).all(|((round, _), number)| *round == number), "{rounds:?}");
+    assert!(rounds.iter().all(|(_, pairs)| *pairs > 0) && rounds[0].1 > rounds[rounds.len() - 1].1, "{rounds:?}");
 }

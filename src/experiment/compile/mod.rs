@@ -23,7 +23,7 @@ pub(super) use builder::Builder;
 pub use notices::notices;
 pub(super) use numbers::{course, unit};
 pub use size::Size;
-pub use start::{PushedApart, settle_start, settle_start_told};
+pub use start::{PushedApart, Settling, settle_start, settle_start_told};
 
 use super::{CellType, Document, Experiment, VolumeRule as Rule};
 use crate::Vec3;

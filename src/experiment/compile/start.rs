@@ -20,6 +20,22 @@ const STRIDE: f64 = 0.125;
 /// What is left between cells that were pushed apart, over the proximity: they touch.
 const GAP: f64 = 0.5;
 
+/// What of the start of a run is under way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Settling {
+    /// Cells are looked at, whether they overlap, of which this share has been.
+    Looking(f64),
+    /// Cells that overlap are pushed apart.
+    Pushing {
+        /// The round of pushing, from 1 on.
+        round: u32,
+        /// Rounds after which cells that still overlap are refused.
+        rounds: u32,
+        /// Pairs of cells that overlap.
+        pairs: usize,
+    },
+}
+
 /// Cells that were pushed apart before the run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PushedApart {
@@ -47,14 +63,14 @@ pub fn settle_start(document: &Document, compiled: &mut Compiled) -> Result<Push
     settle_start_told(document, compiled, &|_| ())
 }
 
-/// The same, telling from time to time which share of the cells has been looked at.
+/// The same, telling from time to time what is under way.
 ///
 /// # Errors
 /// As [`settle_start`].
 pub fn settle_start_told(
     document: &Document,
     compiled: &mut Compiled,
-    tell: &(dyn Fn(f64) + Sync),
+    tell: &(dyn Fn(Settling) + Sync),
 ) -> Result<PushedApart> {
     let Compiled { model, state, .. } = compiled;
     let Some(contact) = &model.contact.as_ref().map(|contact| contact.scene_of(&state.kinds)) else {
@@ -63,7 +79,7 @@ pub fn settle_start_told(
     let cells = model.kinds.iter().zip(&state.kinds);
     let mut positions: Vec<Vec3> =
         cells.flat_map(|(kind, now)| (0..now.cells()).flat_map(|cell| now.cell(kind, cell))).collect();
-    let overlaps = find_overlaps_told(&contact.scene, &positions, tell);
+    let overlaps = find_overlaps_told(&contact.scene, &positions, &|share| tell(Settling::Looking(share)));
     refuse_what_cannot_move(document, model, state, contact, &positions, &overlaps)?;
     if overlaps.is_empty() {
         return Ok(PushedApart::default());
@@ -72,7 +88,9 @@ pub fn settle_start_told(
         of_cells(model, state, |kind| if kind.is_held() { f64::INFINITY } else { area(&kind.rest) });
     let gap = GAP * contact.reach.proximity;
     let yielding = Yielding { resistance: &resistance, gap, stride: stride(model), rounds: ROUNDS };
-    let (moves, left) = push_apart(&contact.scene, &mut positions, &yielding);
+    let (moves, left) = push_apart(&contact.scene, &mut positions, &yielding, &|round, pairs| {
+        tell(Settling::Pushing { round, rounds: ROUNDS, pairs });
+    });
     let list =
         |overlaps: &[Overlap]| overlaps.iter().map(|overlap| told(model, state, overlap)).collect::<Vec<Found>>();
     let head = format!("cells overlap at the start, and {ROUNDS} rounds of pushing have not parted them all: ");

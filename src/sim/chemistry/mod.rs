@@ -17,6 +17,7 @@ mod model;
 mod observe;
 mod observed;
 mod populations;
+mod release;
 mod scratch;
 mod stages;
 mod state;

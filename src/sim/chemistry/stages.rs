@@ -3,7 +3,7 @@
 use super::super::constraints::enforce_constraints;
 use super::super::contact::locate_contacts;
 use super::super::model::Model;
-use super::super::state::{State, vector};
+use super::super::state::State;
 use super::super::targets::measure_volumes;
 use super::super::trouble::Trouble;
 use super::super::velocity::measure_velocities;
@@ -14,8 +14,8 @@ use super::exchange::is_due;
 use super::membranes::{advance_membrane, begin_membranes};
 use super::model::Reactor;
 use super::populations::{advance_population, eventful, ids};
+use super::release::move_fields;
 use super::scratch::ChemistryScratch;
-use crate::error::Error;
 use crate::ode::{Numbers, OdeTrouble, PopulationScratch, Substeps};
 
 /// Lets the links carry the numbers of the start, and executes the events of the start, in `state`; after an error that holds
@@ -53,9 +53,7 @@ pub fn advance_chemistry(
     let (start, end) = (from.time, from.time + dt);
     ws.chemistry.exchange_values(&mut to.chemistry, start);
     advance_systems(model, end, from, to, &mut ws.chemistry)?;
-    deposit_secretion(model, dt, to, ws);
-    deposit_at_atoms(model, dt, to, ws);
-    advance_fields(model, (start, dt), to, ws)?;
+    move_fields(model, (start, dt), to, ws)?;
     carry_links(model, end, false, to, ws)?;
     ws.chemistry.exchange_values(&mut to.chemistry, end);
     impose(model, end, to, ws)?;
@@ -125,79 +123,6 @@ fn system_trouble(model: &Model, state: &State, reactor: &Reactor, trouble: &Ode
         reason: trouble.reason,
         detail: trouble.detail.clone(),
     }
-}
-
-/// Releases into the fields what cells secrete in a step, spread evenly over the atoms.
-fn deposit_secretion(model: &Model, dt: f64, state: &State, ws: &mut Workspace) {
-    let scratch = &mut ws.chemistry;
-    let controls = &state.chemistry.controls;
-    for (&(field, species), rates) in model.chemistry.secreted.iter().chain(&controls.secreted).zip(&controls.secretion)
-    {
-        for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-            let atoms = kind.atoms();
-            scratch.amounts.clear();
-            scratch.positions.clear();
-            for cell in 0..now.cells() {
-                let rate = rates[now.first_cell + cell];
-                if rate != 0.0 {
-                    scratch.positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
-                    scratch.amounts.resize(scratch.positions.len(), rate * dt / atoms as f64);
-                }
-            }
-            scratch.fields[field].deposit_all(species, &scratch.positions, &scratch.amounts);
-        }
-    }
-}
-
-/// Releases into the fields what atoms secrete in a step, each on its own area.
-fn deposit_at_atoms(model: &Model, dt: f64, state: &State, ws: &mut Workspace) {
-    let scratch = &mut ws.chemistry;
-    let of_kinds = model.kinds.iter().zip(&state.kinds).zip(&state.chemistry.controls.of_atoms);
-    for ((kind, now), controls) in of_kinds {
-        let atoms = kind.atoms();
-        for (channel, rates) in controls.secretion.iter().enumerate().filter(|(_, rates)| !rates.is_empty()) {
-            let (field, species) = model.chemistry.secreted[channel];
-            for cell in 0..now.cells() {
-                let ChemistryScratch { positions, amounts, shapes, fields, .. } = scratch;
-                positions.clear();
-                positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
-                shapes.take(&kind.rest.facets, positions);
-                amounts.clear();
-                let own = &rates[cell * atoms..(cell + 1) * atoms];
-                amounts.extend(own.iter().zip(&shapes.areas).map(|(rate, area)| rate * area * dt));
-                fields[field].deposit_all(species, positions, amounts);
-            }
-        }
-    }
-}
-
-/// Noise, diffusion, decay and reactions of all fields.
-fn advance_fields(
-    model: &Model,
-    (start, dt): (f64, f64),
-    state: &mut State,
-    ws: &mut Workspace,
-) -> Result<(), Trouble> {
-    let trouble = |error: Error| match error {
-        Error::Numbers { message, .. } => Trouble::Field { message },
-        error => Trouble::Field { message: error.to_string() },
-    };
-    for ((reactor, fields), now) in
-        model.chemistry.fields.iter().zip(&mut ws.chemistry.fields).zip(&mut state.chemistry.fields)
-    {
-        fields.set_pace(now.pace);
-        let numbers = Numbers { seed: model.seed, system: &reactor.name };
-        let substeps = Substeps::new(reactor.pace, now.kicks, start, dt);
-        for part in substeps {
-            if let Some(kick) = part.kick {
-                reactor.system.kick(fields, &now.inputs, kick, numbers).map_err(trouble)?;
-            }
-            let stepping = reactor.stepping.of(part.length);
-            reactor.system.advance(fields, part.length, &now.inputs, stepping).map_err(trouble)?;
-        }
-        (now.pace, now.kicks) = (fields.pace(), substeps.kicks_at_end());
-    }
-    Ok(())
 }
 
 /// After links imposed positions of atoms: the volumes are exact again with these atoms where they are.

@@ -19,9 +19,8 @@ use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Noise, Pace, Tolerances, assi
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
 
-/// Tolerances of systems and of a step of fields, where neither document says any: relative and absolute.
+/// Tolerances of systems, where neither document says any: relative and absolute.
 const SYSTEM_TOLERANCE: (f64, f64) = (1e-6, 1e-9);
-const FIELD_TOLERANCE: (f64, f64) = (1e-3, 1e-6);
 
 /// A document of equations, read, with what the experiment says of it.
 struct Part<'a> {
@@ -297,11 +296,12 @@ fn field(document: &Document, part: &Part, size: &mut Size, faults: &mut Vec<Fau
     let folder = document.resolve(&entry.document);
     let load = |profile: &eml::Profile, grid: &_| profile::load(&folder, profile, grid);
     let start = system.start(&load).map_err(|error| tell(error, faults)).ok()?;
+    let usual = system.usual_tolerance();
     let stepping = match entry.inner_step {
         Some(step) => FieldStepping::Longest(step.value()),
         None => FieldStepping::Adaptive {
-            relative: entry.rtol.or(eml.solver.rtol).unwrap_or(FIELD_TOLERANCE.0),
-            absolute: entry.atol.or(eml.solver.atol).unwrap_or(FIELD_TOLERANCE.1),
+            relative: entry.rtol.or(eml.solver.rtol).unwrap_or(usual.0),
+            absolute: entry.atol.or(eml.solver.atol).unwrap_or(usual.1),
         },
     };
     let pace = pace(document, part, 1.0, faults);
