@@ -12,6 +12,5 @@ fuzz_target!(init: { one_thread(); let _ = &*BASE; }, |data: &[u8]| {
     let result = FOLDER.join("run.h5");
     write("run.h5", &BASE.running);
     std::fs::write(frames_path(&result), sums::log(&BASE.log, &edits::read(data))).expect("a file can be written");
-    command(&format!("pseudopod info --json {}", result.display()));
     command(&format!("pseudopod export {} -o {} --force", result.display(), FOLDER.join("x.csv").display()));
 });

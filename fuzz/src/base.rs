@@ -14,7 +14,7 @@ use crate::folder::FOLDER;
 const DOCUMENT: &str = include_str!("../base.toml");
 const CLOCK: &str = r#"<eml name="clock" level="cell"><input id="c" default="0"/><variable id="u" initial="1" rate="c - 0.5*u"/>
     <link from="field[c]" to="system.c"/><link from="system.u" to="cell.secretion[c]"/></eml>"#;
-const FIELD: &str = r#"<eml name="field"><grid dimension="2" spacing="8" origin="-16 -16" size="32 32"/>
+const FIELD: &str = r#"<eml name="field"><grid dimension="2" spacing="1" origin="-4 -4" size="8 8"/>
     <field id="c" diffusion="30" decay="0.1" initial="2 + 0.02*x"/></eml>"#;
 
 /// What a run has written.

@@ -5,6 +5,11 @@ use crate::edits::Edit;
 /// Magic, version.
 const HEAD: usize = 12;
 
+/// Whether an edit of a checkpoint is one of the state: most are.
+pub fn is_of_state(edit: Edit) -> bool {
+    edit.part % 16 > 1
+}
+
 /// A checkpoint with edits: what it says of itself and the state are edited by themselves, and both checksums are right.
 ///
 /// It is: magic, version, length of the description (8 bytes), description, state, CRC-32 of all before; the state itself is: magic,
@@ -17,8 +22,8 @@ pub fn checkpoint(whole: &[u8], edits: &[Edit]) -> Vec<u8> {
     let (mut head, mut numbers) = (body[..HEAD].to_vec(), numbers.to_vec());
     for edit in edits {
         edit.apply(match edit.part % 16 {
-            0 => &mut head,
-            1..4 => &mut description,
+            0 if edit.at % 8 == 0 => &mut head,
+            0 | 1 => &mut description,
             _ => &mut numbers,
         });
     }
