@@ -16,10 +16,10 @@ static SHIPPED: LazyLock<Shipped> =
     LazyLock::new(|| Shipped::read("toml", &["experiments", "tests/messages", "tests/documents"]));
 
 /// Memory that an experiment may ask for: more is refused before anything is made.
-const MEMORY: u64 = 100_000_000;
+const MEMORY: u64 = 20_000_000;
 /// Larger experiments are good, and take their time: to work out the stiffness of a fine mesh, and to look whether many cells overlap.
-const MOST_ATOMS_OF_A_MESH: f64 = 200.0;
-const MOST_ATOMS: f64 = 2_000.0;
+const MOST_ATOMS_OF_A_MESH: f64 = 64.0;
+const MOST_ATOMS: f64 = 1_000.0;
 
 /// The shipped folder with the most of the files that a text names, so that meshes, tables and equations are found.
 fn folder_of(text: &str) -> &'static Path {
