@@ -25,8 +25,12 @@ pub mod chance;
 #[path = "../../tests/support/damage.rs"]
 pub mod damage;
 
-/// Lets the library work with one thread: what is slow is slow there, and forked processes have no other.
+/// Lets the library work in this thread: what is slow is slow there, no time is lost with waking others up, and forked processes have no
+/// other.
+///
+/// # Panics
+/// If the library has begun to work already.
 pub fn one_thread() {
-    // SAFETY: nothing else runs yet.
-    unsafe { std::env::set_var("RAYON_NUM_THREADS", "1") };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread();
+    pool.build_global().expect("nothing else runs yet");
 }
