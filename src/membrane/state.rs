@@ -119,7 +119,8 @@ impl MembraneCells {
     /// Whether another has as many cells, variables, given numbers, atoms and lanes.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let shape = |of: &Self| [of.lanes, of.atoms, of.variables, of.cells, of.defaults.len()];
-        shape(self) == shape(other)
+        let lengths = |of: &Self| [&of.values, &of.given, &of.areas, &of.volumes, &of.steps].map(Vec::len);
+        shape(self) == shape(other) && lengths(self) == lengths(other)
     }
 
     /// Adds a cell that has not started, before the one with this number.

@@ -34,9 +34,11 @@ impl Population {
         Self { method, cells: 0, variables, open, states, open_values, steps, errors }
     }
 
-    /// Whether another population has as many cells, variables and open quantities.
+    /// Whether another population has as many cells, variables and open quantities, and as many numbers of them: it may come from a file.
     pub fn has_shape_of(&self, other: &Self) -> bool {
-        (self.cells, self.variables, self.open) == (other.cells, other.variables, other.open)
+        let counts = |of: &Self| [of.cells, of.variables, of.open];
+        let lengths = |of: &Self| [&of.states, &of.open_values, &of.steps, &of.errors].map(Vec::len);
+        counts(self) == counts(other) && lengths(self) == lengths(other)
     }
 
     /// Becomes another; where its numbers fit into what this one holds, nothing is allocated.

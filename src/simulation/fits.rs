@@ -2,7 +2,9 @@
 
 use super::error::SimulationError;
 use crate::cell::{Behaviour, BehaviourState};
+use crate::geometry::Topology;
 use crate::sim::chemistry::{ChemistryState, FieldState};
+use crate::sim::contact::Numbered;
 use crate::sim::controls::Controls;
 use crate::sim::{Model, State};
 
@@ -15,6 +17,9 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
     if state.kinds.len() != model.kinds.len() {
         return mismatch(format!("it has {} types of cells, not {}", state.kinds.len(), model.kinds.len()));
     }
+    if !state.time.is_finite() {
+        return mismatch(format!("its time is {} s", state.time));
+    }
     let inertial = model.integrator.method.is_inertial();
     let (mut first_cell, mut first_atom) = (0, 0);
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
@@ -25,6 +30,7 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
             && now.rest_volumes.len() == padded
             && (now.stiffness_shape.is_empty() || now.stiffness_shape.len() == 3 * kind.atoms())
             && now.mean_velocities.len() == count
+            && [0, count * kind.atoms()].contains(&now.balance.len())
             && now.fibres.fits(kind, count)
             && now.parents.len() == count
             && now.ids.is_sorted_by(|one, other| one < other)
@@ -41,8 +47,12 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
             return mismatch(format!("the cells of type `{}` do something else by themselves", kind.name));
         }
     }
+    if !state.contact.fits(numbered(model, state)) {
+        return mismatch("its contacts are those of other cells".to_owned());
+    }
     let fields = model.chemistry.fields.iter().map(|field| FieldState {
         values: vec![0.0; field.system.species().len() * field.system.grid().len()],
+        inputs: vec![0.0; field.system.inputs().len()],
         ..FieldState::default()
     });
     let fresh = ChemistryState { fields: fields.collect(), ..ChemistryState::new(model, &state.counts(), &[]) };
@@ -50,6 +60,22 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
         return mismatch("its systems or fields are others".to_owned());
     }
     check_controls(model, state, &state.chemistry.controls)
+}
+
+/// How many there are of what contacts name by its number.
+fn numbered(model: &Model, state: &State) -> Numbered {
+    let all = |of_kind: &dyn Fn(usize) -> usize| {
+        state.counts().iter().enumerate().map(|(kind, cells)| cells * of_kind(kind)).sum()
+    };
+    // The edges of a mesh are counted only where some touch.
+    let edges_of = |kind: usize| Topology::of(&model.kinds[kind].rest).edges.len();
+    Numbered {
+        bodies: state.cells(),
+        atoms: state.atoms(model),
+        facets: all(&|kind| model.kinds[kind].rest.facets.len()),
+        edges: if state.contact.edges.is_empty() { 0 } else { all(&edges_of) },
+        planes: model.planes.len(),
+    }
 }
 
 /// A list of controls is empty or has one number a cell, and what is secreted is known.

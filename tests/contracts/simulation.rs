@@ -5,7 +5,8 @@ use crate::turns::take_turn;
 use pseudopod::experiment::Document;
 use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, RunOptions, run};
-use pseudopod::sim::State;
+use pseudopod::sim::contact::PlaneBond;
+use pseudopod::sim::{AtomBalance, State};
 use pseudopod::simulation::{Builder, CellId, CheckpointFault, EXAMPLE, NewCell, PopulationTrouble, SeriesScope};
 use pseudopod::{CancelToken, Simulation, SimulationError};
 use std::ops::ControlFlow;
@@ -466,6 +467,24 @@ fn faults_of_a_document_keep_their_positions() {
     assert!(std::error::Error::source(&error).is_none(), "the message is that of the faults themselves");
     let threads = Simulation::builder().threads(0).text("example", EXAMPLE).unwrap_err();
     assert_eq!(threads.to_string(), "a run cannot be made by 0 threads");
+}
+
+#[test]
+fn a_state_that_names_what_is_not_there_is_refused() {
+    // As it may come from a file with good checksums.
+    let bond = PlaneBond { atom: 0, plane: 0, force: [0.0; 3], stored: 0.0 };
+    let spoilt: [(&str, &dyn Fn(&mut State)); 4] = [
+        ("its time is NaN s", &|state| state.time = f64::NAN),
+        ("its contacts are", &|state| state.contact.planes.push(PlaneBond { plane: u32::MAX, ..bond })),
+        ("its contacts are", &|state| state.contact.released.push(1_000_000)),
+        ("the cells of type", &|state| state.kinds[0].balance.push(AtomBalance::NONE)),
+    ];
+    for (words, spoil) in spoilt {
+        let (model, mut state) = everything(1).into_parts();
+        spoil(&mut state);
+        let error = Simulation::new(model, state).unwrap_err();
+        assert!(matches!(&error, SimulationError::Mismatch(found) if found.starts_with(words)), "{error}");
+    }
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! Damaged documents, models, meshes and tables: every reader ends soon, with what is wrong and where, and never in a panic.
 //!
-//! Texts are damaged where their readers decide: words and numbers are swapped, doubled, left out or made extreme, lines repeated, ends
-//! cut off. Which damage a text gets depends on its number alone, so that what is found is found again.
+//! Which damage a text gets depends on its number alone, so that what is found is found again.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,139 +15,14 @@ use pseudopod::experiment::Document;
 use pseudopod::geometry::read_surface;
 
 use crate::chance::Chance;
+use crate::damage::{damaged, files, parts};
 
-/// What stands in place of a number.
-const NUMBERS: [&str; 14] = [
-    "0",
-    "-1",
-    "1e308",
-    "-1e308",
-    "1e-320",
-    "1e999",
-    "nan",
-    "inf",
-    "99999999999999999999",
-    "0.1",
-    "1e9",
-    "2147483648",
-    "-0",
-    "1e",
-];
-/// What stands in place of anything, or between.
-const SIGNS: [&str; 24] = [
-    "\"",
-    "'",
-    "\"\"\"",
-    "[",
-    "]",
-    "[[",
-    "{",
-    "}",
-    "<",
-    ">",
-    "</",
-    "/>",
-    "&",
-    "&#x110000;",
-    "]]>",
-    "=",
-    ",",
-    "\0",
-    "\u{7f}",
-    "µ",
-    "\u{1f9a0}",
-    "\u{202e}",
-    "\r",
-    "\u{feff}",
-];
 /// Longest time for a text: minutes would be a way to stop a server, and seconds are a user's patience. Programs without optimisation are
 /// given more.
 const LONGEST: Duration = Duration::from_secs(if cfg!(debug_assertions) { 60 } else { 10 });
 
-/// One of several.
-fn one_of<'a>(choices: &[&'a str], chance: &mut Chance) -> &'a str {
-    choices[chance.below(choices.len())]
-}
-
-/// Words, numbers, runs of blanks, and every other sign by itself.
-fn parts(text: &str) -> Vec<&str> {
-    let kind = |c: char| match c {
-        c if c.is_alphanumeric() || matches!(c, '_' | '.') => 0,
-        '\n' => 1,
-        c if c.is_whitespace() => 2,
-        _ => 3,
-    };
-    let mut found = Vec::new();
-    let mut start = 0;
-    let mut before = None;
-    for (at, c) in text.char_indices() {
-        if before.is_some_and(|before| before != kind(c) || before == 3) {
-            found.push(&text[start..at]);
-            start = at;
-        }
-        before = Some(kind(c));
-    }
-    found.push(&text[start..]);
-    found
-}
-
-/// The text with one to four damages; words may come from `others`.
-fn damaged(text: &str, others: &[&str], chance: &mut Chance) -> String {
-    let mut all: Vec<&str> = parts(text);
-    for _ in 0..=chance.below(4) {
-        let at = chance.below(all.len());
-        let span = at..(at + 1 + chance.below(12)).min(all.len());
-        match chance.below(9) {
-            0 => drop(all.drain(span)),
-            1 => {
-                let copy: Vec<&str> = all[span].to_vec();
-                let times = [1, 2, 40][chance.below(3)];
-                let more: Vec<&str> = std::iter::repeat_n(copy, times).flatten().collect();
-                drop(all.splice(at..at, more));
-            }
-            2 => {
-                let other = chance.below(all.len());
-                all.swap(at, other);
-            }
-            3 | 4 => {
-                let numbers: Vec<usize> =
-                    (0..all.len()).filter(|i| all[*i].starts_with(|c: char| c.is_ascii_digit())).collect();
-                if let Some(number) = numbers.get(chance.below(numbers.len())) {
-                    all[*number] = one_of(&NUMBERS, chance);
-                }
-            }
-            5 => all[at] = one_of(others, chance),
-            6 => all[at] = one_of(&SIGNS, chance),
-            7 => all.insert(at, one_of(&SIGNS, chance)),
-            _ => all.truncate(at.max(1)),
-        }
-        if all.is_empty() {
-            all.push("");
-        }
-    }
-    all.concat()
-}
-
 /// What reads a kind of text.
 type Reader = fn(&str, &Path) -> Result<(), Error>;
-
-fn files(ending: &str, folders: &[&str]) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let mut folders: Vec<PathBuf> =
-        folders.iter().map(|folder| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).collect();
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|found| found == ending) {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
-}
 
 /// Damages texts of a kind so many times and reads them.
 fn read_damaged(kind: &str, corpus: &[PathBuf], times: u32, reader: Reader) {
@@ -202,17 +76,18 @@ fn read_claims(text: &str, _: &Path) -> Result<(), Error> {
 
 /// All kinds, each so many times.
 fn all(times: u32) {
-    let experiments: Vec<PathBuf> = files("toml", &["experiments", "tests/messages", "tests/documents"]);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let experiments: Vec<PathBuf> = files(root, "toml", &["experiments", "tests/messages", "tests/documents"]);
     let (claimed, experiments): (Vec<PathBuf>, Vec<PathBuf>) =
         experiments.into_iter().partition(|path| path.ends_with("expected.toml"));
     read_damaged("claims", &claimed, times / 4, read_claims);
     read_damaged("experiment", &experiments, times, read_experiment);
-    read_damaged("EML", &files("eml", &["eml", "experiments", "tests/messages"]), times, read_equations);
-    read_damaged("SBML", &files("xml", &["tests/messages"]), times, read_equations);
+    read_damaged("EML", &files(root, "eml", &["eml", "experiments", "tests/messages"]), times, read_equations);
+    read_damaged("SBML", &files(root, "xml", &["tests/messages"]), times, read_equations);
     for ending in ["obj", "ply", "stl"] {
-        read_damaged(ending, &files(ending, &["tests/messages/meshes"]), times / 4, read_mesh);
+        read_damaged(ending, &files(root, ending, &["tests/messages/meshes"]), times / 4, read_mesh);
     }
-    read_damaged("table", &files("csv", &["experiments", "tests"]), times / 2, read_table);
+    read_damaged("table", &files(root, "csv", &["experiments", "tests"]), times / 2, read_table);
 }
 
 #[test]

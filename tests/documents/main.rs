@@ -10,3 +10,6 @@ mod start;
 
 #[path = "../support/chance.rs"]
 mod chance;
+
+#[path = "../support/damage.rs"]
+mod damage;

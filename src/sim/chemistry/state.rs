@@ -114,7 +114,7 @@ impl ChemistryState {
         self.controls = Controls::default();
     }
 
-    /// Whether a checkpoint has the shape of a fresh start.
+    /// Whether a checkpoint has the shape of a fresh start, at times that can be.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let cells = |a: &Population, b: &Population| a.cells() == b.cells() && a.has_shape_of(b);
         let knows = |a: &EventMemory, b: &EventMemory| a.has_shape_of(b);
@@ -123,7 +123,11 @@ impl ChemistryState {
         let surfaces = |a: &MembraneState, b: &MembraneState| {
             a.kinds.len() == b.kinds.len() && a.kinds.iter().zip(&b.kinds).all(|(a, b)| a.has_shape_of(b))
         };
+        let boxes =
+            |a: &FieldState, b: &FieldState| (a.values.len(), a.inputs.len()) == (b.values.len(), b.inputs.len());
         self.populations.len() == other.populations.len()
+            && self.times.len() == other.times.len()
+            && self.times.iter().all(|time| time.is_finite())
             && self.kicks.len() == other.kicks.len()
             && self.membranes.len() == other.membranes.len()
             && self.membranes.iter().zip(&other.membranes).all(|(a, b)| surfaces(a, b))
@@ -131,7 +135,7 @@ impl ChemistryState {
             && self.fields.len() == other.fields.len()
             && self.populations.iter().zip(&other.populations).all(|(a, b)| cells(a, b))
             && self.events.iter().zip(&other.events).all(|(a, b)| events(a, b))
-            && self.fields.iter().zip(&other.fields).all(|(a, b)| a.values.len() == b.values.len())
+            && self.fields.iter().zip(&other.fields).all(|(a, b)| boxes(a, b))
     }
 }
 

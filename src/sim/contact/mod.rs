@@ -62,7 +62,7 @@ pub use rows::{Pairing, Pull, Row};
 pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
-pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, PlaneBond, SurfaceBonds};
+pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, Numbered, PlaneBond, SurfaceBonds};
 pub use touch::near_cell;
 pub use tractions::ContactTractions;
 pub use turnover::turn_over_bonds;

@@ -114,7 +114,43 @@ pub struct ContactState {
     pub bonds: Vec<SurfaceBonds>,
 }
 
+/// How many there are of all that contacts name by its number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Numbered {
+    /// Bodies.
+    pub bodies: usize,
+    /// Atoms of all bodies.
+    pub atoms: usize,
+    /// Facets of all bodies.
+    pub facets: usize,
+    /// Edges of all bodies.
+    pub edges: usize,
+    /// Planes.
+    pub planes: usize,
+}
+
 impl ContactState {
+    /// Whether all is there that contacts name: a state may come from a file.
+    pub fn fits(&self, there: Numbered) -> bool {
+        let are = |numbers: &[u32], most: usize| numbers.iter().all(|number| (*number as usize) < most);
+        let is_faced = |other: Faced| match other {
+            Faced::Body(body) => are(&[body], there.bodies),
+            Faced::Plane(plane) => are(&[plane], there.planes),
+        };
+        let is_joined = |link: &Link| {
+            are(&link.facets, there.facets)
+                && are(&link.bodies, there.bodies)
+                && are(link.pairs.as_flattened(), there.atoms)
+        };
+        self.atoms.iter().all(|bond| are(&[bond.atom], there.atoms) && are(&[bond.facet], there.facets))
+            && self.edges.iter().all(|bond| are(&bond.edges, there.edges))
+            && self.planes.iter().all(|bond| are(&[bond.atom], there.atoms) && are(&[bond.plane], there.planes))
+            && self.links.iter().all(is_joined)
+            && self.adhesives.iter().all(|one| are(&[one.adhesive, one.atom], there.atoms))
+            && are(&self.released, there.atoms)
+            && self.bonds.iter().all(|bonds| are(&[bonds.facet], there.facets) && is_faced(bonds.other))
+    }
+
     /// What went into the compliance of contacts and has not come back, pN·µm, eq. (adhesion.5): a part of the energy of cells that
     /// stick.
     pub fn stored(&self) -> f64 {
