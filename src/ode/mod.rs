@@ -13,7 +13,10 @@ mod eventful;
 mod events;
 mod explicit;
 mod fixed;
+mod history;
+mod lookback;
 mod lu;
+mod marks;
 mod mask;
 mod members;
 mod memory;
@@ -129,6 +132,8 @@ pub enum Reason {
     EndlessEvents,
     /// A value has become so small that round-off is all that is left of it.
     RoundOff,
+    /// A delay is below 0.
+    LooksAhead,
     /// The solver gave up for a reason of its own.
     Solver,
 }
@@ -162,6 +167,7 @@ impl std::fmt::Display for OdeTrouble {
             Reason::TooManySteps => write!(f, " needs more steps than allowed")?,
             Reason::EndlessEvents => write!(f, " has events that follow each other without end")?,
             Reason::RoundOff => write!(f, " has a value of which round-off has left no digit")?,
+            Reason::LooksAhead => write!(f, " looks ahead")?,
             Reason::Solver => write!(f, " could not be solved")?,
         }
         write!(f, " at t = {}", self.time)?;
@@ -189,6 +195,7 @@ impl From<OdeTrouble> for Error {
                 "let atol be above what is left of it; or where the equations keep a sum, let one of its variables follow from \
                  the others in place of having a rate"
             }
+            Reason::LooksAhead => "let the delay be a time of 0 or more, such as max(tau, 0)",
             Reason::Solver => "try the Rosenbrock method",
         };
         Self::Numbers { message: trouble.to_string(), help: help.into(), kept: None }

@@ -4,10 +4,16 @@ use pulp::Scalar;
 
 use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
 use super::control::{self, NEAR, Tolerances};
-use super::scratch::Scratch;
+use super::lookback::Lookback;
+use super::scratch::{LooksBack, Scratch};
 use super::{Method, OdeTrouble, Reason, Work, explicit, rosenbrock};
 use crate::equations::program::code::Code;
 use crate::equations::program::{Program, run};
+
+/// How often a step that looks back at itself is made again before it counts as too long.
+const MOST_SWEEPS: usize = 12;
+/// Two of these are the same when they differ by this share of the tolerance.
+const SAME: f64 = 1e-3;
 
 /// A system while it is solved.
 pub struct Stepper<'a> {
@@ -15,7 +21,7 @@ pub struct Stepper<'a> {
     pub program: &'a Program,
     method: Method,
     tolerances: Tolerances,
-    s: Scratch<1>,
+    s: Scratch<1, Lookback>,
     /// Values of the open quantities.
     pub open: Vec<f64>,
     /// Present time: the end of the last step that was committed.
@@ -35,7 +41,7 @@ pub struct Stepper<'a> {
 /// What a stepper works in, which may be handed from one to the next of a program.
 #[derive(Debug)]
 pub struct StepperBuffers {
-    s: Scratch<1>,
+    s: Scratch<1, Lookback>,
     open: Vec<f64>,
     middle: Vec<f64>,
 }
@@ -43,7 +49,8 @@ pub struct StepperBuffers {
 impl StepperBuffers {
     /// Buffers for a program; `stiff` methods need matrices.
     pub fn new(program: &Program, stiff: bool) -> Self {
-        Self { s: Scratch::new(program, stiff), open: vec![0.0; program.open.len()], middle: Vec::new() }
+        let s = Scratch::with(program, stiff, Lookback::default());
+        Self { s, open: vec![0.0; program.open.len()], middle: Vec::new() }
     }
 }
 
@@ -60,6 +67,8 @@ impl<'a> Stepper<'a> {
     pub fn within(buffers: StepperBuffers, program: &'a Program, method: Method, tolerances: Tolerances) -> Self {
         let StepperBuffers { s, open, middle } = buffers;
         let (work, longest) = (Work::default(), f64::INFINITY);
+        // What was is no scratch: it begins anew.
+        let s = Scratch { past: Lookback::new(program, method), ..s };
         Self {
             program,
             method,
@@ -94,6 +103,7 @@ impl<'a> Stepper<'a> {
         self.open.iter_mut().zip(open).for_each(|(to, from)| *to = from);
         (self.step, self.error) = pace;
         (self.time, self.taken, self.fresh, self.work) = (time, 0.0, true, Work::default());
+        self.s.past.start(time);
     }
 
     /// The next step to try and the error of the last.
@@ -125,6 +135,38 @@ impl<'a> Stepper<'a> {
     /// Forgets what was known of the solution's course, after it jumped.
     pub fn restart(&mut self) {
         (self.step, self.error, self.fresh) = (0.0, 1.0, true);
+        self.s.past.marks.jump(self.time);
+    }
+
+    /// The next time to step to exactly, since what happened a delay ago happened at once; infinite where there is none.
+    pub fn next_mark(&self) -> f64 {
+        self.s.past.marks.next()
+    }
+
+    /// Takes note of what happens at once at the present: it will be met again when it is looked back at.
+    pub fn mark(&mut self, is_new: bool) {
+        self.forget_rates();
+        if is_new {
+            self.s.past.marks.jump(self.time);
+        } else {
+            self.s.past.marks.pass(self.time);
+        }
+    }
+
+    /// The trouble of a delay that looks ahead, if one did since this was asked last.
+    ///
+    /// # Errors
+    /// When one did.
+    pub fn check_delays(&mut self) -> Result<(), OdeTrouble> {
+        match self.s.past.ahead.take() {
+            None => Ok(()),
+            Some((index, delay)) => {
+                let detail = format!("{} with a delay of {delay}", self.program.delays[index].text);
+                let trouble = self.trouble(Reason::LooksAhead);
+                self.s.past.ahead = None;
+                Err(OdeTrouble { detail, variable: None, ..trouble })
+            }
+        }
     }
 
     /// Forgets the rates at the present, after the clock switched something.
@@ -138,6 +180,7 @@ impl<'a> Stepper<'a> {
         for (register, &value) in self.s.file[1..].iter_mut().zip(state) {
             *register = [value];
         }
+        self.s.past.fill(self.program, code, &mut self.s.file);
         run(code, &mut self.s.file);
         results.clear();
         results.extend(code.outputs.iter().map(|&register| self.s.file[register as usize][0]));
@@ -157,6 +200,7 @@ impl<'a> Stepper<'a> {
     /// When no step is short enough, or too many were taken.
     pub fn step(&mut self, limit: f64) -> Result<f64, OdeTrouble> {
         self.load(self.time);
+        self.s.past.begin(self.time, &self.s.state, &self.open);
         self.taken = match self.method {
             Method::Rk45 => self.adaptive_step::<Tsitouras>(limit)?,
             Method::Rk65 => self.adaptive_step::<Verner>(limit)?,
@@ -164,6 +208,7 @@ impl<'a> Stepper<'a> {
             Method::Rk4 { step } | Method::Euler { step } => self.fixed_step(limit, step)?,
         };
         self.work.steps += 1;
+        self.sketch(self.taken);
         if self.work.steps >= u64::from(self.tolerances.max_steps) {
             return Err(self.trouble(Reason::TooManySteps));
         }
@@ -172,16 +217,24 @@ impl<'a> Stepper<'a> {
 
     fn fixed_step(&mut self, limit: f64, longest: f64) -> Result<f64, OdeTrouble> {
         let step = (limit - self.time) / ((limit - self.time) / longest - 1e-9).ceil().max(1.0);
-        if let Method::Euler { .. } = self.method {
-            explicit::euler(self.program, &mut self.s, [self.time], [step]);
-            self.work.rates += 1;
-        } else {
-            explicit::classical(self.program, &mut self.s, [self.time], [step]);
+        let euler = matches!(self.method, Method::Euler { .. });
+        let known = self.attempt(step, |stepper| {
+            if euler {
+                explicit::euler(stepper.program, &mut stepper.s, [stepper.time], [step]);
+                stepper.work.rates += 1;
+                return;
+            }
+            explicit::classical(stepper.program, &mut stepper.s, [stepper.time], [step]);
             // The rates at the end, for the values between.
-            let n = self.s.state.len();
-            self.s.file[1..=n].copy_from_slice(&self.s.proposal);
-            self.s.rates_into(self.program, 6);
-            self.work.rates += 5;
+            let n = stepper.s.state.len();
+            stepper.s.file[1..=n].copy_from_slice(&stepper.s.proposal);
+            stepper.s.rates_into(stepper.program, 6);
+            stepper.work.rates += 5;
+        });
+        self.check_delays()?;
+        if !known {
+            let detail = format!("a delay is shorter than the step of {step}");
+            return Err(OdeTrouble { detail, ..self.trouble(Reason::Solver) });
         }
         let good = self.s.proposal.iter().all(|value| value[0].is_finite());
         if good { Ok(step) } else { Err(self.trouble(Reason::NotFinite)) }
@@ -213,13 +266,16 @@ impl<'a> Stepper<'a> {
                 (false, true) => 0.5 * rest,
                 (false, false) => wanted,
             };
-            M::step(Scalar, self.program, &mut self.s, &[self.time], &[step]);
-            self.work.jacobians += M::JACOBIANS;
-            self.work.rates += M::RATES;
+            let known = self.attempt(step, |stepper| {
+                M::step(Scalar, stepper.program, &mut stepper.s, &[stepper.time], &[step]);
+                stepper.work.jacobians += M::JACOBIANS;
+                stepper.work.rates += M::RATES;
+            });
             let error =
                 control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.program.sizes, &self.tolerances)[0];
+            let error = if known { error } else { f64::INFINITY };
             let factor = M::CONTROLLER.factor(error, self.error);
-            if error <= 1.0 {
+            if error <= 1.0 && self.s.past.ahead.is_none() {
                 self.step = control::after_good(step, (self.step, cut), factor, most);
                 self.error = error;
                 return Ok(step);
@@ -228,9 +284,52 @@ impl<'a> Stepper<'a> {
             self.step = control::after_refused(step, error, factor);
             most = 1.0;
             if self.step <= shortest {
+                self.check_delays()?;
                 return Err(self.trouble(if error.is_finite() { Reason::StepUnderflow } else { Reason::NotFinite }));
             }
         }
+    }
+
+    /// Makes a step. Where it looks back at itself it is made again, with what it gave, until it gives the same: returns whether
+    /// it came to that.
+    fn attempt(&mut self, step: f64, make: impl Fn(&mut Self)) -> bool {
+        self.s.past.attempt(step);
+        make(self);
+        if !self.s.past.is_met() {
+            return true;
+        }
+        let mut before = Vec::new();
+        for _ in 0..MOST_SWEEPS {
+            before.clone_from(&self.s.proposal);
+            self.sketch(step);
+            make(self);
+            let mut moved = std::mem::take(&mut self.s.error);
+            let estimate = moved.clone();
+            moved.iter_mut().zip(&before).zip(&self.s.proposal).for_each(|((to, a), b)| *to = [a[0] - b[0]]);
+            let far = control::norm(&moved, &self.s.state, &before, &self.program.sizes, &self.tolerances)[0];
+            self.s.error = estimate;
+            if far <= SAME {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Takes down the values within a step of this length, so that it can be looked back at.
+    fn sketch(&mut self, step: f64) {
+        if self.s.past.is_empty() {
+            return;
+        }
+        self.middle.clear();
+        let (taken, mut state) = (self.taken, vec![0.0; self.s.state.len()]);
+        self.taken = step;
+        let mut piece = self.s.past.blank(self.time, step);
+        for node in 0..piece.nodes() {
+            self.between(piece.share(node), &mut state);
+            piece.set(node, &state);
+        }
+        self.taken = taken;
+        self.s.past.present = Some(piece);
     }
 
     /// The state at a share of the step that is not yet committed.
@@ -269,6 +368,7 @@ impl<'a> Stepper<'a> {
 
     /// Makes the end of the step the present.
     pub fn commit(&mut self, time: f64) {
+        self.s.past.keep(time);
         self.time = time;
         self.s.state.copy_from_slice(&self.s.proposal);
         let last = match self.method {
@@ -284,6 +384,7 @@ impl<'a> Stepper<'a> {
 
     /// Makes a state within the step the present.
     pub fn commit_between(&mut self, time: f64, state: &[f64]) {
+        self.s.past.keep(time);
         self.time = time;
         self.s.state.iter_mut().zip(state).for_each(|(to, &from)| *to = [from]);
         self.fresh = true;

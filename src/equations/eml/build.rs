@@ -3,8 +3,9 @@
 use super::circles::circles;
 use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
+use super::document::Level;
 use super::xml::{Element, Text};
-use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
+use crate::equations::expression::{self, Node, NodeKind, Scope, Unit, UnitScope, parse};
 use crate::equations::tree::{Expr, Quantity, QuantityId, Role, System};
 use crate::error::Location;
 use std::collections::HashMap;
@@ -21,6 +22,10 @@ pub(super) enum Use {
     Start,
     /// What keeps one value: parameters.
     Fixed,
+    /// Everything but what was: for what is worked out outside of a course.
+    Now,
+    /// What is known of the time before the start: parameters and the time.
+    Before,
 }
 
 /// The second reader.
@@ -29,19 +34,24 @@ pub(super) struct Builder<'a, 'd> {
     pub(super) known: Declarations<'a>,
     start: Scope,
     fixed: Scope,
+    pub(super) now: Scope,
+    before: Scope,
 }
 
 impl<'a, 'd> Builder<'a, 'd> {
     pub(super) fn new(context: &'d mut Context, known: Declarations<'a>) -> Self {
         let no_time = "only rates, definitions, events and transfers can use the time".to_owned();
-        let start = Scope { no_time: no_time.clone(), ..known.scope.clone() };
-        let mut fixed = Scope { no_time, ..known.scope.clone() };
+        let no_delay = "only rates, definitions and events can look back".to_owned();
+        let now = Scope { no_delay, ..known.scope.clone() };
+        let start = Scope { no_time: no_time.clone(), ..now.clone() };
+        let mut fixed = Scope { no_time, ..now.clone() };
         let is_parameter = |id: &str| known.sort(id) == Some("parameter");
         fixed.quantities.retain(|id, _| is_parameter(id));
         for id in known.scope.quantities.keys().filter(|id| !is_parameter(id)) {
             fixed.absent.insert(id.clone(), "this must keep one value: use numbers and parameters".to_owned());
         }
-        Self { context, known, start, fixed }
+        let before = Scope { no_time: String::new(), ..fixed.clone() };
+        Self { context, known, start, fixed, now, before }
     }
 
     fn scope(&self, allowed: Use) -> &Scope {
@@ -49,6 +59,8 @@ impl<'a, 'd> Builder<'a, 'd> {
             Use::All => &self.known.scope,
             Use::Start => &self.start,
             Use::Fixed => &self.fixed,
+            Use::Now => &self.now,
+            Use::Before => &self.before,
         }
     }
 
@@ -174,6 +186,23 @@ impl<'a, 'd> Builder<'a, 'd> {
         (quantities, locations)
     }
 
+    /// What quantities were before the start, where the document says so.
+    pub(super) fn history(&mut self, root: &Element) -> Vec<(QuantityId, Expr)> {
+        let elements = root.children.iter().filter(|child| child.attribute("history").is_some());
+        let mut found = Vec::new();
+        for element in elements {
+            let id = element.word("id");
+            if self.known.level == Level::Membrane {
+                let help = "remove it: membranes cannot look back";
+                self.context.fault(element.location("history"), "`history` has no meaning here", "not used", help);
+            }
+            if let (Some(expr), Some(number)) = (self.value(element, "history", Use::Before, &id), self.find(&id)) {
+                found.push((number, expr));
+            }
+        }
+        found
+    }
+
     fn value(&mut self, element: &Element, attribute: &str, allowed: Use, id: &str) -> Option<Expr> {
         let own = self.unit_of(id);
         let what = format!("`{attribute}` of `{id}`");
@@ -281,13 +310,37 @@ impl<'a, 'd> Builder<'a, 'd> {
                 let message = format!("more than {LONGEST_CHAIN} quantities in a row use each other to be computed");
                 self.context.fault(at, &message, "too far down", "let expressions do more at once");
             } else if self.context.is_clean() {
-                self.check_finite(system);
+                let values = super::start::values(system);
+                self.check_finite(&values);
+                self.check_delays(system, &values);
             }
         }
     }
 
-    fn check_finite(&mut self, system: &System) {
-        let values = super::start::values(system);
+    /// Tells delays that look ahead whatever happens: those of parameters.
+    fn check_delays(&mut self, system: &System, values: &[f64]) {
+        let is_fixed = |delay: &Expr| {
+            let mut fixed = !delay.uses_time();
+            delay.each_quantity(&mut |q| fixed &= system.quantities[q as usize].role == Role::Parameter);
+            fixed
+        };
+        for (quantity, declared) in system.quantities.iter().zip(&self.known.quantities) {
+            let (Role::Variable { rate: own } | Role::Defined { rule: own }) = &quantity.role else { continue };
+            own.each_delay(&mut |past, delay| {
+                let value = delay.evaluate(0.0, &|q| values[q as usize]);
+                if !is_fixed(delay) || value >= 0.0 {
+                    return;
+                }
+                let whole = Expr::Delay(Box::new(past.clone()), Box::new(delay.clone()));
+                let text = expression::write(&whole, &|q| system.quantities[q as usize].id.clone());
+                let message = format!("`{}` uses {text}, whose delay is {value}; 0 or more was expected", quantity.id);
+                let help = "what will be is not known: let the delay be a time of 0 or more";
+                self.context.fault(declared.element.location("id"), &message, "looks ahead", help);
+            });
+        }
+    }
+
+    fn check_finite(&mut self, values: &[f64]) {
         for (number, value) in values.iter().enumerate() {
             let Some(declared) = self.known.quantities.get(number) else { continue };
             let attribute = match declared.element.kind.name {

@@ -93,6 +93,10 @@ impl<'a> Plan<'_, 'a> {
             _ => None,
         });
         let (slope, constant) = line(&law, solved.amount)?;
+        // The equilibrium holds from the start on.
+        for amount in [solved.amount, other.amount] {
+            self.history.push((amount, self.quantities[amount as usize].initial.clone()));
+        }
         let drawn = self.steady_value(&slope, true, DEPTH) * if from_product { -1.0 } else { 1.0 };
         if drawn.is_nan() || drawn <= 0.0 {
             return None;

@@ -29,6 +29,8 @@ pub enum Expr {
         /// The value when no condition holds.
         otherwise: Box<Expr>,
     },
+    /// What the first was a time ago that the second tells: x(t − τ). Not below 0; at 0 it is the value now.
+    Delay(Box<Expr>, Box<Expr>),
 }
 
 /// What a quantity is.
@@ -97,6 +99,9 @@ pub struct System {
     pub quantities: Vec<Quantity>,
     /// All events.
     pub events: Vec<Event>,
+    /// What some quantities were before the start: expressions of parameters and the time. All others had their values of the
+    /// start, and defined ones followed from these by their rules.
+    pub history: Vec<(QuantityId, Expr)>,
 }
 
 impl System {
@@ -109,6 +114,27 @@ impl System {
     pub fn variables(&self) -> Vec<QuantityId> {
         let is_variable = |number: &QuantityId| matches!(self.quantities[*number as usize].role, Role::Variable { .. });
         (0..self.quantities.len() as QuantityId).filter(is_variable).collect()
+    }
+
+    /// What a quantity was before the start, where that does not follow from the start.
+    pub fn before_start(&self, quantity: QuantityId) -> Option<&Expr> {
+        self.history.iter().find(|(of, _)| *of == quantity).map(|(_, before)| before)
+    }
+
+    /// Whether anything looks back: the equations are delay differential equations.
+    pub fn has_delays(&self) -> bool {
+        let of_quantity = |quantity: &Quantity| match &quantity.role {
+            Role::Variable { rate: own } | Role::Defined { rule: own } => {
+                own.has_delay() || quantity.initial.has_delay()
+            }
+            Role::Parameter | Role::Input => quantity.initial.has_delay(),
+        };
+        let of_event = |event: &Event| {
+            let formulas = [Some(&event.trigger), event.delay.as_ref(), event.priority.as_ref()];
+            let values = event.assignments.iter().map(|(_, value)| value);
+            formulas.into_iter().flatten().chain(values).any(Expr::has_delay)
+        };
+        self.quantities.iter().any(of_quantity) || self.events.iter().any(of_event)
     }
 
     /// Numbers of the defined quantities in an order in which each uses only those before it.
@@ -166,12 +192,43 @@ impl Expr {
     /// Whether it uses the time itself.
     pub fn uses_time(&self) -> bool {
         match self {
-            Self::Time => true,
+            Self::Time | Self::Delay(..) => true,
             Self::Number(_) | Self::Quantity(_) => false,
             Self::Unary(_, a) => a.uses_time(),
             Self::Binary(_, a, b) => a.uses_time() || b.uses_time(),
             Self::Piecewise { branches, otherwise } => {
                 otherwise.uses_time() || branches.iter().any(|(a, b)| a.uses_time() || b.uses_time())
+            }
+        }
+    }
+
+    /// Whether it looks back.
+    pub fn has_delay(&self) -> bool {
+        let mut found = false;
+        self.each_delay(&mut |_, _| found = true);
+        found
+    }
+
+    /// Visits what is looked back at and how far, inner ones before those around them.
+    pub fn each_delay<'e>(&'e self, visit: &mut impl FnMut(&'e Self, &'e Self)) {
+        match self {
+            Self::Number(_) | Self::Time | Self::Quantity(_) => {}
+            Self::Unary(_, a) => a.each_delay(visit),
+            Self::Binary(_, a, b) => {
+                a.each_delay(visit);
+                b.each_delay(visit);
+            }
+            Self::Piecewise { branches, otherwise } => {
+                for (condition, value) in branches {
+                    condition.each_delay(visit);
+                    value.each_delay(visit);
+                }
+                otherwise.each_delay(visit);
+            }
+            Self::Delay(value, delay) => {
+                value.each_delay(visit);
+                delay.each_delay(visit);
+                visit(value, delay);
             }
         }
     }
@@ -182,7 +239,7 @@ impl Expr {
             Self::Number(_) | Self::Time => {}
             Self::Quantity(number) => visit(*number),
             Self::Unary(_, a) => a.each_quantity(visit),
-            Self::Binary(_, a, b) => {
+            Self::Binary(_, a, b) | Self::Delay(a, b) => {
                 a.each_quantity(visit);
                 b.each_quantity(visit);
             }
@@ -209,21 +266,29 @@ impl Expr {
                 branches: branches.iter().map(|(condition, value)| (of(condition), of(value))).collect(),
                 otherwise: boxed(otherwise),
             },
+            Self::Delay(value, delay) => Self::Delay(boxed(value), boxed(delay)),
         }
     }
 
-    /// The value, computed directly: the oracle of the compiled programs. `value` gives the value of a quantity.
+    /// The value, computed directly: the oracle of the compiled programs. `value` gives the value of a quantity, now and at all
+    /// times before.
     pub fn evaluate(&self, time: f64, value: &impl Fn(QuantityId) -> f64) -> f64 {
+        self.evaluate_at(time, &|number, _| value(number))
+    }
+
+    /// As [`Self::evaluate`], with quantities that were otherwise at other times.
+    pub fn evaluate_at(&self, time: f64, value: &impl Fn(QuantityId, f64) -> f64) -> f64 {
         match self {
             Self::Number(number) => *number,
             Self::Time => time,
-            Self::Quantity(number) => value(*number),
-            Self::Unary(function, a) => function.apply(a.evaluate(time, value)),
-            Self::Binary(function, a, b) => function.apply(a.evaluate(time, value), b.evaluate(time, value)),
+            Self::Quantity(number) => value(*number, time),
+            Self::Unary(function, a) => function.apply(a.evaluate_at(time, value)),
+            Self::Binary(function, a, b) => function.apply(a.evaluate_at(time, value), b.evaluate_at(time, value)),
             Self::Piecewise { branches, otherwise } => {
-                let chosen = branches.iter().find(|(condition, _)| condition.evaluate(time, value) != 0.0);
-                chosen.map_or(otherwise.as_ref(), |(_, value)| value).evaluate(time, value)
+                let chosen = branches.iter().find(|(condition, _)| condition.evaluate_at(time, value) != 0.0);
+                chosen.map_or(otherwise.as_ref(), |(_, value)| value).evaluate_at(time, value)
             }
+            Self::Delay(past, delay) => past.evaluate_at(time - delay.evaluate_at(time, value), value),
         }
     }
 }
