@@ -18,7 +18,8 @@ pub struct Lookback {
     history: History,
     /// When something happened at once.
     pub marks: Marks,
-    frame: Arc<Frame>,
+    /// Nothing where the system does not look back.
+    frame: Option<Arc<Frame>>,
     /// How far all delays look back; infinite where one varies.
     reach: f64,
     /// When the system started.
@@ -54,7 +55,7 @@ impl Lookback {
         let reach = program.delays.iter().map(|delayed| delayed.reach).fold(0.0, f64::max);
         Self {
             marks: Marks::new(lags(program), order),
-            frame: Arc::new(Frame::new(looked_at(program), degree)),
+            frame: Some(Arc::new(Frame::new(looked_at(program), degree))),
             reach,
             before: vec![None; program.delays.len()],
             ..Self::default()
@@ -63,7 +64,7 @@ impl Lookback {
 
     /// Whether the system does not look back.
     pub fn is_empty(&self) -> bool {
-        self.before.is_empty()
+        self.frame.is_none()
     }
 
     /// Forgets all and begins at a time.
@@ -95,9 +96,9 @@ impl Lookback {
         self.is_met
     }
 
-    /// A piece for the values within a step.
-    pub fn blank(&self, begin: f64, length: f64) -> Piece {
-        Piece::blank(&self.frame, begin, length, &self.now.2)
+    /// A piece for the values within a step; none where the system does not look back.
+    pub fn blank(&self, begin: f64, length: f64) -> Option<Piece> {
+        self.frame.as_ref().map(|frame| Piece::blank(frame, begin, length, &self.now.2))
     }
 
     /// Keeps the step as it was made last, up to a time at which it is left.

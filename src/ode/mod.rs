@@ -25,6 +25,7 @@ mod multistep;
 mod narrow;
 mod noise;
 mod population;
+mod retrace;
 mod rosenbrock;
 mod scheme;
 pub(crate) mod scratch;

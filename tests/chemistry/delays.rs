@@ -1,7 +1,8 @@
 //! Delay differential equations: the method of steps against exact solutions and other methods.
 
-use pseudopod::equations::eml;
+use crate::sbml_models::{SYMBOLS, apply, math, rule, rules, time};
 use pseudopod::equations::tree::System;
+use pseudopod::equations::{self, eml};
 use pseudopod::error::Source;
 use pseudopod::ode::{Method, Scheme, SolveOptions, solve};
 use std::sync::Arc;
@@ -180,4 +181,91 @@ fn what_looks_ahead_is_told() {
     assert!(text.contains("looks ahead") && text.contains("delay(x, 1 - time)"), "{text}");
     let trouble = solve(&system, 0.0, 1.0, &[], &SolveOptions { scheme: Scheme::Bdf, ..SolveOptions::default() });
     assert!(trouble.unwrap_err().to_string().contains("takes no delays"));
+}
+
+/// A chain x₁' = f(x_last(t − τ)) − µ x₁, x₂' = x₁ − µ x₂ … by the trapezoidal rule on grids that divide the delay, so that what is looked
+/// back at lies on them. The value of the last at the end, to which three grids come by Richardson's extrapolation with an error of
+/// the sixth order.
+fn on_grids(until: f64, tau: f64, start: &[f64], decay: f64, made: &dyn Fn(f64) -> f64) -> f64 {
+    let on_grid = |count: usize| {
+        let h = tau / count as f64;
+        let mut rows = vec![start.to_vec()];
+        let past = |rows: &[Vec<f64>], at: usize| rows[at.saturating_sub(count)][start.len() - 1];
+        for at in 0..(until / h).round() as usize {
+            let (before, mut now) = (rows[at].clone(), Vec::new());
+            let mut gain = made(past(&rows, at)) + made(past(&rows, at + 1));
+            for (variable, old) in before.iter().enumerate() {
+                now.push((old * (1.0 - 0.5 * h * decay) + 0.5 * h * gain) / (1.0 + 0.5 * h * decay));
+                gain = old + now[variable];
+            }
+            rows.push(now);
+        }
+        rows[rows.len() - 1][start.len() - 1]
+    };
+    let [coarse, middle, fine] = [100, 200, 400].map(on_grid);
+    let [first, second] = [(4.0 * middle - coarse) / 3.0, (4.0 * fine - middle) / 3.0];
+    (16.0 * second - first) / 15.0
+}
+
+#[test]
+fn hes1_oscillates_as_the_trapezoidal_rule_says() {
+    let text = std::fs::read_to_string("eml/hes1.eml").expect("a document that ships");
+    let system = eml::read(Arc::new(Source { name: "hes1.eml".into(), text })).expect("no fault").system;
+    // 40 delays: some six periods.
+    let made = |protein: f64| 1.0 / (1.0 + (protein / 100.0_f64).powi(5));
+    let expected = on_grids(740.0, 18.5, &[3.0, 100.0], 0.03, &made);
+    for method in ADAPTIVE {
+        let found = values(&system, "P", &[740.0], &options(method, 1e-9))[0];
+        assert!((found / expected - 1.0).abs() < 1e-7, "{method:?}: {found}, not {expected}");
+    }
+}
+
+#[test]
+fn mackey_and_glass_agree_with_the_trapezoidal_rule() {
+    let parts = r#"<variable id="x" initial="1.2" rate="0.2*delay(x, 17)/(1 + delay(x, 17)^10) - 0.1*x"/>"#;
+    let made = |past: f64| 0.2 * past / (1.0 + past.powi(10));
+    let expected = on_grids(17.0 * 12.0, 17.0, &[1.2], 0.1, &made);
+    for method in ADAPTIVE {
+        let found = values(&system(parts), "x", &[17.0 * 12.0], &options(method, 1e-9))[0];
+        // Errors grow e-fold in some 150 units of time.
+        assert!((found / expected - 1.0).abs() < 1e-6, "{method:?}: {found}, not {expected}");
+    }
+}
+
+/// `delay` of something by 1, in MathML.
+fn delayed(what: &str) -> String {
+    format!(
+        r#"<apply><csymbol encoding="text" definitionURL="{SYMBOLS}/delay"> d </csymbol>{what}<cn> 1 </cn></apply>"#
+    )
+}
+
+/// SBML: before the start rates are 0, starts by formulas of the time hold, and what is defined follows.
+#[test]
+fn models_have_a_past_and_keep_it_when_they_are_written_as_eml() {
+    let rate = format!(
+        r#"<apply><csymbol encoding="text" definitionURL="{SYMBOLS}/rateOf"> r </csymbol><ci> p </ci></apply>"#
+    );
+    let start = math(&apply("times", &format!("<cn> 3 </cn>{}", time())));
+    let all = [
+        rule("rateRule", "p", "<cn> 4 </cn>"),
+        rule("rateRule", "q", "<cn> 0 </cn>"),
+        rule("assignmentRule", "R", &delayed(&rate)),
+        rule("assignmentRule", "Q", &delayed("<ci> q </ci>")),
+    ];
+    let parameter = |id: &str| format!(r#"<parameter id="{id}" value="0" constant="false"/>"#);
+    let text = format!(
+        r#"<sbml xmlns="http://www.sbml.org/sbml/level3/version2/core" level="3" version="2"><model>
+        <listOfParameters>{}</listOfParameters>
+        <listOfInitialAssignments><initialAssignment symbol="q">{start}</initialAssignment></listOfInitialAssignments>
+        {}</model></sbml>"#,
+        ["p", "q", "R", "Q"].map(parameter).concat(),
+        rules(&all)
+    );
+    let model = equations::read(Arc::new(Source { name: "model.xml".into(), text })).expect("a model").document;
+    let text = eml::write(&model, "").text;
+    let written = eml::read(Arc::new(Source { name: "written.eml".into(), text: text.clone() })).expect(&text).system;
+    for system in [&model.system, &written] {
+        let at = |id: &str, time: f64| values(system, id, &[time], &options(Method::Rosenbrock, 1e-9))[0];
+        assert_eq!([at("R", 0.5), at("Q", 0.5), at("R", 1.5), at("Q", 1.5)], [0.0, -1.5, 4.0, 0.0], "{text}");
+    }
 }

@@ -3,9 +3,8 @@
 use super::circles::circles;
 use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
-use super::document::Level;
 use super::xml::{Element, Text};
-use crate::equations::expression::{self, Node, NodeKind, Scope, Unit, UnitScope, parse};
+use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
 use crate::equations::tree::{Expr, Quantity, QuantityId, Role, System};
 use crate::error::Location;
 use std::collections::HashMap;
@@ -186,24 +185,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         (quantities, locations)
     }
 
-    /// What quantities were before the start, where the document says so.
-    pub(super) fn history(&mut self, root: &Element) -> Vec<(QuantityId, Expr)> {
-        let elements = root.children.iter().filter(|child| child.attribute("history").is_some());
-        let mut found = Vec::new();
-        for element in elements {
-            let id = element.word("id");
-            if self.known.level == Level::Membrane {
-                let help = "remove it: membranes cannot look back";
-                self.context.fault(element.location("history"), "`history` has no meaning here", "not used", help);
-            }
-            if let (Some(expr), Some(number)) = (self.value(element, "history", Use::Before, &id), self.find(&id)) {
-                found.push((number, expr));
-            }
-        }
-        found
-    }
-
-    fn value(&mut self, element: &Element, attribute: &str, allowed: Use, id: &str) -> Option<Expr> {
+    pub(super) fn value(&mut self, element: &Element, attribute: &str, allowed: Use, id: &str) -> Option<Expr> {
         let own = self.unit_of(id);
         let what = format!("`{attribute}` of `{id}`");
         self.attribute(element, attribute, allowed, own.as_ref().map(|unit| (unit, what.as_str())))
@@ -314,29 +296,6 @@ impl<'a, 'd> Builder<'a, 'd> {
                 self.check_finite(&values);
                 self.check_delays(system, &values);
             }
-        }
-    }
-
-    /// Tells delays that look ahead whatever happens: those of parameters.
-    fn check_delays(&mut self, system: &System, values: &[f64]) {
-        let is_fixed = |delay: &Expr| {
-            let mut fixed = !delay.uses_time();
-            delay.each_quantity(&mut |q| fixed &= system.quantities[q as usize].role == Role::Parameter);
-            fixed
-        };
-        for (quantity, declared) in system.quantities.iter().zip(&self.known.quantities) {
-            let (Role::Variable { rate: own } | Role::Defined { rule: own }) = &quantity.role else { continue };
-            own.each_delay(&mut |past, delay| {
-                let value = delay.evaluate(0.0, &|q| values[q as usize]);
-                if !is_fixed(delay) || value >= 0.0 {
-                    return;
-                }
-                let whole = Expr::Delay(Box::new(past.clone()), Box::new(delay.clone()));
-                let text = expression::write(&whole, &|q| system.quantities[q as usize].id.clone());
-                let message = format!("`{}` uses {text}, whose delay is {value}; 0 or more was expected", quantity.id);
-                let help = "what will be is not known: let the delay be a time of 0 or more";
-                self.context.fault(declared.element.location("id"), &message, "looks ahead", help);
-            });
         }
     }
 

@@ -9,6 +9,7 @@ mod build;
 mod circles;
 mod context;
 mod declare;
+mod delays;
 mod document;
 mod events;
 mod fields;

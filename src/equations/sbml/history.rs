@@ -1,4 +1,4 @@
-//! What variables were before the start, where formulas of the time say how they start.
+//! What quantities were before the start, where formulas of the time say how they start.
 
 use crate::equations::tree::{Role, System};
 
@@ -9,9 +9,8 @@ pub fn of_starts(system: &mut System) {
         let found = (0..varies.len()).filter(|&number| {
             let (quantity, mut depends) = (&system.quantities[number], false);
             let formula = match &quantity.role {
-                Role::Parameter | Role::Input => return false,
-                Role::Variable { .. } => &quantity.initial,
                 Role::Defined { rule } => rule,
+                _ => &quantity.initial,
             };
             formula.each_quantity(&mut |other| depends |= varies[other as usize]);
             !varies[number] && (depends || formula.uses_time())
@@ -24,7 +23,7 @@ pub fn of_starts(system: &mut System) {
     }
     for number in (0..varies.len()).filter(|&number| varies[number]) {
         let quantity = &system.quantities[number];
-        if matches!(quantity.role, Role::Variable { .. }) && system.before_start(number as u32).is_none() {
+        if !matches!(quantity.role, Role::Defined { .. }) && system.before_start(number as u32).is_none() {
             system.history.push((number as u32, quantity.initial.clone()));
         }
     }
