@@ -31,7 +31,7 @@ impl Graph {
         derivative
     }
 
-    /// The derivative of x(t − τ): x' there, times that of t − τ.
+    /// The derivative of x(t − τ), eq. (ode.8): x' there, times that of t − τ.
     fn derivative_of_delayed(&mut self, own: u32, slot: u32) -> NodeId {
         let Some(delay) = self.delayed_at(own).map(|delayed| delayed.delay) else { return self.constant(0.0) };
         let clock = self.constant(f64::from(u8::from(slot == 0)));
