@@ -5,6 +5,7 @@
 //! `J` is `J.k`. What is read, and how it is meant, is told in the chapter on SBML of the book.
 
 mod algebraic;
+mod catalysis;
 mod checks;
 mod document;
 mod events;
