@@ -211,7 +211,10 @@ impl<'c, 'a> Course<'c, 'a> {
         let program = self.stepper.program;
         self.stepper.evaluate(&program.observe, point, state, &mut values);
         self.written += 1;
-        (self.each)(point, &values);
+        // What looks ahead has no value; that is told at once.
+        if !self.stepper.looks_ahead() {
+            (self.each)(point, &values);
+        }
     }
 }
 

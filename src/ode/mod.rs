@@ -133,10 +133,10 @@ pub enum Reason {
     EndlessEvents,
     /// A value has become so small that round-off is all that is left of it.
     RoundOff,
-    /// A delay is below 0.
-    LooksAhead,
     /// The solver gave up for a reason of its own.
     Solver,
+    /// A delay is below 0.
+    LooksAhead,
 }
 
 /// What went wrong, in which cell, when and in which variable.

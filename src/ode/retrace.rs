@@ -24,6 +24,11 @@ impl Stepper<'_> {
         }
     }
 
+    /// Whether a delay was below 0.
+    pub fn looks_ahead(&self) -> bool {
+        self.s.past.ahead.is_some()
+    }
+
     /// The trouble of a delay that looks ahead, if one did since this was asked last.
     ///
     /// # Errors
