@@ -130,25 +130,19 @@ impl Lookback {
             });
             let time = file[0][0];
             let (earlier, shift_then) = (time - delay, shift.zip(delayed.constant).map(|(a, b)| a + b));
-            let (mut value, mut rate) = (f64::NAN, 0.0);
+            let (value, rate);
             if delay.is_nan() || delay < 0.0 {
                 self.ahead.get_or_insert((index, delay));
+                (value, rate) = (f64::NAN, 0.0);
             } else if earlier >= time {
                 self.set(program, (&delayed.value.delays, false), file, (level, shift));
                 run(&delayed.value, file);
-                value = file[delayed.value.outputs[0] as usize][0];
+                (value, rate) = (file[delayed.value.outputs[0] as usize][0], 0.0);
             } else {
+                let step = self.step.filter(|_| rates);
                 let mut at = |earlier: f64| self.value(program, index, (earlier, time), (level, shift_then));
                 value = at(earlier);
-                if let (true, Some(step)) = (rates, self.step) {
-                    rate = slope(0.25 * step, |by| {
-                        if by == 0.0 {
-                            value
-                        } else {
-                            self.value(program, index, (earlier + by, time), (level, shift_then))
-                        }
-                    });
-                }
+                rate = step.map_or(0.0, |step| slope(0.25 * step, value, |by| at(earlier + by)));
             }
             file[delayed.register] = [value];
             if rates {
@@ -236,12 +230,11 @@ impl LooksBack<1> for Lookback {
     }
 }
 
-/// The slope at 0 of what has values at 0 and at four points a distance apart, of fourth order.
-fn slope(apart: f64, mut value: impl FnMut(f64) -> f64) -> f64 {
-    const WEIGHTS: [f64; 5] = [-25.0, 48.0, -36.0, 16.0, -3.0];
-    let first = value(0.0);
-    let sum: f64 = (1..5).map(|point| WEIGHTS[point] * (value(point as f64 * apart) - first)).sum();
-    sum / (12.0 * apart)
+/// The slope at 0 of what is `first` there, by its values at four points a distance apart, of fourth order.
+fn slope(apart: f64, first: f64, mut value: impl FnMut(f64) -> f64) -> f64 {
+    const WEIGHTS: [f64; 4] = [48.0, -36.0, 16.0, -3.0];
+    let gain = |(point, weight): (usize, &f64)| weight * (value((point + 1) as f64 * apart) - first);
+    WEIGHTS.iter().enumerate().map(gain).sum::<f64>() / (12.0 * apart)
 }
 
 /// The constant delays by which rates and triggers look back.
