@@ -108,6 +108,7 @@ fn moved(expr: &Expr, by: QuantityId) -> Expr {
             branches: branches.iter().map(|(condition, value)| (moved(condition, by), moved(value, by))).collect(),
             otherwise: moved_box(otherwise),
         },
+        Expr::Delay(value, delay) => Expr::Delay(moved_box(value), moved_box(delay)),
     }
 }
 

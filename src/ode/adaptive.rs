@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 use super::control::{Controller, EXPLICIT, SIXTH, STIFF};
-use super::scratch::Scratch;
+use super::scratch::{LooksBack, Scratch};
 use super::{explicit, rosenbrock};
 use crate::equations::program::{Lanes, Program};
 
@@ -19,7 +19,13 @@ pub trait Adaptive {
     const LAST: Option<usize>;
 
     /// One step from (time, state). Leaves proposal, error and stages; see the methods themselves.
-    fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>);
+    fn step<S: Simd, const L: usize, P: LooksBack<L>>(
+        simd: S,
+        program: &Program,
+        s: &mut Scratch<L, P>,
+        time: &Lanes<L>,
+        step: &Lanes<L>,
+    );
 }
 
 /// The explicit pair of order 5(4).
@@ -32,7 +38,13 @@ impl Adaptive for Tsitouras {
     const LAST: Option<usize> = Some(6);
 
     #[inline(always)]
-    fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
+    fn step<S: Simd, const L: usize, P: LooksBack<L>>(
+        simd: S,
+        program: &Program,
+        s: &mut Scratch<L, P>,
+        time: &Lanes<L>,
+        step: &Lanes<L>,
+    ) {
         explicit::tsitouras(simd, program, s, time, step);
     }
 }
@@ -47,7 +59,13 @@ impl Adaptive for Verner {
     const LAST: Option<usize> = Some(8);
 
     #[inline(always)]
-    fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
+    fn step<S: Simd, const L: usize, P: LooksBack<L>>(
+        simd: S,
+        program: &Program,
+        s: &mut Scratch<L, P>,
+        time: &Lanes<L>,
+        step: &Lanes<L>,
+    ) {
         explicit::verner(simd, program, s, time, step);
     }
 }
@@ -62,7 +80,13 @@ impl Adaptive for Rodas {
     const LAST: Option<usize> = None;
 
     #[inline(always)]
-    fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
+    fn step<S: Simd, const L: usize, P: LooksBack<L>>(
+        simd: S,
+        program: &Program,
+        s: &mut Scratch<L, P>,
+        time: &Lanes<L>,
+        step: &Lanes<L>,
+    ) {
         rosenbrock::step(simd, program, s, time, step);
     }
 }

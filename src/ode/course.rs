@@ -58,7 +58,8 @@ impl<'c, 'a> Course<'c, 'a> {
         self.arrive()?;
         while self.stepper.time < self.until {
             let stop = self.next_stop();
-            let mut limit = self.until.min(self.events.next()).min(stop);
+            let mark = self.stepper.next_mark();
+            let mut limit = self.until.min(self.events.next()).min(stop).min(mark);
             if let Some(&point) = self.points.get(self.written).filter(|_| fixed) {
                 limit = limit.min(point);
             }
@@ -72,7 +73,10 @@ impl<'c, 'a> Course<'c, 'a> {
             }
             self.stepper.time = limit;
             if limit == stop {
-                self.stepper.forget_rates();
+                self.stepper.mark(true);
+            }
+            if limit == mark {
+                self.stepper.mark(false);
             }
             self.arrive()?;
         }
@@ -85,7 +89,7 @@ impl<'c, 'a> Course<'c, 'a> {
         self.events.update(self.stepper);
         self.events.execute(self.stepper)?;
         self.write_present();
-        Ok(())
+        self.stepper.check_delays()
     }
 
     /// One step, cut short where a trigger turns true. Returns whether one did.
@@ -115,6 +119,7 @@ impl<'c, 'a> Course<'c, 'a> {
         if reached < end {
             self.write_present();
         }
+        self.stepper.check_delays()?;
         Ok(false)
     }
 
@@ -206,7 +211,10 @@ impl<'c, 'a> Course<'c, 'a> {
         let program = self.stepper.program;
         self.stepper.evaluate(&program.observe, point, state, &mut values);
         self.written += 1;
-        (self.each)(point, &values);
+        // What looks ahead has no value; that is told at once.
+        if !self.stepper.looks_ahead() {
+            (self.each)(point, &values);
+        }
     }
 }
 

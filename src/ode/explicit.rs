@@ -2,7 +2,7 @@
 
 use pulp::{Scalar, Simd};
 
-use super::scratch::Scratch;
+use super::scratch::{LooksBack, Scratch};
 use super::tableau::tsitouras::D;
 use super::tableau::{tsitouras as five, verner as six};
 use super::wide::{combine, combine_from};
@@ -10,10 +10,10 @@ use crate::equations::program::{Lanes, Program};
 
 /// The rates at the state that the first `W` stages give, at a share of the step, as the next stage.
 #[inline(always)]
-fn stage<S: Simd, const W: usize, const L: usize>(
+fn stage<S: Simd, const W: usize, const L: usize, P: LooksBack<L>>(
     simd: S,
     program: &Program,
-    s: &mut Scratch<L>,
+    s: &mut Scratch<L, P>,
     (weights, share): (&[f64; W], f64),
     time: &Lanes<L>,
     step: &Lanes<L>,
@@ -32,10 +32,10 @@ fn stage<S: Simd, const W: usize, const L: usize>(
 /// One step of the pair from (time, state), whose rates are stage 0. Leaves proposal, error, and the rates at the
 /// proposal as the last stage.
 #[inline(always)]
-pub fn tsitouras<S: Simd, const L: usize>(
+pub fn tsitouras<S: Simd, const L: usize, P: LooksBack<L>>(
     simd: S,
     program: &Program,
-    s: &mut Scratch<L>,
+    s: &mut Scratch<L, P>,
     time: &Lanes<L>,
     step: &Lanes<L>,
 ) {
@@ -54,10 +54,10 @@ pub fn tsitouras<S: Simd, const L: usize>(
 
 /// As [`tsitouras`], for the pair of order 6(5).
 #[inline(always)]
-pub fn verner<S: Simd, const L: usize>(
+pub fn verner<S: Simd, const L: usize, P: LooksBack<L>>(
     simd: S,
     program: &Program,
-    s: &mut Scratch<L>,
+    s: &mut Scratch<L, P>,
     time: &Lanes<L>,
     step: &Lanes<L>,
 ) {
@@ -80,7 +80,13 @@ pub fn verner<S: Simd, const L: usize>(
 const MIDDLE: usize = 9;
 
 /// The state in the middle of the last step of the pair of order 6(5), with its rates as one more stage.
-pub fn verner_middle(program: &Program, s: &mut Scratch<1>, time: f64, step: f64, middle: &mut Vec<f64>) {
+pub fn verner_middle<P: LooksBack<1>>(
+    program: &Program,
+    s: &mut Scratch<1, P>,
+    time: f64,
+    step: f64,
+    middle: &mut Vec<f64>,
+) {
     stage(Scalar, program, s, (&six::MIDDLE, 0.5), &[time], &[step]);
     middle.clear();
     middle.extend(s.file[1..=s.state.len()].iter().map(|value| value[0]));
@@ -88,7 +94,7 @@ pub fn verner_middle(program: &Program, s: &mut Scratch<1>, time: f64, step: f64
 
 /// The state at a share of the last step of the pair of order 6(5), eq. (ode.5): the polynomial of degree 5 with the values and rates at its begin,
 /// middle and end.
-pub fn verner_between(s: &Scratch<1>, step: f64, share: f64, middle: &[f64], state: &mut [f64]) {
+pub fn verner_between<P>(s: &Scratch<1, P>, step: f64, share: f64, middle: &[f64], state: &mut [f64]) {
     let n = state.len();
     let (x, rest) = (share, 1.0 - share);
     let (x2, rest2, centre2) = (x * x, rest * rest, (1.0 - 2.0 * x) * (1.0 - 2.0 * x));
@@ -105,7 +111,7 @@ pub fn verner_between(s: &Scratch<1>, step: f64, share: f64, middle: &[f64], sta
 }
 
 /// The state at a share of the last step of the pair of order 5(4), after a step that was accepted.
-pub fn tsitouras_between(s: &Scratch<1>, step: f64, share: f64, state: &mut [f64]) {
+pub fn tsitouras_between<P>(s: &Scratch<1, P>, step: f64, share: f64, state: &mut [f64]) {
     let n = state.len();
     let weights = D.map(|row| row.iter().rev().fold(0.0, |sum, weight| (sum + weight) * share));
     for (v, value) in state.iter_mut().enumerate() {
@@ -116,7 +122,12 @@ pub fn tsitouras_between(s: &Scratch<1>, step: f64, share: f64, state: &mut [f64
 
 /// One step of the classical method of order 4 from (time, state).
 #[inline(always)]
-pub fn classical<const L: usize>(program: &Program, s: &mut Scratch<L>, time: Lanes<L>, step: Lanes<L>) {
+pub fn classical<const L: usize, P: LooksBack<L>>(
+    program: &Program,
+    s: &mut Scratch<L, P>,
+    time: Lanes<L>,
+    step: Lanes<L>,
+) {
     const SHARE: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
     let n = s.state.len();
     for stage in 0..4 {
@@ -142,7 +153,12 @@ pub fn classical<const L: usize>(program: &Program, s: &mut Scratch<L>, time: La
 
 /// One step of Euler's method from (time, state).
 #[inline(always)]
-pub fn euler<const L: usize>(program: &Program, s: &mut Scratch<L>, time: Lanes<L>, step: Lanes<L>) {
+pub fn euler<const L: usize, P: LooksBack<L>>(
+    program: &Program,
+    s: &mut Scratch<L, P>,
+    time: Lanes<L>,
+    step: Lanes<L>,
+) {
     s.rates_at_state(program, time);
     for v in 0..s.state.len() {
         for l in 0..L {

@@ -7,7 +7,11 @@ use crate::equations::tree::QuantityId;
 
 impl Population {
     /// Cells at the system's initial values.
+    ///
+    /// # Panics
+    /// When the system looks back: such systems are solved alone.
     pub fn new(program: &Program, cells: usize, method: Method) -> Self {
+        assert!(program.delays.is_empty(), "a system that looks back is solved alone");
         let mut population = Self::empty(program.size(), program.open.len(), method);
         population.cells = cells;
         population.resize_blocks();

@@ -13,7 +13,10 @@ mod eventful;
 mod events;
 mod explicit;
 mod fixed;
+mod history;
+mod lookback;
 mod lu;
+mod marks;
 mod mask;
 mod members;
 mod memory;
@@ -22,6 +25,7 @@ mod multistep;
 mod narrow;
 mod noise;
 mod population;
+mod retrace;
 mod rosenbrock;
 mod scheme;
 pub(crate) mod scratch;
@@ -131,6 +135,8 @@ pub enum Reason {
     RoundOff,
     /// The solver gave up for a reason of its own.
     Solver,
+    /// A delay is below 0.
+    LooksAhead,
 }
 
 /// What went wrong, in which cell, when and in which variable.
@@ -162,6 +168,7 @@ impl std::fmt::Display for OdeTrouble {
             Reason::TooManySteps => write!(f, " needs more steps than allowed")?,
             Reason::EndlessEvents => write!(f, " has events that follow each other without end")?,
             Reason::RoundOff => write!(f, " has a value of which round-off has left no digit")?,
+            Reason::LooksAhead => write!(f, " looks ahead")?,
             Reason::Solver => write!(f, " could not be solved")?,
         }
         write!(f, " at t = {}", self.time)?;
@@ -189,6 +196,7 @@ impl From<OdeTrouble> for Error {
                 "let atol be above what is left of it; or where the equations keep a sum, let one of its variables follow from \
                  the others in place of having a rate"
             }
+            Reason::LooksAhead => "let the delay be a time of 0 or more, such as max(tau, 0)",
             Reason::Solver => "try the Rosenbrock method",
         };
         Self::Numbers { message: trouble.to_string(), help: help.into(), kept: None }

@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 use super::lu;
-use super::scratch::Scratch;
+use super::scratch::{LooksBack, Scratch};
 use super::tableau::rodas::{A1, A2, A3, A4, A5, C, D2, D3, G, GAMMA, K1, K2, K3, K4, K5, STAGES};
 use super::wide::{combine, negated_where_finite, take_away};
 use crate::equations::program::{Lanes, Program, run};
@@ -11,7 +11,13 @@ use crate::equations::program::{Lanes, Program, run};
 /// One step from (time, state). Leaves proposal, error and the stages. Derivatives that are not finite (a root at 0,
 /// say) count as 0: the error estimate then decides about the step.
 #[inline(always)]
-pub fn step<S: Simd, const L: usize>(simd: S, program: &Program, s: &mut Scratch<L>, time: &Lanes<L>, step: &Lanes<L>) {
+pub fn step<S: Simd, const L: usize, P: LooksBack<L>>(
+    simd: S,
+    program: &Program,
+    s: &mut Scratch<L, P>,
+    time: &Lanes<L>,
+    step: &Lanes<L>,
+) {
     let n = s.state.len();
     let mut inverse = *step;
     for l in 0..L {
@@ -44,10 +50,10 @@ struct Clock<'a, const L: usize> {
 
 /// The stage after the first `W`: its argument, its rates, its right side and its linear system.
 #[inline(always)]
-fn stage<S: Simd, const W: usize, const L: usize>(
+fn stage<S: Simd, const W: usize, const L: usize, P: LooksBack<L>>(
     simd: S,
     program: &Program,
-    s: &mut Scratch<L>,
+    s: &mut Scratch<L, P>,
     argument: &[f64; W],
     right: &[f64; W],
     clock: &Clock<L>,
@@ -71,7 +77,13 @@ fn stage<S: Simd, const W: usize, const L: usize>(
 
 /// The linear system of a stage whose right side lacks only the derivative by time.
 #[inline(always)]
-fn solve_stage<S: Simd, const L: usize>(simd: S, s: &mut Scratch<L>, timeless: bool, stage: usize, clock: &Clock<L>) {
+fn solve_stage<S: Simd, const L: usize, P>(
+    simd: S,
+    s: &mut Scratch<L, P>,
+    timeless: bool,
+    stage: usize,
+    clock: &Clock<L>,
+) {
     let n = s.state.len();
     let present = &mut s.stages[stage * n..(stage + 1) * n];
     if G[stage] != 0.0 && !timeless {
@@ -88,16 +100,17 @@ fn solve_stage<S: Simd, const L: usize>(simd: S, s: &mut Scratch<L>, timeless: b
 
 /// Rates, derivatives and the factored matrix 1/(γ·step) − J at (time, state).
 #[inline(always)]
-fn prepare<S: Simd, const L: usize>(
+fn prepare<S: Simd, const L: usize, P: LooksBack<L>>(
     simd: S,
     program: &Program,
-    s: &mut Scratch<L>,
+    s: &mut Scratch<L, P>,
     time: &Lanes<L>,
     inverse: &Lanes<L>,
 ) {
     let n = s.state.len();
     s.file[0] = *time;
     s.file[1..=n].copy_from_slice(&s.state);
+    s.past.fill(program, &program.linear, &mut s.file);
     run(&program.linear, &mut s.file);
     for v in 0..n {
         s.stages[v] = s.file[program.linear.outputs[v] as usize];
@@ -121,7 +134,7 @@ fn prepare<S: Simd, const L: usize>(
 }
 
 /// The state at a share of the last step, after a step that was accepted.
-pub fn between(s: &Scratch<1>, share: f64, state: &mut [f64]) {
+pub fn between<P>(s: &Scratch<1, P>, share: f64, state: &mut [f64]) {
     let n = state.len();
     for (v, value) in state.iter_mut().enumerate() {
         let weighted = |weights: &[f64; 5]| -> f64 {

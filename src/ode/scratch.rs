@@ -1,14 +1,27 @@
 //! Buffers that are kept from window to window so that nothing is allocated meanwhile.
 
 use super::lu::Swap;
+use crate::equations::program::code::Code;
 use crate::equations::program::{Lanes, Program, run};
 
 /// Stages of the method that has most, with the one in the middle of its step.
 const MOST_STAGES: usize = 10;
 
+/// What sets the registers that code needs beside time, state and open quantities: delayed values.
+pub trait LooksBack<const L: usize> {
+    /// Sets them for the time and state that stand in the registers.
+    fn fill(&mut self, program: &Program, code: &Code, file: &mut [Lanes<L>]);
+}
+
+/// Populations do not look back.
+impl<const L: usize> LooksBack<L> for () {
+    #[inline(always)]
+    fn fill(&mut self, _: &Program, _: &Code, _: &mut [Lanes<L>]) {}
+}
+
 /// Registers, stages and matrices of one block of cells.
 #[derive(Debug, Clone)]
-pub struct Scratch<const L: usize> {
+pub struct Scratch<const L: usize, P = ()> {
     /// The program's registers.
     pub file: Vec<Lanes<L>>,
     /// State at the begin of the step.
@@ -25,11 +38,20 @@ pub struct Scratch<const L: usize> {
     pub matrix: Vec<Lanes<L>>,
     /// Its row exchanges.
     pub swaps: Vec<Swap<L>>,
+    /// What was.
+    pub past: P,
 }
 
 impl<const L: usize> Scratch<L> {
     /// Buffers for a program; `stiff` methods need matrices.
     pub fn new(program: &Program, stiff: bool) -> Self {
+        Self::with(program, stiff, ())
+    }
+}
+
+impl<const L: usize, P: LooksBack<L>> Scratch<L, P> {
+    /// Buffers for a program that looks back.
+    pub fn with(program: &Program, stiff: bool, past: P) -> Self {
         let n = program.size();
         let empty = || vec![[0.0; L]; n];
         let squares = if stiff { n * n } else { 0 };
@@ -42,6 +64,7 @@ impl<const L: usize> Scratch<L> {
             drift: empty(),
             matrix: vec![[0.0; L]; squares],
             swaps: Vec::with_capacity(squares / 2),
+            past,
         }
     }
 
@@ -57,6 +80,7 @@ impl<const L: usize> Scratch<L> {
     /// Rates at the time and state that stand in the registers, as a stage.
     #[inline(always)]
     pub fn rates_into(&mut self, program: &Program, stage: usize) {
+        self.past.fill(program, &program.rates, &mut self.file);
         run(&program.rates, &mut self.file);
         let n = self.state.len();
         for (to, &from) in self.stages[stage * n..(stage + 1) * n].iter_mut().zip(&program.rates.outputs) {

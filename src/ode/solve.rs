@@ -112,6 +112,9 @@ pub fn solve_each(
             let options = SolveOptions { scheme: SolveOptions::default().scheme, ..*options };
             solve_each(system, from, until, points, &options, each)
         }
+        _ if !program.delays.is_empty() => {
+            Err(trouble("this scheme takes no delays: use rosenbrock, rk45, rk65, rk4 or euler".into()))
+        }
         _ if !system.events.is_empty() => {
             Err(trouble("this scheme takes no events: use rosenbrock, rk45, rk65, rk4 or euler".into()))
         }

@@ -4,7 +4,8 @@ use pulp::Scalar;
 
 use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
 use super::control::{self, NEAR, Tolerances};
-use super::scratch::Scratch;
+use super::lookback::Lookback;
+use super::scratch::{LooksBack, Scratch};
 use super::{Method, OdeTrouble, Reason, Work, explicit, rosenbrock};
 use crate::equations::program::code::Code;
 use crate::equations::program::{Program, run};
@@ -14,8 +15,8 @@ pub struct Stepper<'a> {
     /// Its program.
     pub program: &'a Program,
     method: Method,
-    tolerances: Tolerances,
-    s: Scratch<1>,
+    pub(super) tolerances: Tolerances,
+    pub(super) s: Scratch<1, Lookback>,
     /// Values of the open quantities.
     pub open: Vec<f64>,
     /// Present time: the end of the last step that was committed.
@@ -23,9 +24,9 @@ pub struct Stepper<'a> {
     step: f64,
     error: f64,
     fresh: bool,
-    taken: f64,
+    pub(super) taken: f64,
     /// The state in the middle of the last step, for methods that need it for values between and once it was asked for.
-    middle: Vec<f64>,
+    pub(super) middle: Vec<f64>,
     /// Work so far.
     pub work: Work,
     /// Longest step allowed.
@@ -35,7 +36,7 @@ pub struct Stepper<'a> {
 /// What a stepper works in, which may be handed from one to the next of a program.
 #[derive(Debug)]
 pub struct StepperBuffers {
-    s: Scratch<1>,
+    s: Scratch<1, Lookback>,
     open: Vec<f64>,
     middle: Vec<f64>,
 }
@@ -43,7 +44,8 @@ pub struct StepperBuffers {
 impl StepperBuffers {
     /// Buffers for a program; `stiff` methods need matrices.
     pub fn new(program: &Program, stiff: bool) -> Self {
-        Self { s: Scratch::new(program, stiff), open: vec![0.0; program.open.len()], middle: Vec::new() }
+        let s = Scratch::with(program, stiff, Lookback::default());
+        Self { s, open: vec![0.0; program.open.len()], middle: Vec::new() }
     }
 }
 
@@ -60,6 +62,8 @@ impl<'a> Stepper<'a> {
     pub fn within(buffers: StepperBuffers, program: &'a Program, method: Method, tolerances: Tolerances) -> Self {
         let StepperBuffers { s, open, middle } = buffers;
         let (work, longest) = (Work::default(), f64::INFINITY);
+        // What was is no scratch: it begins anew.
+        let s = Scratch { past: Lookback::new(program, method), ..s };
         Self {
             program,
             method,
@@ -94,6 +98,7 @@ impl<'a> Stepper<'a> {
         self.open.iter_mut().zip(open).for_each(|(to, from)| *to = from);
         (self.step, self.error) = pace;
         (self.time, self.taken, self.fresh, self.work) = (time, 0.0, true, Work::default());
+        self.s.past.start(time);
     }
 
     /// The next step to try and the error of the last.
@@ -125,6 +130,7 @@ impl<'a> Stepper<'a> {
     /// Forgets what was known of the solution's course, after it jumped.
     pub fn restart(&mut self) {
         (self.step, self.error, self.fresh) = (0.0, 1.0, true);
+        self.s.past.marks.jump(self.time);
     }
 
     /// Forgets the rates at the present, after the clock switched something.
@@ -138,6 +144,7 @@ impl<'a> Stepper<'a> {
         for (register, &value) in self.s.file[1..].iter_mut().zip(state) {
             *register = [value];
         }
+        self.s.past.fill(self.program, code, &mut self.s.file);
         run(code, &mut self.s.file);
         results.clear();
         results.extend(code.outputs.iter().map(|&register| self.s.file[register as usize][0]));
@@ -157,6 +164,7 @@ impl<'a> Stepper<'a> {
     /// When no step is short enough, or too many were taken.
     pub fn step(&mut self, limit: f64) -> Result<f64, OdeTrouble> {
         self.load(self.time);
+        self.s.past.begin(self.time, &self.s.state, &self.open);
         self.taken = match self.method {
             Method::Rk45 => self.adaptive_step::<Tsitouras>(limit)?,
             Method::Rk65 => self.adaptive_step::<Verner>(limit)?,
@@ -164,6 +172,7 @@ impl<'a> Stepper<'a> {
             Method::Rk4 { step } | Method::Euler { step } => self.fixed_step(limit, step)?,
         };
         self.work.steps += 1;
+        self.sketch(self.taken);
         if self.work.steps >= u64::from(self.tolerances.max_steps) {
             return Err(self.trouble(Reason::TooManySteps));
         }
@@ -172,16 +181,24 @@ impl<'a> Stepper<'a> {
 
     fn fixed_step(&mut self, limit: f64, longest: f64) -> Result<f64, OdeTrouble> {
         let step = (limit - self.time) / ((limit - self.time) / longest - 1e-9).ceil().max(1.0);
-        if let Method::Euler { .. } = self.method {
-            explicit::euler(self.program, &mut self.s, [self.time], [step]);
-            self.work.rates += 1;
-        } else {
-            explicit::classical(self.program, &mut self.s, [self.time], [step]);
+        let euler = matches!(self.method, Method::Euler { .. });
+        let known = self.attempt(step, |stepper| {
+            if euler {
+                explicit::euler(stepper.program, &mut stepper.s, [stepper.time], [step]);
+                stepper.work.rates += 1;
+                return;
+            }
+            explicit::classical(stepper.program, &mut stepper.s, [stepper.time], [step]);
             // The rates at the end, for the values between.
-            let n = self.s.state.len();
-            self.s.file[1..=n].copy_from_slice(&self.s.proposal);
-            self.s.rates_into(self.program, 6);
-            self.work.rates += 5;
+            let n = stepper.s.state.len();
+            stepper.s.file[1..=n].copy_from_slice(&stepper.s.proposal);
+            stepper.s.rates_into(stepper.program, 6);
+            stepper.work.rates += 5;
+        });
+        self.check_delays()?;
+        if !known {
+            let detail = format!("a delay is shorter than the step of {step}");
+            return Err(OdeTrouble { detail, ..self.trouble(Reason::Solver) });
         }
         let good = self.s.proposal.iter().all(|value| value[0].is_finite());
         if good { Ok(step) } else { Err(self.trouble(Reason::NotFinite)) }
@@ -213,13 +230,16 @@ impl<'a> Stepper<'a> {
                 (false, true) => 0.5 * rest,
                 (false, false) => wanted,
             };
-            M::step(Scalar, self.program, &mut self.s, &[self.time], &[step]);
-            self.work.jacobians += M::JACOBIANS;
-            self.work.rates += M::RATES;
+            let known = self.attempt(step, |stepper| {
+                M::step(Scalar, stepper.program, &mut stepper.s, &[stepper.time], &[step]);
+                stepper.work.jacobians += M::JACOBIANS;
+                stepper.work.rates += M::RATES;
+            });
             let error =
                 control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.program.sizes, &self.tolerances)[0];
+            let error = if known { error } else { f64::INFINITY };
             let factor = M::CONTROLLER.factor(error, self.error);
-            if error <= 1.0 {
+            if error <= 1.0 && self.s.past.ahead.is_none() {
                 self.step = control::after_good(step, (self.step, cut), factor, most);
                 self.error = error;
                 return Ok(step);
@@ -228,6 +248,7 @@ impl<'a> Stepper<'a> {
             self.step = control::after_refused(step, error, factor);
             most = 1.0;
             if self.step <= shortest {
+                self.check_delays()?;
                 return Err(self.trouble(if error.is_finite() { Reason::StepUnderflow } else { Reason::NotFinite }));
             }
         }
@@ -269,6 +290,7 @@ impl<'a> Stepper<'a> {
 
     /// Makes the end of the step the present.
     pub fn commit(&mut self, time: f64) {
+        self.s.past.keep(time);
         self.time = time;
         self.s.state.copy_from_slice(&self.s.proposal);
         let last = match self.method {
@@ -284,6 +306,7 @@ impl<'a> Stepper<'a> {
 
     /// Makes a state within the step the present.
     pub fn commit_between(&mut self, time: f64, state: &[f64]) {
+        self.s.past.keep(time);
         self.time = time;
         self.s.state.iter_mut().zip(state).for_each(|(to, &from)| *to = [from]);
         self.fresh = true;

@@ -42,11 +42,18 @@ fn comparisons(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>
             }
             comparisons(system, otherwise, steady, found);
         }
+        Expr::Delay(value, delay) => {
+            comparisons(system, value, steady, found);
+            comparisons(system, delay, steady, found);
+        }
     }
 }
 
-/// Whether an expression depends on no variable.
+/// Whether an expression depends on no variable, nor on what was.
 fn is_steady(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>) -> bool {
+    if expression.has_delay() {
+        return false;
+    }
     let mut used = Vec::new();
     expression.each_quantity(&mut |quantity| used.push(quantity));
     used.into_iter().all(|quantity| match &system.quantities[quantity as usize].role {

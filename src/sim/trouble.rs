@@ -200,6 +200,7 @@ fn words_for(reason: Reason) -> &'static str {
         Reason::TooManySteps => "it takes too many steps",
         Reason::EndlessEvents => "events follow each other without end",
         Reason::RoundOff => "round-off has left no digit of a value",
+        Reason::LooksAhead => "a delay is below 0",
         Reason::Solver => "the solver gave up",
     }
 }

@@ -1,5 +1,6 @@
 //! Equations, the engine that solves them, and fields.
 
+mod delays;
 mod eml;
 mod eml_write;
 mod engine_events;

@@ -1,6 +1,6 @@
 //! Fast reactions are at their equilibrium at all times.
 
-use crate::sbml_models::{apply, at, close, math, read};
+use crate::sbml_models::{apply, at, close, math, read, rule, rules, time};
 
 fn species(id: &str, rest: &str) -> String {
     format!(r#"<species id="{id}" compartment="V" {rest}/>"#)
@@ -69,4 +69,37 @@ fn a_boundary_holds_the_other_side_of_an_equilibrium() {
         let decay = reaction("K", false, [("A", 1.0), ("", 1.0)], &times(2.0, "A"));
         close(&at(&read(3, 1, &body(&all, &[fast, decay])), 1.0, &["A", "B"]), &expected);
     }
+}
+
+#[test]
+fn a_species_that_speeds_up_its_own_making_uses_the_other_up() {
+    // J = c A B: with c > 0 all becomes B, with c < 0 all becomes A, with c = 0 nothing does.
+    let all = [species("A", r#"initialAmount="4""#), species("B", r#"initialAmount="2""#)];
+    for (c, expected) in [(0.1, [0.0, 6.0]), (-3.0, [6.0, 0.0]), (0.0, [4.0, 2.0])] {
+        let law = apply("times", &format!("<cn> {c} </cn><ci> A </ci><ci> B </ci>"));
+        for (ends, expected) in [(["A", "B"], expected), (["B", "A"], [expected[1], expected[0]])] {
+            let fast = reaction("J", true, ends.map(|end| (end, 1.0)), &law);
+            let expected = if c == 0.0 { [4.0, 2.0] } else { expected };
+            close(&at(&read(3, 1, &body(&all, &[fast])), 1.0, &["A", "B"]), &expected);
+        }
+    }
+}
+
+#[test]
+fn a_fast_reaction_may_change_its_direction() {
+    // J = p A where p > 0 and p B else, with p = 1 - t by a rule: all is in B until t = 1, in A from then on.
+    let all = [species("A", r#"initialAmount="4""#), species("B", r#"initialAmount="2""#)];
+    let product = |species: &str| apply("times", &format!("<ci> {species} </ci><ci> p </ci>"));
+    let condition = apply("gt", "<ci> p </ci><cn> 0 </cn>");
+    let law = format!(
+        "<piecewise><piece>{}{condition}</piece><otherwise>{}</otherwise></piecewise>",
+        product("A"),
+        product("B")
+    );
+    let p = rules(&[rule("assignmentRule", "p", &apply("minus", &format!("<cn> 1 </cn>{}", time())))]);
+    let fast = reaction("J", true, [("A", 1.0), ("B", 1.0)], &law);
+    let text = body(&all, &[fast]).replace("<listOfReactions>", &format!("{p}<listOfReactions>"));
+    let model = read(3, 1, &text);
+    close(&at(&model, 0.5, &["A", "B"]), &[0.0, 6.0]);
+    close(&at(&model, 2.0, &["A", "B"]), &[6.0, 0.0]);
 }

@@ -24,7 +24,7 @@ pub fn system(first: Expr, second: Expr) -> System {
         quantity("k", Role::Parameter, 0.25),
         quantity("sum", Role::Defined { rule: binary(Binary::Add, Expr::Quantity(0), Expr::Quantity(1)) }, 0.0),
     ];
-    System { name: "test".into(), quantities, events: vec![] }
+    System { name: "test".into(), quantities, ..System::default() }
 }
 
 /// Every function of the tree, alone.

@@ -19,7 +19,7 @@ pub fn system(name: &str, variables: &[(&str, f64, &str)], parameters: &[(&str, 
         .map(|(id, initial, rate)| quantity(id, Role::Variable { rate: expression(rate, &numbers) }, *initial))
         .collect();
     quantities.extend(parameters.iter().map(|(id, value)| quantity(id, Role::Parameter, *value)));
-    System { name: name.into(), quantities, events: vec![] }
+    System { name: name.into(), quantities, ..System::default() }
 }
 
 /// An expression of + − * / ^, numbers, names, `t`, and exp, ln, sin, cos.

@@ -143,6 +143,10 @@ pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fa
         let fault = Fault::new(format!("the scheme bdf takes no events, and {} has some", document.name));
         faults.push(fault.help("take --scheme rosenbrock: it is for stiff systems too"));
     }
+    if options.scheme == Scheme::Bdf && document.system.has_delays() {
+        let fault = Fault::new(format!("the scheme bdf takes no delays, and {} has some", document.name));
+        faults.push(fault.help("take --scheme rosenbrock: it is for stiff systems too"));
+    }
     (name, options)
 }
 

@@ -21,6 +21,10 @@ pub(super) enum Use {
     Start,
     /// What keeps one value: parameters.
     Fixed,
+    /// Everything but what was: for what is worked out outside of a course.
+    Now,
+    /// What is known of the time before the start: parameters and the time.
+    Before,
 }
 
 /// The second reader.
@@ -29,19 +33,24 @@ pub(super) struct Builder<'a, 'd> {
     pub(super) known: Declarations<'a>,
     start: Scope,
     fixed: Scope,
+    pub(super) now: Scope,
+    before: Scope,
 }
 
 impl<'a, 'd> Builder<'a, 'd> {
     pub(super) fn new(context: &'d mut Context, known: Declarations<'a>) -> Self {
         let no_time = "only rates, definitions, events and transfers can use the time".to_owned();
-        let start = Scope { no_time: no_time.clone(), ..known.scope.clone() };
-        let mut fixed = Scope { no_time, ..known.scope.clone() };
+        let no_delay = "only rates, definitions and events can look back".to_owned();
+        let now = Scope { no_delay, ..known.scope.clone() };
+        let start = Scope { no_time: no_time.clone(), ..now.clone() };
+        let mut fixed = Scope { no_time, ..now.clone() };
         let is_parameter = |id: &str| known.sort(id) == Some("parameter");
         fixed.quantities.retain(|id, _| is_parameter(id));
         for id in known.scope.quantities.keys().filter(|id| !is_parameter(id)) {
             fixed.absent.insert(id.clone(), "this must keep one value: use numbers and parameters".to_owned());
         }
-        Self { context, known, start, fixed }
+        let before = Scope { no_time: String::new(), ..fixed.clone() };
+        Self { context, known, start, fixed, now, before }
     }
 
     fn scope(&self, allowed: Use) -> &Scope {
@@ -49,6 +58,8 @@ impl<'a, 'd> Builder<'a, 'd> {
             Use::All => &self.known.scope,
             Use::Start => &self.start,
             Use::Fixed => &self.fixed,
+            Use::Now => &self.now,
+            Use::Before => &self.before,
         }
     }
 
@@ -174,7 +185,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         (quantities, locations)
     }
 
-    fn value(&mut self, element: &Element, attribute: &str, allowed: Use, id: &str) -> Option<Expr> {
+    pub(super) fn value(&mut self, element: &Element, attribute: &str, allowed: Use, id: &str) -> Option<Expr> {
         let own = self.unit_of(id);
         let what = format!("`{attribute}` of `{id}`");
         self.attribute(element, attribute, allowed, own.as_ref().map(|unit| (unit, what.as_str())))
@@ -281,13 +292,14 @@ impl<'a, 'd> Builder<'a, 'd> {
                 let message = format!("more than {LONGEST_CHAIN} quantities in a row use each other to be computed");
                 self.context.fault(at, &message, "too far down", "let expressions do more at once");
             } else if self.context.is_clean() {
-                self.check_finite(system);
+                let values = super::start::values(system);
+                self.check_finite(&values);
+                self.check_delays(system, &values);
             }
         }
     }
 
-    fn check_finite(&mut self, system: &System) {
-        let values = super::start::values(system);
+    fn check_finite(&mut self, values: &[f64]) {
         for (number, value) in values.iter().enumerate() {
             let Some(declared) = self.known.quantities.get(number) else { continue };
             let attribute = match declared.element.kind.name {

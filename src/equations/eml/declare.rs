@@ -126,6 +126,10 @@ pub(super) fn declare<'a>(context: &mut Context, root: &'a Element) -> Declarati
             found.units.insert((*name).to_owned(), unit.clone());
         }
     }
+    if matches!(level, Level::Field | Level::Membrane) {
+        found.scope.no_delay =
+            format!("documents of level {} keep no history: let a chain of substances take the time", level.name());
+    }
     functions(context, root, &mut found.scope);
     found
 }

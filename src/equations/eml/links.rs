@@ -80,7 +80,7 @@ impl Builder<'_, '_> {
         let names = BTreeMap::from([(VALUE.to_owned(), Expr::Quantity(LinkDescription::VALUE))]);
         let (node, troubles) = parse(&text.text);
         troubles.iter().for_each(|trouble| tell(self.context, text, trouble));
-        match self.known.scope.resolve_with(&node, &names) {
+        match self.now.resolve_with(&node, &names) {
             Err(more) => {
                 more.iter().for_each(|trouble| tell(self.context, text, trouble));
                 None
@@ -134,7 +134,9 @@ pub fn read_end(text: &str, system: &System) -> Result<(Root, Vec<Step>), Troubl
 /// All that is wrong with it and where in the text.
 pub fn read_transfer(text: &str, system: &System) -> Result<Expr, Vec<Trouble>> {
     let number = |(number, quantity): (usize, &crate::equations::tree::Quantity)| (quantity.id.clone(), number as u32);
-    let scope = Scope { quantities: system.quantities.iter().enumerate().map(number).collect(), ..Scope::default() };
+    let quantities = system.quantities.iter().enumerate().map(number).collect();
+    let no_delay = "only rates, definitions and events can look back".to_owned();
+    let scope = Scope { quantities, no_delay, ..Scope::default() };
     let names = BTreeMap::from([(VALUE.to_owned(), Expr::Quantity(LinkDescription::VALUE))]);
     let (node, mut troubles) = parse(text);
     match scope.resolve_with(&node, &names) {

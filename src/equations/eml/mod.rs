@@ -9,6 +9,7 @@ mod build;
 mod circles;
 mod context;
 mod declare;
+mod delays;
 mod document;
 mod events;
 mod fields;
@@ -54,6 +55,7 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     let mut builder = Builder::new(&mut context, known);
     let (quantities, locations) = builder.quantities(&root);
     let events = builder.events(&root);
+    let history = builder.history(&root);
     let grid = builder.grid(&root);
     let mut fields = builder.fields(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
     let mut membrane = builder.membrane(&root);
@@ -61,7 +63,7 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     let links = builder.links(&root);
     let solver = builder.solver(&root);
     builder.check_noise(&root, &noise);
-    let system = System { name: root.word("name"), quantities, events };
+    let system = System { name: root.word("name"), quantities, events, history };
     builder.check_values(&system);
     builder.finish_fields(&mut fields, &system);
     if let Some(membrane) = &mut membrane {

@@ -21,7 +21,7 @@ impl Builder<'_, '_> {
             .unit_of(&id)
             .map(|unit| unit.times(&self.known.time.to_the(-0.5)).times(&self.spread(element, dimension)));
         let what = format!("the noise of `{id}`");
-        let strength = self.attribute(element, "noise", Use::All, own.as_ref().map(|unit| (unit, what.as_str())));
+        let strength = self.attribute(element, "noise", Use::Now, own.as_ref().map(|unit| (unit, what.as_str())));
         if element.kind.name == "field" && element.word("range") != "free" {
             let message = format!("`{id}` is a concentration, which is kept from going below zero, and has noise");
             let help = "cut off at zero, noise would add substance: write range=\"free\" and a strength that vanishes at 0, such as \

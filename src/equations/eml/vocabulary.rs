@@ -47,9 +47,9 @@ const PARTS: [&str; 13] = [
 pub const ELEMENTS: [Kind; 17] = [
     kind("eml", &["name"], &["level", "time_unit"], &PARTS, false),
     kind("parameter", &["id", "value"], &["name", "unit"], &[], false),
-    kind("variable", &["id", "initial"], &["diffusion", "level", "name", "noise", "rate", "unit"], &[], false),
+    kind("variable", &["id", "initial"], &["diffusion", "history", "level", "name", "noise", "rate", "unit"], &[], false),
     kind("equation", &["of"], &[], &[], true),
-    kind("define", &["id"], &["name", "unit"], &[], true),
+    kind("define", &["id"], &["history", "name", "unit"], &[], true),
     kind("function", &["args", "id"], &[], &[], true),
     kind("input", &["default", "id"], &["level", "name", "unit"], &[], false),
     kind("mean", &["id"], &["name", "unit"], &[], true),

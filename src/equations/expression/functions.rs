@@ -13,6 +13,8 @@ pub(super) enum Meaning {
     Many(Binary),
     Piecewise,
     Hill,
+    /// What the first was a time ago that the second tells.
+    Delay,
 }
 
 /// What a function asks of the units of its arguments, and the unit of its value.
@@ -32,6 +34,8 @@ pub(super) enum UnitRule {
     /// The first two share a unit, the third and the value are plain.
     Hill,
     Piecewise,
+    /// Anything and a time in, the unit of the first out.
+    Delay,
 }
 
 /// A function.
@@ -54,7 +58,7 @@ const fn two(name: &'static str, function: Binary, units: UnitRule, example: &'s
 
 /// All functions.
 #[rustfmt::skip] // a table
-pub(super) const FUNCTIONS: [Known; 34] = [
+pub(super) const FUNCTIONS: [Known; 35] = [
     one("exp", Unary::Exp, UnitRule::Plain, "exp(x)"),
     one("ln", Unary::Ln, UnitRule::Plain, "ln(x)"),
     Known { name: "log", meaning: Meaning::Log, units: UnitRule::Plain, example: "log(x) or log(base, x)" },
@@ -86,6 +90,7 @@ pub(super) const FUNCTIONS: [Known; 34] = [
     Known { name: "piecewise", meaning: Meaning::Piecewise, units: UnitRule::Piecewise,
         example: "piecewise(value, condition, …, otherwise)" },
     Known { name: "hill", meaning: Meaning::Hill, units: UnitRule::Hill, example: "hill(x, K, n)" },
+    Known { name: "delay", meaning: Meaning::Delay, units: UnitRule::Delay, example: "delay(x, tau)" },
     // Other spellings of the same.
     one("ceiling", Unary::Ceil, UnitRule::Same, "ceiling(x)"),
     one("arcsin", Unary::Asin, UnitRule::Plain, "arcsin(x)"),
@@ -125,7 +130,7 @@ impl Meaning {
     pub(super) fn takes(self, count: usize) -> bool {
         match self {
             Self::One(_) => count == 1,
-            Self::Two(_) => count == 2,
+            Self::Two(_) | Self::Delay => count == 2,
             Self::Log => count == 1 || count == 2,
             // Each argument is a level of the expression.
             Self::Many(_) => (1..=100).contains(&count),
@@ -141,6 +146,7 @@ impl Meaning {
         match self {
             Self::One(function) => take().unary(function),
             Self::Two(function) => take().binary(function, take()),
+            Self::Delay => Expr::Delay(Box::new(take()), Box::new(take())),
             Self::Log => {
                 let first = take();
                 match next.next() {

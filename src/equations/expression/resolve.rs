@@ -1,7 +1,7 @@
 //! Looks the names of an expression up and expands the document's functions.
 
 use super::Trouble;
-use super::functions::{CONSTANTS, FUNCTIONS, Known, TIME, known};
+use super::functions::{CONSTANTS, FUNCTIONS, Known, Meaning, TIME, known};
 use super::syntax::{DEEPEST, Node, NodeKind};
 use crate::equations::tree::{Expr, QuantityId, Unary};
 use crate::error::words::meant;
@@ -35,6 +35,8 @@ pub struct Scope {
     pub absent: HashMap<String, String>,
     /// What `time` is told to be where it has no meaning; empty where it has.
     pub no_time: String,
+    /// Why nothing can look back by `delay` here; empty where it can.
+    pub no_delay: String,
     /// Parts made so far by all expressions of the scope, and words looked for.
     pub spent: Spent,
 }
@@ -214,6 +216,11 @@ impl Walk<'_> {
             self.miscounted(name, at, function.example, given.len());
             return None;
         }
+        if function.meaning == Meaning::Delay && !self.scope.no_delay.is_empty() {
+            let trouble = Trouble::new(format!("`{name}` cannot be used here"), at.clone()).label("looks back");
+            self.troubles.push(trouble.help(self.scope.no_delay.clone()));
+            return None;
+        }
         Some(function.meaning.apply(resolved?))
     }
 
@@ -248,7 +255,7 @@ fn size(expr: &Expr) -> usize {
     match expr {
         Expr::Number(_) | Expr::Time | Expr::Quantity(_) => 1,
         Expr::Unary(_, a) => 1 + size(a),
-        Expr::Binary(_, a, b) => 1 + size(a) + size(b),
+        Expr::Binary(_, a, b) | Expr::Delay(a, b) => 1 + size(a) + size(b),
         Expr::Piecewise { branches, otherwise } => {
             1 + size(otherwise) + branches.iter().map(|(a, b)| size(a) + size(b)).sum::<usize>()
         }
@@ -260,7 +267,7 @@ fn depth(expr: &Expr) -> usize {
     1 + match expr {
         Expr::Number(_) | Expr::Time | Expr::Quantity(_) => 0,
         Expr::Unary(_, a) => depth(a),
-        Expr::Binary(_, a, b) => depth(a).max(depth(b)),
+        Expr::Binary(_, a, b) | Expr::Delay(a, b) => depth(a).max(depth(b)),
         Expr::Piecewise { branches, otherwise } => {
             branches.iter().map(|(a, b)| depth(a).max(depth(b))).max().unwrap_or(0).max(depth(otherwise))
         }

@@ -200,6 +200,11 @@ pub(super) fn mismatch(found: &Unit, expected: &Unit, what: &str, at: Range<usiz
         .help(expected.advice(found))
 }
 
+/// Whether a part is a number without a unit, which is taken in the unit that is expected.
+fn is_number(node: &Node) -> bool {
+    matches!(node.kind, NodeKind::Number(_, None))
+}
+
 struct Check<'a, 'b> {
     scope: &'a UnitScope<'a>,
     troubles: &'b mut Vec<Trouble>,
@@ -385,6 +390,16 @@ impl Check<'_, '_> {
                 self.shared(&parts[..2], names);
                 self.plain(parts[2], names, None, "the exponent of `hill`");
                 plain()
+            }
+            UnitRule::Delay => {
+                let value = self.measure(parts[0], names);
+                if let (Measure::Known(unit), Some(time)) = (self.measure(parts[1], names), self.scope.time)
+                    && !unit.is_same(time)
+                    && !is_number(parts[1])
+                {
+                    self.troubles.push(mismatch(&unit, time, "the time of `delay`", parts[1].at.clone()));
+                }
+                value
             }
             UnitRule::Piecewise => {
                 let values: Vec<&Node> = parts.iter().step_by(2).copied().collect();

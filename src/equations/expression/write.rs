@@ -77,6 +77,7 @@ fn part(expr: &Expr, name: &impl Fn(QuantityId) -> String, strength: u8, text: &
             }
             call("piecewise", &arguments, name, text);
         }
+        Expr::Delay(value, delay) => call("delay", &[value, delay], name, text),
     }
 }
 

@@ -47,6 +47,8 @@ pub struct Code {
     pub outputs: Vec<Register>,
     /// How many registers are needed.
     pub registers: usize,
+    /// The delayed values that must stand in their slots before, by their indices, inner ones first.
+    pub delays: Vec<usize>,
 }
 
 /// The constants that the codes of a program share, placed behind its slots.
@@ -121,7 +123,7 @@ impl Code {
             ops.push(Op { action, to, a, b, c });
         }
         let outputs = roots.iter().map(|&root| register[root as usize]).collect();
-        Self { ops, outputs, registers: next as usize }
+        Self { ops, outputs, registers: next as usize, delays: Vec::new() }
     }
 }
 

@@ -12,6 +12,7 @@ impl Graph {
         }
         let derivative = match self.node(id) {
             Node::Constant(_) => self.constant(0.0),
+            Node::Slot(own) if self.delayed_at(own).is_some() => self.derivative_of_delayed(own, slot),
             Node::Slot(own) => self.constant(f64::from(u8::from(own == slot))),
             Node::Unary(function, a) => {
                 let da = self.derivative(a, slot);
@@ -28,6 +29,16 @@ impl Graph {
         };
         self.derivatives.insert((id, slot), derivative);
         derivative
+    }
+
+    /// The derivative of x(t − τ), eq. (ode.8): x' there, times that of t − τ.
+    fn derivative_of_delayed(&mut self, own: u32, slot: u32) -> NodeId {
+        let Some(delay) = self.delayed_at(own).map(|delayed| delayed.delay) else { return self.constant(0.0) };
+        let clock = self.constant(f64::from(u8::from(slot == 0)));
+        let stretch = self.derivative(delay, slot);
+        let moved = self.binary(Binary::Sub, clock, stretch);
+        let rate = self.slot(own + 1);
+        self.binary(Binary::Mul, moved, rate)
     }
 
     fn derivative_of_unary(&mut self, function: Unary, id: NodeId, a: NodeId, da: NodeId) -> NodeId {

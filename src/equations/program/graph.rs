@@ -1,6 +1,6 @@
 //! The equations as a graph in which equal subexpressions are one node and constants are worked out.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use crate::equations::tree::{Binary, Expr, Unary};
 
@@ -22,11 +22,30 @@ pub enum Node {
     Select(NodeId, NodeId, NodeId),
 }
 
+/// A value of a time ago. It stands in a slot of its own; in the slot behind that, how fast what is looked back at changed then.
+#[derive(Debug, Clone)]
+pub struct Delayed {
+    /// Its slot.
+    pub slot: u32,
+    /// What is looked back at.
+    pub value: NodeId,
+    /// How far.
+    pub delay: NodeId,
+    /// The same as expressions.
+    pub expressions: (Expr, Expr),
+}
+
 /// Nodes, each once; made by the functions of `simplify`.
 #[derive(Debug, Clone, Default)]
 pub struct Graph {
     pub(super) nodes: Vec<Node>,
     known: HashMap<Node, NodeId>,
+    /// Whether something was otherwise before the start than at the start.
+    pub(super) has_history: bool,
+    /// The slot of the first delayed value.
+    pub(super) first_delayed: u32,
+    /// Delayed values, inner ones before those around them.
+    pub(super) delayed: Vec<Delayed>,
     pub(super) derivatives: HashMap<(NodeId, u32), NodeId>,
 }
 
@@ -96,7 +115,62 @@ impl Graph {
                 }
                 value
             }
+            Expr::Delay(value, delay) => {
+                let (at, by) = (self.expression(value, quantities), self.expression(delay, quantities));
+                self.delayed((at, by), (value, delay))
+            }
         }
+    }
+
+    /// A value of a time ago. What is constant was so before, unless the system has another history, and no time ago is now.
+    fn delayed(&mut self, (value, delay): (NodeId, NodeId), expressions: (&Expr, &Expr)) -> NodeId {
+        if (self.value(value).is_some() && !self.has_history) || self.value(delay) == Some(0.0) {
+            return value;
+        }
+        if let Some(known) = self.delayed.iter().find(|known| (known.value, known.delay) == (value, delay)) {
+            return self.slot(known.slot);
+        }
+        let slot = self.first_delayed + 2 * self.delayed.len() as u32;
+        let expressions = (expressions.0.clone(), expressions.1.clone());
+        self.delayed.push(Delayed { slot, value, delay, expressions });
+        self.slot(slot)
+    }
+
+    /// The delayed value that stands in a slot.
+    pub fn delayed_at(&self, slot: u32) -> Option<&Delayed> {
+        let index = slot.checked_sub(self.first_delayed)? as usize;
+        self.delayed.get(index / 2).filter(|_| index.is_multiple_of(2))
+    }
+
+    /// The slots that some nodes depend on, in order; those that tell how far they look back, too.
+    pub fn slots(&self, roots: &[NodeId]) -> Vec<u32> {
+        let (mut open, mut slots) = (roots.to_vec(), BTreeSet::new());
+        while !open.is_empty() {
+            let needed = self.needed(&open);
+            open.clear();
+            for (id, _) in needed.iter().enumerate().filter(|(_, needed)| **needed) {
+                let Node::Slot(slot) = self.nodes[id] else { continue };
+                if slots.insert(slot) {
+                    open.extend(self.delayed_at(slot).map(|delayed| delayed.delay));
+                }
+            }
+        }
+        slots.into_iter().collect()
+    }
+
+    /// The indices of the delayed values that some nodes depend on, in order.
+    pub fn delays(&self, roots: &[NodeId]) -> Vec<usize> {
+        if self.delayed.is_empty() {
+            return Vec::new();
+        }
+        // A rate of change needs the value that it is of.
+        let index = |slot: u32| slot.checked_sub(self.first_delayed).map(|index| index as usize / 2);
+        let mut found: Vec<usize> = self.slots(roots).into_iter().filter_map(index).collect();
+        let more: Vec<NodeId> = found.iter().map(|&index| self.delayed[index].delay).collect();
+        found.extend(self.slots(&more).into_iter().filter_map(index));
+        found.sort_unstable();
+        found.dedup();
+        found
     }
 
     /// The nodes that a node uses.

@@ -1,5 +1,6 @@
 //! The values that all quantities have at the start.
 
+use super::past::Past;
 use crate::equations::tree::{QuantityId, Role, System};
 
 /// Values of all quantities at a time from their initial expressions and rules, each worked out after those it uses.
@@ -23,11 +24,15 @@ pub fn initial_values(system: &System, time: f64) -> Result<Vec<f64>, Vec<String
             };
             // Only one quantity is pushed at a time, so all on the stack lie on one path of uses.
             let mut missing = Vec::new();
-            expression.each_quantity(&mut |other| {
+            let mut note = |other: QuantityId| {
                 if values[other as usize].is_none() && !missing.contains(&other) {
                     missing.push(other);
                 }
-            });
+            };
+            expression.each_quantity(&mut note);
+            if expression.has_delay() {
+                system.history.iter().for_each(|(_, before)| before.each_quantity(&mut note));
+            }
             if let Some(again) = missing.iter().find_map(|other| open.iter().position(|on_path| on_path == other)) {
                 return Err(open[again..].iter().map(|&q| system.quantities[q as usize].id.clone()).collect());
             }
@@ -35,7 +40,8 @@ pub fn initial_values(system: &System, time: f64) -> Result<Vec<f64>, Vec<String
                 Some(&other) => open.push(other),
                 None => {
                     let known = |other: QuantityId| values[other as usize].unwrap_or(f64::NAN);
-                    values[number as usize] = Some(expression.evaluate(time, &known));
+                    let past = Past { system, start: time };
+                    values[number as usize] = Some(past.value(expression, time, &known));
                     open.pop();
                 }
             }

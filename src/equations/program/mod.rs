@@ -2,19 +2,25 @@
 //!
 //! A program reads a file of registers. The first are its *slots*: the time, the variables in the order of
 //! [`System::variables`], then the *open* quantities, which the caller may set for each cell: the inputs of the system
-//! and those parameters named when compiling. All other parameters are folded in as constants.
+//! and those parameters named when compiling. All other parameters are folded in as constants. Behind these stand the *delayed*
+//! values of a system that looks back, which only single solves set (`ode::lookback`).
 
 pub mod code;
+mod delayed;
 mod derivative;
 pub mod graph;
 mod initial;
+mod past;
 mod run;
 mod simplify;
 
+pub use delayed::DelayedValue;
 pub use initial::initial_values;
+pub use past::Past;
 pub use run::{Lanes, run};
 
 use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
 use crate::equations::tree::{Binary, Expr, QuantityId, Role, System};
 use code::{Code, Constants};
@@ -54,6 +60,12 @@ pub struct Program {
     pub observe: Code,
     /// One code for each further group of expressions.
     pub further: Vec<Code>,
+    /// The values of earlier times that the codes use, inner ones before those around them.
+    pub delays: Vec<DelayedValue>,
+    /// The equations themselves, where they look back: what was before the start is worked out from them.
+    pub system: Option<Arc<System>>,
+    /// When the system starts.
+    pub start: f64,
     /// The constants behind the slots.
     constants: Vec<f64>,
     /// Registers that every code of the program fits in.
@@ -95,19 +107,28 @@ impl Program {
             .map(|group| group.iter().map(|expression| graph.expression(expression, &nodes)).collect())
             .collect();
         let mut constants = Constants::default();
-        let slots = 1 + variables.len() + open.len();
+        let slots = 1 + variables.len() + open.len() + 2 * graph.delayed.len();
+        let looks =
+            [&rates, &linear, &nodes].into_iter().chain(&further).map(|group| graph.delays(group)).collect::<Vec<_>>();
         let (rates, linear) = (graph.with_shared_divisors(&rates), graph.with_shared_divisors(&linear));
         for (graph, group) in [&rates, &linear] {
             constants.collect(graph, group);
         }
-        for group in [&nodes].into_iter().chain(&further) {
+        let behind: Vec<[NodeId; 2]> = graph.delayed.iter().map(|delayed| [delayed.delay, delayed.value]).collect();
+        for group in
+            [&nodes[..]].into_iter().chain(further.iter().map(Vec::as_slice)).chain(behind.iter().map(|b| &b[..]))
+        {
             constants.collect(&graph, group);
         }
         let code = |graph: &Graph, roots: &[NodeId]| Code::of(graph, roots, slots, &constants);
-        let (rates, linear, observe) = (code(&rates.0, &rates.1), code(&linear.0, &linear.1), code(&graph, &nodes));
-        let further: Vec<Code> = further.iter().map(|group| code(&graph, group)).collect();
-        let registers =
-            [&rates, &linear, &observe].into_iter().chain(&further).map(|code| code.registers).max().unwrap_or(0);
+        let mut all = vec![code(&rates.0, &rates.1), code(&linear.0, &linear.1), code(&graph, &nodes)];
+        all.extend(further.iter().map(|group| code(&graph, group)));
+        all.iter_mut().zip(looks).for_each(|(code, delays)| code.delays = delays);
+        let delays = delayed::values(&graph, system, start, |roots| code(&graph, roots));
+        let behind = delays.iter().flat_map(|delayed| [&delayed.delay, &delayed.value]);
+        let registers = all.iter().chain(behind).map(|code| code.registers).max().unwrap_or(0);
+        let further = all.split_off(3);
+        let [rates, linear, observe] = all.try_into().expect("three codes are left");
         Ok(Self {
             name: system.name.clone(),
             variables,
@@ -123,6 +144,9 @@ impl Program {
             pattern,
             observe,
             further,
+            system: (!delays.is_empty()).then(|| Arc::new(system.clone())),
+            delays,
+            start,
             registers,
             constants: constants.values,
         })
@@ -138,6 +162,11 @@ impl Program {
         1 + self.variables.len()
     }
 
+    /// The register of the first constant.
+    fn first_constant(&self) -> usize {
+        self.first_open() + self.open.len() + 2 * self.delays.len()
+    }
+
     /// The index of an open quantity among the open ones.
     pub fn open_index(&self, quantity: QuantityId) -> Option<usize> {
         self.open.iter().position(|&open| open == quantity)
@@ -151,7 +180,7 @@ impl Program {
     /// Sets the registers of the constants.
     #[inline(always)]
     pub fn set_constants<const L: usize>(&self, file: &mut [Lanes<L>]) {
-        let first = self.first_open() + self.open.len();
+        let first = self.first_constant();
         for (register, &value) in file[first..].iter_mut().zip(&self.constants) {
             *register = [value; L];
         }
@@ -165,16 +194,17 @@ impl Program {
 
     /// How many registers every code of the program fits in.
     fn registers(&self) -> usize {
-        self.registers.max(1 + self.variables.len() + self.open.len() + self.constants.len())
+        self.registers.max(self.first_constant() + self.constants.len())
     }
 
     /// A file of registers with the constants set and the slots at their initial values.
     pub fn file<const L: usize>(&self) -> Vec<Lanes<L>> {
         let mut file = vec![[0.0; L]; self.registers()];
         let slots = self.variables.iter().chain(&self.open).map(|&quantity| self.initial[quantity as usize]);
-        for (register, value) in file[1..].iter_mut().zip(slots.chain(self.constants.iter().copied())) {
+        for (register, value) in file[1..].iter_mut().zip(slots) {
             *register = [value; L];
         }
+        self.set_constants(&mut file);
         file
     }
 }
@@ -211,6 +241,8 @@ fn quantity_nodes(
 ) -> Result<Vec<NodeId>, Vec<String>> {
     // Slots first, so that their nodes have the smallest numbers.
     graph.slot(0);
+    graph.has_history = !system.history.is_empty();
+    graph.first_delayed = 1 + (variables.len() + open.len()) as u32;
     let mut nodes = vec![NodeId::MAX; system.quantities.len()];
     for (index, &quantity) in variables.iter().chain(open).enumerate() {
         nodes[quantity as usize] = graph.slot(1 + index as u32);
@@ -242,7 +274,7 @@ fn linear_nodes(graph: &mut Graph, rates: &[NodeId]) -> (Vec<NodeId>, Vec<(u32, 
     nodes.extend(rates.iter().map(|&rate| graph.derivative(rate, 0)).collect::<Vec<_>>());
     let mut pattern = Vec::new();
     for (row, &rate) in rates.iter().enumerate() {
-        for column in slots_used(graph, rate).into_iter().filter(|slot| (1..=rates.len() as u32).contains(slot)) {
+        for column in graph.slots(&[rate]).into_iter().filter(|slot| (1..=rates.len() as u32).contains(slot)) {
             let entry = graph.derivative(rate, column);
             if graph.value(entry) != Some(0.0) {
                 pattern.push((row as u32, column - 1));
@@ -251,16 +283,4 @@ fn linear_nodes(graph: &mut Graph, rates: &[NodeId]) -> (Vec<NodeId>, Vec<(u32, 
         }
     }
     (nodes, pattern)
-}
-
-/// The slots that a node depends on, in order.
-fn slots_used(graph: &Graph, root: NodeId) -> Vec<u32> {
-    let needed = graph.needed(&[root]);
-    let slot = |id: usize| match graph.node(id as NodeId) {
-        graph::Node::Slot(slot) if needed[id] => Some(slot),
-        _ => None,
-    };
-    let mut slots: Vec<u32> = (0..graph.len()).filter_map(slot).collect();
-    slots.sort_unstable();
-    slots
 }

@@ -2,8 +2,8 @@
 //!
 //! A fast reaction of one reactant A and one product B, n_A' = … − α J and n_B' = … + β J, keeps n_A/α + n_B/β. This total is the state
 //! in place of the two amounts: slow reactions change it, and both amounts follow from it and from J = 0, where the law is linear
-//! in them. Where one of the two is at the boundary the other follows from it. The equilibrium must draw amounts near: J falls
-//! as the reaction goes on.
+//! in them, or proportional to both (`catalysis`). Where one of the two is at the boundary the other follows from it. The equilibrium
+//! must draw amounts near: J falls as the reaction goes on.
 
 use super::document::Reaction;
 use super::linear::line;
@@ -13,7 +13,7 @@ use crate::equations::tree::{Expr, QuantityId, Role};
 use std::cell::Cell;
 
 /// How many rules and initial assignments a number may be behind.
-const DEPTH: usize = 8;
+pub const DEPTH: usize = 8;
 
 impl<'a> Plan<'_, 'a> {
     /// Adds quantities for what fast reactions keep, before rates of change are numbered. Fast reactions of which no equilibrium is
@@ -86,6 +86,16 @@ impl<'a> Plan<'_, 'a> {
             }
             None => quantity(other.amount),
         };
+        let law = &match total {
+            Some(_) => self.without_catalysis(law, if from_product { [other, solved] } else { [solved, other] })?,
+            None => law.clone(),
+        };
+        if let (Expr::Number(0.0), Some(total)) = (law, total) {
+            let parts = [(solved, &used), (other, &made)].map(|(ids, by)| quotient(quantity(ids.amount), by.clone()));
+            let [a, b] = parts;
+            self.quantities[total as usize].role = Role::Defined { rule: sum(a, b) };
+            return Some(());
+        }
         let law = replaced(law, &|quantity_id| match quantity_id {
             id if id == other.amount => Some(partner.clone()),
             id if id == other.concentration => Some(quotient(partner.clone(), other.size())),
@@ -93,8 +103,11 @@ impl<'a> Plan<'_, 'a> {
             _ => None,
         });
         let (slope, constant) = line(&law, solved.amount)?;
-        let drawn = self.steady_value(&slope, true, DEPTH) * if from_product { -1.0 } else { 1.0 };
-        if drawn.is_nan() || drawn <= 0.0 {
+        // The equilibrium holds from the start on.
+        for amount in [solved.amount, other.amount] {
+            self.history.push((amount, self.quantities[amount as usize].initial.clone()));
+        }
+        if !self.has_sign(&slope, if from_product { -1.0 } else { 1.0 }, None) {
             return None;
         }
         if let Some(total) = total {
@@ -128,7 +141,7 @@ impl<'a> Plan<'_, 'a> {
     }
 
     /// The value of what never changes, but for the sizes of compartments if these may; not a number where it depends on more.
-    fn steady_value(&self, expr: &Expr, sizes: bool, depth: usize) -> f64 {
+    pub fn steady_value(&self, expr: &Expr, sizes: bool, depth: usize) -> f64 {
         let Some(depth) = depth.checked_sub(1).filter(|_| !expr.uses_time()) else { return f64::NAN };
         let varies = Cell::new(false);
         let value = expr.evaluate(f64::NAN, &|quantity_id: QuantityId| {
@@ -148,7 +161,7 @@ impl<'a> Plan<'_, 'a> {
 
     fn not_solved_for(&self, reaction: &Reaction<'a>) {
         let found = format!("reaction `{}` is fast, and its equilibrium is not solved for", reaction.id);
-        let help = "it is where one reactant becomes one product by a law linear in both, and no rule, event or other fast reaction \
+        let help = "it is where one reactant becomes one product by a law linear in both or proportional to both, and no rule, event or other fast reaction \
                     changes these; else write the equilibrium with rules, or give the reaction a law much quicker than the others";
         self.page.fault_in(reaction.node, "fast", found, help);
     }

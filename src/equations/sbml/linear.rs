@@ -38,7 +38,8 @@ fn parts(expr: &Expr, x: QuantityId) -> Option<Line> {
         return Some(Line { slope: ZERO, rest: expr.clone() });
     }
     match expr {
-        Expr::Number(_) | Expr::Time => None,
+        // What was is not what is.
+        Expr::Number(_) | Expr::Time | Expr::Delay(..) => None,
         Expr::Quantity(_) => Some(Line { slope: Expr::Number(1.0), rest: ZERO }),
         Expr::Unary(Unary::Neg, a) => parts(a, x).map(|a| Line { slope: negative(a.slope), rest: negative(a.rest) }),
         Expr::Unary(..) => None,

@@ -187,7 +187,7 @@ impl<'p, 'a> Reader<'p, 'a> {
 
     fn unknown_symbol<T>(&self, node: Node<'a>) -> Option<T> {
         let url = node.attribute("definitionURL").unwrap_or_default();
-        let help = "time, avogadro and rateOf are known, as http://www.sbml.org/sbml/symbols/time and so on";
+        let help = "time, avogadro, delay and rateOf are known, as http://www.sbml.org/sbml/symbols/time and so on";
         self.fault(node, format!("the csymbol `{url}` is not known"), help)
     }
 
@@ -265,8 +265,12 @@ impl<'p, 'a> Reader<'p, 'a> {
                 }
             }
             "delay" => {
-                let help = "write the model with stages in between (a chain of species) in place of the delay";
-                self.fault(head, "delay() is not supported: this is a delay differential equation", help)
+                let [value, delay] = operands else {
+                    let found = format!("delay is given {} values", operands.len());
+                    return self.fault(head, found, "it takes two: what is looked back at, and how far");
+                };
+                let (value, delay) = (self.expr(*value, scope, level + 1)?, self.expr(*delay, scope, level + 1)?);
+                Some(Expr::Delay(Box::new(value), Box::new(delay)))
             }
             "time" | "avogadro" => {
                 self.fault(head, "this is a value, not a function", "use it outside of an operator's place")

@@ -5,10 +5,12 @@
 //! `J` is `J.k`. What is read, and how it is meant, is told in the chapter on SBML of the book.
 
 mod algebraic;
+mod catalysis;
 mod checks;
 mod document;
 mod events;
 mod fast;
+mod history;
 mod linear;
 mod math;
 mod notes;
@@ -85,7 +87,7 @@ pub fn is_sbml(text: &str) -> bool {
 ///
 /// # Errors
 /// [`crate::error::Error::Input`] with all faults found, each at its location: XML that is hostile or not well formed,
-/// constructs that are not supported (delays, packages that the model needs, algebraic rules and fast reactions that are not
+/// constructs that are not supported (packages that the model needs, algebraic rules and fast reactions that are not
 /// linear in what they determine), names
 /// that are not known, contradicting statements, definitions in a circle.
 pub fn read(source: &Arc<Source>) -> Result<Model> {
@@ -109,12 +111,18 @@ pub fn read(source: &Arc<Source>) -> Result<Model> {
         concentration: plan.amounts[number] + 1,
         compartment: quantity_id(species.compartment),
     });
+    let mut system =
+        System { name: document.name.to_owned(), quantities: plan.quantities, events, ..System::default() };
+    if system.has_delays() {
+        system.history = plan.history;
+        history::of_starts(&mut system);
+    }
     Ok(Model {
         species: species.collect(),
         compartments: document.compartments.iter().map(|compartment| quantity_id(compartment.id)).collect(),
         parameters: document.parameters.iter().map(|parameter| quantity_id(parameter.id)).collect(),
         reactions: document.reactions.iter().map(|reaction| quantity_id(reaction.id)).collect(),
-        system: System { name: document.name.to_owned(), quantities: plan.quantities, events },
+        system,
         notices,
     })
 }

@@ -92,7 +92,7 @@ pub fn extent(expr: &Expr) -> (usize, usize) {
     match expr {
         Expr::Number(_) | Expr::Time | Expr::Quantity(_) => {}
         Expr::Unary(_, a) => below(a),
-        Expr::Binary(_, a, b) => {
+        Expr::Binary(_, a, b) | Expr::Delay(a, b) => {
             below(a);
             below(b);
         }
@@ -118,5 +118,6 @@ pub fn replaced(expr: &Expr, by: &impl Fn(QuantityId) -> Option<Expr>) -> Expr {
             branches: branches.iter().map(|(c, v)| (replaced(c, by), replaced(v, by))).collect(),
             otherwise: Box::new(replaced(otherwise, by)),
         },
+        Expr::Delay(value, delay) => Expr::Delay(Box::new(replaced(value, by)), Box::new(replaced(delay, by))),
     }
 }

@@ -67,6 +67,8 @@ pub struct Plan<'p, 'a> {
     pub unset: Vec<QuantityId>,
     /// Fast reactions that are solved for.
     pub equilibria: Vec<Equilibrium>,
+    /// What quantities were before the start, where it does not follow from the start.
+    pub history: Vec<(QuantityId, Expr)>,
 }
 
 impl<'p, 'a> Plan<'p, 'a> {
@@ -87,6 +89,7 @@ impl<'p, 'a> Plan<'p, 'a> {
             locals: HashMap::new(),
             unset: Vec::new(),
             equilibria: Vec::new(),
+            history: Vec::new(),
         };
         plan.declare();
         plan.statements();

@@ -198,6 +198,8 @@ impl<'a> Plan<'_, 'a> {
             let made = self.quantity(id, node);
             self.quantities[made as usize].role = Role::Defined { rule };
             self.quantities[made as usize].name.clear();
+            // Nothing changed before the start.
+            self.history.push((made, number(0.0)));
         }
     }
 

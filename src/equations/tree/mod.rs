@@ -1,6 +1,7 @@
 //! The equations of a system as a tree: what EML and SBML are read into and what every solver is fed from.
 
 mod functions;
+mod walk;
 
 pub use functions::{Binary, Unary, larger, smaller};
 
@@ -29,6 +30,8 @@ pub enum Expr {
         /// The value when no condition holds.
         otherwise: Box<Expr>,
     },
+    /// What the first was a time ago that the second tells: x(t − τ). Not below 0; at 0 it is the value now.
+    Delay(Box<Expr>, Box<Expr>),
 }
 
 /// What a quantity is.
@@ -97,6 +100,9 @@ pub struct System {
     pub quantities: Vec<Quantity>,
     /// All events.
     pub events: Vec<Event>,
+    /// What some quantities were before the start: expressions of parameters and the time. All others had their values of the
+    /// start, and defined ones followed from these by their rules.
+    pub history: Vec<(QuantityId, Expr)>,
 }
 
 impl System {
@@ -109,6 +115,27 @@ impl System {
     pub fn variables(&self) -> Vec<QuantityId> {
         let is_variable = |number: &QuantityId| matches!(self.quantities[*number as usize].role, Role::Variable { .. });
         (0..self.quantities.len() as QuantityId).filter(is_variable).collect()
+    }
+
+    /// What a quantity was before the start, where that does not follow from the start.
+    pub fn before_start(&self, quantity: QuantityId) -> Option<&Expr> {
+        self.history.iter().find(|(of, _)| *of == quantity).map(|(_, before)| before)
+    }
+
+    /// Whether anything looks back: the equations are delay differential equations.
+    pub fn has_delays(&self) -> bool {
+        let of_quantity = |quantity: &Quantity| match &quantity.role {
+            Role::Variable { rate: own } | Role::Defined { rule: own } => {
+                own.has_delay() || quantity.initial.has_delay()
+            }
+            Role::Parameter | Role::Input => quantity.initial.has_delay(),
+        };
+        let of_event = |event: &Event| {
+            let formulas = [Some(&event.trigger), event.delay.as_ref(), event.priority.as_ref()];
+            let values = event.assignments.iter().map(|(_, value)| value);
+            formulas.into_iter().flatten().chain(values).any(Expr::has_delay)
+        };
+        self.quantities.iter().any(of_quantity) || self.events.iter().any(of_event)
     }
 
     /// Numbers of the defined quantities in an order in which each uses only those before it.
@@ -160,70 +187,4 @@ enum Mark {
     New,
     Open,
     Done,
-}
-
-impl Expr {
-    /// Whether it uses the time itself.
-    pub fn uses_time(&self) -> bool {
-        match self {
-            Self::Time => true,
-            Self::Number(_) | Self::Quantity(_) => false,
-            Self::Unary(_, a) => a.uses_time(),
-            Self::Binary(_, a, b) => a.uses_time() || b.uses_time(),
-            Self::Piecewise { branches, otherwise } => {
-                otherwise.uses_time() || branches.iter().any(|(a, b)| a.uses_time() || b.uses_time())
-            }
-        }
-    }
-
-    /// Visits the number of every quantity used, as often as it is used.
-    pub fn each_quantity(&self, visit: &mut impl FnMut(QuantityId)) {
-        match self {
-            Self::Number(_) | Self::Time => {}
-            Self::Quantity(number) => visit(*number),
-            Self::Unary(_, a) => a.each_quantity(visit),
-            Self::Binary(_, a, b) => {
-                a.each_quantity(visit);
-                b.each_quantity(visit);
-            }
-            Self::Piecewise { branches, otherwise } => {
-                for (condition, value) in branches {
-                    condition.each_quantity(visit);
-                    value.each_quantity(visit);
-                }
-                otherwise.each_quantity(visit);
-            }
-        }
-    }
-
-    /// The same with an expression in the place of a quantity.
-    pub fn replaced(&self, quantity: QuantityId, by: &Self) -> Self {
-        let of = |part: &Self| part.replaced(quantity, by);
-        let boxed = |part: &Self| Box::new(of(part));
-        match self {
-            Self::Quantity(number) if *number == quantity => by.clone(),
-            Self::Number(_) | Self::Time | Self::Quantity(_) => self.clone(),
-            Self::Unary(function, a) => Self::Unary(*function, boxed(a)),
-            Self::Binary(function, a, b) => Self::Binary(*function, boxed(a), boxed(b)),
-            Self::Piecewise { branches, otherwise } => Self::Piecewise {
-                branches: branches.iter().map(|(condition, value)| (of(condition), of(value))).collect(),
-                otherwise: boxed(otherwise),
-            },
-        }
-    }
-
-    /// The value, computed directly: the oracle of the compiled programs. `value` gives the value of a quantity.
-    pub fn evaluate(&self, time: f64, value: &impl Fn(QuantityId) -> f64) -> f64 {
-        match self {
-            Self::Number(number) => *number,
-            Self::Time => time,
-            Self::Quantity(number) => value(*number),
-            Self::Unary(function, a) => function.apply(a.evaluate(time, value)),
-            Self::Binary(function, a, b) => function.apply(a.evaluate(time, value), b.evaluate(time, value)),
-            Self::Piecewise { branches, otherwise } => {
-                let chosen = branches.iter().find(|(condition, _)| condition.evaluate(time, value) != 0.0);
-                chosen.map_or(otherwise.as_ref(), |(_, value)| value).evaluate(time, value)
-            }
-        }
-    }
 }

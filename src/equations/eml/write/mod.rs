@@ -125,6 +125,9 @@ impl<'a> Writer<'a> {
         if let Some(field) = document.fields.iter().find(|field| field.quantity == number) {
             return self.field(field, quantity, &head, &tail);
         }
+        if let Some(before) = document.system.before_start(number) {
+            tail.push_str(&attribute("history", &self.history(before)));
+        }
         if let Role::Defined { rule } = &quantity.role {
             let rule = self.expression(rule);
             return self.line(format_args!("  <define{head}{tail}>{rule}</define>"));
@@ -168,6 +171,16 @@ impl<'a> Writer<'a> {
     fn noise(&self, number: QuantityId) -> String {
         let noise = self.document.noise.iter().find(|noise| noise.quantity == number);
         noise.map_or(String::new(), |noise| attribute("noise", &self.expression(&noise.strength)))
+    }
+
+    /// The text of what was before the start, which EML makes of parameters and the time.
+    fn history(&self, before: &Expr) -> String {
+        if !uses(before, &|other| !self.fixed[other]) {
+            return self.expression(before);
+        }
+        let values = initial_values(&self.document.system, 0.0).unwrap_or_default();
+        let at_start = |number: QuantityId| values.get(number as usize).copied().unwrap_or(f64::NAN);
+        self.expression(&Expr::Number(before.evaluate(0.0, &at_start)))
     }
 
     /// The text of the value at the start, which EML wants finite and without time.

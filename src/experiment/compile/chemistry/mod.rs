@@ -12,7 +12,7 @@ use super::super::{Chemistry as Entry, Document, Scheme};
 use super::size::{self, Size};
 use crate::equations::eml::{self, Level};
 use crate::equations::program::{Program, initial_values};
-use crate::equations::tree::{QuantityId, Role};
+use crate::equations::tree::{Quantity, QuantityId, Role};
 use crate::error::{Error, Fault, Location};
 use crate::field::{FieldSystem, Fields, Placing};
 use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Noise, Pace, Tolerances, assigned_parameters, too_large};
@@ -146,6 +146,10 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         faults.push(at(document, &part.key("document"), "this document", fault));
         return None;
     }
+    if eml.system.has_delays() {
+        faults.push(delays(document, part));
+        return None;
+    }
     let compiled = match eml.system.events.is_empty() {
         true => Program::new(&eml.system).map(|program| (program, EventPlan::default())),
         false => EventPlan::compile(&eml.system, 0.0),
@@ -186,6 +190,21 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         exchange,
         recorded: quantities.map(|(number, q)| (number as u32, q.id.clone(), q.unit.clone())).collect(),
     })
+}
+
+/// The fault of a system that looks back, told where it does.
+fn delays(document: &Document, part: &Part) -> Fault {
+    let system = &part.document.system;
+    let looks_back = |quantity: &Quantity| match &quantity.role {
+        Role::Variable { rate: own } | Role::Defined { rule: own } => own.has_delay() || quantity.initial.has_delay(),
+        Role::Parameter | Role::Input => false,
+    };
+    let message = format!("`{}` uses `delay`, and systems in an experiment keep no history", part.name);
+    let help = "solve it alone with `pseudopod eml solve`, or write a chain of stages in place of the delay";
+    match system.quantities.iter().position(looks_back) {
+        Some(number) => within(&part.document.locations[number], "looks back", message, help),
+        None => at(document, &part.key("document"), "this document", Fault::new(message).help(help)),
+    }
 }
 
 /// How often the noise of a system kicks, in a unit of time of so many seconds.
