@@ -134,7 +134,7 @@ mod tests {
         let mut marks = Marks::new(vec![0.1], 4);
         marks.start(0.3);
         // 0.4 − 0.1 is above 0.3 in the last place, 0.3 + 0.1 − 0.1 may be below.
-        let (begin, end) = (0.3 + 0.1 - 0.1, 0.3_f64.next_down());
+        let (begin, end) = (0.3_f64 + 0.1 - 0.1, 0.3_f64.next_down());
         assert_eq!(marks.settled(begin.min(end), Some(0.31), 0.4), 0.3);
         assert!(marks.settled(0.3, Some(0.29), 0.4) < 0.3);
         assert_eq!(marks.settled(0.3_f64.next_down(), None, 0.4), 0.3);

@@ -163,7 +163,7 @@ impl Problem {
             4.0 * self.spacing,
             fields.collect::<String>()
         );
-        let document = eml::read(Arc::new(Source { name: "problem.eml".into(), text: text.into() }));
+        let document = eml::read(Arc::new(Source { name: "problem.eml".into(), text }));
         FieldSystem::new(&document.expect("a good document"), None).expect("a good grid")
     }
 }

@@ -473,7 +473,8 @@ fn faults_of_a_document_keep_their_positions() {
 fn a_state_that_names_what_is_not_there_is_refused() {
     // As it may come from a file with good checksums.
     let bond = PlaneBond { atom: 0, plane: 0, force: [0.0; 3], stored: 0.0 };
-    let spoilt: [(&str, &dyn Fn(&mut State)); 4] = [
+    type Spoil<'a> = &'a dyn Fn(&mut State);
+    let spoilt: [(&str, Spoil); 4] = [
         ("its time is NaN s", &|state| state.time = f64::NAN),
         ("its contacts are", &|state| state.contact.planes.push(PlaneBond { plane: u32::MAX, ..bond })),
         ("its contacts are", &|state| state.contact.released.push(1_000_000)),
