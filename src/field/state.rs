@@ -1,5 +1,6 @@
 //! The values of all species on one grid.
 
+use super::error::Change;
 use super::grid::Grid;
 use super::react::PartScratch;
 use super::species::Species;
@@ -50,6 +51,8 @@ pub(super) struct Work {
     pub spread: Vec<f64>,
     /// The factors of that time, without decay.
     spreading: Factors,
+    /// What reactions changed in it.
+    pub change: Change,
     /// An error may be negative.
     free: Vec<Range>,
 }
@@ -72,6 +75,7 @@ impl Work {
             whole: vec![0.0; grid.len() * species.len()],
             spread: vec![0.0; grid.len() * species.len()],
             spreading: Factors::new(grid, species),
+            change: Change::default(),
             free: vec![Range::Free; species.len()],
         }
     }
@@ -80,6 +84,7 @@ impl Work {
     fn poison(&mut self) {
         self.factors.iter_mut().for_each(|factors| factors.dt = f64::NAN);
         self.spreading.dt = f64::NAN;
+        self.change.poison();
         let lists = [&mut self.start, &mut self.before, &mut self.whole, &mut self.spread];
         lists.into_iter().chain(&mut self.sweeping).for_each(|list| list.fill(f64::NAN));
         self.reacting.iter_mut().for_each(PartScratch::poison);

@@ -1,7 +1,7 @@
 //! Moves fields through a window of time: reactions for half a step, diffusion and decay for a step, reactions for
 //! half a step, eq. (field.1), with steps as small as the splitting asks.
 
-use super::error::{Change, error_of_rates, error_of_size};
+use super::error::{error_of_rates, error_of_size};
 use super::react::{React, react};
 use super::state::{FINEST, Fields};
 use crate::equations::Range;
@@ -181,15 +181,15 @@ impl Fields {
         if !reacts || too_large(of_size) {
             return of_size;
         }
-        let change = Change::new(grid.len(), values, [&work.before, &work.whole, &work.spread]);
-        if change.share == 0.0 {
+        work.change.take(grid.len(), values, [&work.before, &work.whole, &work.spread]);
+        if work.change.share == 0.0 {
             return of_size;
         }
         for ((error, fine), whole) in work.spread.iter_mut().zip(&*values).zip(&work.whole) {
             *error = 4.0 / 3.0 * (fine - whole);
         }
-        work.spread_out(grid, species, dt / change.share);
-        let of_rates = error_of_rates(&work.spread, &change, tolerance);
+        work.spread_out(grid, species, dt / work.change.share);
+        let of_rates = error_of_rates(&work.spread, &work.change, tolerance);
         if of_rates.is_nan() { of_rates } else { of_size.max(of_rates) }
     }
 
