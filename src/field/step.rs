@@ -176,12 +176,14 @@ impl Fields {
 
     /// The error of the step that was taken whole and in halves, in tolerances.
     fn error(&mut self, dt: f64, tolerance: [f64; 2], reacts: bool) -> f64 {
-        let Self { grid, species, values, work, .. } = self;
-        let of_size = error_of_size(grid.len(), values, &work.whole, tolerance);
+        let Self { grid, species, values, work, level, .. } = self;
+        let steps = f64::from(1_u32 << *level);
+        let begun = reacts.then_some((&*work.before, steps));
+        let of_size = error_of_size(grid.len(), values, &work.whole, tolerance, begun);
         if !reacts || too_large(of_size) {
             return of_size;
         }
-        work.change.take(grid.len(), values, [&work.before, &work.whole, &work.spread]);
+        work.change.take(grid.len(), values, [&work.before, &work.whole, &work.spread], steps);
         if work.change.share == 0.0 {
             return of_size;
         }

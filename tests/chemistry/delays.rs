@@ -83,10 +83,9 @@ fn fixed_steps_keep_their_order_whether_they_divide_the_delay_or_not() {
     }
 }
 
-/// The step of a scheme without a given one, forced by a tolerance of 10 to the power, falls with the order.
 #[test]
 fn errors_fall_with_the_tolerance_where_a_rate_depends_on_now_and_then() {
-    // x' = cos t − x + x(t − π/2) + cos t … is solved by x = sin t with the history sin t.
+    // x' = −x(t − π/2) + (x − sin t)/2 is solved by x = sin t with the history sin t.
     let parts = r#"<parameter id="tau" value="pi/2"/>
         <variable id="x" initial="0" history="sin(time)" rate="-delay(x, tau) + 0.5*(x - sin(time))"/>
         <define id="then">delay(x^2, tau)</define>"#;
@@ -99,14 +98,14 @@ fn errors_fall_with_the_tolerance_where_a_rate_depends_on_now_and_then() {
                 values(&system, "x", &points, &options(method, relative)),
                 values(&system, "then", &points, &options(method, relative)),
             );
-            // The equation lets errors grow to e^3 = 20 times until then.
+            // The equation lets errors grow to e^3 = 20 times until then, and those of squares are twice as large.
             assert!(largest(&x, &exact) <= 40.0 * relative, "{method:?} at {relative:e}: {:e}", largest(&x, &exact));
             assert!(largest(&squares, &then) <= 80.0 * relative, "{method:?} at {relative:e}");
         }
     }
 }
 
-/// y' = −y(t − τ) for a decay that is much faster than the delay: λ = −exp(−λτ), steps are longer than the delay.
+/// y' = −y(t − τ) with a decay that is much slower than the delay: y = exp(λt) with λ = −exp(−λτ), and steps are longer than the delay.
 #[test]
 fn steps_longer_than_the_delay_look_back_at_themselves() {
     let tau = 1e-3;
@@ -125,16 +124,16 @@ fn steps_longer_than_the_delay_look_back_at_themselves() {
     }
 }
 
-/// A delay that depends on the state: y' = 1/(2 y^2)… with y(t − (t − s(t))) known: y = √t looks back from t to t/4 where y/2 is.
 #[test]
 fn a_delay_may_depend_on_the_state() {
-    // y = √t solves y' = 1/(4 y(t − τ)) with τ = 3 y²/4 = 3 t/4, since y(t/4) = √t/2; history from 1 back to 1/4.
+    // y = √(1 + t) looks back by τ = 3y²/4 to where it was y/2, so that y' = 1/(2y) = 1/(4 y(t − τ)).
     let parts = r#"<variable id="y" initial="1" history="sqrt(1 + time)" rate="1/(4*delay(y, 0.75*y^2))"/>"#;
     let (system, points) = (system(parts), every(0.5, 20));
     let exact: Vec<f64> = points.iter().map(|time| (1.0 + time).sqrt()).collect();
     for method in ADAPTIVE {
         for relative in [1e-5, 1e-7, 1e-9] {
             let off = largest(&values(&system, "y", &points, &options(method, relative)), &exact);
+            // y grows to 3.3, and some ten steps add their errors up; where the delay has kinks, the error estimate alone finds them.
             assert!(off <= 20.0 * relative, "{method:?} at {relative:e}: {off:e}");
         }
     }
@@ -216,6 +215,7 @@ fn hes1_oscillates_as_the_trapezoidal_rule_says() {
     let expected = on_grids(740.0, 18.5, &[3.0, 100.0], 0.03, &made);
     for method in ADAPTIVE {
         let found = values(&system, "P", &[740.0], &options(method, 1e-9))[0];
+        // A hundred times the tolerance: phases of six periods add errors up.
         assert!((found / expected - 1.0).abs() < 1e-7, "{method:?}: {found}, not {expected}");
     }
 }
@@ -227,7 +227,7 @@ fn mackey_and_glass_agree_with_the_trapezoidal_rule() {
     let expected = on_grids(17.0 * 12.0, 17.0, &[1.2], 0.1, &made);
     for method in ADAPTIVE {
         let found = values(&system(parts), "x", &[17.0 * 12.0], &options(method, 1e-9))[0];
-        // Errors grow e-fold in some 150 units of time.
+        // A thousand times the tolerance: the course is chaotic, and errors add up over twelve delays and grow.
         assert!((found / expected - 1.0).abs() < 1e-6, "{method:?}: {found}, not {expected}");
     }
 }

@@ -225,6 +225,68 @@ fn ten_problems_and_more_are_within_a_hundredth_of_their_range_at_the_default_to
     }
 }
 
+/// What begins at nothing is wrong by the same part of itself in the first step, however short that is, and does not end the run.
+#[test]
+fn what_begins_at_nothing_with_whole_and_broken_powers_is_made() {
+    let problem = Problem {
+        name: "a cascade",
+        spacing: 1.0,
+        until: 5.0,
+        parameters: &[],
+        fields: &[
+            ["U", "1", "0", "1"],
+            ["V", "1", "0", "U^4/(1 + U^4)"],
+            ["W", "1", "0", "sqrt(U)"],
+            ["X", "0.1", "0", "V^1.1/(1 + V^1.1)"],
+        ],
+        attributes: "",
+    };
+    let none = |_: &eml::Profile, _: &_| Err(Error::input(Fault::new("no file was expected")));
+    let system = problem.system();
+    let start = system.start(&none).expect("good profiles");
+    let exact = system.reference(&start, 5.0, &[], 1e-10, 1e-13).expect("the method of lines");
+    let (relative, absolute) = system.usual_tolerance();
+    for windows in [1_u32, 9] {
+        let (mut fields, mut steps) = (start.clone(), 0);
+        for _ in 0..windows {
+            let stepping = Stepping::Adaptive { relative, absolute };
+            steps += system.advance(&mut fields, 5.0 / f64::from(windows), &[], stepping).expect("a window").steps;
+        }
+        let off = |species: usize| (fields.values(species)[0] / exact.values(species)[0] - 1.0).abs();
+        println!("{windows} windows, {steps} steps: {:?} off", [0, 1, 2, 3].map(off));
+        // One tolerance: the errors of its steps do not add up beyond it.
+        assert!((0..4).all(|species| off(species) < relative) && steps < 200, "{steps} {:?}", [0, 1, 2, 3].map(off));
+    }
+}
+
+/// Where a rate jumps no step is as wrong as its length to a power: it is passed in short steps, and does not end the run.
+#[test]
+fn a_rate_that_jumps_in_all_boxes_at_once_is_passed() {
+    let problem = Problem {
+        name: "a switch",
+        spacing: 1.0,
+        until: 2.0,
+        parameters: &[],
+        fields: &[["U", "1", "0.001", "piecewise(1, U lt 0.5, 0.1)"]],
+        attributes: "",
+    };
+    let none = |_: &eml::Profile, _: &_| Err(Error::input(Fault::new("no file was expected")));
+    let system = problem.system();
+    let (relative, absolute) = system.usual_tolerance();
+    for windows in [1_u32, 7, 1000] {
+        let (mut fields, mut steps) = (system.start(&none).expect("a good profile"), 0);
+        for _ in 0..windows {
+            let stepping = Stepping::Adaptive { relative, absolute };
+            steps += system.advance(&mut fields, 2.0 / f64::from(windows), &[], stepping).expect("a window").steps;
+        }
+        // At 0.499 s it is 0.5, and rises at a tenth of the rate from then on.
+        let off = fields.values(0).iter().map(|u| (u - (0.5 + 0.1 * (2.0 - 0.499))).abs()).fold(0.0, f64::max);
+        println!("{windows} windows: {off:e} off, {steps} steps");
+        // The step in which it jumps is wrong by a hundredth of the tolerance.
+        assert!(off < 0.01 * relative && steps < windows + 200, "{windows}: {off:e}, {steps} steps");
+    }
+}
+
 #[test]
 #[ignore = "slow: a minute; prints the table by which the default tolerance of fields is chosen"]
 fn the_default_tolerance_is_chosen_by_a_table() {

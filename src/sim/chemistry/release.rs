@@ -17,12 +17,33 @@ const LONGEST: f64 = 0.5;
 /// Parts of a step at most.
 const MOST_PARTS: f64 = 64.0;
 
-/// What a part of a step releases, over the rate times its length: as much as is there at the end of the part, (1 − e^(−kΔt))/k, when half of
-/// its decay is before it.
-fn grown(decay: f64, length: f64) -> f64 {
-    let half = 0.5 * decay * length;
-    // Below this the next term is round-off.
-    if half < 1e-8 { 1.0 } else { half.sinh() / half }
+/// How the step of a field is cut into parts of equal lengths.
+#[derive(Debug, Clone, Copy)]
+struct Parts {
+    /// How many; 0 where nothing is released.
+    count: u32,
+    /// The length of each, s.
+    length: f64,
+    /// How long before the end of a part it is released, s: half of it, or less where the parts are still long for what decays fastest.
+    rest: f64,
+}
+
+impl Parts {
+    /// Of a step of this length into which substances with these rates of decay, 1/s, are released.
+    fn new(dt: f64, decays: impl Iterator<Item = f64>) -> Self {
+        let Some(decay) = decays.reduce(f64::max) else { return Self { count: 0, length: dt, rest: 0.0 } };
+        let count = (decay * dt / LONGEST).ceil().clamp(1.0, MOST_PARTS);
+        let length = dt / count;
+        Self { count: count as u32, length, rest: 0.5 * length.min(LONGEST / decay) }
+    }
+
+    /// What a part releases, over the rate, s: as much as leaves (1 − e^(−kδ))/k at its end when the rest of it has decayed.
+    fn released(&self, decay: f64) -> f64 {
+        let turns = decay * self.length;
+        // Below this the next term is round-off.
+        let left = if turns < 1e-8 { self.length } else { -f64::exp_m1(-turns) / decay };
+        left * (decay * self.rest).exp()
+    }
 }
 
 /// Moves all fields through a step, with what cells release into them meanwhile.
@@ -33,28 +54,22 @@ pub fn move_fields(
     ws: &mut Workspace,
 ) -> Result<(), Trouble> {
     for number in 0..model.chemistry.fields.len() {
-        let count = parts((model, number), dt, state);
-        if count == 0 {
+        let all = model.chemistry.secreted.iter().chain(&state.chemistry.controls.secreted);
+        let into = all.filter(|(field, _)| *field == number);
+        let parts = Parts::new(dt, into.map(|(_, species)| decay((model, number), *species)));
+        if parts.count == 0 {
             advance_field((model, number), (start, dt), state, ws)?;
         }
-        let length = dt / f64::from(count.max(1));
-        for part in 0..count {
-            let begin = start + f64::from(part) * length;
-            advance_field((model, number), (begin, 0.5 * length), state, ws)?;
-            deposit_secretion((model, number), length, state, ws);
-            deposit_at_atoms((model, number), length, state, ws);
-            advance_field((model, number), (begin + 0.5 * length, 0.5 * length), state, ws)?;
+        let before = parts.length - parts.rest;
+        for part in 0..parts.count {
+            let begin = start + f64::from(part) * parts.length;
+            advance_field((model, number), (begin, before), state, ws)?;
+            deposit_secretion((model, number), parts, state, ws);
+            deposit_at_atoms((model, number), parts, state, ws);
+            advance_field((model, number), (begin + before, parts.rest), state, ws)?;
         }
     }
     Ok(())
-}
-
-/// Into how many parts the step of a field is cut; 0 where nothing is released into it.
-fn parts((model, number): (&Model, usize), dt: f64, state: &State) -> u32 {
-    let all = model.chemistry.secreted.iter().chain(&state.chemistry.controls.secreted);
-    let into = all.filter(|(field, _)| *field == number);
-    let count = |&(_, species): &(usize, usize)| (decay((model, number), species) * dt / LONGEST).ceil();
-    into.map(|channel| count(channel).clamp(1.0, MOST_PARTS) as u32).max().unwrap_or(0)
 }
 
 /// The rate of decay of what is released, 1/s.
@@ -63,12 +78,12 @@ fn decay((model, field): (&Model, usize), species: usize) -> f64 {
 }
 
 /// Releases into a field what cells secrete in a part of a step, spread evenly over the atoms.
-fn deposit_secretion((model, field): (&Model, usize), dt: f64, state: &State, ws: &mut Workspace) {
+fn deposit_secretion((model, field): (&Model, usize), parts: Parts, state: &State, ws: &mut Workspace) {
     let scratch = &mut ws.chemistry;
     let controls = &state.chemistry.controls;
     let channels = model.chemistry.secreted.iter().chain(&controls.secreted).zip(&controls.secretion);
     for (&(_, species), rates) in channels.filter(|((into, _), _)| *into == field) {
-        let time = dt * grown(decay((model, field), species), dt);
+        let time = parts.released(decay((model, field), species));
         for (kind, now) in model.kinds.iter().zip(&state.kinds) {
             let atoms = kind.atoms();
             scratch.amounts.clear();
@@ -86,7 +101,7 @@ fn deposit_secretion((model, field): (&Model, usize), dt: f64, state: &State, ws
 }
 
 /// Releases into a field what atoms secrete in a part of a step, each on its own area.
-fn deposit_at_atoms((model, field): (&Model, usize), dt: f64, state: &State, ws: &mut Workspace) {
+fn deposit_at_atoms((model, field): (&Model, usize), parts: Parts, state: &State, ws: &mut Workspace) {
     let scratch = &mut ws.chemistry;
     let of_kinds = model.kinds.iter().zip(&state.kinds).zip(&state.chemistry.controls.of_atoms);
     for ((kind, now), controls) in of_kinds {
@@ -96,7 +111,7 @@ fn deposit_at_atoms((model, field): (&Model, usize), dt: f64, state: &State, ws:
             if into != field {
                 continue;
             }
-            let time = dt * grown(decay((model, field), species), dt);
+            let time = parts.released(decay((model, field), species));
             for cell in 0..now.cells() {
                 let ChemistryScratch { positions, amounts, shapes, fields, .. } = scratch;
                 positions.clear();
@@ -143,11 +158,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_released_into_decay_is_there_in_full_at_the_end() {
-        for (decay, length) in [(0.0, 3.0), (1e-12, 1.0), (0.3, 0.1), (2.0, 0.25), (0.7, 40.0)] {
-            let exact = if decay < 1e-9 { length } else { -f64::exp_m1(-decay * length) / decay };
-            let found = length * grown(decay, length) * f64::exp(-0.5 * decay * length);
-            assert!((found / exact - 1.0).abs() < 1e-10, "{decay} {length}: {found} {exact}");
+    fn what_is_released_into_decay_is_there_in_full_at_the_end_however_fast_it_is() {
+        for (decay, dt, count) in
+            [(0.0, 3.0, 1), (1e-12, 1.0, 1), (0.3, 0.1, 1), (2.0, 1.0, 4), (0.7, 400.0, 64), (1e7, 10.0, 64)]
+        {
+            let parts = Parts::new(dt, [decay, 0.5 * decay].into_iter());
+            assert_eq!(parts.count, count, "{decay} {dt}");
+            assert!(parts.rest > 0.0 && parts.rest <= 0.5 * parts.length && decay * parts.rest <= 0.25, "{parts:?}");
+            for decay in [decay, 0.5 * decay] {
+                let turns = decay * parts.length;
+                let exact = if turns < 1e-9 { parts.length } else { -f64::exp_m1(-turns) / decay };
+                let found = parts.released(decay) * f64::exp(-decay * parts.rest);
+                assert!((found / exact - 1.0).abs() < 1e-9, "{decay} {dt}: {found} {exact}");
+            }
         }
+        assert_eq!(Parts::new(1.0, std::iter::empty()).count, 0);
     }
 }
