@@ -179,6 +179,24 @@ fn an_edge_that_has_slid_in_over_its_end_touches_the_crest_that_it_passes_below(
 }
 
 #[test]
+fn an_edge_that_cuts_through_a_thin_ridge_that_leans_over_touches_its_crest() {
+    // Between the walls x = −z/5 and x = −z: what passes below the crest is beside the one, comes in through it and goes out through the other.
+    let ridge = tetrahedron([-Vec3::y(), Vec3::y(), Vec3::new(0.2, 0.0, -1.0), Vec3::new(1.0, 0.0, -1.0)]);
+    // Far across it, as far as just behind the second wall, between the two, and before it has come in.
+    for (end, touches) in [(1.0, true), (0.06, true), (0.03, true), (0.005, false)] {
+        let keel = keel(Vec3::new(end, 0.3, -0.05), Vec3::new(-1.2, 0.3, -0.05));
+        for stage in [pair(&ridge, &keel, REACH), pair(&keel, &ridge, REACH)] {
+            let contacts = detect(&stage);
+            let at_crest = contacts.edges.iter().find(|contact| (contact.gap + 0.05).abs() < 1e-12);
+            assert_eq!(at_crest.is_some(), touches, "end at {end}: {:?}", contacts.edges);
+            if let Some(contact) = at_crest {
+                assert!(contact.normal.wide().z.abs() > 0.999_999, "{contact:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn two_crossing_ridges_touch_by_their_edges_with_a_signed_gap() {
     for gap in [0.1, 0.02, -0.05] {
         let stage = pair(&tent(Vec3::x(), 0.0, 1.0), &tent(Vec3::new(0.6, 0.8, 0.0), gap, -1.0), REACH);

@@ -67,6 +67,9 @@ const PASSED: f64 = 0.01;
 /// it then.
 const BEYOND: f64 = 0.1;
 
+/// How far behind a facet an end stands on it, over what the edges have passed each other.
+const ON_FACET: f64 = 0.1;
+
 /// Where two edges touch: the parameters along both, the gap (µm) and the unit normal from the second to the first.
 #[inline]
 fn cross(
@@ -156,10 +159,11 @@ fn are_within(first: &Ridge, second: &Ridge, distance: f64) -> bool {
     closest_on_segments(ends(first), ends(second)).0 <= distance * distance
 }
 
-/// Whether an edge that passes below the crest of a ridge is behind both its facets there, or comes to be so close by and is nearer
-/// to the facet that faces it than to the other. On ridges sharper than a right angle an edge may be below the other's
+/// Whether an edge that passes below the crest of a ridge is behind both its facets there, or comes to be so close by: nearer to the facet
+/// that faces it than to the other, or on its way out through that. On ridges sharper than a right angle an edge may be below the other's
 /// crest and yet beside it; on one as sharp as that an edge that slides in over its end is still beside one facet where it
-/// crosses the crest, or crosses it just beyond its end, and inside next to that. `facing` is the direction into the ridge.
+/// crosses the crest, or crosses it just beyond its end, and inside next to that; and one that leans over may be cut through near its crest
+/// on so short a way that a tenth of the edge is past it. `facing` is the direction into the ridge.
 fn dips_into(edge: &Ridge, at: f64, ridge: &Ridge, gap: f64, facing: &Vec3) -> bool {
     let facets = ridge.normals().map(|normal| normal.normalize());
     let slopes = facets.map(|facet| edge.along.dot(&facet));
@@ -167,13 +171,21 @@ fn dips_into(edge: &Ridge, at: f64, ridge: &Ridge, gap: f64, facing: &Vec3) -> b
     // Behind a facet is negative.
     let heights = [0, 1].map(|facet| -gap * facing.dot(&facets[facet]) + (start - at) * slopes[facet]);
     let beside = usize::from(heights[1] > heights[0]);
-    if heights[beside] < 0.0 {
-        // An end that is inside is for the atom there.
-        return start == at;
+    if heights[beside] < 0.0 && start == at {
+        return true;
+    }
+    // An end that is inside is for the atom there; one that stands on a facet is held there, and its edge may yet cut through the ridge.
+    if heights[beside] < ON_FACET * gap {
+        return false;
     }
     let end = if slopes[beside] > 0.0 { (start - BEYOND).max(0.0) } else { (start + BEYOND).min(1.0) };
-    let [behind, behind_facing] = [beside, 1 - beside].map(|facet| -heights[facet] - (end - start) * slopes[facet]);
-    behind_facing > 0.0 && behind >= behind_facing
+    let from = [beside, 1 - beside].map(|facet| -heights[facet]);
+    let to = [beside, 1 - beside].map(|facet| -heights[facet] - (end - start) * slopes[facet]);
+    if to[1] > 0.0 {
+        return to[0] >= to[1];
+    }
+    // Where it comes out through the facet that faces it, it must have come in through the other.
+    from[1] > 0.0 && from[0] + from[1] / (from[1] - to[1]) * (to[0] - from[0]) > 0.0
 }
 
 /// How far facets may rise towards the other edge, as a sine, before a contact that was there is let go.

@@ -25,23 +25,43 @@ struct List {
     /// Where the facets near each facet begin, one more than there are facets.
     first: Vec<u32>,
     near: Vec<u32>,
+    /// What each was apart then, as whoever asked for the lists measures it.
+    apart: Vec<f32>,
     bounds: Vec<Bounds>,
+}
+
+/// The facets near one.
+#[derive(Debug, Clone, Copy)]
+pub struct Near<'a> {
+    /// Numbered through the scene, ascending.
+    pub facets: &'a [u32],
+    /// What each was apart when the lists were made.
+    pub apart: &'a [f32],
 }
 
 /// How much farther than what matters lists are made from, over that.
 const MARGIN: f64 = 0.5;
 
 impl NearFacets {
-    /// Makes the lists complete for all facets nearer than `range` (µm) to others at these positions.
-    pub fn follow(&mut self, scene: &Scene, positions: &[Vec3], range: f64) {
-        if !self.are_complete(positions, range) {
-            self.collect(scene, positions, (1.0 + MARGIN) * range);
+    /// Makes the lists complete for all facets nearer than `range` (µm) to others at these positions, and says whether they were made
+    /// anew: then it is kept of each two what they are `apart`.
+    pub fn follow(
+        &mut self,
+        scene: &Scene,
+        positions: &[Vec3],
+        range: f64,
+        apart: impl Fn(u32, u32) -> f32 + Sync,
+    ) -> bool {
+        let are_made = !self.are_complete(positions, range);
+        if are_made {
+            self.collect(scene, positions, (1.0 + MARGIN) * range, apart);
         }
+        are_made
     }
 
     /// Makes the lists for these positions alone.
-    pub fn find(&mut self, scene: &Scene, positions: &[Vec3], range: f64) {
-        self.collect(scene, positions, range);
+    pub fn find(&mut self, scene: &Scene, positions: &[Vec3], range: f64, apart: impl Fn(u32, u32) -> f32 + Sync) {
+        self.collect(scene, positions, range, apart);
     }
 
     /// Forgets the lists, so that they are made anew.
@@ -49,14 +69,16 @@ impl NearFacets {
         self.positions.clear();
     }
 
-    /// The facets near those of a body, from its first facet on: numbered through the scene, ascending.
-    pub fn of_body<'a>(&'a self, scene: &Scene, body: u32) -> impl Iterator<Item = &'a [u32]> {
+    /// The facets near those of a body, from its first facet on.
+    pub fn of_body<'a>(&'a self, scene: &Scene, body: u32) -> impl Iterator<Item = Near<'a>> {
         let of = scene.bodies[body as usize];
         let list = &self.lists[of.batch as usize];
         let first_of_batch = scene.bodies[scene.bodies_of(of.batch as usize).start as usize].first_facet;
         let start = (of.first_facet - first_of_batch) as usize;
         let ends = &list.first[start..=start + scene.shape(body).facets.len()];
-        ends.windows(2).map(|ends| &list.near[ends[0] as usize..ends[1] as usize])
+        ends.windows(2)
+            .map(|ends| ends[0] as usize..ends[1] as usize)
+            .map(|near| Near { facets: &list.near[near.clone()], apart: &list.apart[near] })
     }
 
     fn are_complete(&self, positions: &[Vec3], range: f64) -> bool {
@@ -65,7 +87,7 @@ impl NearFacets {
         self.positions.len() == positions.len() && slack >= 0.0 && positions.iter().zip(&self.positions).all(stays)
     }
 
-    fn collect(&mut self, scene: &Scene, positions: &[Vec3], reach: f64) {
+    fn collect(&mut self, scene: &Scene, positions: &[Vec3], reach: f64, apart: impl Fn(u32, u32) -> f32 + Sync) {
         let batches = scene.batches.len() - 1;
         let Self { boxes, lists, .. } = self;
         lists.resize_with(batches, List::default);
@@ -91,7 +113,10 @@ impl NearFacets {
         boxes.steps.clear();
         boxes.steps.extend(boxes.bounds.iter().map(Steps::of));
         let boxes = &*boxes;
-        lists.par_iter_mut().enumerate().for_each(|(batch, list)| list.collect(scene, batch, positions, boxes, reach));
+        lists.par_iter_mut().enumerate().for_each(|(batch, list)| {
+            list.collect(scene, batch, positions, boxes, reach);
+            list.measure(scene, batch, &apart);
+        });
         self.positions.clear();
         self.positions.extend_from_slice(positions);
         self.reach = reach;
@@ -128,6 +153,16 @@ impl List {
             }
         }
     }
+
+    /// Keeps what each two are apart.
+    fn measure(&mut self, scene: &Scene, batch: usize, apart: &impl Fn(u32, u32) -> f32) {
+        let first = scene.bodies_of(batch).next().map_or(0, |body| scene.bodies[body as usize].first_facet);
+        let ends = (first..).zip(self.first.windows(2));
+        self.apart.clear();
+        self.apart.extend(ends.flat_map(|(facet, ends)| {
+            self.near[ends[0] as usize..ends[1] as usize].iter().map(move |other| apart(facet, *other))
+        }));
+    }
 }
 
 /// A ball around a facet: its middle and radius, µm.
@@ -160,7 +195,7 @@ mod tests {
         let mut stage = packed_stage(8, REACH, 1);
         let (mut near, mut dice, mut found) = (NearFacets::default(), Dice(3), 0);
         for _ in 0..4 {
-            near.follow(&stage.scene, &stage.positions, 0.5);
+            near.follow(&stage.scene, &stage.positions, 0.5, |_, _| 0.0);
             let corners = |facet: u32| {
                 let body = stage.scene.body_of_facet(facet);
                 stage.scene.facet_atoms(body, facet).map(|atom| stage.positions[atom as usize])
@@ -168,10 +203,10 @@ mod tests {
             for body in 0..stage.scene.bodies.len() as u32 {
                 let first = stage.scene.bodies[body as usize].first_facet;
                 for (facet, near) in (first..).zip(near.of_body(&stage.scene, body)) {
-                    assert!(near.is_sorted());
+                    assert!(near.facets.is_sorted() && near.apart.len() == near.facets.len());
                     for other in (0..stage.scene.facets as u32).filter(|o| stage.scene.body_of_facet(*o) != body) {
                         if apart(&corners(facet), &corners(other)) < 0.5 {
-                            assert!(near.binary_search(&other).is_ok(), "{facet} {other}");
+                            assert!(near.facets.binary_search(&other).is_ok(), "{facet} {other}");
                             found += 1;
                         }
                     }

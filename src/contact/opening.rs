@@ -23,6 +23,11 @@ const BEHIND: f64 = 0.03;
 /// Cosine below which normals face each other.
 const FACING: f64 = -0.3;
 
+/// One over the squared cosine of the angle between the normal at a point and the way to where the other surface is touched, 75°, beyond which
+/// that is beside the point and not before it. A surface that is touched there looks to where the point's own looks, within 30°, and
+/// what moves it a little changes the ball without bound.
+const BESIDE: f64 = 16.0;
+
 /// A step along the normal below which it gives no direction, over the distance.
 const LEVEL: f64 = 1e-9;
 
@@ -30,7 +35,7 @@ const LEVEL: f64 = 1e-9;
 ///
 /// `l = min |y − x|² / (n · (y − x))` over the points y of the facet with `n · (y − x) > 0`,
 ///
-/// and where on the facet that y is. None where there is none.
+/// and where on the facet that y is. None where there is none, or that y is beside the point.
 #[inline]
 pub fn opening_to_facet(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3) -> Option<(Opening, Feature)> {
     let height = (x - corners[0]).dot(&m);
@@ -39,14 +44,42 @@ pub fn opening_to_facet(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3) -> Optio
     let beside = (-height / size).max(0.0);
     let faces = height >= 0.0 || n.dot(&m) < FACING && -height <= BEHIND * size;
     let plane = opening_to_face(x, n, corners, m);
-    match plane.filter(|opening| faces && opening.weights.iter().all(|w| *w >= -beside)) {
+    let found = match plane.filter(|opening| faces && opening.weights.iter().all(|w| *w >= -beside)) {
         Some(opening) => Some((opening, Feature::Face)),
         None => {
             let met = if height >= 0.0 { plane } else { opening_to_face(x, n, corners, -m) };
             opening_to_sides(x, n, corners, met.map_or([true; 3], sides_beyond))
         }
+    };
+    found.filter(|(opening, _)| opening.is_before())
+}
+
+impl Opening {
+    /// Whether it leads to what is before the point and not beside it.
+    #[inline]
+    fn is_before(&self) -> bool {
+        self.towards.norm_squared() <= BESIDE
     }
 }
+
+/// Whether the opening between a point of a surface with the unit normal n and a facet with its unit normal m is surely no less than a width,
+/// µm: the point is so far beyond a side of the facet, which all of it lies behind, that a ball as wide as that does not reach back to there.
+#[inline]
+pub fn is_surely_beyond(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3, width: f64) -> bool {
+    // Behind a facet what is a little beside it counts as before it.
+    if (x - corners[0]).dot(&m) < 0.0 {
+        return false;
+    }
+    // A ball that rests at x along n reaches half of its width times 1 − n·e back across a side, against the direction e that leads away over it.
+    (0..3).any(|side| {
+        let away = (corners[(side + 1) % 3] - corners[side]).cross(&m);
+        let (beyond, reach) = ((x - corners[side]).dot(&away), away.norm() - n.dot(&away));
+        beyond > 0.0 && 2.0 * beyond * SURELY >= width * reach.max(0.0)
+    })
+}
+
+/// A little less than 1, so that rounding makes no bound too wide.
+const SURELY: f64 = 1.0 - 1e-9;
 
 /// The sides of a facet, by the corner before each, that a ball may touch first. It grows on the point where it rests and meets the plane of the
 /// facet at one point, from where on it covers a growing disc of that: what the disc comes to first is on a side beyond which that point lies.
@@ -61,7 +94,7 @@ fn sides_beyond(met: Opening) -> [bool; 3] {
 /// corner, so that it goes on smoothly where another facet or side is touched by now.
 #[inline]
 pub fn opening_to_feature(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3, feature: Feature) -> Option<Opening> {
-    match feature {
+    let found = match feature {
         Feature::Face => opening_to_face(x, n, corners, m),
         Feature::Side(side) => {
             let (side, next) = (side as usize, (side as usize + 1) % 3);
@@ -72,13 +105,20 @@ pub fn opening_to_feature(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3, featur
             let corner = corner as usize;
             opening_to_side(n, corners[corner] - x, Vec3::zeros(), [corner, (corner + 1) % 3], 0.0)
         }
-    }
+    };
+    found.filter(Opening::is_before)
 }
 
 /// The opening between a point at a height over a plane, on a surface with the unit normal n, and the plane with the unit normal m: its
-/// width, µm, and the direction as in [`Opening`]. None where both look the same way.
+/// width, µm, and the direction as in [`Opening`]. None where both look the same way, within 30°.
 #[inline]
 pub fn opening_to_plane(n: Vec3, height: f64, m: Vec3) -> Option<(f64, Vec3)> {
+    ball_on_plane(n, height, m).filter(|(_, towards)| towards.norm_squared() <= BESIDE)
+}
+
+/// The same, be what it touches before the point or beside it.
+#[inline]
+fn ball_on_plane(n: Vec3, height: f64, m: Vec3) -> Option<(f64, Vec3)> {
     let apart = 1.0 - n.dot(&m);
     (apart > LEVEL).then(|| (2.0 * height / apart, (n - m) / apart))
 }
@@ -87,7 +127,7 @@ pub fn opening_to_plane(n: Vec3, height: f64, m: Vec3) -> Option<(f64, Vec3)> {
 #[inline]
 fn opening_to_face(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3) -> Option<Opening> {
     let (one, other) = (corners[1] - corners[0], corners[2] - corners[0]);
-    let (width, towards) = opening_to_plane(n, (x - corners[0]).dot(&m), m)?;
+    let (width, towards) = ball_on_plane(n, (x - corners[0]).dot(&m), m)?;
     let foot = x + 0.5 * width * (n - m) - corners[0];
     let (a, b, c) = (one.norm_squared(), one.dot(&other), other.norm_squared());
     let (d, e) = (foot.dot(&one), foot.dot(&other));
@@ -180,6 +220,7 @@ mod tests {
             let n = Vec3::new(number(), number(), number()).normalize();
             let x = Vec3::new(2.0 + 3.0 * number(), 2.0 + 3.0 * number(), 1.4 * number());
             let Some((found, feature)) = opening_to_facet(x, n, &FACET, Vec3::z()) else { continue };
+            assert!(found.towards.norm_squared() <= BESIDE, "{found:?}");
             if feature != Feature::Face {
                 let (of_all, _) = opening_to_sides(x, n, &FACET, [true; 3]).expect("a side");
                 // Where the ball meets the plane on the line of a side rounding decides between two that it touches alike.
@@ -192,21 +233,45 @@ mod tests {
     }
 
     #[test]
+    fn what_is_surely_beyond_a_width_is_never_nearer() {
+        let mut stream = Stream::new(10, Purpose::Placement, 0, 0);
+        let mut seen = [0; 2];
+        for _ in 0..20_000 {
+            let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
+            let n = Vec3::new(number(), number(), number()).normalize();
+            let x = Vec3::new(2.0 + 4.0 * number(), 2.0 + 4.0 * number(), 0.5 * number());
+            let Some((found, _)) = opening_to_facet(x, n, &FACET, Vec3::z()) else { continue };
+            for share in [0.5, 0.9, 1.0 + 1e-6] {
+                let is_beyond = is_surely_beyond(x, n, &FACET, Vec3::z(), share * found.width);
+                assert!(!is_beyond || share < 1.0, "{found:?} at {x} along {n}");
+                seen[usize::from(share < 1.0 && is_beyond)] += 1;
+            }
+        }
+        assert!(seen[1] > 3000, "{seen:?}");
+    }
+
+    #[test]
     fn it_is_the_least_of_all_points_of_the_facet() {
         let mut stream = Stream::new(7, Purpose::Placement, 0, 0);
-        let mut seen = [0; 2];
+        let (mut seen, mut beside) = ([0; 2], 0);
         for _ in 0..2000 {
             let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
             let n = Vec3::new(number(), number(), number()).normalize();
             let x = Vec3::new(2.0 + 3.0 * number(), 2.0 + 3.0 * number(), 1.5 + 1.4 * number());
-            let mut least = f64::INFINITY;
+            let (mut least, mut cosine) = (f64::INFINITY, 1.0);
             for i in 0..=200 {
                 for j in 0..=200 - i {
                     let y = (FACET[1] * f64::from(i) + FACET[2] * f64::from(j)) / 200.0 - x;
-                    if n.dot(&y) > 1e-3 {
-                        least = least.min(y.norm_squared() / n.dot(&y));
+                    if n.dot(&y) > 1e-3 && y.norm_squared() / n.dot(&y) < least {
+                        (least, cosine) = (y.norm_squared() / n.dot(&y), n.dot(&y) / y.norm());
                     }
                 }
+            }
+            // What is beside the point is not told of: it is surely so a little beyond the bound.
+            if cosine < 0.3 {
+                beside += usize::from(cosine < 0.2 && opening_to_facet(x, n, &FACET, Vec3::z()).is_none());
+                assert!(cosine > 0.2 || opening_to_facet(x, n, &FACET, Vec3::z()).is_none(), "{x} {n}");
+                continue;
             }
             let found = opening_to_facet(x, n, &FACET, Vec3::z()).map_or(f64::INFINITY, |found| found.0.width);
             // Far balls are as wide as their touching point is near the plane of x: no one asks for those.
@@ -221,6 +286,6 @@ mod tests {
                 seen[usize::from(opening.weights.iter().all(|weight| *weight > 0.0))] += 1;
             }
         }
-        assert!(seen.iter().all(|count| *count > 100), "{seen:?}");
+        assert!(seen.iter().all(|count| *count > 100) && beside > 20, "{seen:?} {beside}");
     }
 }

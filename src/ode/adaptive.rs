@@ -17,6 +17,8 @@ pub trait Adaptive {
     const JACOBIANS: u64;
     /// The stage that is the first of the next step, if there is one.
     const LAST: Option<usize>;
+    /// Whether it can let values keep to their side of nothing.
+    const KEEPS_SIDE: bool;
 
     /// One step from (time, state). Leaves proposal, error and stages; see the methods themselves.
     fn step<S: Simd, const L: usize, P: LooksBack<L>>(
@@ -36,6 +38,7 @@ impl Adaptive for Tsitouras {
     const RATES: u64 = 6;
     const JACOBIANS: u64 = 0;
     const LAST: Option<usize> = Some(6);
+    const KEEPS_SIDE: bool = false;
 
     #[inline(always)]
     fn step<S: Simd, const L: usize, P: LooksBack<L>>(
@@ -57,6 +60,7 @@ impl Adaptive for Verner {
     const RATES: u64 = 8;
     const JACOBIANS: u64 = 0;
     const LAST: Option<usize> = Some(8);
+    const KEEPS_SIDE: bool = false;
 
     #[inline(always)]
     fn step<S: Simd, const L: usize, P: LooksBack<L>>(
@@ -78,6 +82,7 @@ impl Adaptive for Rodas {
     const RATES: u64 = 6;
     const JACOBIANS: u64 = 1;
     const LAST: Option<usize> = None;
+    const KEEPS_SIDE: bool = true;
 
     #[inline(always)]
     fn step<S: Simd, const L: usize, P: LooksBack<L>>(

@@ -79,7 +79,14 @@ fn adaptive<S: Simd, const L: usize, M: Adaptive>(
         M::step(simd, program, s, &progress.time, &round.step);
         work.jacobians += M::JACOBIANS * left as u64;
         work.rates += M::RATES * left as u64;
-        let error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
+        let mut error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
+        if M::KEEPS_SIDE && is_nan(&error, &lanes.active) && s.keep_sides(&error, &program.sizes, tolerances) {
+            M::step(simd, program, s, &progress.time, &round.step);
+            work.jacobians += M::JACOBIANS * left as u64;
+            work.rates += M::RATES * left as u64;
+            error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
+            s.keeps_side = false;
+        }
         let accepted = judge(&mut lanes, &mut progress, &round, &error, &M::CONTROLLER, until);
         let steps = mask::count(&accepted);
         work.steps += steps as u64;
@@ -104,6 +111,16 @@ fn adaptive<S: Simd, const L: usize, M: Adaptive>(
         }
     }
     trouble.map_or(Ok(work), Err)
+}
+
+/// Whether the error of an active lane is not a number.
+#[inline(always)]
+fn is_nan<const L: usize>(error: &Lanes<L>, active: &Mask<L>) -> bool {
+    let mut any = 0;
+    for l in 0..L {
+        any |= active[l] & when(error[l].is_nan());
+    }
+    any != 0
 }
 
 /// The steps that lanes take next: as wanted, or into what is left of the window.

@@ -9,7 +9,8 @@ use super::wide::{combine, negated_where_finite, take_away};
 use crate::equations::program::{Lanes, Program, run};
 
 /// One step from (time, state). Leaves proposal, error and the stages. Derivatives that are not finite (a root at 0,
-/// say) count as 0: the error estimate then decides about the step.
+/// say) count as 0: the error estimate then decides about the step. Where values keep to their side of nothing, what they were beyond it at
+/// the end counts as an error.
 #[inline(always)]
 pub fn step<S: Simd, const L: usize, P: LooksBack<L>>(
     simd: S,
@@ -39,6 +40,18 @@ pub fn step<S: Simd, const L: usize, P: LooksBack<L>>(
             proposal[l] += last[l];
         }
     }
+    if s.keeps_side {
+        for v in 0..n {
+            let floor = s.floor_of(v);
+            for l in 0..L {
+                let below = floor[l] - s.proposal[v][l];
+                if below > 0.0 {
+                    s.proposal[v][l] = floor[l];
+                    s.error[v][l] = s.error[v][l].abs() + below;
+                }
+            }
+        }
+    }
 }
 
 /// When the step begins, its length and one over it.
@@ -61,6 +74,15 @@ fn stage<S: Simd, const W: usize, const L: usize, P: LooksBack<L>>(
     let n = s.state.len();
     for v in 0..n {
         combine(simd, argument, &s.stages, (n, v), s.state[v], &[1.0; L], &mut s.file[1 + v]);
+    }
+    if s.keeps_side {
+        for v in 0..n {
+            let floor = s.floor_of(v);
+            for l in 0..L {
+                let value = &mut s.file[1 + v][l];
+                *value = if *value < floor[l] { floor[l] } else { *value };
+            }
+        }
     }
     let now = &mut s.file[0];
     for l in 0..L {
@@ -143,5 +165,8 @@ pub fn between<P>(s: &Scratch<1, P>, share: f64, state: &mut [f64]) {
         let rest = 1.0 - share;
         let bend = weighted(&D2) + share * weighted(&D3);
         *value = rest * s.state[v][0] + share * (s.proposal[v][0] + rest * bend);
+        if s.keeps_side && s.state[v][0] >= 0.0 && *value < 0.0 {
+            *value = 0.0;
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Buffers that are kept from window to window so that nothing is allocated meanwhile.
 
+use super::control::Tolerances;
 use super::lu::Swap;
 use crate::equations::program::code::Code;
 use crate::equations::program::{Lanes, Program, run};
@@ -38,6 +39,10 @@ pub struct Scratch<const L: usize, P = ()> {
     pub matrix: Vec<Lanes<L>>,
     /// Its row exchanges.
     pub swaps: Vec<Swap<L>>,
+    /// Whether values of lanes keep to the side of nothing that they are on where the step begins.
+    pub keeps_side: bool,
+    /// Where they do, what such values may be at least: 0, or minus infinity in the other lanes.
+    pub floor: Lanes<L>,
     /// What was.
     pub past: P,
 }
@@ -64,8 +69,38 @@ impl<const L: usize, P: LooksBack<L>> Scratch<L, P> {
             drift: empty(),
             matrix: vec![[0.0; L]; squares],
             swaps: Vec::with_capacity(squares / 2),
+            keeps_side: false,
+            floor: [f64::NEG_INFINITY; L],
             past,
         }
+    }
+
+    /// Lets the values of the lanes in which an error is not a number keep to their side of nothing; says whether there is one. What is below
+    /// nothing there by less than the absolute tolerance, as steps before may have left it, counts as nothing.
+    #[inline(never)]
+    pub fn keep_sides(&mut self, error: &Lanes<L>, sizes: &[f64], tolerances: &Tolerances) -> bool {
+        self.keeps_side = error.iter().any(|error| error.is_nan());
+        for l in (0..L).filter(|l| error[*l].is_nan()) {
+            for (state, size) in self.state.iter_mut().zip(sizes) {
+                if state[l] < 0.0 && state[l] >= -tolerances.absolute * size {
+                    state[l] = 0.0;
+                }
+            }
+        }
+        for l in 0..L {
+            self.floor[l] = if error[l].is_nan() { 0.0 } else { f64::NEG_INFINITY };
+        }
+        self.keeps_side
+    }
+
+    /// What a variable may be at least in a step.
+    #[inline(always)]
+    pub fn floor_of(&self, variable: usize) -> Lanes<L> {
+        let (state, mut floor) = (&self.state[variable], self.floor);
+        for l in 0..L {
+            floor[l] = if state[l] >= 0.0 { floor[l] } else { f64::NEG_INFINITY };
+        }
+        floor
     }
 
     /// Rates at the state of the step's begin, as stage 0.

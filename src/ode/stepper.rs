@@ -230,14 +230,11 @@ impl<'a> Stepper<'a> {
                 (false, true) => 0.5 * rest,
                 (false, false) => wanted,
             };
-            let known = self.attempt(step, |stepper| {
-                M::step(Scalar, stepper.program, &mut stepper.s, &[stepper.time], &[step]);
-                stepper.work.jacobians += M::JACOBIANS;
-                stepper.work.rates += M::RATES;
-            });
-            let error =
-                control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.program.sizes, &self.tolerances)[0];
-            let error = if known { error } else { f64::INFINITY };
+            self.s.keeps_side = false;
+            let mut error = self.error_of_attempt::<M>(step);
+            if M::KEEPS_SIDE && error.is_nan() && self.s.keep_sides(&[error], &self.program.sizes, &self.tolerances) {
+                error = self.error_of_attempt::<M>(step);
+            }
             let factor = M::CONTROLLER.factor(error, self.error);
             if error <= 1.0 && self.s.past.ahead.is_none() {
                 self.step = control::after_good(step, (self.step, cut), factor, most);
@@ -252,6 +249,18 @@ impl<'a> Stepper<'a> {
                 return Err(self.trouble(if error.is_finite() { Reason::StepUnderflow } else { Reason::NotFinite }));
             }
         }
+    }
+
+    /// Tries a step, and returns its error in tolerances.
+    fn error_of_attempt<M: Adaptive>(&mut self, step: f64) -> f64 {
+        let known = self.attempt(step, |stepper| {
+            M::step(Scalar, stepper.program, &mut stepper.s, &[stepper.time], &[step]);
+            stepper.work.jacobians += M::JACOBIANS;
+            stepper.work.rates += M::RATES;
+        });
+        let [error] =
+            control::norm(&self.s.error, &self.s.state, &self.s.proposal, &self.program.sizes, &self.tolerances);
+        if known { error } else { f64::INFINITY }
     }
 
     /// The state at a share of the step that is not yet committed.

@@ -5,6 +5,7 @@ mod eml;
 mod eml_write;
 mod engine_events;
 mod engine_members;
+mod engine_nothing;
 mod engine_order;
 mod engine_program;
 mod engine_stiff;

@@ -1,6 +1,7 @@
 //! The program as others start it, kill it and read its files.
 
 mod commands;
+mod crowd;
 mod damaged;
 #[cfg(target_os = "linux")]
 mod every_write;

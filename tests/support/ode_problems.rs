@@ -91,6 +91,7 @@ impl Reader<'_> {
             "t" => return Expr::Time,
             "exp" => Unary::Exp,
             "ln" => Unary::Ln,
+            "sqrt" => Unary::Sqrt,
             "sin" => Unary::Sin,
             "cos" => Unary::Cos,
             _ => return Expr::Quantity(*self.numbers.get(name).unwrap_or_else(|| panic!("unknown name '{name}'"))),

@@ -32,8 +32,8 @@ impl CohesionTable {
     ) {
         let (range, controls, bodies) = (self.range(), Controls::default(), scene.bodies.len() as u32);
         scratch.around.find(scene, positions, range, false);
-        let AreaScratch { around: Surroundings { near, facets }, of_batches } = scratch;
-        let seen = Seen { table: self, scene, controls: &controls, positions, facets, range };
+        let AreaScratch { around: Surroundings { near, facets, nearer, .. }, of_batches } = scratch;
+        let seen = Seen { table: self, scene, controls: &controls, positions, facets, nearer, range };
         of_batches.resize_with(scene.batches(), OfBatch::default);
         of_batches.par_iter_mut().enumerate().for_each(|(batch, (around, areas))| {
             areas.clear();

@@ -129,6 +129,19 @@ pub fn may_meet(own: &Facet, n: Vec3, facet: &Facet, range: f64) -> bool {
     from.norm_squared() <= most * most
 }
 
+/// How far apart two facets are beyond what may meet, µm: below 0 where they may.
+pub fn apart(own: &Facet, n: Vec3, facet: &Facet, range: f64) -> f64 {
+    let from = own.middle + 0.5 * range * n - facet.middle;
+    from.norm() - own.radius - 0.5 * range - (1.0 + BEHIND) * facet.radius
+}
+
+/// By how much a facet may have come nearer to others at most since it was so, in what [`apart`] measures, be it the one that looks or the
+/// one that is seen.
+pub fn nearer(now: &Facet, then: &Facet, range: f64) -> f64 {
+    let grown = (1.0 + BEHIND) * (now.radius - then.radius).max(0.0);
+    (now.middle - then.middle).norm() + 0.5 * range * (now.normal - then.normal).norm() + grown
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,6 +203,28 @@ mod tests {
     }
 
     #[test]
+    fn facets_come_nearer_by_no_more_than_both_have_changed() {
+        let mut stream = Stream::new(13, Purpose::Placement, 0, 0);
+        let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
+        let mut close: f64 = 0.0;
+        for _ in 0..5_000 {
+            let mut corners = |size: f64| [0, 1, 2].map(|_| size * Vec3::new(number(), number(), number()));
+            let then = [corners(1.0), corners(1.0).map(|corner| corner + Vec3::new(2.0, 0.0, 0.0))];
+            let now = then.map(|facet| {
+                let moved = corners(0.2);
+                [0, 1, 2].map(|corner| facet[corner] + moved[corner])
+            });
+            let ([own, other], [own_now, other_now]) = (then.map(|at| Facet::of(&at)), now.map(|at| Facet::of(&at)));
+            let before = apart(&own, own.normal, &other, 1.5);
+            let after = apart(&own_now, own_now.normal, &other_now, 1.5);
+            let most = nearer(&own_now, &own, 1.5) + nearer(&other_now, &other, 1.5);
+            assert!(before - after <= most + 1e-12, "{before} {after} {most}");
+            close = close.max((before - after) / most);
+        }
+        assert!(close > 0.5, "the bound tells something: {close}");
+    }
+
+    #[test]
     fn no_point_of_a_facet_is_nearer_to_another_than_their_bound() {
         let mut stream = Stream::new(12, Purpose::Placement, 0, 0);
         let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
@@ -210,6 +245,7 @@ mod tests {
             near += usize::from(bound > 0.0);
             assert!(least < 0.0 && bound <= 1e-9 || bound <= least, "{bound} {least}");
             assert!(may_meet(&other, other.normal, &facet, least.max(0.0) + 1e-9), "{least}");
+            assert!(apart(&other, other.normal, &facet, least.max(0.0) + 1e-9) <= 0.0, "{least}");
         }
         assert!(seen > 5000 && near > seen / 4, "bounds of {near} of {seen} pairs tell something");
     }

@@ -105,9 +105,15 @@ impl CohesionTable {
         }
         to.around.find(scene, positions, range, true);
         let CohesionScratch {
-            around: Surroundings { near, facets }, patches, looks, of_batches, facing, bonds, ..
+            around: Surroundings { near, facets, nearer, .. },
+            patches,
+            looks,
+            of_batches,
+            facing,
+            bonds,
+            ..
         } = to;
-        let seen = Seen { table: self, scene, controls, positions, facets, range };
+        let seen = Seen { table: self, scene, controls, positions, facets, nearer, range };
         patches.resize_with(scene.batches(), Vec::new);
         looks.resize_with(scene.batches(), Around::default);
         of_batches.resize_with(scene.batches(), Vec::new);

@@ -1,11 +1,11 @@
 //! What attracts each part of a surface most.
 
 use super::super::super::vectors::gather_corners;
-use super::candidates::{Candidates, Facet, least_opening_between, may_meet};
+use super::candidates::{Candidates, Facet, apart, least_opening_between, may_meet, nearer};
 use super::patch::{Partner, Patch, depth_of_well, width_of_well};
 use super::table::CohesionTable;
 use crate::Vec3;
-use crate::contact::{NearFacets, Plane, Scene, Sides, opening_to_facet, opening_to_plane};
+use crate::contact::{Near, NearFacets, Plane, Scene, Sides, is_surely_beyond, opening_to_facet, opening_to_plane};
 use crate::sim::controls::Controls;
 
 /// The facets at an instant, and which are near which.
@@ -14,23 +14,41 @@ pub struct Surroundings {
     pub near: NearFacets,
     /// All facets.
     pub facets: Vec<Facet>,
+    /// What they were when it was looked for what is near.
+    then: Vec<Facet>,
+    /// By how much each may have come nearer to others since then, µm.
+    pub nearer: Vec<f64>,
 }
 
 impl Surroundings {
     /// Those at these positions, of facets nearer than `range` (µm) to each other. Where they are followed from instant to instant,
     /// what is near is looked for some way farther and kept as long as it will do.
     pub fn find(&mut self, scene: &Scene, positions: &[Vec3], range: f64, are_followed: bool) {
-        if are_followed {
-            self.near.follow(scene, positions, range);
-        } else {
-            self.near.find(scene, positions, range);
-        }
-        self.facets.clear();
-        self.facets.extend((0..scene.bodies.len() as u32).flat_map(|body| {
+        let Self { near, facets, then, nearer: of_facets } = self;
+        facets.clear();
+        facets.extend((0..scene.bodies.len() as u32).flat_map(|body| {
             let first = scene.bodies[body as usize].first_atom;
             let corners = move |facet: &[u32; 3]| gather_corners(positions, facet.map(|atom| first + atom));
             scene.shape(body).facets.iter().map(move |facet| Facet::of(&corners(facet)))
         }));
+        // Rounded so that it is less than it was.
+        let apart = |own: u32, other: u32| {
+            let has_two = scene.shape(scene.body_of_facet(own)).sides == Sides::Both;
+            let [own, other] = [own, other].map(|facet| &facets[facet as usize]);
+            let before = apart(own, own.normal, other, range);
+            (if has_two { before.min(apart(own, -own.normal, other, range)) } else { before } - 1e-5) as f32
+        };
+        let are_new = if are_followed {
+            near.follow(scene, positions, range, apart)
+        } else {
+            near.find(scene, positions, range, apart);
+            true
+        };
+        if are_new || then.len() != facets.len() {
+            then.clone_from(facets);
+        }
+        of_facets.clear();
+        of_facets.extend(facets.iter().zip(&*then).map(|(now, then)| nearer(now, then, range)));
     }
 }
 
@@ -41,6 +59,8 @@ pub struct Seen<'a> {
     pub controls: &'a Controls,
     pub positions: &'a [Vec3],
     pub facets: &'a [Facet],
+    /// By how much each may have come nearer since it was looked for what is near, µm.
+    pub nearer: &'a [f64],
     /// The farthest that anything attracts, µm.
     pub range: f64,
 }
@@ -87,7 +107,7 @@ impl Seen<'_> {
     pub fn find<'a>(
         &self,
         body: u32,
-        near: impl Iterator<Item = &'a [u32]>,
+        near: impl Iterator<Item = Near<'a>>,
         around: &mut Around,
         mut found: impl FnMut(Spot, Patch),
     ) {
@@ -131,25 +151,31 @@ impl Seen<'_> {
     }
 
     /// Finds what of the facets near one of a body may attract a point of it, be it from behind where it `has_two` sides.
-    fn look_around(&self, body: u32, (facet, has_two): (u32, bool), near: &[u32], around: &mut Around) {
+    fn look_around(&self, body: u32, (facet, has_two): (u32, bool), near: Near, around: &mut Around) {
         let (scene, kinds) = (self.scene, self.table.points.len());
-        let own = self.facets[facet as usize];
+        let (own, own_nearer) = (self.facets[facet as usize], self.nearer[facet as usize]);
         let kind = scene.bodies[body as usize].shape as usize;
         let factor = self.controls.adhesion_of(body as usize);
         let Around { candidates, bodies } = around;
         candidates.clear();
         bodies.clear();
-        let mut rest = near;
+        let Near { facets: mut rest, apart: mut rest_apart } = near;
         while let Some(&next) = rest.first() {
             let other = scene.body_of_facet(next);
             let there = scene.bodies[other as usize];
             let facets_end = there.first_facet + scene.shape(other).facets.len() as u32;
-            let facets;
-            (facets, rest) = rest.split_at(rest.partition_point(|facet| *facet < facets_end));
+            let end = rest.partition_point(|facet| *facet < facets_end);
+            let (facets, apart);
+            (facets, rest) = rest.split_at(end);
+            (apart, rest_apart) = rest_apart.split_at(end);
             let cohesive = self.table.between[kind * kinds + there.shape as usize];
             let strength = 0.5 * factor * self.controls.adhesion_of(other as usize) * cohesive.strength;
             let range = cohesive.range();
-            for &facet in facets {
+            for (&facet, &apart) in facets.iter().zip(apart) {
+                // What was too far apart then and has not come near enough since.
+                if f64::from(apart) > own_nearer + self.nearer[facet as usize] {
+                    continue;
+                }
                 let seen = &self.facets[facet as usize];
                 let is_met = |n: Vec3| may_meet(&own, n, seen, range) && least_opening_between(&own, n, seen) < range;
                 if is_met(own.normal) || has_two && is_met(-own.normal) {
@@ -221,7 +247,11 @@ impl Seen<'_> {
             if is_thin && (x - middle).dot(&m) < 0.0 {
                 (atoms, m) = ([atoms[0], atoms[2], atoms[1]], -m);
             }
-            let found = opening_to_facet(x, n, &gather_corners(self.positions, atoms), m);
+            let corners = gather_corners(self.positions, atoms);
+            if is_surely_beyond(x, n, &corners, m, *widest) {
+                return;
+            }
+            let found = opening_to_facet(x, n, &corners, m);
             if let Some((opening, feature)) = found.filter(|(opening, _)| opening.width < *widest) {
                 (*widest, *first) = (opening.width, number);
                 best = Some((opening.width, Partner::Facet(atoms, feature)));
