@@ -75,6 +75,12 @@ fn stage<S: Simd, const W: usize, const L: usize, P: LooksBack<L>>(
     for v in 0..n {
         combine(simd, argument, &s.stages, (n, v), s.state[v], &[1.0; L], &mut s.file[1 + v]);
     }
+    let now = &mut s.file[0];
+    for l in 0..L {
+        now[l] = clock.time[l] + C[W] * clock.step[l];
+    }
+    s.proposal.copy_from_slice(&s.file[1..=n]);
+    // Rates are those of what is kept; what the step comes to is told as it is.
     if s.keeps_side {
         for v in 0..n {
             let floor = s.floor_of(v);
@@ -84,11 +90,6 @@ fn stage<S: Simd, const W: usize, const L: usize, P: LooksBack<L>>(
             }
         }
     }
-    let now = &mut s.file[0];
-    for l in 0..L {
-        now[l] = clock.time[l] + C[W] * clock.step[l];
-    }
-    s.proposal.copy_from_slice(&s.file[1..=n]);
     s.rates_into(program, W);
     let (earlier, present) = s.stages.split_at_mut(W * n);
     for (v, rate) in present[..n].iter_mut().enumerate() {
@@ -120,6 +121,10 @@ fn solve_stage<S: Simd, const L: usize, P>(
     lu::solve(&s.matrix, n, &s.swaps, present);
 }
 
+/// What a rate takes in a step from a variable that is nothing, over the absolute tolerance, beyond which it is no round-off: the equations lead
+/// below nothing, and it is not kept from going there.
+const FALLS: f64 = 1e-9;
+
 /// Rates, derivatives and the factored matrix 1/(γ·step) − J at (time, state).
 #[inline(always)]
 fn prepare<S: Simd, const L: usize, P: LooksBack<L>>(
@@ -139,6 +144,16 @@ fn prepare<S: Simd, const L: usize, P: LooksBack<L>>(
         if !program.timeless {
             // Kept with the other sign, as the matrix is.
             negated_where_finite(simd, &s.file[program.linear.outputs[n + v] as usize], &mut s.drift[v]);
+        }
+    }
+    if s.keeps_side {
+        let least = FALLS * s.absolute;
+        for v in 0..n {
+            for l in 0..L {
+                if s.state[v][l] == 0.0 && s.stages[v][l] < -least * program.sizes[v] * inverse[l] {
+                    s.floor[l] = f64::NEG_INFINITY;
+                }
+            }
         }
     }
     s.matrix.fill([0.0; L]);

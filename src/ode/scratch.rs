@@ -43,6 +43,8 @@ pub struct Scratch<const L: usize, P = ()> {
     pub keeps_side: bool,
     /// Where they do, what such values may be at least: 0, or minus infinity in the other lanes.
     pub floor: Lanes<L>,
+    /// The absolute tolerance of the step that does.
+    pub absolute: f64,
     /// What was.
     pub past: P,
 }
@@ -71,6 +73,7 @@ impl<const L: usize, P: LooksBack<L>> Scratch<L, P> {
             swaps: Vec::with_capacity(squares / 2),
             keeps_side: false,
             floor: [f64::NEG_INFINITY; L],
+            absolute: 0.0,
             past,
         }
     }
@@ -79,7 +82,7 @@ impl<const L: usize, P: LooksBack<L>> Scratch<L, P> {
     /// nothing there by less than the absolute tolerance, as steps before may have left it, counts as nothing.
     #[inline(never)]
     pub fn keep_sides(&mut self, error: &Lanes<L>, sizes: &[f64], tolerances: &Tolerances) -> bool {
-        self.keeps_side = error.iter().any(|error| error.is_nan());
+        (self.keeps_side, self.absolute) = (error.iter().any(|error| error.is_nan()), tolerances.absolute);
         for l in (0..L).filter(|l| error[*l].is_nan()) {
             for (state, size) in self.state.iter_mut().zip(sizes) {
                 if state[l] < 0.0 && state[l] >= -tolerances.absolute * size {
