@@ -22,7 +22,7 @@ attraction = { to = ["0 um", "0 um", "0 um"], stiffness = "0.01 pN/um" }
 [contact]
 strength = "0.2 pN/um^2"
 [output]
-every = "2 s"
+every = "4 s"
 "#;
 
 #[test]
