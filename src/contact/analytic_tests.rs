@@ -197,6 +197,22 @@ fn an_edge_that_cuts_through_a_thin_ridge_that_leans_over_touches_its_crest() {
 }
 
 #[test]
+fn an_edge_whose_end_stands_on_a_wall_of_a_ridge_touches_the_crest_if_it_cuts_through() {
+    let ridge = tetrahedron([-Vec3::y(), Vec3::y(), Vec3::new(0.2, 0.0, -1.0), Vec3::new(1.0, 0.0, -1.0)]);
+    // 0.05 below the crest the first wall is at x = 0.01: the end is before it by round-off, stands on it, and is inside.
+    for (end, touches) in [(0.01 - 1e-9, true), (0.01 + 1e-5, true), (0.03, false)] {
+        let keel = keel(Vec3::new(end, 0.3, -0.05), Vec3::new(1.2, 0.3, -0.05));
+        for stage in [pair(&ridge, &keel, REACH), pair(&keel, &ridge, REACH)] {
+            let contacts = detect(&stage);
+            let at_crest = contacts.edges.iter().find(|contact| (contact.gap + 0.05).abs() < 1e-12);
+            assert_eq!(at_crest.is_some(), touches, "end at {end}: {:?}", contacts.edges);
+            // An end that is inside has a contact of its atom for it.
+            assert!(touches || contacts.atoms.iter().any(|contact| contact.gap < -0.01), "{:?}", contacts.atoms);
+        }
+    }
+}
+
+#[test]
 fn two_crossing_ridges_touch_by_their_edges_with_a_signed_gap() {
     for gap in [0.1, 0.02, -0.05] {
         let stage = pair(&tent(Vec3::x(), 0.0, 1.0), &tent(Vec3::new(0.6, 0.8, 0.0), gap, -1.0), REACH);

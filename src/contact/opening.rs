@@ -79,7 +79,7 @@ pub fn is_surely_beyond(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3, width: f
 }
 
 /// A little less than 1, so that rounding makes no bound too wide.
-const SURELY: f64 = 1.0 - 1e-9;
+pub const SURELY: f64 = 1.0 - 1e-9;
 
 /// The sides of a facet, by the corner before each, that a ball may touch first. It grows on the point where it rests and meets the plane of the
 /// facet at one point, from where on it covers a growing disc of that: what the disc comes to first is on a side beyond which that point lies.

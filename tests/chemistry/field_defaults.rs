@@ -191,11 +191,28 @@ struct Outcome {
     rejected: u32,
 }
 
+/// The fields of a system where they start.
+fn start_of(system: &FieldSystem) -> Fields {
+    let none = |_: &eml::Profile, _: &_| Err(Error::input(Fault::new("no file was expected")));
+    system.start(&none).expect("good profiles")
+}
+
+/// Fields at a time, in equal windows at the default tolerance, with the steps that it took.
+fn in_windows(system: &FieldSystem, start: &Fields, until: f64, windows: u32) -> (Fields, u32) {
+    let (relative, absolute) = system.usual_tolerance();
+    let (mut fields, mut steps) = (start.clone(), 0);
+    for _ in 0..windows {
+        let window = until / f64::from(windows);
+        let report = system.advance(&mut fields, window, &[], Stepping::Adaptive { relative, absolute });
+        steps += report.expect("a window").steps;
+    }
+    (fields, steps)
+}
+
 /// The courses of a problem, windows apart: by the method of lines, and at some tolerances with what they came to.
 fn outcomes(problem: &Problem, tolerances: &[(f64, f64)]) -> Vec<Outcome> {
-    let none = |_: &eml::Profile, _: &_| Err(Error::input(Fault::new("no file was expected")));
     let system = problem.system();
-    let start = system.start(&none).expect("good profiles");
+    let start = start_of(&system);
     let window = problem.until / WINDOWS as f64;
     let mut exact = vec![start.clone()];
     for _ in 0..WINDOWS {
@@ -241,17 +258,12 @@ fn what_begins_at_nothing_with_whole_and_broken_powers_is_made() {
         ],
         attributes: "",
     };
-    let none = |_: &eml::Profile, _: &_| Err(Error::input(Fault::new("no file was expected")));
     let system = problem.system();
-    let start = system.start(&none).expect("good profiles");
+    let start = start_of(&system);
     let exact = system.reference(&start, 5.0, &[], 1e-10, 1e-13).expect("the method of lines");
-    let (relative, absolute) = system.usual_tolerance();
-    for windows in [1_u32, 9] {
-        let (mut fields, mut steps) = (start.clone(), 0);
-        for _ in 0..windows {
-            let stepping = Stepping::Adaptive { relative, absolute };
-            steps += system.advance(&mut fields, 5.0 / f64::from(windows), &[], stepping).expect("a window").steps;
-        }
+    let (relative, _) = system.usual_tolerance();
+    for windows in [1, 9] {
+        let (fields, steps) = in_windows(&system, &start, 5.0, windows);
         let off = |species: usize| (fields.values(species)[0] / exact.values(species)[0] - 1.0).abs();
         println!("{windows} windows, {steps} steps: {:?} off", [0, 1, 2, 3].map(off));
         // One tolerance: the errors of its steps do not add up beyond it.
@@ -270,15 +282,10 @@ fn a_rate_that_jumps_in_all_boxes_at_once_is_passed() {
         fields: &[["U", "1", "0.001", "piecewise(1, U lt 0.5, 0.1)"]],
         attributes: "",
     };
-    let none = |_: &eml::Profile, _: &_| Err(Error::input(Fault::new("no file was expected")));
     let system = problem.system();
-    let (relative, absolute) = system.usual_tolerance();
-    for windows in [1_u32, 7, 1000] {
-        let (mut fields, mut steps) = (system.start(&none).expect("a good profile"), 0);
-        for _ in 0..windows {
-            let stepping = Stepping::Adaptive { relative, absolute };
-            steps += system.advance(&mut fields, 2.0 / f64::from(windows), &[], stepping).expect("a window").steps;
-        }
+    let (start, (relative, _)) = (start_of(&system), system.usual_tolerance());
+    for windows in [1, 7, 1000] {
+        let (fields, steps) = in_windows(&system, &start, 2.0, windows);
         // At 0.499 s it is 0.5, and rises at a tenth of the rate from then on.
         let off = fields.values(0).iter().map(|u| (u - (0.5 + 0.1 * (2.0 - 0.499))).abs()).fold(0.0, f64::max);
         println!("{windows} windows: {off:e} off, {steps} steps");

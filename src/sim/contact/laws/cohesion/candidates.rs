@@ -1,6 +1,7 @@
 //! Facets that may attract the points of a facet, and how near each can at best be: what is surely farther than the best is not looked at.
 
 use crate::Vec3;
+use crate::contact::SURELY;
 
 /// A facet at an instant.
 #[derive(Debug, Clone, Copy)]
@@ -86,9 +87,6 @@ impl Candidates {
 
 /// What a point may be behind a facet, and beside it there, and still be looked at, over the size of the facet.
 const BEHIND: f64 = 0.2;
-
-/// A little less than 1, so that rounding makes no bound too wide.
-const SURELY: f64 = 1.0 - 1e-9;
 
 /// The least opening, µm, that a facet can have to a point with the unit normal n that is `from` its middle: that of the ball that just touches the sphere
 /// around the facet, and of the one that just touches its plane, the greater of the two.

@@ -44,7 +44,7 @@ impl Surroundings {
             near.find(scene, positions, range, apart);
             true
         };
-        if are_new || then.len() != facets.len() {
+        if are_new {
             then.clone_from(facets);
         }
         of_facets.clear();
