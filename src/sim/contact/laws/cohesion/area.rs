@@ -39,7 +39,7 @@ impl CohesionTable {
             areas.clear();
             for body in scene.bodies_of(batch) {
                 let first = areas.len();
-                seen.find(body, near.of_body(scene, body), around, |_, patch| {
+                seen.find(body, near.of_body(scene, body), &mut [], around, |_, patch| {
                     let area = patch.area_within(scene, positions);
                     let (other, area) = match patch.other {
                         Partner::Facet([atom, ..], _) => (scene.body_of_atom(atom), 0.5 * area),
