@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::patch::Partner;
-use super::search::{Around, Seen, Surroundings};
+use super::search::{Around, Seen};
+use super::surroundings::Surroundings;
 use super::table::CohesionTable;
 use crate::Vec3;
 use crate::contact::Scene;

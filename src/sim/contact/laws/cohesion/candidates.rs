@@ -1,30 +1,10 @@
 //! Facets that may attract the points of a facet, and how near each can at best be: what is surely farther than the best is not looked at.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 
+use super::bounds::{Columns, ToFacet, ToPoint};
+use super::facet::{Facet, Looking};
 use crate::Vec3;
-use crate::contact::SURELY;
-
-/// A facet at an instant.
-#[derive(Debug, Clone, Copy)]
-pub struct Facet {
-    /// Its unit normal; zero where it has no area.
-    pub normal: Vec3,
-    /// Its middle, µm.
-    pub middle: Vec3,
-    /// From there to its farthest corner, µm.
-    pub radius: f64,
-}
-
-impl Facet {
-    /// The facet with these corners.
-    pub fn of(corners: &[Vec3; 3]) -> Self {
-        let [a, b, c] = corners;
-        let middle = (a + b + c) / 3.0;
-        let squared = corners.iter().map(|corner| (corner - middle).norm_squared()).fold(0.0, f64::max);
-        Self { normal: (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default(), middle, radius: squared.sqrt() }
-    }
-}
 
 /// Facets that may attract points of a facet, number by number: their middles and unit normals axis by axis, and from there to their
 /// farthest corners, µm. What stands beyond their count is of no account.
@@ -39,25 +19,6 @@ pub struct Candidates {
     /// The least opening that each can have to the facet, or to each of its points, µm: all candidates for a point after those for the one
     /// before.
     bounds: Vec<f64>,
-}
-
-/// The three corners of the facet that is looked at, its unit normal, and what sticks out of it.
-#[derive(Debug, Clone, Copy)]
-pub struct Looking {
-    facet: Facet,
-    /// A corner of each side, and the unit normal of the side in the plane of the facet, to its outside.
-    sides: [(Vec3, Vec3); 3],
-}
-
-impl Looking {
-    /// That with these corners.
-    pub fn from(facet: Facet, corners: &[Vec3; 3]) -> Self {
-        let side = |k: usize| {
-            let along = corners[(k + 1) % 3] - corners[k];
-            (corners[k], along.cross(&facet.normal).try_normalize(0.0).unwrap_or_default())
-        };
-        Self { facet, sides: [side(0), side(1), side(2)] }
-    }
 }
 
 impl Candidates {
@@ -143,171 +104,9 @@ impl Candidates {
     }
 }
 
-/// What a point may be behind a facet, and beside it there, and still be looked at, over the size of the facet.
-const BEHIND: f64 = 0.2;
-
-type V = [f64; 3];
-
-/// A facet that is seen: as [`Facet`].
-#[derive(Clone, Copy)]
-struct Seen {
-    middle: V,
-    normal: V,
-    radius: f64,
-}
-
-/// Facets that are seen, axis by axis.
-#[derive(Clone, Copy)]
-struct Columns<'a> {
-    middles: [&'a [f64]; 3],
-    normals: [&'a [f64]; 3],
-    radii: &'a [f64],
-}
-
-impl Columns<'_> {
-    /// Calls `each` with all of them, in their order.
-    #[inline(always)]
-    fn fill(self, to: &mut [f64], each: impl Fn(f64, Seen) -> f64) {
-        let count = to.len();
-        let ([x, y, z], [u, v, w]) = (self.middles.map(|axis| &axis[..count]), self.normals.map(|axis| &axis[..count]));
-        let radii = &self.radii[..count];
-        for k in 0..count {
-            to[k] = each(to[k], Seen { middle: [x[k], y[k], z[k]], normal: [u[k], v[k], w[k]], radius: radii[k] });
-        }
-    }
-}
-
-/// Finds how near facets can be to a point. Closures would be compiled for the least of processors.
-struct ToPoint<'a> {
-    x: V,
-    n: V,
-    seen: Columns<'a>,
-    to: &'a mut [f64],
-}
-
-impl WithSimd for ToPoint<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { x, n, seen, to } = self;
-        seen.fill(
-            to,
-            #[inline(always)]
-            |_, seen| least_opening(x, n, seen),
-        );
-    }
-}
-
-/// Finds how near facets can be to another one, as seen from the side to which n looks, and from the other if it has one.
-struct ToFacet<'a> {
-    of: &'a Looking,
-    n: V,
-    other: Option<V>,
-    seen: Columns<'a>,
-    to: &'a mut [f64],
-}
-
-impl WithSimd for ToFacet<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { of, n, other, seen, to } = self;
-        seen.fill(
-            to,
-            #[inline(always)]
-            |_, seen| least_opening_between(of, n, seen),
-        );
-        if let Some(n) = other {
-            seen.fill(
-                to,
-                #[inline(always)]
-                |before, seen| least(before, least_opening_between(of, n, seen)),
-            );
-        }
-    }
-}
-
-#[inline(always)]
-fn dot(a: V, b: V) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn minus(a: V, b: V) -> V {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn most(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
-/// The least opening, µm, that a facet can have to a point with the unit normal n: that of the ball that just touches the sphere
-/// around the facet, and of the one that just touches its plane, the greater of the two.
-#[inline(always)]
-fn least_opening(x: V, n: V, Seen { middle, normal, radius }: Seen) -> f64 {
-    let from = minus(x, middle);
-    let (height, along) = (dot(from, normal), dot(n, normal));
-    // What is behind a facet may be a little beside it, too.
-    let sphere = if height > 0.0 { radius } else { (1.0 + BEHIND) * radius };
-    // How high points of the facet are over the plane of the surface.
-    let strays = radius * most(1.0 - along * along, 0.0).sqrt() + BEHIND * radius;
-    let top = strays - dot(from, n);
-    let squared = dot(from, from);
-    let outside = most(squared - sphere * sphere, 0.0);
-    let rise = sphere - dot(from, n);
-    let to_sphere = if top > 0.0 { outside / rise } else { f64::INFINITY };
-    let is_before = height > 0.0;
-    let height = if is_before { height } else { -height - BEHIND * radius };
-    let to_plane = 2.0 * most(height, 0.0) / most(if is_before { 1.0 - along } else { 1.0 + along }, f64::MIN_POSITIVE);
-    SURELY * most(to_sphere, to_plane)
-}
-
-/// The least opening, µm, that a facet can have to any point of another one, as seen from the side of the other to which n looks.
-#[inline(always)]
-fn least_opening_between(of: &Looking, n: V, Seen { middle, normal, radius }: Seen) -> f64 {
-    let own = of.facet;
-    let from = minus([own.middle.x, own.middle.y, own.middle.z], middle);
-    let (height, along) = (dot(from, normal), dot(n, normal));
-    // Points of either lie in its plane: they are all as high as its middle, and stray along the normal of the other by so much.
-    let sine = most(1.0 - along * along, 0.0).sqrt();
-    let strays = own.radius * sine;
-    let sphere = if height > strays { radius } else { (1.0 + BEHIND) * radius };
-    let (rise, top) = (sphere - dot(from, n), (sine + BEHIND) * radius - dot(from, n));
-    let apart = most(dot(from, from).sqrt() - own.radius, 0.0);
-    let outside = most(apart * apart - sphere * sphere, 0.0);
-    let to_sphere = if top > 0.0 { outside / rise } else { f64::INFINITY };
-    let before = 2.0 * most(height - strays, 0.0) / most(1.0 - along, f64::MIN_POSITIVE);
-    let behind = 2.0 * most(-height - strays - BEHIND * radius, 0.0) / most(1.0 + along, f64::MIN_POSITIVE);
-    // A ball that rests inside a side reaches half of its width across it at most.
-    let mut beyond = 0.0;
-    for (corner, out) in of.sides {
-        let away = dot(minus(middle, [corner.x, corner.y, corner.z]), [out.x, out.y, out.z]);
-        beyond = most(beyond, away - (1.0 + BEHIND) * radius);
-    }
-    SURELY * most(most(to_sphere, 2.0 * beyond), most(before, behind))
-}
-
-/// How far apart two facets are beyond what may meet, µm: below 0 where they may.
-pub fn apart(own: &Facet, n: Vec3, facet: &Facet, range: f64) -> f64 {
-    let from = own.middle + 0.5 * range * n - facet.middle;
-    from.norm() - own.radius - 0.5 * range - (1.0 + BEHIND) * facet.radius
-}
-
-/// By how much a facet may have come nearer to others at most since it was so, in what [`apart`] measures, be it the one that looks or the
-/// one that is seen.
-pub fn nearer(now: &Facet, then: &Facet, range: f64) -> f64 {
-    let grown = (1.0 + BEHIND) * (now.radius - then.radius).max(0.0);
-    (now.middle - then.middle).norm() + 0.5 * range * (now.normal - then.normal).norm() + grown
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::facet::apart;
     use super::*;
     use crate::contact::opening_to_facet;
     use crate::random::{Purpose, Stream};
@@ -370,28 +169,6 @@ mod tests {
             outside += usize::from((x - facet.middle).norm() > facet.radius);
         }
         assert!(seen > 2000 && outside > 100, "{outside} of {seen} are outside the sphere around the facet");
-    }
-
-    #[test]
-    fn facets_come_nearer_by_no_more_than_both_have_changed() {
-        let mut stream = Stream::new(13, Purpose::Placement, 0, 0);
-        let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
-        let mut close: f64 = 0.0;
-        for _ in 0..5_000 {
-            let mut corners = |size: f64| [0, 1, 2].map(|_| size * Vec3::new(number(), number(), number()));
-            let then = [corners(1.0), corners(1.0).map(|corner| corner + Vec3::new(2.0, 0.0, 0.0))];
-            let now = then.map(|facet| {
-                let moved = corners(0.2);
-                [0, 1, 2].map(|corner| facet[corner] + moved[corner])
-            });
-            let ([own, other], [own_now, other_now]) = (then.map(|at| Facet::of(&at)), now.map(|at| Facet::of(&at)));
-            let before = apart(&own, own.normal, &other, 1.5);
-            let after = apart(&own_now, own_now.normal, &other_now, 1.5);
-            let most = nearer(&own_now, &own, 1.5) + nearer(&other_now, &other, 1.5);
-            assert!(before - after <= most + 1e-12, "{before} {after} {most}");
-            close = close.max((before - after) / most);
-        }
-        assert!(close > 0.5, "the bound tells something: {close}");
     }
 
     #[test]

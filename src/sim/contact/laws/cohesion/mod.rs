@@ -5,12 +5,17 @@
 mod area;
 #[cfg(test)]
 mod area_tests;
+mod attracted;
 mod bonds;
+mod bounds;
 mod candidates;
 mod closed;
+mod facet;
 mod facing;
 mod patch;
+mod points;
 mod search;
+mod surroundings;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -24,7 +29,8 @@ pub use self::closed::Earlier;
 use self::closed::PatchBonds;
 pub use self::facing::{Faced, Facing, area_between, number_of};
 use self::patch::{Partner, Patch, PatchPull};
-use self::search::{Around, Seen, Surroundings, UNKNOWN};
+use self::search::{Around, Seen, UNKNOWN};
+use self::surroundings::Surroundings;
 pub use self::table::{CohesionTable, Cohesive};
 use self::turnover::Turnover;
 use crate::Vec3;

@@ -1,56 +1,15 @@
 //! What attracts each part of a surface most.
 
 use super::super::super::vectors::gather_corners;
-use super::candidates::{Candidates, Facet, Looking, apart, nearer};
-use super::patch::{Partner, Patch, depth_of_well, width_of_well};
+use super::attracted::{Attracted, Attracting, more};
+use super::candidates::Candidates;
+use super::facet::{Facet, Looking};
+use super::patch::{Partner, Patch, depth_of_well};
+use super::points::points_of_facet;
 use super::table::CohesionTable;
 use crate::Vec3;
-use crate::contact::{Near, NearFacets, Plane, Scene, is_surely_beyond, opening_to_facet, opening_to_plane};
+use crate::contact::{Near, Plane, Scene, is_surely_beyond, opening_to_facet, opening_to_plane};
 use crate::sim::controls::Controls;
-
-/// The facets at an instant, and which are near which.
-#[derive(Debug, Clone, Default)]
-pub struct Surroundings {
-    pub near: NearFacets,
-    /// All facets.
-    pub facets: Vec<Facet>,
-    /// What they were when it was looked for what is near.
-    then: Vec<Facet>,
-    /// By how much each may have come nearer to others since then, µm.
-    pub nearer: Vec<f64>,
-}
-
-impl Surroundings {
-    /// Those at these positions, of facets nearer than `range` (µm) to each other. Where they are followed from instant to instant,
-    /// what is near is looked for some way farther and kept as long as it will do.
-    pub fn find(&mut self, scene: &Scene, positions: &[Vec3], range: f64, are_followed: bool) {
-        let Self { near, facets, then, nearer: of_facets } = self;
-        facets.clear();
-        facets.extend((0..scene.bodies.len() as u32).flat_map(|body| {
-            let first = scene.bodies[body as usize].first_atom;
-            let corners = move |facet: &[u32; 3]| gather_corners(positions, facet.map(|atom| first + atom));
-            scene.shape(body).facets.iter().map(move |facet| Facet::of(&corners(facet)))
-        }));
-        // Rounded so that it is less than it was.
-        let apart = |own: u32, other: u32| {
-            let has_two = scene.sides_of(scene.body_of_facet(own)) == 2;
-            let [own, other] = [own, other].map(|facet| &facets[facet as usize]);
-            let before = apart(own, own.normal, other, range);
-            (if has_two { before.min(apart(own, -own.normal, other, range)) } else { before } - 1e-5) as f32
-        };
-        let are_new = if are_followed {
-            near.follow(scene, positions, range, apart)
-        } else {
-            near.find(scene, positions, range, apart);
-            true
-        };
-        if are_new {
-            then.clone_from(facets);
-        }
-        of_facets.clear();
-        of_facets.extend(facets.iter().zip(&*then).map(|(now, then)| nearer(now, then, range)));
-    }
-}
 
 /// All surfaces at an instant.
 pub struct Seen<'a> {
@@ -72,63 +31,6 @@ pub struct Spot {
     pub facet: u32,
     /// The number of the point on it; of surfaces with two sides those of the one from behind count on.
     pub point: u32,
-}
-
-/// What attracts a point.
-#[derive(Debug, Clone, Copy)]
-struct Attracted {
-    /// What it releases to open there, over half of the area, pN/µm.
-    released: f64,
-    /// How far it is open, µm.
-    width: f64,
-    /// Of facets and then planes, numbered through all.
-    number: u32,
-    /// Of the point's side, pN/µm².
-    strength: f64,
-    /// µm.
-    range: f64,
-    partner: Partner,
-}
-
-impl Attracted {
-    /// Whether it attracts the point more than another one does; of two that do so alike the nearer one, then the one with the lesser
-    /// number counts, whatever is looked at first.
-    fn is_more_than(&self, other: &Self) -> bool {
-        let rest = || self.width < other.width || self.width == other.width && self.number < other.number;
-        self.released > other.released || self.released == other.released && rest()
-    }
-}
-
-/// The more attracting of both.
-fn more(one: Option<Attracted>, other: Option<Attracted>) -> Option<Attracted> {
-    match (one, other) {
-        (Some(a), Some(b)) => Some(if b.is_more_than(&a) { b } else { a }),
-        (a, b) => a.or(b),
-    }
-}
-
-/// A body whose facets may attract points of a facet.
-#[derive(Debug, Clone, Copy)]
-struct Attracting {
-    body: u32,
-    /// The end of its candidates; they begin where those of the body before it end.
-    end: usize,
-    /// Of the point's side, pN/µm².
-    strength: f64,
-    /// µm.
-    range: f64,
-}
-
-impl Attracting {
-    /// How far open what attracts a point more than this releases can be, and a little more, µm.
-    fn widest(&self, released: f64) -> f64 {
-        let whole = self.strength * self.range;
-        match whole > 0.0 && released <= whole {
-            // Near nothing a width is known to no more than the root of the rounding error of what it releases.
-            true => self.range * (width_of_well(released / whole) + 1e-6).min(1.0),
-            false => 0.0,
-        }
-    }
 }
 
 /// What may attract points of the facet that is looked at.
@@ -331,39 +233,5 @@ impl Seen<'_> {
             self.attracted(&by, self.facets.len() as u32 + number, width, Partner::Plane(number))
         });
         planes.fold(None, |most, found| more(most, Some(found)))
-    }
-}
-
-/// Barycentric weights of the middles of the parts of a facet whose sides are cut into so many.
-pub fn points_of_facet(parts: u32) -> &'static [[f64; 3]] {
-    const fn middles<const N: usize>(parts: usize) -> [[f64; 3]; N] {
-        let (mut all, mut next) = ([[0.0; 3]; N], 0);
-        let mut i = 0;
-        while i < parts {
-            let mut j = 0;
-            while i + j < parts {
-                let mut half = 0;
-                while half < 2 && i + j + half < parts {
-                    let third = (1 + half) as f64 / 3.0;
-                    let (v, w) = ((i as f64 + third) / parts as f64, (j as f64 + third) / parts as f64);
-                    all[next] = [1.0 - v - w, v, w];
-                    next += 1;
-                    half += 1;
-                }
-                j += 1;
-            }
-            i += 1;
-        }
-        all
-    }
-    const ONE: [[f64; 3]; 1] = middles(1);
-    const TWO: [[f64; 3]; 4] = middles(2);
-    const THREE: [[f64; 3]; 9] = middles(3);
-    const FOUR: [[f64; 3]; 16] = middles(4);
-    match parts {
-        0 | 1 => &ONE,
-        2 => &TWO,
-        3 => &THREE,
-        _ => &FOUR,
     }
 }

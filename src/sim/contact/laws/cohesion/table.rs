@@ -2,7 +2,7 @@
 
 use super::bonds::BondKinetics;
 use super::facing::Faced;
-use super::search::points_of_facet;
+use super::points::points_of_facet;
 use crate::contact::Scene;
 
 /// How two surfaces stick.
