@@ -12,6 +12,8 @@ use crate::picture::{Axis, Chart, Heat, Range, Series, Shading};
 
 /// Longest description that stands along an axis, letters; the name of the measure stands there otherwise.
 const LONGEST_LABEL: usize = 48;
+/// The same beside the colours of a map, where the number of runs follows.
+const LONGEST_BAR: usize = 62;
 /// Longest name of a parameter beside its bar, letters.
 const LONGEST_NAME: usize = 30;
 
@@ -47,8 +49,9 @@ struct Data<'a> {
     points: Vec<Vec<f64>>,
     /// Name or description, with the unit.
     label: String,
-    /// The name of the measure.
+    /// The name of the measure, and the same with its unit.
     name: &'a str,
+    short: String,
 }
 
 impl<'a> Data<'a> {
@@ -62,7 +65,8 @@ impl<'a> Data<'a> {
         let values: Vec<(u32, f64)> = values.filter(|(_, value)| value.is_finite()).collect();
         let mut points = vec![Vec::new(); collected.plan.facts.points as usize];
         values.iter().for_each(|(point, value)| points[*point as usize].push(*value));
-        Self { collected, values, points, label, name: &measure.name }
+        let (name, short) = (&measure.name, with_unit(&measure.name, &measure.unit));
+        Self { collected, values, points, label, name, short }
     }
 
     /// The values of a point.
@@ -156,7 +160,9 @@ fn map(data: &Data, x: &Column, y: &Column) -> Chart {
     let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
     let range = if low < high { [low, high] } else { [low - 0.5, low + 0.5] };
     let repeated = data.collected.plan.facts.replicates > 1;
-    let told = if repeated { format!("{}, mean of {}", data.label, data.runs_told()) } else { data.label.clone() };
+    let told = |label: &str| if repeated { format!("{label}, mean of {}", data.runs_told()) } else { label.to_owned() };
+    let whole = told(&data.label);
+    let told = if whole.chars().count() > LONGEST_BAR { told(&data.short) } else { whole };
     let heat = Heat {
         x: [-0.5, columns as f64 - 0.5],
         y: [-0.5, rows as f64 - 0.5],
@@ -241,7 +247,7 @@ mod tests {
     #[test]
     fn long_names_keep_their_ends() {
         assert_eq!(shortened("adhesion"), "adhesion");
-        assert_eq!(shortened("cells.cell.motility.attraction.stiffness"), "…attraction.stiffness");
+        assert_eq!(shortened("cells.cell.motility.attraction.stiffness"), "…motility.attraction.stiffness");
         let odd = shortened(&"a long name without any key in it".repeat(2));
         assert!(odd.starts_with('…') && odd.chars().count() == LONGEST_NAME, "{odd}");
     }

@@ -163,7 +163,7 @@ fn under_way(folder: &Path, number: u32) -> bool {
 }
 
 /// How long runs last that are stopped on their way: a second or so, without optimisation, too.
-const LONG: &str = if cfg!(debug_assertions) { "20 s" } else { "200 s" };
+const LONG: &str = if cfg!(debug_assertions) { "10 s" } else { "200 s" };
 
 #[cfg(unix)]
 #[test]
