@@ -89,6 +89,14 @@ pub enum Error {
         /// The result file to resume.
         result: PathBuf,
     },
+    /// The user or the system asked for a stop; doing the same again goes on from there.
+    #[error("{message}")]
+    Stopped {
+        /// What was stopped where.
+        message: String,
+        /// How to go on.
+        help: String,
+    },
     /// The machine failed us: disk full, a file that vanished, a library that reports trouble.
     #[error("{message}")]
     Machine {
@@ -110,7 +118,7 @@ impl Error {
         match self {
             Self::Input(_) => 2,
             Self::Numbers { .. } => 3,
-            Self::Interrupted { .. } => 130,
+            Self::Interrupted { .. } | Self::Stopped { .. } => 130,
             Self::Machine { .. } => 1,
         }
     }

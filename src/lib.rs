@@ -4,7 +4,8 @@
 //! A program begins with a [`Simulation`]: made from a document or from an [`experiment::Experiment`] built in Rust, it is
 //! stepped, looked at, driven and saved in memory. What is behind it goes the course of a run: the experiment says what the
 //! user wants, [`experiment::compile()`] turns it into a [`sim::Model`] (what it means) and a [`sim::State`] (where it
-//! starts), [`sim::step()`] moves the state. [`run`] records a simulation in a file, which [`analysis`] and [`picture`] read.
+//! starts), [`sim::step()`] moves the state. [`run`] records a simulation in a file, which [`analysis`] and [`picture`] read;
+//! [`study`] makes many such runs of one experiment.
 #![warn(missing_docs)]
 
 #[cfg(test)]
@@ -33,6 +34,7 @@ pub mod recorded;
 pub mod run;
 pub mod sim;
 pub mod simulation;
+pub mod study;
 pub mod units;
 pub mod values;
 pub mod xml;

@@ -34,6 +34,10 @@ pub enum Purpose {
     Fibres = 7,
     /// Which of the events of one time and one priority is executed next; see [`Choices`].
     Events = 8,
+    /// Points of the designs of studies; the number of the parameter stands for the cell.
+    Design = 9,
+    /// Seeds of the runs of a study; the number of the replicate stands for the cell, that of the point for the draw.
+    Replicate = 10,
     /// Which cells are drawn for an interval by the bootstrap; the number of the draw stands for the cell. Numbers of analysis begin with 100.
     Bootstrap = 100,
 }

@@ -16,7 +16,9 @@ pub mod render;
 pub mod report;
 pub mod resume;
 pub mod run;
+pub mod run_one;
 pub mod schema;
+pub mod sweep;
 pub mod track_file;
 
 use crate::error::{Paint, Result, render, say};
@@ -54,6 +56,8 @@ pub enum Command {
     Export(export::ExportArgs),
     /// Checks, solves and converts documents of equations: EML, and SBML models.
     Eml(eml::EmlArgs),
+    /// Runs an experiment with many values of its parameters and collects what came out.
+    Sweep(sweep::SweepArgs),
     /// Prints the JSON schema of experiment documents.
     Schema(schema::SchemaArgs),
 }
@@ -71,6 +75,7 @@ impl Command {
             Self::Measure(args) => ("measure", args.json),
             Self::Export(args) => ("export", args.json),
             Self::Eml(args) => args.command.manner(),
+            Self::Sweep(args) => args.command.manner(),
             Self::Schema(_) => ("schema", false),
         };
         (name, if json { Form::Json } else { Form::Words })
@@ -94,6 +99,7 @@ pub fn main(arguments: Arguments) -> i32 {
 
 fn act(command: Command, name: &str, form: Form) -> Result<Report> {
     match command {
+        Command::Run(args) if args.plan.is_some() => run_one::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => resume::run(&args),
         Command::Check(args) => check::run(&args),
@@ -103,6 +109,7 @@ fn act(command: Command, name: &str, form: Form) -> Result<Report> {
         Command::Measure(args) => crash::told_as_damage(name, form, &args.tracks.file, || measure::run(&args)),
         Command::Export(args) => crash::told_as_damage(name, form, &args.result, || export::run(&args)),
         Command::Eml(args) => eml::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
         Command::Schema(args) => schema::run(&args),
     }
 }

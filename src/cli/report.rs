@@ -75,7 +75,9 @@ pub fn failure_text(command: &str, error: &Error) -> String {
             facts.insert("result".to_owned(), path_text(result).into());
             vec![json!({ "message": error.to_string(), "help": "pseudopod resume goes on" })]
         }
-        Error::Machine { message, help } => vec![json!({ "message": message, "help": help })],
+        Error::Stopped { message, help } | Error::Machine { message, help } => {
+            vec![json!({ "message": message, "help": help })]
+        }
     };
     facts.insert("faults".to_owned(), faults.into());
     object_text(command, false, facts)

@@ -4,7 +4,7 @@ use super::files::{Named, refuse_existing};
 use super::memory;
 use super::progress::Progress;
 use super::report::{Report, path_text, paths};
-use crate::error::{Error, Result, say};
+use crate::error::{Error, Fault, Result, say};
 use crate::experiment::Document;
 use crate::output::Overwrite;
 use crate::run::{self, Outcome, Quiet, RunOptions};
@@ -16,7 +16,17 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, clap::Args)]
 pub struct RunArgs {
     /// The experiment document.
-    pub experiment: PathBuf,
+    #[arg(required_unless_present = "plan")]
+    pub experiment: Option<PathBuf>,
+    /// Makes a run of a study instead: the table of its runs, runs.csv.
+    #[arg(long, value_name = "RUNS", requires = "row", conflicts_with_all = ["experiment", "output", "sets", "seed", "until", "force"])]
+    pub plan: Option<PathBuf>,
+    /// The number of the run, from 1.
+    #[arg(long, value_name = "NUMBER", requires = "plan")]
+    pub row: Option<u32>,
+    /// Leaves a run of a study alone that is complete.
+    #[arg(long, requires = "plan")]
+    pub skip_complete: bool,
     /// The result file; by default results/<name of the document>.vtkhdf in the working folder.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -62,12 +72,16 @@ pub struct How {
 /// # Errors
 /// As [`run::run`].
 pub fn run(args: &RunArgs) -> Result<Report> {
+    let Some(experiment) = args.experiment.as_deref() else {
+        let fault = Fault::new("no experiment was named");
+        return Err(Error::input(fault.help("name a document, or a run of a study with --plan and --row")));
+    };
     let mut sets = args.sets.clone();
     sets.extend(args.seed.map(|seed| format!("seed={seed}")));
     sets.extend(args.until.as_ref().map(|until| format!("run.until={until}")));
-    let mut document = Document::read(&args.experiment, &sets)?;
+    let mut document = Document::read(experiment, &sets)?;
     document.memory = memory::allowed(args.memory.as_deref())?;
-    let result = args.output.clone().unwrap_or_else(|| default_result(&args.experiment));
+    let result = args.output.clone().unwrap_or_else(|| default_result(experiment));
     let folder = result.parent().filter(|folder| args.output.is_none() && !folder.exists());
     folder.map_or(Ok(()), make_folder)?;
     let overwrite = if args.force { Overwrite::Replace } else { Overwrite::Refuse };

@@ -1,4 +1,4 @@
-//! `pseudopod schema`: prints the JSON schema of the experiment document.
+//! `pseudopod schema`: prints the JSON schema of documents.
 
 use super::files::{Named, refuse_existing};
 use super::report::Report;
@@ -8,6 +8,9 @@ use std::path::PathBuf;
 /// Prints the JSON schema of the experiment document, for editors.
 #[derive(Debug, Clone, clap::Args)]
 pub struct SchemaArgs {
+    /// That of studies instead.
+    #[arg(long)]
+    pub study: bool,
     /// Writes to this file instead of the terminal.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -21,14 +24,20 @@ pub fn text() -> String {
     format!("{:#}\n", crate::experiment::schema())
 }
 
+/// The schema of studies, the same as in `docs/study.schema.json`.
+pub fn study_text() -> String {
+    format!("{:#}\n", crate::study::schema())
+}
+
 /// Runs the command.
 ///
 /// # Errors
 /// The file exists or cannot be written.
 pub fn run(args: &SchemaArgs) -> Result<Report> {
-    let Some(path) = &args.output else { return Ok(Report { words: text(), ..Report::default() }) };
+    let words = if args.study { study_text() } else { text() };
+    let Some(path) = &args.output else { return Ok(Report { words, ..Report::default() }) };
     refuse_existing(path, args.force, Named::ByUser)?;
-    std::fs::write(path, text()).map_err(|error| Error::Machine {
+    std::fs::write(path, words).map_err(|error| Error::Machine {
         message: format!("{} cannot be written: {error}", path.display()),
         help: "name a file in a folder that exists and that you may write to with -o".into(),
     })?;

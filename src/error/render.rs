@@ -39,7 +39,7 @@ pub fn render(error: &Error, paint: Paint) -> String {
             let help = format!("go on with: pseudopod resume {}", result.display());
             plain_text(&error.to_string(), &help, paint)
         }
-        Error::Machine { message, help } => plain_text(message, help, paint),
+        Error::Stopped { message, help } | Error::Machine { message, help } => plain_text(message, help, paint),
     }
 }
 

@@ -30,6 +30,7 @@
 //! # Ok::<(), pseudopod::error::Error>(())
 //! ```
 
+mod along;
 mod cells;
 mod check;
 mod chemistry;
@@ -54,6 +55,7 @@ mod volume;
 
 pub use crate::analysis::measures::{self, Measure, MeasureKind};
 pub use crate::values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};
+pub use along::Checked;
 pub use cells::{CellType, Mesh, Orientation};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{
@@ -73,7 +75,7 @@ pub use placement::Placement;
 pub use population::{Added, Removed};
 pub use pseudopods::{ContactInhibition, InhibitedBy, PodFibres, Pseudopods};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
-pub use schema::schema;
+pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use volume::{VolumeControl, VolumeRule};
 

@@ -1,9 +1,9 @@
 //! The JSON schema of the experiment document, for editors and for the checker, made from the types.
 
 use super::Experiment;
-use schemars::Schema;
 use schemars::generate::SchemaSettings;
 use schemars::transform::{Transform, transform_subschemas};
+use schemars::{JsonSchema, Schema};
 use serde_json::Value;
 
 /// The JSON schema (draft 2020-12) of the experiment document.
@@ -12,9 +12,13 @@ use serde_json::Value;
 /// of this dimension), `x-minimum`, `x-exclusive-minimum`, `x-maximum` (bounds in base units of the quantities below),
 /// `x-words` (words that stand beside the quantity), `x-text` (what else a text is: a file, a name, a colour).
 pub fn schema() -> Value {
+    schema_of::<Experiment>()
+}
+
+/// The same of another kind of document.
+pub fn schema_of<T: JsonSchema>() -> Value {
     let settings = SchemaSettings::draft2020_12().with_transform(without_null as fn(&mut Schema));
-    let schema = settings.into_generator().into_root_schema_for::<Experiment>();
-    schema.to_value()
+    settings.into_generator().into_root_schema_for::<T>().to_value()
 }
 
 /// TOML has no null: an absent key says the same, so `null` is taken out of the types and alternatives.

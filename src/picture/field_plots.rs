@@ -125,6 +125,7 @@ pub fn kymograph(result: &ResultFile, line: &FieldLine, range: Option<[f64; 2]>)
         map: ColourMap::Viridis,
         range: range.unwrap_or(found),
         label: line.label(),
+        ..Heat::default()
     };
     Ok(Chart {
         x: Axis::linear("time (s)").range(Range::Fixed(time_ends[0], time_ends[1])),

@@ -108,7 +108,9 @@ impl SimulationError {
     pub fn help(&self) -> Option<String> {
         Some(match self {
             Self::Input(Error::Input(faults)) => return faults.iter().find_map(|fault| fault.help.clone()),
-            Self::Input(Error::Numbers { help, .. } | Error::Machine { help, .. }) => help.clone(),
+            Self::Input(Error::Numbers { help, .. } | Error::Machine { help, .. } | Error::Stopped { help, .. }) => {
+                help.clone()
+            }
             Self::Input(Error::Interrupted { .. }) | Self::Value { .. } => return None,
             Self::Trouble(trouble) => trouble.help().to_owned(),
             Self::Population(_) => {

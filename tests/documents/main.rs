@@ -7,6 +7,7 @@ mod meaning;
 mod population;
 mod random_scenes;
 mod start;
+mod studies;
 
 #[path = "../support/chance.rs"]
 mod chance;

@@ -9,6 +9,7 @@ mod fields;
 mod meshes;
 mod runs;
 mod sbml;
+mod studies;
 
 #[path = "../support/turns.rs"]
 mod turns;

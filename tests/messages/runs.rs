@@ -1,6 +1,6 @@
 //! What the program says on the terminal when something goes wrong: transcripts of commands beside their inputs.
 //!
-//! Every `.txt` file of `tests/messages/runs`, `tests/messages/equations` and `tests/messages/tracks` is a transcript. It begins with a comment
+//! Every `.txt` file of `tests/messages/runs`, `tests/messages/equations`, `tests/messages/tracks` and `tests/messages/sweeps` is a transcript. It begins with a comment
 //! (`# …`) that says what must hold; each line `$ …` is a command of the shell, run in a folder of its own that holds the
 //! documents of its folder (`*.toml`, `*.eml`, `*.xml`, `*.csv`) and, for runs, the meshes of `tests/messages/meshes`; below it
 //! stand what the command printed on standard output, then on standard error, and its exit status if that is not 0.
@@ -12,6 +12,7 @@ use std::process::Command;
 const RUNS: &str = "tests/messages/runs";
 const EQUATIONS: &str = "tests/messages/equations";
 const TRACKS: &str = "tests/messages/tracks";
+const SWEEPS: &str = "tests/messages/sweeps";
 
 /// Files of a folder that end in `ending`, in order.
 fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
@@ -89,6 +90,12 @@ fn every_transcript_of_tracks_comes_out_as_it_is_kept() {
     compare(TRACKS, 2);
 }
 
+#[test]
+fn every_transcript_of_studies_comes_out_as_it_is_kept() {
+    let _turn = take_turn();
+    compare(SWEEPS, 2);
+}
+
 /// Plays the transcripts of a folder, of which there are some at least.
 fn compare(folder: &str, least: usize) {
     let transcripts = files(folder, "txt");
@@ -111,7 +118,7 @@ fn compare(folder: &str, least: usize) {
 #[test]
 fn every_refusal_says_what_to_do_and_ends_as_promised() {
     let _turn = take_turn();
-    for path in files(RUNS, "txt").into_iter().chain(files(EQUATIONS, "txt")).chain(files(TRACKS, "txt")) {
+    for path in [RUNS, EQUATIONS, TRACKS, SWEEPS].into_iter().flat_map(|folder| files(folder, "txt")) {
         let text = std::fs::read_to_string(&path).unwrap();
         for part in text.split("\n$ ").skip(1).filter(|part| part.starts_with("pseudopod ")) {
             let Some((_, code)) = part.trim_end().rsplit_once("exit ") else { continue };

@@ -11,6 +11,7 @@ mod python;
 mod running;
 #[cfg(target_os = "linux")]
 mod shim;
+mod sweep;
 
 #[path = "../support/chance.rs"]
 #[allow(dead_code)]

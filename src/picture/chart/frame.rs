@@ -55,7 +55,7 @@ impl Frame {
         let top = if chart.title.is_empty() { 18.0 } else { 46.0 };
         let bottom = height - if chart.x.label.is_empty() { 34.0 } else { 60.0 };
         let rows = ((bottom - top) / 62.0).clamp(2.0, 9.0) as usize;
-        let mut y = marks(&chart.y, data_y, rows);
+        let mut y = thinned_rows(marks(&chart.y, data_y, rows), &chart.y, bottom - top);
         let left_for = |ticks: &Ticks| {
             let widest = ticks.major.iter().map(|mark| text_width(&mark.1, NUMBER)).fold(0.0, f64::max);
             widest + if chart.y.label.is_empty() { 24.0 } else { 46.0 }
@@ -101,6 +101,12 @@ impl Frame {
 
 /// Marks for the x axis with as many labels as fit beside each other.
 fn fitted_columns(axis: &Axis, data: [f64; 2], length: f64) -> Ticks {
+    if !axis.names.is_empty() {
+        return thinned(marks(axis, data, 2), |shown| {
+            let widest = shown.iter().map(|mark| text_width(&mark.1, NUMBER)).fold(0.0, f64::max);
+            shown.len() as f64 * (widest + 12.0) < length
+        });
+    }
     let mut most = (length / 75.0).clamp(2.0, 10.0) as usize;
     loop {
         let ticks = marks(axis, data, most);
@@ -110,6 +116,23 @@ fn fitted_columns(axis: &Axis, data: [f64; 2], length: f64) -> Ticks {
         }
         most -= 1;
     }
+}
+
+/// Words along the y axis, as many as fit above each other.
+fn thinned_rows(ticks: Ticks, axis: &Axis, length: f64) -> Ticks {
+    if axis.names.is_empty() { ticks } else { thinned(ticks, |shown| shown.len() as f64 * (NUMBER + 4.0) < length) }
+}
+
+/// Marks of which so many are left out, always the same number between two, that the others fit.
+fn thinned(mut ticks: Ticks, fits: impl Fn(&[(f64, String)]) -> bool) -> Ticks {
+    let all = std::mem::take(&mut ticks.major);
+    for every in 1..=all.len().max(1) {
+        ticks.major = all.iter().step_by(every).cloned().collect();
+        if fits(&ticks.major) {
+            break;
+        }
+    }
+    ticks
 }
 
 /// Marks for one axis over the data or the range asked for.
@@ -125,6 +148,10 @@ fn marks(axis: &Axis, data: [f64; 2], most: usize) -> Ticks {
         }
         Range::Fixed(..) => (data[0], data[1], Ends::Rounded),
     };
+    if !axis.names.is_empty() {
+        let major = axis.names.iter().filter(|(at, _)| (low..=high).contains(at)).cloned().collect();
+        return Ticks { low, high, major, minor: Vec::new(), exponent: 0 };
+    }
     match axis.scale {
         Scale::Linear => ticks::linear(low, high, most, ends),
         // Decades carry short labels.

@@ -21,14 +21,26 @@ pub struct Heat {
     pub y: [f64; 2],
     /// Boxes along x and y.
     pub size: [usize; 2],
-    /// A number for each box, x fastest, the lowest row first; shown smoothly between the centres, NaN grey.
+    /// A number for each box, x fastest, the lowest row first; NaN grey.
     pub values: Vec<f64>,
+    /// What is shown between the centres of boxes.
+    pub shading: Shading,
     /// Colours.
     pub map: ColourMap,
     /// Numbers of the first and the last colour.
     pub range: [f64; 2],
     /// Quantity with unit.
     pub label: String,
+}
+
+/// What is shown between the centres of boxes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shading {
+    /// Numbers in between, for what is known everywhere, such as a field.
+    #[default]
+    Smooth,
+    /// The number of the box, for what was measured at the centres alone.
+    Boxes,
 }
 
 impl Heat {
@@ -53,7 +65,12 @@ impl Heat {
             return image;
         }
         let between = |pixel: usize, pixels: usize, boxes: usize| {
-            let at = ((pixel as f64 + 0.5) / pixels as f64 * boxes as f64 - 0.5).clamp(0.0, (boxes - 1) as f64);
+            let centred = (pixel as f64 + 0.5) / pixels as f64 * boxes as f64 - 0.5;
+            let at = match self.shading {
+                Shading::Smooth => centred,
+                Shading::Boxes => centred.round(),
+            };
+            let at = at.clamp(0.0, (boxes - 1) as f64);
             (at as usize, (at as usize + 1).min(boxes - 1), at.fract())
         };
         let [low, high] = self.range;
@@ -147,6 +164,15 @@ mod tests {
         for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
             assert_eq!(base64(bytes.as_bytes()), text);
         }
+    }
+
+    #[test]
+    fn boxes_have_one_colour_each() {
+        let shading = Shading::Boxes;
+        let heat = Heat { size: [2, 1], values: vec![0.0, 1.0], range: [0.0, 1.0], shading, ..Heat::default() };
+        let image = heat.image(8, 2);
+        let colours: Vec<Colour> = (0..8).map(|x| image.pixel(x, 0)).collect();
+        assert_eq!(colours, [[heat.map.at(0.0); 4], [heat.map.at(1.0); 4]].concat());
     }
 
     #[test]

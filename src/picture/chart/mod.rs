@@ -22,7 +22,7 @@ use super::svg::svg_to_pixels;
 use crate::error::Result;
 
 pub use draw::to_svg;
-pub use heat::Heat;
+pub use heat::{Heat, Shading};
 
 /// One chart.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -54,6 +54,8 @@ pub struct Axis {
     pub range: Range,
     /// How values are spaced.
     pub scale: Scale,
+    /// Marks with words in place of round numbers, as many as there is space for; empty for round numbers.
+    pub names: Vec<(f64, String)>,
 }
 
 /// From where to where an axis goes.
@@ -223,6 +225,13 @@ impl Axis {
     /// A logarithmic axis over the range of the data.
     pub fn log(label: impl Into<String>) -> Self {
         Self { label: label.into(), scale: Scale::Log, ..Self::default() }
+    }
+
+    /// An axis with words at 0, 1, 2 and so on, which stand in the middle of boxes of length 1.
+    pub fn named(label: impl Into<String>, names: impl IntoIterator<Item = String>) -> Self {
+        let names: Vec<(f64, String)> = names.into_iter().enumerate().map(|(at, name)| (at as f64, name)).collect();
+        let range = Range::Fixed(-0.5, names.len().max(1) as f64 - 0.5);
+        Self { names, range, ..Self::linear(label) }
     }
 
     /// The same axis over another range.

@@ -1,0 +1,254 @@
+//! A chart for each measure of a study: a curve over one parameter, a map over two, rank correlations with more.
+
+use super::collect::{Collected, Status};
+use super::document::Design;
+use super::ranks::correlation;
+use super::variation::Column;
+use crate::analysis::statistics::mean;
+use crate::error::short;
+use crate::picture::colour::{Colour, ColourMap};
+use crate::picture::field_view::with_unit;
+use crate::picture::{Axis, Chart, Heat, Range, Series, Shading};
+
+/// Longest description that stands along an axis, letters; the name of the measure stands there otherwise.
+const LONGEST_LABEL: usize = 48;
+/// The same beside the colours of a map, where the number of runs follows.
+const LONGEST_BAR: usize = 62;
+/// Longest name of a parameter beside its bar, letters.
+const LONGEST_NAME: usize = 30;
+
+/// The charts of all measures that some run has, each with the name of its files.
+pub fn charts(collected: &Collected) -> Vec<(String, Chart)> {
+    let facts = &collected.plan.facts;
+    let sampled = matches!(facts.design, Design::LatinHypercube { .. } | Design::Sobol { .. });
+    let mut made = Vec::new();
+    for (index, measure) in facts.measures.iter().enumerate() {
+        let data = Data::of(collected, index);
+        if data.values.is_empty() {
+            continue;
+        }
+        let chart = match &facts.parameters[..] {
+            [only] => curve(&data, only, sampled),
+            [one, other] if facts.design == Design::Grid => map(&data, one, other),
+            columns => match bars(&data, columns) {
+                Some(chart) => chart,
+                None => continue,
+            },
+        };
+        made.push((measure.name.clone(), Chart { title: facts.title.clone(), ..chart }));
+    }
+    made
+}
+
+/// A measure of the runs that have it.
+struct Data<'a> {
+    collected: &'a Collected,
+    /// Point, from 0, and value of each run.
+    values: Vec<(u32, f64)>,
+    /// Values of each point.
+    points: Vec<Vec<f64>>,
+    /// Name or description, with the unit.
+    label: String,
+    /// The name of the measure, and the same with its unit.
+    name: &'a str,
+    short: String,
+}
+
+impl<'a> Data<'a> {
+    fn of(collected: &'a Collected, index: usize) -> Self {
+        let (runs, measure) = (&collected.plan.runs, &collected.plan.facts.measures[index]);
+        let of_run = collected.rows.iter().zip(runs).filter(|(row, _)| row.status == Status::Complete);
+        let values = of_run.filter_map(|(row, run)| Some((run.point - 1, row.values[index]?)));
+        let said = measure.description.chars().count();
+        let said = if (1..=LONGEST_LABEL).contains(&said) { &measure.description } else { &measure.name };
+        let label = with_unit(said, &measure.unit);
+        let values: Vec<(u32, f64)> = values.filter(|(_, value)| value.is_finite()).collect();
+        let mut points = vec![Vec::new(); collected.plan.facts.points as usize];
+        values.iter().for_each(|(point, value)| points[*point as usize].push(*value));
+        let (name, short) = (&measure.name, with_unit(&measure.name, &measure.unit));
+        Self { collected, values, points, label, name, short }
+    }
+
+    /// The values of a point.
+    fn of_point(&self, point: u32) -> &[f64] {
+        &self.points[point as usize]
+    }
+
+    /// The cell of a parameter at a point: that of its first run.
+    fn cell(&self, point: u32, column: usize) -> &str {
+        &self.collected.plan.runs[point as usize].cells[column]
+    }
+
+    fn points(&self) -> u32 {
+        self.collected.plan.facts.points
+    }
+
+    /// "5 runs", or "3 to 5 runs" while some are missing.
+    fn runs_told(&self) -> String {
+        let counts = || (0..self.points()).map(|point| self.of_point(point).len()).filter(|count| *count > 0);
+        let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
+        if least == most { format!("{most} runs") } else { format!("{least} to {most} runs") }
+    }
+}
+
+/// What an axis says of a parameter.
+fn label(column: &Column) -> String {
+    with_unit(&column.name, column.kind.unit().unwrap_or("1"))
+}
+
+/// A measure against one parameter: the mean of each point, a band from the least to the most of its runs.
+fn curve(data: &Data, column: &Column, sampled: bool) -> Chart {
+    let x_of = |point: u32| match column.kind.is_numeric() {
+        true => data.cell(point, 0).parse().unwrap_or(f64::NAN),
+        false => f64::from(point),
+    };
+    let x = match column.kind.is_numeric() {
+        true if column.log => Axis::log(label(column)),
+        true => Axis::linear(label(column)),
+        false => Axis::named(label(column), (0..data.points()).map(|point| data.cell(point, 0).to_owned())),
+    };
+    let mut chart = Chart { x, y: Axis::linear(data.label.clone()), ..Chart::default() };
+    let blue = Colour::of_palette(0);
+    if sampled {
+        let points = data.values.iter().map(|(point, value)| [x_of(*point), *value]).collect();
+        chart.series.push(Series::measured("", points, Vec::new()).coloured(blue));
+        return chart;
+    }
+    let mut found: Vec<(f64, &[f64])> = (0..data.points()).map(|point| (x_of(point), data.of_point(point))).collect();
+    found.retain(|(_, values)| !values.is_empty());
+    found.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let means: Vec<[f64; 2]> = found.iter().map(|(x, values)| [*x, mean(values)]).collect();
+    let repeated = found.iter().any(|(_, values)| values.len() > 1);
+    if repeated {
+        let ends = |values: &[f64]| {
+            values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
+        };
+        let band: Vec<[f64; 3]> =
+            found.iter().map(|(x, values)| (*x, ends(values))).map(|(x, [low, high])| [x, low, high]).collect();
+        // A band needs a width to be seen: words stand side by side, and each has a bar.
+        match column.kind.is_numeric() {
+            true => chart
+                .series
+                .push(Series::band(format!("range of {}, least to most", data.runs_told()), band).coloured(blue)),
+            false => {
+                let bars = band.iter().map(|[_, low, high]| [*low, *high]).collect();
+                let told = format!("mean and range of {}", data.runs_told());
+                chart.series.push(Series::measured(told, means, bars).coloured(blue));
+                return chart;
+            }
+        }
+    }
+    let told = if repeated { format!("mean of {}", data.runs_told()) } else { String::new() };
+    if column.kind.is_numeric() {
+        chart.series.push(Series::line(told, means.clone()).coloured(blue));
+    }
+    chart.series.push(Series::measured("", means, Vec::new()).coloured(blue));
+    chart
+}
+
+/// A measure over two parameters of a grid: a box for each point, with the mean of its runs.
+fn map(data: &Data, x: &Column, y: &Column) -> Chart {
+    // The last parameter of a grid changes fastest.
+    let rows = (0..data.points()).take_while(|point| data.cell(*point, 0) == data.cell(0, 0)).count();
+    let columns = data.points() as usize / rows.max(1);
+    let value = |column: usize, row: usize| {
+        let values = data.of_point((column * rows + row) as u32);
+        if values.is_empty() { f64::NAN } else { mean(values) }
+    };
+    let values: Vec<f64> = (0..rows).flat_map(|row| (0..columns).map(move |column| value(column, row))).collect();
+    let known = || values.iter().copied().filter(|value| value.is_finite());
+    let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
+    let range = if low < high { [low, high] } else { [low - 0.5, low + 0.5] };
+    let repeated = data.collected.plan.facts.replicates > 1;
+    let told = |label: &str| if repeated { format!("{label}, mean of {}", data.runs_told()) } else { label.to_owned() };
+    let whole = told(&data.label);
+    let told = if whole.chars().count() > LONGEST_BAR { told(&data.short) } else { whole };
+    let heat = Heat {
+        x: [-0.5, columns as f64 - 0.5],
+        y: [-0.5, rows as f64 - 0.5],
+        size: [columns, rows],
+        values,
+        map: ColourMap::Viridis,
+        range,
+        label: told,
+        shading: Shading::Boxes,
+    };
+    let name = |cell: &str| cell.parse().map_or_else(|_| cell.to_owned(), rounded_text);
+    Chart {
+        x: Axis::named(label(x), (0..columns).map(|column| name(data.cell((column * rows) as u32, 0)))),
+        y: Axis::named(label(y), (0..rows).map(|row| name(data.cell(row as u32, 1)))),
+        heat: Some(heat),
+        ..Chart::default()
+    }
+}
+
+/// A number as a mark shows it: three digits.
+fn rounded_text(value: f64) -> String {
+    short(format!("{value:.2e}").parse().unwrap_or(value)).replace('-', "−")
+}
+
+/// How much the ranks of a measure follow those of each parameter; none where no parameter is a number.
+fn bars(data: &Data, columns: &[Column]) -> Option<Chart> {
+    let numeric: Vec<(usize, &Column)> =
+        columns.iter().enumerate().filter(|(_, column)| column.kind.is_numeric()).collect();
+    let (points, measured): (Vec<u32>, Vec<f64>) = data.values.iter().copied().unzip();
+    let (mut outlines, mut intervals) = (Vec::new(), Vec::new());
+    // The first parameter stands on top.
+    for (row, (index, _)) in numeric.iter().rev().enumerate() {
+        let values: Vec<f64> =
+            points.iter().map(|point| data.cell(*point, *index).parse().unwrap_or(f64::NAN)).collect();
+        let found = correlation(&points, &values, &measured, data.collected.plan.facts.seed);
+        if !found.value.is_finite() {
+            continue;
+        }
+        let (middle, half) = (row as f64, 0.32);
+        let [low, high] = [middle - half, middle + half];
+        outlines.push(vec![[0.0, low], [found.value, low], [found.value, high], [0.0, high]]);
+        if found.low.is_finite() {
+            intervals.push(vec![[found.low, middle], [found.high, middle]]);
+            intervals.extend([found.low, found.high].map(|end| vec![[end, middle - 0.1], [end, middle + 0.1]]));
+        }
+    }
+    if outlines.is_empty() {
+        return None;
+    }
+    let areas = Series::Areas { label: String::new(), outlines, colour: Some(Colour::of_palette(0)) };
+    let mut series = vec![areas];
+    let dark = Colour([0x33; 3]);
+    series.extend(intervals.into_iter().map(|points| Series::line("", points).coloured(dark)));
+    series.push(Series::line("", vec![[0.0, -0.5], [0.0, numeric.len() as f64 - 0.5]]).coloured(dark));
+    let names = numeric.iter().rev().map(|(_, column)| shortened(&column.name));
+    // What the lines on the bars are stands in the label: a legend would take half of the width.
+    let told = format!("rank correlation with {}, and its 95 % interval", data.name);
+    let x = Axis { range: Range::Fixed(-1.0, 1.0), ..Axis::linear(told) };
+    Some(Chart { x, y: Axis::named("", names), series, ..Chart::default() })
+}
+
+/// A name that is not too long: of a long key its last words, which say most.
+fn shortened(name: &str) -> String {
+    if name.chars().count() <= LONGEST_NAME {
+        return name.to_owned();
+    }
+    let ends = name.match_indices('.').map(|(at, _)| &name[at + 1..]);
+    let fitting = ends.filter(|end| !end.is_empty() && end.chars().count() < LONGEST_NAME).max_by_key(|end| end.len());
+    let skipped = name.chars().count() - LONGEST_NAME + 1;
+    fitting.map_or_else(|| format!("…{}", name.chars().skip(skipped).collect::<String>()), |end| format!("…{end}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LONGEST_NAME, rounded_text, shortened};
+
+    #[test]
+    fn marks_have_three_digits() {
+        assert_eq!([0.00316227766, 0.1, -12.345, 0.0].map(rounded_text), ["0.00316", "0.1", "−12.3", "0"]);
+    }
+
+    #[test]
+    fn long_names_keep_their_ends() {
+        assert_eq!(shortened("adhesion"), "adhesion");
+        assert_eq!(shortened("cells.cell.motility.attraction.stiffness"), "…motility.attraction.stiffness");
+        let odd = shortened(&"a long name without any key in it".repeat(2));
+        assert!(odd.starts_with('…') && odd.chars().count() == LONGEST_NAME, "{odd}");
+    }
+}
