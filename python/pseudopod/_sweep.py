@@ -1,0 +1,88 @@
+"""Parameter studies: many runs of one experiment, and one table of what they measured."""
+
+from __future__ import annotations
+
+import os
+import re
+
+import pandas as pd
+
+from ._errors import ResultError
+from ._program import call
+
+#: ``contact.strength (pN/um^2)``: a name and its unit.
+_TITLE = re.compile(r"(?P<name>.*\S)\s*\((?P<unit>[^()]*)\)")
+
+
+def sweep(study: str | os.PathLike[str], folder: str | os.PathLike[str], jobs: int = 1) -> pd.DataFrame:
+    """Plans a study, runs what has not been run, and collects it.
+
+    Parameters
+    ----------
+    study
+        The document of the study.
+    folder
+        Where its runs lie; a study that was stopped goes on there.
+    jobs
+        Runs at a time.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As :func:`read_summary`.
+
+    Raises
+    ------
+    RunError
+        If the program refuses the study or cannot run it.
+    """
+    if not os.path.isdir(folder):
+        call(["sweep", "plan", study, "-o", folder])
+    call(["sweep", "run", folder, "-j", str(int(jobs))])
+    call(["sweep", "collect", folder])
+    return read_summary(folder)
+
+
+def read_summary(folder: str | os.PathLike[str]) -> pd.DataFrame:
+    """The table of a study: a row for each run.
+
+    Parameters
+    ----------
+    folder
+        The folder of the study, or its ``summary.csv``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns are what the file has, without the units in their titles; ``attrs["units"]`` has these by column,
+        ``1`` for what has none.
+
+    Raises
+    ------
+    FileNotFoundError
+        If nothing was collected there.
+    ResultError
+        If the file is no such table.
+    """
+    path = os.fspath(folder)
+    path = os.path.join(path, "summary.csv") if os.path.isdir(path) else path
+    if not os.path.exists(path):
+        raise FileNotFoundError(f"{path} does not exist\nhelp: `pseudopod sweep collect {os.fspath(folder)}` makes it")
+    try:
+        table = pd.read_csv(path)
+    except (ValueError, UnicodeDecodeError) as error:
+        raise ResultError(
+            path, f"is no table: {error}", "collect the study again: `pseudopod sweep collect FOLDER`"
+        ) from error
+    units: dict[str, str] = {}
+    names: list[str] = []
+    for title in map(str, table.columns):
+        found = _TITLE.fullmatch(title)
+        name = found["name"] if found else title
+        # Two columns that differ in their units alone keep their titles.
+        name = title if name in units else name
+        units[name] = found["unit"] if found else "1"
+        names.append(name)
+    table.columns = pd.Index(names)
+    table.attrs["units"] = units
+    return table
