@@ -46,8 +46,7 @@ class ResultFile:
             more = ": its run has begun and has not recorded a frame yet" if begun else ""
             raise FileNotFoundError(f"{self.path} does not exist{more}")
         try:
-            # A lock would be of no use, and some network drives have none.
-            file = h5py.File(self.path, "r", locking=False)
+            file = self._opened()
         except FAILURES as error:
             raise self._unreadable(error) from error
         try:
@@ -66,6 +65,18 @@ class ResultFile:
             raise ResultError(self.path, f"its format is {found}, and this package reads format {FORMAT}", help)
         self.close()
         self._file = file
+
+    def _opened(self) -> h5py.File:
+        """With the lock that is usual, so that others in this process open it as well; without one where it is refused.
+
+        Nobody writes into the file, so that a lock is of no use, and some network drives have none.
+        """
+        try:
+            return h5py.File(self.path, "r")
+        except OSError as error:
+            if "lock" not in str(error):
+                raise
+            return h5py.File(self.path, "r", locking=False)
 
     def _unreadable(self, error: BaseException) -> ResultError:
         if isinstance(error, PermissionError):

@@ -20,15 +20,21 @@ class Frames:
 
     def __init__(self, file: ResultFile) -> None:
         self.file = file
-        self.times: Floats = file.read("/time").astype(np.float64)
+        # Most of a file comes with its first frame.
+        begun = file.has("/VTKHDF/Points")
+        self.times: Floats = file.read("/time").astype(np.float64) if begun else np.zeros(0)
 
     def __len__(self) -> int:
         return len(self.times)
 
-    def number(self, frame: int, time: float | None) -> int:
-        """The number from 0 of a frame that is counted from 0 or, below it, from the end; or the one nearest to a time (s)."""
+    def need(self) -> None:
+        """Complains about a run that has not recorded a frame yet."""
         if len(self) == 0:
-            raise self.file.lacks("frame", "call refresh() when its run has recorded one")
+            raise self.file.lacks("frame yet", "call refresh() when its run has recorded one")
+
+    def number(self, frame: int, time: float | None) -> int:
+        """The number of a frame, which may be counted from the end; or of the one nearest to a time (s)."""
+        self.need()
         if time is not None:
             return int(np.abs(self.times - float(time)).argmin())
         wanted = operator.index(frame)
@@ -43,6 +49,7 @@ class Frames:
 
     @cached_property
     def steps(self) -> Integers:
+        self.need()
         return self.file.read("/step").astype(np.int64)
 
     @cached_property

@@ -41,6 +41,7 @@ class Progress:
         if self._bar is not None:
             if kind is None:
                 self._bar.n = self._bar.total
+                self._bar.refresh()
             self._bar.close()
 
     def line(self, text: str) -> bool:
@@ -70,5 +71,6 @@ class Progress:
             )
             self._bar = tqdm(total=until, desc=self._name, bar_format=form, leave=True)
         self._bar.set_postfix_str(what, refresh=False)
-        self._bar.update(time - self._bar.n)
+        self._bar.n = time
+        self._bar.refresh()
         return True

@@ -13,6 +13,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from . import _meshes
+from ._csv import contact_series
 from ._fields import Fields
 from ._file import ResultFile
 from ._frames import Frames
@@ -177,6 +178,21 @@ class Result:
         return self._tables.series()
 
     @cached_property
+    def contact_series(self) -> pd.DataFrame:
+        """What follows from who touches whom, by time (s): ``contact.segregation``, ``contact.area.TYPE.TYPE``, more.
+
+        The page *Analysis* of the book says what they are. They are not stored: the program works them out, here by
+        ``pseudopod export``.
+
+        Raises
+        ------
+        RunError
+            If the program cannot read the result.
+        """
+        self._tables.need_contacts()
+        return contact_series(self.path, self.times)
+
+    @cached_property
     def contacts(self) -> pd.DataFrame:
         """Pairs of cells that touch: ``frame``, ``time`` (s), ``first`` and ``second`` (ids), ``area`` (um^2)."""
         return self._tables.listed("/contacts/pair_count", "/contacts/pairs", NO_CONTACTS)
@@ -201,7 +217,7 @@ class Result:
 
     @cached_property
     def pseudopods(self) -> pd.DataFrame:
-        """Pseudopods whose protrusion ended: ``cell``, ``end_time``, ``lifetime`` (s), direction, ``turn`` (deg) and more.
+        """Pseudopods whose protrusion ended: ``cell``, ``end_time``, ``lifetime`` (s), direction, ``turn`` (deg), more.
 
         ``frame`` is the first one that knows of it, ``time`` its time.
         """

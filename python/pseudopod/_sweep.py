@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import os
-import re
 
 import pandas as pd
 
-from ._errors import ResultError
+from ._csv import read_csv
 from ._program import call
-
-#: ``contact.strength (pN/um^2)``: a name and its unit.
-_TITLE = re.compile(r"(?P<name>.*\S)\s*\((?P<unit>[^()]*)\)")
 
 
 def sweep(study: str | os.PathLike[str], folder: str | os.PathLike[str], jobs: int = 1) -> pd.DataFrame:
@@ -68,21 +64,4 @@ def read_summary(folder: str | os.PathLike[str]) -> pd.DataFrame:
     path = os.path.join(path, "summary.csv") if os.path.isdir(path) else path
     if not os.path.exists(path):
         raise FileNotFoundError(f"{path} does not exist\nhelp: `pseudopod sweep collect {os.fspath(folder)}` makes it")
-    try:
-        table = pd.read_csv(path)
-    except (ValueError, UnicodeDecodeError) as error:
-        raise ResultError(
-            path, f"is no table: {error}", "collect the study again: `pseudopod sweep collect FOLDER`"
-        ) from error
-    units: dict[str, str] = {}
-    names: list[str] = []
-    for title in map(str, table.columns):
-        found = _TITLE.fullmatch(title)
-        name = found["name"] if found else title
-        # Two columns that differ in their units alone keep their titles.
-        name = title if name in units else name
-        units[name] = found["unit"] if found else "1"
-        names.append(name)
-    table.columns = pd.Index(names)
-    table.attrs["units"] = units
-    return table
+    return read_csv(path)

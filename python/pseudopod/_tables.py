@@ -12,14 +12,33 @@ import pandas as pd
 
 from ._frames import Frames, Integers
 
-#: How components of vectors end; those of ``principal`` are numbered, the longest first.
+#: How components of vectors end.
 XYZ = ("x", "y", "z")
+
+#: Vectors whose components are numbered, for they lie along principal axes.
+NUMBERED = ("principal", "traction_moment")
 
 #: Quantities of ``/cells`` that are no quantities of a cell in a frame, or stand in columns of their own.
 _OWN = ("count", "first", "id", "type", "parent", "type_names")
 
-#: What comes first in tables of cells.
-_SOUGHT = ("position", "velocity", "volume", "area")
+#: What comes first in tables of cells, in the order of `pseudopod export`; what a file has besides follows.
+_SOUGHT = (
+    "position",
+    "velocity",
+    "volume",
+    "volume_error",
+    "area",
+    "energy",
+    "size",
+    "principal",
+    "smallest_facet",
+    "smallest_cosine",
+    "contact_share",
+    "aggregate",
+)
+
+#: The component of a vector that is its length.
+LENGTH = -1
 
 
 @dataclass(frozen=True)
@@ -28,10 +47,16 @@ class Column:
 
     name: str
     path: str
-    #: Which component of a vector it is.
+    #: Which component of a vector it is, or its LENGTH.
     component: int | None
     unit: str
     description: str
+
+    def of(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Its numbers, from the rows of its dataset."""
+        if self.component == LENGTH:
+            return np.asarray(np.linalg.norm(values, axis=1))
+        return values if self.component is None else values[:, self.component]
 
 
 def describe(table: pd.DataFrame, units: Mapping[str, str], descriptions: Mapping[str, str]) -> pd.DataFrame:
@@ -72,10 +97,12 @@ class Tables:
             if self.file.dataset(path).ndim == 1:
                 self._add(found, name, path, None)
                 continue
-            endings = XYZ if name != "principal" else ("1", "2", "3")
+            endings = ("1", "2", "3") if name in NUMBERED else XYZ
             for component, ending in enumerate(endings):
                 self._add(found, ending if name == "position" else f"{name}_{ending}", path, component)
-        for system in self.systems("cells", "membranes"):
+            if name == "velocity":
+                found["speed"] = Column("speed", path, LENGTH, self.file.unit(path), "length of the velocity")
+        for system in self.systems("cells"):
             for quantity in self.file.names(f"/chemistry/{system}"):
                 self._add(found, f"{system}.{quantity}", f"/chemistry/{system}/{quantity}", None)
         return found
@@ -100,6 +127,7 @@ class Tables:
 
     def cells(self, numbers: Integers, names: Iterable[str] | None) -> pd.DataFrame:
         """A row for each cell of each of some frames, in the order of the file."""
+        self.frames.need()
         rows, frame = self.frames.of_cells(numbers)
         kinds = self.frames.take("/cells/type", rows)
         type_names = self.type_names()
@@ -126,8 +154,7 @@ class Tables:
         for column in self.chosen(names):
             if column.path not in read:
                 read[column.path] = self.frames.take(column.path, rows)
-            values = read[column.path]
-            data[column.name] = values if column.component is None else values[:, column.component]
+            data[column.name] = column.of(read[column.path])
             units[column.name], descriptions[column.name] = column.unit, column.description
         if names is None:
             data["parent"] = self.frames.take("/cells/parent", rows)
@@ -160,6 +187,7 @@ class Tables:
 
     def listed(self, counter: str, group: str, help: str, rename: Mapping[str, str] | None = None) -> pd.DataFrame:
         """A list of the file, with the frame and the time of each row."""
+        self.frames.need()
         if not self.file.has(counter):
             raise self.file.lacks(group.strip("/").replace("/", " "), help)
         rows, frame = self.frames.of_list(counter, np.arange(len(self.frames)))
@@ -176,6 +204,11 @@ class Tables:
             data[title] = self.frames.take(path, rows)
             units[title], descriptions[title] = self.file.unit(path), self.file.description(path)
         return describe(_in_order(pd.DataFrame(data)), units, descriptions)
+
+    def need_contacts(self) -> None:
+        """Complains about a result that does not say who touches whom."""
+        if not self.file.has("/contacts/pair_count"):
+            raise self.file.lacks("contacts", NO_CONTACTS)
 
     def on_planes(self) -> pd.DataFrame:
         table = self.listed("/contacts/plane_count", "/contacts/planes", NO_CONTACTS)
