@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import pickle
 import shutil
 import signal
@@ -173,7 +172,13 @@ def test_cells_come_and_go(made, tmp_path: Path) -> None:
     assert list(some.groupby("frame").size()) == [7, 4, 7]
 
 
-LONG = {"cells.walker.number": 60, "run.until": "3 h", "run.integrator": {"max_step": "20 s"}, "output.every": "20 s"}
+#: A run of hours of its time, which are minutes of ours.
+LONG = {
+    "cells.walker.number": 60,
+    "run.until": "1000 h",
+    "run.integrator": {"max_step": "20 s"},
+    "output.every": "20 s",
+}
 
 
 def until(condition: Callable[[], bool], what: str) -> None:
@@ -185,21 +190,25 @@ def until(condition: Callable[[], bool], what: str) -> None:
 
 
 @pytest.fixture
-def running(tmp_path: Path):
-    """A run of :func:`pseudopod.run` in another process, that goes on for long."""
-    path = tmp_path / "long.vtkhdf"
-    call = (
-        f"import pseudopod; pseudopod.run({str(DOCUMENTS / 'walk.toml')!r}, {LONG!r}, output={str(path)!r}, threads=1)"
-    )
-    child = subprocess.Popen([sys.executable, "-c", call], stderr=subprocess.PIPE, text=True, start_new_session=True)
-    yield path, child
-    if child.poll() is None:
-        os.killpg(child.pid, signal.SIGINT)
-    child.communicate()
+def start(tmp_path: Path):
+    """Starts :func:`pseudopod.run` in another process; ends it when the test does."""
+    path, children = tmp_path / "long.vtkhdf", []
+
+    def begin(changes: dict[str, object]) -> tuple[Path, subprocess.Popen[str]]:
+        asked = f"{str(DOCUMENTS / 'walk.toml')!r}, {changes!r}, output={str(path)!r}, threads=1"
+        command = [sys.executable, "-c", f"import pseudopod; pseudopod.run({asked})"]
+        children.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
+        return path, children[-1]
+
+    yield begin
+    for child in children:
+        if child.poll() is None:
+            child.send_signal(signal.SIGINT)
+            child.communicate()
 
 
-def test_a_run_is_read_while_it_goes_on_and_stops_when_it_is_told_to(running) -> None:
-    path, child = running
+def test_a_run_is_read_while_it_goes_on_and_stops_when_it_is_told_to(start) -> None:
+    path, child = start(LONG)
     until(path.exists, "result")
     result = pseudopod.open(path)
     until(lambda: len(result.refresh()) > 0, "frame")
@@ -211,7 +220,7 @@ def test_a_run_is_read_while_it_goes_on_and_stops_when_it_is_told_to(running) ->
         assert not result.is_complete
         assert len(result.measures) == 0
         assert len(result.tracks) == 62 * seen[-1]
-        assert result.mesh().n_points == result.types.loc["walker", "atoms"] * 60 + 2 * result.types.loc["box", "atoms"]
+        assert result.mesh().n_points == 60 * result.types.loc["walker", "atoms"] + 2 * result.types.loc["box", "atoms"]
         with pseudopod.open(path) as other:
             assert len(other) >= seen[-1]
     assert result.tracks[result.tracks["frame"] < seen[0]].reset_index(drop=True).equals(first)
@@ -221,10 +230,22 @@ def test_a_run_is_read_while_it_goes_on_and_stops_when_it_is_told_to(running) ->
     assert "KeyboardInterrupt" in words
     assert "pseudopod.resume goes on" in words
     assert told("info", path)["running"] is False
-    assert not result.refresh().is_complete
-    before = len(result)
+    assert len(result.refresh()) >= seen[-1]
+    assert not result.is_complete
+
+
+def test_a_run_that_was_stopped_goes_on(start) -> None:
+    path, child = start(LONG | {"run.until": "10 h"})
+    until(path.exists, "result")
+    child.send_signal(signal.SIGINT)
+    child.communicate(timeout=30)
+    result = pseudopod.open(path)
+    assert not result.is_complete
     whole = pseudopod.resume(result, progress=False)
     assert whole.is_complete
-    assert len(whole) == 541 > before
+    assert result.refresh().is_complete
+    assert len(result) == len(whole) == 1801
     assert whole.provenance.resumed == 1
     assert whole.measures["speed"].unit == "um/min"
+    # Once more is no fault.
+    assert len(pseudopod.resume(path, progress=False)) == 1801
