@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import json as json_text
 import os
 import shutil
 import signal
@@ -87,9 +87,9 @@ def toml(value: Any) -> str:
         return repr(value).replace("e+", "e")
     if isinstance(value, str):
         # JSON escapes a little more than TOML has to, and nothing that TOML does not know; but surrogates.
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        return json_text.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{json.dumps(str(key))} = {toml(entry)}" for key, entry in value.items()) + " }"
+        return "{ " + ", ".join(f"{json_text.dumps(str(key))} = {toml(entry)}" for key, entry in value.items()) + " }"
     if isinstance(value, Sequence):
         return "[" + ", ".join(toml(entry) for entry in value) + "]"
     raise TypeError(
@@ -102,7 +102,9 @@ def settings(overrides: Mapping[str, Any] | None) -> list[str]:
     return [word for key, value in (overrides or {}).items() for word in ("--set", f"{key}={toml(value)}")]
 
 
-def call(arguments: Sequence[str | os.PathLike[str]], line: Callable[[str], bool] | None = None) -> dict[str, Any]:
+def call(
+    arguments: Sequence[str | os.PathLike[str]], line: Callable[[str], bool] | None = None, *, json: bool = True
+) -> dict[str, Any]:
     """Starts the program, waits for it, and returns what it reports with ``--json``; what it noticed is under ``said``.
 
     Parameters
@@ -111,6 +113,8 @@ def call(arguments: Sequence[str | os.PathLike[str]], line: Callable[[str], bool
         Command and options, without ``--json``.
     line
         Takes each line that it says while it works, and says whether it was one of progress.
+    json
+        Whether the command reports in JSON.
 
     Raises
     ------
@@ -119,7 +123,7 @@ def call(arguments: Sequence[str | os.PathLike[str]], line: Callable[[str], bool
     KeyboardInterrupt
         If it is interrupted: it was then told so, and has ended in its own way.
     """
-    command = [binary(), *(os.fspath(word) for word in arguments), "--json"]
+    command = [binary(), *(os.fspath(word) for word in arguments), *(["--json"] if json else [])]
     said: list[str] = []
     with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
         # In a session of its own, or Ctrl-C of a terminal would reach it twice, and twice means at once.
@@ -166,7 +170,7 @@ def _listen(child: subprocess.Popen[str], said: list[str], line: Callable[[str],
 
 def _report(answer: str) -> dict[str, Any]:
     try:
-        found = json.loads(answer)
-    except json.JSONDecodeError:
+        found = json_text.loads(answer)
+    except json_text.JSONDecodeError:
         return {}
     return found if isinstance(found, dict) else {}

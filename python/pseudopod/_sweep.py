@@ -8,9 +8,12 @@ import pandas as pd
 
 from ._csv import read_csv
 from ._program import call
+from ._progress import Progress
 
 
-def sweep(study: str | os.PathLike[str], folder: str | os.PathLike[str], jobs: int = 1) -> pd.DataFrame:
+def sweep(
+    study: str | os.PathLike[str], folder: str | os.PathLike[str], jobs: int = 1, *, progress: bool = True
+) -> pd.DataFrame:
     """Plans a study, runs what has not been run, and collects it.
 
     Parameters
@@ -21,6 +24,8 @@ def sweep(study: str | os.PathLike[str], folder: str | os.PathLike[str], jobs: i
         Where its runs lie; a study that was stopped goes on there.
     jobs
         Runs at a time.
+    progress
+        Whether the lines are shown that the program says.
 
     Returns
     -------
@@ -32,10 +37,16 @@ def sweep(study: str | os.PathLike[str], folder: str | os.PathLike[str], jobs: i
     RunError
         If the program refuses the study or cannot run it.
     """
-    if not os.path.isdir(folder):
-        call(["sweep", "plan", study, "-o", folder])
-    call(["sweep", "run", folder, "-j", str(int(jobs))])
-    call(["sweep", "collect", folder])
+    with Progress(progress, "sweep") as shown:
+
+        def line(text: str) -> bool:
+            shown.say(text)
+            return False
+
+        if not os.path.isdir(folder):
+            call(["sweep", "plan", study, "-o", folder], line, json=False)
+        call(["sweep", "run", folder, "-j", str(int(jobs))], line, json=False)
+        call(["sweep", "collect", folder], line, json=False)
     return read_summary(folder)
 
 

@@ -150,7 +150,7 @@ def test_a_study_is_planned_run_and_collected(tmp_path: Path, monkeypatch: pytes
     stub = tmp_path / "stub"
     stub.write_text(
         f'#!/bin/sh\necho "$@" >> {log}\nif [ "$2" = plan ]; then mkdir {folder}; fi\n'
-        f'if [ "$2" = collect ]; then printf "run,force (pN)\\n0,2\\n" > {folder}/summary.csv; fi\necho "{{}}"\n'
+        f'if [ "$2" = collect ]; then printf "run,force (pN)\\n0,2\\n" > {folder}/summary.csv; fi\necho running >&2\n'
     )
     stub.chmod(0o755)
     monkeypatch.setenv("PSEUDOPOD_BINARY", str(stub))
@@ -160,5 +160,5 @@ def test_a_study_is_planned_run_and_collected(tmp_path: Path, monkeypatch: pytes
         assert table.attrs["units"]["force"] == "pN"
     words = [line.split() for line in log.read_text().splitlines()]
     assert [line[1] for line in words] == ["plan", "run", "collect", "run", "collect"]
-    assert words[0] == ["sweep", "plan", "study.toml", "-o", str(folder), "--json"]
-    assert words[1] == ["sweep", "run", str(folder), "-j", "2", "--json"]
+    assert words[0] == ["sweep", "plan", "study.toml", "-o", str(folder)]
+    assert words[1] == ["sweep", "run", str(folder), "-j", "2"]
