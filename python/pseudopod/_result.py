@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -112,6 +112,18 @@ class Result:
     def _tables(self) -> Tables:
         return Tables(self._frames)
 
+    @cached_property
+    def _read(self) -> dict[str, pd.DataFrame]:
+        """Tables that were read."""
+        return {}
+
+    def _table(self, name: str, make: Callable[[], pd.DataFrame]) -> pd.DataFrame:
+        """A table, read once. What is done to the one that is returned leaves it as it is."""
+        if name not in self._read:
+            self._read[name] = make()
+        table: pd.DataFrame = self._read[name].copy(deep=False)
+        return table
+
     def __len__(self) -> int:
         return len(self._frames)
 
@@ -130,17 +142,17 @@ class Result:
 
     # Cells.
 
-    @cached_property
+    @property
     def types(self) -> pd.DataFrame:
         """Types of cells, with the number of atoms, facets and links of a cell of each."""
-        return self._tables.types()
+        return self._table("types", lambda: self._tables.types())
 
     @property
     def columns(self) -> dict[str, str]:
         """What is recorded of every cell in every frame, and the units."""
         return {name: column.unit for name, column in self._tables.columns().items()}
 
-    @cached_property
+    @property
     def tracks(self) -> pd.DataFrame:
         """All cells in all frames, cell after cell in the order of time.
 
@@ -148,7 +160,7 @@ class Result:
         has: ``velocity_x`` (um/s), ``volume`` (um^3), ``area`` (um^2), quantities of chemistry ``SYSTEM.QUANTITY`` …;
         at last ``parent``, the id of the cell that it was born from, or -1.
         """
-        return self.read_tracks()
+        return self._table("tracks", lambda: self.read_tracks())
 
     def read_tracks(self, columns: Iterable[str] | None = None, frames: slice | None = None) -> pd.DataFrame:
         """The same of some columns and frames: only they are read.
@@ -172,12 +184,12 @@ class Result:
 
     # The scene.
 
-    @cached_property
+    @property
     def series(self) -> pd.DataFrame:
         """Series of the scene by time (s): loads, contacts, energies, chemistry of the scene."""
-        return self._tables.series()
+        return self._table("series", lambda: self._tables.series())
 
-    @cached_property
+    @property
     def contact_series(self) -> pd.DataFrame:
         """What follows from who touches whom, by time (s): ``contact.segregation``, ``contact.area.TYPE.TYPE``, more.
 
@@ -190,40 +202,50 @@ class Result:
             If the program cannot read the result.
         """
         self._tables.need_contacts()
-        return contact_series(self.path, self.times)
+        return self._table("contact_series", lambda: contact_series(self.path, self.times))
 
-    @cached_property
+    @property
     def contacts(self) -> pd.DataFrame:
         """Pairs of cells that touch: ``frame``, ``time`` (s), ``first`` and ``second`` (ids), ``area`` (um^2)."""
-        return self._tables.listed("/contacts/pair_count", "/contacts/pairs", NO_CONTACTS)
+        return self._table(
+            "contacts", lambda: self._tables.listed("/contacts/pair_count", "/contacts/pairs", NO_CONTACTS)
+        )
 
-    @cached_property
+    @property
     def plane_contacts(self) -> pd.DataFrame:
         """Cells that touch planes: ``frame``, ``time`` (s), ``cell``, ``plane``, ``area`` (um^2)."""
-        return self._tables.on_planes()
+        return self._table("plane_contacts", lambda: self._tables.on_planes())
 
-    @cached_property
+    @property
     def planes(self) -> pd.DataFrame:
         """Rigid planes by name: a point (um) and the unit normal towards the free side."""
-        return self._tables.planes()
+        return self._table("planes", lambda: self._tables.planes())
 
-    @cached_property
+    @property
     def runs(self) -> pd.DataFrame:
         """Motility runs that ended: ``cell``, ``end_time`` and ``duration`` (s).
 
         ``frame`` is the first one that knows of it, ``time`` its time.
         """
-        return self._tables.listed("/events/run_count", "/events/runs", "it was written by another program")
+        return self._table(
+            "runs",
+            lambda: self._tables.listed("/events/run_count", "/events/runs", "it was written by another program"),
+        )
 
-    @cached_property
+    @property
     def pseudopods(self) -> pd.DataFrame:
         """Pseudopods whose protrusion ended: ``cell``, ``end_time``, ``lifetime`` (s), direction, ``turn`` (deg), more.
 
         ``frame`` is the first one that knows of it, ``time`` its time.
         """
-        return self._tables.listed("/events/pseudopod_count", "/events/pseudopods", "it was written by another program")
+        return self._table(
+            "pseudopods",
+            lambda: self._tables.listed(
+                "/events/pseudopod_count", "/events/pseudopods", "it was written by another program"
+            ),
+        )
 
-    @cached_property
+    @property
     def fibres(self) -> pd.DataFrame:
         """Fibres that come and go, of every frame.
 
@@ -231,7 +253,7 @@ class Result:
         ``tension`` (pN).
         """
         help = "give a type of its cells fibres that are made at run time, and run it again"
-        return self._tables.listed("/fibres/count", "/fibres", help)
+        return self._table("fibres", lambda: self._tables.listed("/fibres/count", "/fibres", help))
 
     # Surfaces and fields.
 

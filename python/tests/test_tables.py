@@ -177,3 +177,13 @@ def test_a_result_tells_what_it_is(amoebae: pseudopod.Result) -> None:
     amoebae.close()
     assert "closed" in repr(amoebae)
     assert "closed" in amoebae._repr_html_()
+
+
+def test_what_is_done_to_a_table_leaves_the_result_as_it_is(walk: pseudopod.Result) -> None:
+    tracks = walk.tracks
+    before = tracks.copy()
+    tracks["x"] = 0.0
+    tracks["more"] = 1
+    tracks.attrs["units"]["x"] = "m"
+    assert walk.tracks.equals(before)
+    assert walk.tracks.attrs["units"]["x"] == "um"
