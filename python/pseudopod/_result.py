@@ -150,7 +150,7 @@ class Result:
     @property
     def columns(self) -> dict[str, str]:
         """What is recorded of every cell in every frame, and the units."""
-        return {name: column.unit for name, column in self._tables.columns().items()}
+        return {name: column.unit for name, column in self._tables.columns.items()}
 
     @property
     def tracks(self) -> pd.DataFrame:

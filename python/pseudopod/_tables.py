@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -87,6 +88,7 @@ class Tables:
             table, dict.fromkeys(columns, "1"), {name: self.file.description(f"/types/{name}") for name in columns}
         )
 
+    @cached_property
     def columns(self) -> dict[str, Column]:
         """What is recorded of every cell: positions first, then quantities by their names, then chemistry."""
         found: dict[str, Column] = {}
@@ -116,7 +118,7 @@ class Tables:
         return [name for name in names if not scopes or self.file.attribute(f"/chemistry/{name}", "in") in scopes]
 
     def chosen(self, names: Iterable[str] | None) -> list[Column]:
-        known = self.columns()
+        known = self.columns
         if names is None:
             return list(known.values())
         names = [names] if isinstance(names, str) else list(names)
