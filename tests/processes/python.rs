@@ -220,7 +220,7 @@ fn python_reads_a_file_while_it_is_written() {
 }
 
 #[test]
-#[ignore = "slow: 20 min: builds the program again, with HDF5 in it; needs python3 with venv, and PyPI"]
+#[ignore = "slow: half an hour: builds the program again, with HDF5 in it; needs python3 with venv, and PyPI"]
 fn the_python_package_is_built_installed_and_passes_its_tests() {
     let _turn = take_turn();
     let checked = Command::new(concat!(env!("CARGO_MANIFEST_DIR"), "/python/check")).status();
