@@ -94,7 +94,10 @@ fn find<'a>(all: &'a [Shipped], name: &str) -> Result<(&'a Shipped, &'static str
 }
 
 /// Writes the files of an experiment into a new folder.
-fn copy(experiment: &Shipped, folder: &Path) -> Result<()> {
+///
+/// # Errors
+/// The folder holds something, or cannot be written.
+pub fn copy(experiment: &Shipped, folder: &Path) -> Result<()> {
     let is_empty = || folder.read_dir().is_ok_and(|mut entries| entries.next().is_none());
     if folder.exists() && !is_empty() {
         let fault = Fault::new(format!("{} exists", folder.display()));

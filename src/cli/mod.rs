@@ -20,7 +20,7 @@ pub mod resume;
 pub mod run;
 pub mod run_one;
 pub mod schema;
-mod shipped;
+pub mod shipped;
 pub mod sweep;
 pub mod track_file;
 pub mod verify;
