@@ -127,6 +127,10 @@ fn of_folder(folder: &Path) -> Result<Vec<Subject>> {
         .filter(|path| is_experiment(path))
         .filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()))
         .collect();
+    if documents.is_empty() {
+        let fault = Fault::new(format!("{} has claims and no experiment document", folder.display()));
+        return Err(Error::input(fault.help("put the document beside them, such as experiment.toml")));
+    }
     let mut faults = missing_documents(&claims, &documents);
     let mut found = Vec::new();
     for name in documents.iter().filter(|name| claims.iter().any(|claim| claim.is_about(name))) {
@@ -135,10 +139,6 @@ fn of_folder(folder: &Path) -> Result<Vec<Subject>> {
             Err(Error::Input(more)) => faults.extend(more),
             Err(other) => return Err(other),
         }
-    }
-    if faults.is_empty() && found.is_empty() {
-        let fault = Fault::new(format!("{} has claims and no experiment document", folder.display()));
-        faults.push(fault.help("put the document beside them, such as experiment.toml"));
     }
     if faults.is_empty() { Ok(found) } else { Err(Error::Input(faults)) }
 }
