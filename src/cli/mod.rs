@@ -1,6 +1,7 @@
 //! The command line: one file per command. Names and exit codes are a contract.
 
 pub mod check;
+pub mod claims;
 mod crash;
 pub mod demo;
 pub mod eml;

@@ -1,17 +1,15 @@
 //! `pseudopod run`: runs an experiment and leaves its result, picture and charts.
 
+use super::claims::Claims;
 use super::files::{Named, refuse_existing};
 use super::memory;
 use super::progress::Progress;
 use super::report::{Report, path_text, paths};
-use super::verify::claim_object;
-use crate::analysis::claims::{ClaimResult, check_claims};
 use crate::error::{Error, Fault, Result, say};
 use crate::experiment::Document;
-use crate::output::{Measure, Overwrite, ResultFile};
+use crate::output::{Overwrite, ResultFile};
 use crate::run::{self, Outcome, Quiet, RunOptions};
 use crate::simulation::CancelToken;
-use crate::verify::{CLAIMS, claims_of_run, in_a_line};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -190,37 +188,6 @@ pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<Report> {
         .fact("farthest_push_um", outcome.pushed.farthest)
         .fact("wall_time_s", outcome.wall_time)
         .fact("summary", measures.collect::<serde_json::Map<_, _>>()))
-}
-
-/// What became of the claims about a run.
-enum Claims {
-    /// Each with what was found; none where nothing is claimed.
-    Held(Vec<ClaimResult>),
-    /// They cannot be read, which the run has not to answer for.
-    Unread(Error),
-}
-
-impl Claims {
-    fn of(file: &ResultFile, summary: &[Measure]) -> Self {
-        claims_of_run(file).map_or_else(Self::Unread, |claims| Self::Held(check_claims(&claims, summary)))
-    }
-
-    fn add_words(&self, words: &mut String) {
-        // Writing to a text cannot fail.
-        let _ = match self {
-            Self::Held(results) if results.is_empty() => Ok(()),
-            Self::Held(results) => writeln!(words, "{}", in_a_line(results, CLAIMS)),
-            Self::Unread(error) => writeln!(words, "{CLAIMS} cannot be read, see pseudopod verify: {error}"),
-        };
-    }
-
-    fn add_facts(&self, report: Report) -> Report {
-        match self {
-            Self::Held(results) if results.is_empty() => report,
-            Self::Held(results) => report.fact("claims", results.iter().map(claim_object).collect::<Vec<_>>()),
-            Self::Unread(error) => report.fact("claims_unread", error.to_string()),
-        }
-    }
 }
 
 /// A number with six digits, whatever its size.

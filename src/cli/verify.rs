@@ -1,5 +1,6 @@
 //! `pseudopod verify`: holds experiments and results to what is claimed of them.
 
+use super::claims::claim_object;
 use super::crash;
 use super::memory;
 use super::report::{Form, Report, path_text};
@@ -187,18 +188,4 @@ impl Told {
             .fact("number", claims)
             .fact("experiments", self.experiments)
     }
-}
-
-/// A claim for scripts.
-pub fn claim_object(result: &ClaimResult) -> Value {
-    let claim = &result.claim;
-    json!({
-        "measure": claim.measure,
-        "source": claim.source,
-        "reason": claim.reason,
-        "expected": claim.bound.to_string(),
-        "found": result.found.as_ref().map(|found| found.value),
-        "unit": result.found.as_ref().map(|found| found.unit.clone()),
-        "verdict": result.verdict().to_string(),
-    })
 }
