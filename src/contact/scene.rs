@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::boxes::Levels;
 use super::owners::Owners;
-use super::shape::Shape;
+use super::shape::{Shape, Sides};
 use crate::Vec3;
 
 /// How near is a contact. All three are lengths in µm.
@@ -140,6 +140,11 @@ impl Scene {
     /// The mesh of a body.
     pub fn shape(&self, body: u32) -> &Shape {
         &self.shapes[self.bodies[body as usize].shape as usize]
+    }
+
+    /// The sides of a body's surface that others may touch: 1 or 2.
+    pub fn sides_of(&self, body: u32) -> usize {
+        if self.shape(body).sides == Sides::Both { 2 } else { 1 }
     }
 
     /// The body of an atom.

@@ -8,12 +8,14 @@ use crate::analysis::statistics::mean;
 use crate::error::short;
 use crate::picture::colour::{Colour, ColourMap};
 use crate::picture::field_view::with_unit;
-use crate::picture::{Axis, Chart, Heat, Range, Scale, Series, Shading};
+use crate::picture::{Axis, Chart, Heat, Range, Series, Shading};
 
 /// Longest description that stands along an axis, letters; the name of the measure stands there otherwise.
 const LONGEST_LABEL: usize = 48;
+/// The same beside the colours of a map, where the number of runs follows.
+const LONGEST_BAR: usize = 62;
 /// Longest name of a parameter beside its bar, letters.
-const LONGEST_NAME: usize = 36;
+const LONGEST_NAME: usize = 30;
 
 /// The charts of all measures that some run has, each with the name of its files.
 pub fn charts(collected: &Collected) -> Vec<(String, Chart)> {
@@ -43,8 +45,13 @@ struct Data<'a> {
     collected: &'a Collected,
     /// Point, from 0, and value of each run.
     values: Vec<(u32, f64)>,
+    /// Values of each point.
+    points: Vec<Vec<f64>>,
     /// Name or description, with the unit.
     label: String,
+    /// The name of the measure, and the same with its unit.
+    name: &'a str,
+    short: String,
 }
 
 impl<'a> Data<'a> {
@@ -53,14 +60,18 @@ impl<'a> Data<'a> {
         let of_run = collected.rows.iter().zip(runs).filter(|(row, _)| row.status == Status::Complete);
         let values = of_run.filter_map(|(row, run)| Some((run.point - 1, row.values[index]?)));
         let said = measure.description.chars().count();
-        let name = if (1..=LONGEST_LABEL).contains(&said) { &measure.description } else { &measure.name };
-        let label = with_unit(name, &measure.unit);
-        Self { collected, values: values.filter(|(_, value)| value.is_finite()).collect(), label }
+        let said = if (1..=LONGEST_LABEL).contains(&said) { &measure.description } else { &measure.name };
+        let label = with_unit(said, &measure.unit);
+        let values: Vec<(u32, f64)> = values.filter(|(_, value)| value.is_finite()).collect();
+        let mut points = vec![Vec::new(); collected.plan.facts.points as usize];
+        values.iter().for_each(|(point, value)| points[*point as usize].push(*value));
+        let (name, short) = (&measure.name, with_unit(&measure.name, &measure.unit));
+        Self { collected, values, points, label, name, short }
     }
 
     /// The values of a point.
-    fn of_point(&self, point: u32) -> Vec<f64> {
-        self.values.iter().filter(|(of, _)| *of == point).map(|(_, value)| *value).collect()
+    fn of_point(&self, point: u32) -> &[f64] {
+        &self.points[point as usize]
     }
 
     /// The cell of a parameter at a point: that of its first run.
@@ -72,11 +83,11 @@ impl<'a> Data<'a> {
         self.collected.plan.facts.points
     }
 
-    /// "mean of 5 runs", or "mean of 3 to 5 runs" while some are missing.
-    fn mean_told(&self) -> String {
+    /// "5 runs", or "3 to 5 runs" while some are missing.
+    fn runs_told(&self) -> String {
         let counts = || (0..self.points()).map(|point| self.of_point(point).len()).filter(|count| *count > 0);
         let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
-        if least == most { format!("mean of {most} runs") } else { format!("mean of {least} to {most} runs") }
+        if least == most { format!("{most} runs") } else { format!("{least} to {most} runs") }
     }
 }
 
@@ -103,7 +114,7 @@ fn curve(data: &Data, column: &Column, sampled: bool) -> Chart {
         chart.series.push(Series::measured("", points, Vec::new()).coloured(blue));
         return chart;
     }
-    let mut found: Vec<(f64, Vec<f64>)> = (0..data.points()).map(|point| (x_of(point), data.of_point(point))).collect();
+    let mut found: Vec<(f64, &[f64])> = (0..data.points()).map(|point| (x_of(point), data.of_point(point))).collect();
     found.retain(|(_, values)| !values.is_empty());
     found.sort_by(|one, other| one.0.total_cmp(&other.0));
     let means: Vec<[f64; 2]> = found.iter().map(|(x, values)| [*x, mean(values)]).collect();
@@ -116,16 +127,18 @@ fn curve(data: &Data, column: &Column, sampled: bool) -> Chart {
             found.iter().map(|(x, values)| (*x, ends(values))).map(|(x, [low, high])| [x, low, high]).collect();
         // A band needs a width to be seen: words stand side by side, and each has a bar.
         match column.kind.is_numeric() {
-            true => chart.series.push(Series::band("from the least to the most of them", band).coloured(blue)),
+            true => chart
+                .series
+                .push(Series::band(format!("range of {}, least to most", data.runs_told()), band).coloured(blue)),
             false => {
                 let bars = band.iter().map(|[_, low, high]| [*low, *high]).collect();
-                let told = format!("{}, from the least to the most of them", data.mean_told());
+                let told = format!("mean and range of {}", data.runs_told());
                 chart.series.push(Series::measured(told, means, bars).coloured(blue));
                 return chart;
             }
         }
     }
-    let told = if repeated { data.mean_told() } else { String::new() };
+    let told = if repeated { format!("mean of {}", data.runs_told()) } else { String::new() };
     if column.kind.is_numeric() {
         chart.series.push(Series::line(told, means.clone()).coloured(blue));
     }
@@ -140,14 +153,16 @@ fn map(data: &Data, x: &Column, y: &Column) -> Chart {
     let columns = data.points() as usize / rows.max(1);
     let value = |column: usize, row: usize| {
         let values = data.of_point((column * rows + row) as u32);
-        if values.is_empty() { f64::NAN } else { mean(&values) }
+        if values.is_empty() { f64::NAN } else { mean(values) }
     };
     let values: Vec<f64> = (0..rows).flat_map(|row| (0..columns).map(move |column| value(column, row))).collect();
     let known = || values.iter().copied().filter(|value| value.is_finite());
     let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
     let range = if low < high { [low, high] } else { [low - 0.5, low + 0.5] };
     let repeated = data.collected.plan.facts.replicates > 1;
-    let told = if repeated { format!("{}, {}", data.label, data.mean_told()) } else { data.label.clone() };
+    let told = |label: &str| if repeated { format!("{label}, mean of {}", data.runs_told()) } else { label.to_owned() };
+    let whole = told(&data.label);
+    let told = if whole.chars().count() > LONGEST_BAR { told(&data.short) } else { whole };
     let heat = Heat {
         x: [-0.5, columns as f64 - 0.5],
         y: [-0.5, rows as f64 - 0.5],
@@ -200,32 +215,29 @@ fn bars(data: &Data, columns: &[Column]) -> Option<Chart> {
     let areas = Series::Areas { label: String::new(), outlines, colour: Some(Colour::of_palette(0)) };
     let mut series = vec![areas];
     let dark = Colour([0x33; 3]);
-    for (number, points) in intervals.into_iter().enumerate() {
-        let name = if number == 0 { "95 % interval, points drawn anew" } else { "" };
-        series.push(Series::line(name, points).coloured(dark));
-    }
+    series.extend(intervals.into_iter().map(|points| Series::line("", points).coloured(dark)));
     series.push(Series::line("", vec![[0.0, -0.5], [0.0, numeric.len() as f64 - 0.5]]).coloured(dark));
     let names = numeric.iter().rev().map(|(_, column)| shortened(&column.name));
-    let x = Axis {
-        range: Range::Fixed(-1.0, 1.0),
-        scale: Scale::Linear,
-        ..Axis::linear(format!("rank correlation with {}", data.label))
-    };
+    // What the lines on the bars are stands in the label: a legend would take half of the width.
+    let told = format!("rank correlation with {}, and its 95 % interval", data.name);
+    let x = Axis { range: Range::Fixed(-1.0, 1.0), ..Axis::linear(told) };
     Some(Chart { x, y: Axis::named("", names), series, ..Chart::default() })
 }
 
-/// A name that is not too long: its end, which says most.
+/// A name that is not too long: of a long key its last words, which say most.
 fn shortened(name: &str) -> String {
-    let letters = name.chars().count();
-    match letters > LONGEST_NAME {
-        true => format!("…{}", name.chars().skip(letters - LONGEST_NAME + 1).collect::<String>()),
-        false => name.to_owned(),
+    if name.chars().count() <= LONGEST_NAME {
+        return name.to_owned();
     }
+    let ends = name.match_indices('.').map(|(at, _)| &name[at + 1..]);
+    let fitting = ends.filter(|end| !end.is_empty() && end.chars().count() < LONGEST_NAME).max_by_key(|end| end.len());
+    let skipped = name.chars().count() - LONGEST_NAME + 1;
+    fitting.map_or_else(|| format!("…{}", name.chars().skip(skipped).collect::<String>()), |end| format!("…{end}"))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{rounded_text, shortened};
+    use super::{LONGEST_NAME, rounded_text, shortened};
 
     #[test]
     fn marks_have_three_digits() {
@@ -235,10 +247,8 @@ mod tests {
     #[test]
     fn long_names_keep_their_ends() {
         assert_eq!(shortened("adhesion"), "adhesion");
-        let long = shortened("cells.cell.motility.attraction.stiffness");
-        assert!(
-            long.starts_with('…') && long.ends_with("attraction.stiffness") && long.chars().count() == 36,
-            "{long}"
-        );
+        assert_eq!(shortened("cells.cell.motility.attraction.stiffness"), "…motility.attraction.stiffness");
+        let odd = shortened(&"a long name without any key in it".repeat(2));
+        assert!(odd.starts_with('…') && odd.chars().count() == LONGEST_NAME, "{odd}");
     }
 }

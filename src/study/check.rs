@@ -1,8 +1,8 @@
 //! Looks at every point of a study before anything runs: whether the experiment takes its values, and can be built with them.
 
 use super::design::Points;
-use super::document::{Parameter, StudyDocument};
-use super::plan::{sets, told_cells};
+use super::document::{Anything, Parameter, StudyDocument};
+use super::facts::{sets, told_cells};
 use crate::error::{Error, Fault, Location, Result};
 use crate::experiment::{Document, prepare};
 use std::collections::BTreeSet;
@@ -58,7 +58,7 @@ pub fn look_over(study: &StudyDocument, points: &Points, memory: Option<u64>) ->
         faults.extend(names_of_measures(study, document));
     }
     if !faults.is_empty() {
-        return Err(Error::Input(faults));
+        return Err(Error::Input(in_order(faults, study)));
     }
     let read = documents.len();
     // What is wrong with a large or a small value shows at the ends.
@@ -81,8 +81,23 @@ pub fn look_over(study: &StudyDocument, points: &Points, memory: Option<u64>) ->
     }
     match first {
         Some(first) if faults.is_empty() => Ok(Looked { first, files: files.into_iter().collect(), read, built }),
-        _ => Err(Error::Input(faults)),
+        _ => Err(Error::Input(in_order(faults, study))),
     }
+}
+
+/// Faults in the order of the study. Of a range whose ends are at fault, what is between them is not told.
+fn in_order(mut faults: Vec<Fault>, study: &StudyDocument) -> Vec<Fault> {
+    let start = |fault: &Fault| fault.location.as_ref().map(|location| location.start);
+    for (number, parameter) in study.study.parameter.iter().enumerate().filter(|(_, one)| one.from.is_some()) {
+        let at = |key: &str| Some(study.location(&format!("parameter[{number}].{key}"), "").start);
+        let (key, ends) = (at("key"), [at("from"), at("to")]);
+        // Only a fault of the value itself stands there: that the key is unknown is told at the key.
+        if parameter.values.is_none() && faults.iter().any(|fault| ends.contains(&start(fault))) {
+            faults.retain(|fault| start(fault) != key);
+        }
+    }
+    faults.sort_by_key(start);
+    faults
 }
 
 /// Parameters that are named as measures are: both are columns of one table.
@@ -110,7 +125,9 @@ fn spread(all: usize, most: usize) -> Vec<usize> {
 fn add(faults: &mut Vec<Fault>, error: Error) {
     match error {
         Error::Input(found) => found.into_iter().for_each(|fault| {
-            if !faults.contains(&fault) {
+            let is_known =
+                |known: &Fault| *known == fault || known.location.is_some() && known.location == fault.location;
+            if !faults.iter().any(is_known) {
                 faults.push(fault);
             }
         }),
@@ -151,14 +168,22 @@ fn location_of(study: &StudyDocument, point: Option<(&Points, usize)>, key: &str
         let values = said.parameter[number].values.as_ref();
         let cell = point.map(|(points, row)| &points.rows[row][number]);
         let index = values.zip(cell).and_then(|(values, cell)| {
-            let shown = |value: &super::document::Anything| super::value::shown(&value.0).1;
+            let shown = |value: &Anything| super::value::shown(&value.0).1;
             values.iter().position(|value| shown(value) == *cell)
         });
-        return match index {
-            // That there is no such key is told at the key.
-            Some(index) if !label.starts_with("did you mean") && label != "unknown key" => {
-                study.location(&format!("{at}.values[{index}]"), label)
-            }
+        // That there is no such key is told at the key.
+        let of_the_key = label.starts_with("did you mean") || label == "unknown key";
+        let end = point.and_then(|(points, row)| {
+            let (cell, shown) = (&points.rows[row][number], |end: &Anything| super::value::shown(&end.0).1);
+            let is_end = |end: &Option<Anything>| end.as_ref().is_some_and(|end| shown(end) == *cell);
+            let parameter = &said.parameter[number];
+            let ends = [("from", is_end(&parameter.from)), ("to", is_end(&parameter.to))];
+            ends.into_iter().find(|(_, is_end)| *is_end).map(|(end, _)| end)
+        });
+        return match (index, end) {
+            _ if of_the_key => study.location(&format!("{at}.key"), label),
+            (Some(index), _) => study.location(&format!("{at}.values[{index}]"), label),
+            (_, Some(end)) => study.location(&format!("{at}.{end}"), label),
             _ => study.location(&format!("{at}.key"), label),
         };
     }

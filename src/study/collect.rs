@@ -1,7 +1,8 @@
 //! What the runs of a study measured, in one table.
 
+use super::facts::Run;
 use super::one::{Files, difference};
-use super::plan::{Plan, Run};
+use super::plan::Plan;
 use super::table::{Cells, TableColumn};
 use super::value::Kind;
 use super::variation::titled;

@@ -45,7 +45,8 @@ fn check_size(document: &StudyDocument, varied: &[Variation]) -> Result<u32> {
             if let Some(odd) = lengths.iter().position(|length| *length != lengths[0]) {
                 let (first, key) = (&study.parameter[0].key, &study.parameter[odd].key);
                 let message = format!("`{first}` has {} values and `{key}` has {}", lengths[0], lengths[odd]);
-                let location = document.key_location(&format!("parameter[{odd}].key"), "as many as the first");
+                let which = if study.parameter[odd].values.is_some() { "values" } else { "number" };
+                let location = document.key_location(&format!("parameter[{odd}].{which}"), "unlike the first");
                 let help = "in a list the first values go together, then the second ones: give all parameters as many; or take a grid";
                 return Err(Error::input(Fault::new(message).at(location).help(help)));
             }

@@ -164,8 +164,16 @@ impl StudyDocument {
             };
             Error::input(Fault::new(format!("the study {name} cannot be read: {error}")).help(help))
         })?;
-        let source = Arc::new(Source { name, text });
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Self::parse(&name, &text, folder)
+    }
+
+    /// The same of a text. `name` stands in messages; paths in the text start from `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with all faults of the text in its order.
+    pub fn parse(name: &str, text: &str, folder: &Path) -> Result<Self> {
+        let source = Arc::new(Source { name: name.to_owned(), text: text.to_owned() });
         let checked = Checked::read(&source, &schema())?;
         let study = checked.to()?;
         Ok(Self { source, folder: folder.to_owned(), study, checked })

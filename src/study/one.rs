@@ -3,7 +3,9 @@
 //! A run is made in a folder of its own, `runs/00012.part`, and moves out of it when it is complete. So what is named like a result is
 //! one, and what a kill leaves behind is found by whoever makes the run next.
 
-use super::plan::{Plan, Run, fingerprint};
+use super::facts::Run;
+use super::paths::fingerprint;
+use super::plan::Plan;
 use crate::error::{Error, Fault, Result, short};
 use crate::experiment::Document;
 use crate::output::{Header, Overwrite, ResultFile, checkpoint_path};

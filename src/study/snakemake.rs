@@ -4,7 +4,7 @@ use super::plan::Plan;
 use crate::error::{Error, Result};
 use std::path::PathBuf;
 
-/// The workflow; PROGRAM can be another one, by `--config pseudopod=PATH`.
+/// The workflow; the program can be another one, by `--config pseudopod=PATH`.
 const SNAKEFILE: &str = r#"# Written by pseudopod: the runs of this study, for Snakemake.
 #
 #   snakemake --cores 8 --keep-going
@@ -17,6 +17,13 @@ const SNAKEFILE: &str = r#"# Written by pseudopod: the runs of this study, for S
 
 PSEUDOPOD = config.get("pseudopod", "pseudopod")
 RUNS = [f"{run:05d}" for run in range(1, COUNT + 1)]
+
+
+# All results are asked for, not the tables alone: so one that was lost is made again.
+rule all:
+    input:
+        expand("runs/{run}.vtkhdf", run=RUNS),
+        OUTPUTS
 
 
 rule collect:

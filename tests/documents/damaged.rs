@@ -13,6 +13,7 @@ use pseudopod::equations;
 use pseudopod::error::{Error, Paint, Source, render};
 use pseudopod::experiment::Document;
 use pseudopod::geometry::read_surface;
+use pseudopod::study::{StudyDocument, look_over, points};
 
 use crate::chance::Chance;
 use crate::damage::{damaged, files, parts};
@@ -53,6 +54,13 @@ fn read_experiment(text: &str, path: &Path) -> Result<(), Error> {
     Document::parse("damaged.toml", text, path.parent().unwrap(), &[]).map(|_| ())
 }
 
+/// Studies are read and their points worked out; what these mean to the experiment is tried with a few.
+fn read_study(text: &str, path: &Path) -> Result<(), Error> {
+    let study = StudyDocument::parse("damaged.toml", text, path.parent().unwrap())?;
+    let points = points(&study)?;
+    if points.rows.len() < 10 { look_over(&study, &points, Some(20_000_000)).map(|_| ()) } else { Ok(()) }
+}
+
 fn read_equations(text: &str, _: &Path) -> Result<(), Error> {
     equations::read(Arc::new(Source { name: "damaged".into(), text: text.to_owned() })).map(|_| ())
 }
@@ -82,6 +90,8 @@ fn all(times: u32) {
         experiments.into_iter().partition(|path| path.ends_with("expected.toml"));
     read_damaged("claims", &claimed, times / 4, read_claims);
     read_damaged("experiment", &experiments, times, read_experiment);
+    let studies: Vec<PathBuf> = files(root, "toml", &["tests/messages/studies", "tests/messages/sweeps"]);
+    read_damaged("study", &studies, times / 4, read_study);
     read_damaged("EML", &files(root, "eml", &["eml", "experiments", "tests/messages"]), times, read_equations);
     read_damaged("SBML", &files(root, "xml", &["tests/messages"]), times, read_equations);
     for ending in ["obj", "ply", "stl"] {

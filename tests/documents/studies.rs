@@ -19,8 +19,8 @@ fn the_study_that_ships_has_the_points_that_its_page_says() {
     let study = StudyDocument::read(Path::new("experiments/aggregation/study.toml")).expect("a good study");
     let points = points(&study).expect("good points");
     assert_eq!((points.rows.len(), study.study.replicates), (40, 5));
-    assert_eq!(points.rows[0], ["0.01", "0.001"]);
-    assert_eq!(points.rows[39], ["0.4", "0.02"]);
+    assert_eq!(points.rows[0], ["0.01", "2"]);
+    assert_eq!(points.rows[39], ["1", "20"]);
     let looked = look_over(&study, &points, None).expect("an experiment that takes them");
     assert_eq!(looked.read, 40);
 }

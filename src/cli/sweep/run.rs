@@ -53,19 +53,18 @@ pub fn run(args: &SweepRunArgs) -> Result<Report> {
     let (all, skipped) = (plan.runs.len(), plan.runs.len() - waiting.len());
     let mut pool = Pool { plan: &plan, waiting, running: Vec::new(), jobs, threads, failed: Vec::new(), ended: 0 };
     let stopped = pool.work(&cancelled_by_signals(), args.quiet)?;
-    let (ended, mut failed) = (pool.ended, std::mem::take(&mut pool.failed));
-    failed.sort_unstable();
+    let (ended, went_wrong) = (pool.ended, pool.failed.len());
+    let collected = collect(plan.clone());
     if stopped {
-        let complete = skipped + ended - failed.len();
+        let complete = collected.rows.iter().filter(|row| row.status == Status::Complete).count();
         let message = format!("the study was interrupted: {complete} of {all} runs are complete");
         return Err(Error::Stopped {
             message,
             help: "the same command goes on, begun runs from their checkpoints".into(),
         });
     }
-    let collected = collect(plan.clone());
-    tell_failures(&collected, &failed)?;
-    let made = ended - failed.len();
+    tell_failures(&collected)?;
+    let made = ended - went_wrong;
     let before = if skipped > 0 { format!(", {skipped} were complete before") } else { String::new() };
     let words = match args.quiet {
         true => String::new(),
@@ -91,17 +90,25 @@ fn claim(folder: &std::path::Path) -> Result<File> {
     }
 }
 
-/// Says which runs failed and why.
-fn tell_failures(collected: &Collected, failed: &[u32]) -> Result<()> {
+/// Says which runs are not complete though all ended, and why.
+fn tell_failures(collected: &Collected) -> Result<()> {
+    let incomplete = collected.rows.iter().enumerate().filter(|(_, row)| row.status != Status::Complete);
+    let failed: Vec<usize> = incomplete.map(|(index, _)| index).collect();
     if failed.is_empty() {
         return Ok(());
     }
     let plan = &collected.plan;
-    let lines = failed.iter().take(20).map(|number| {
-        let index = *number as usize - 1;
+    let lines = failed.iter().take(20).map(|&index| {
         let (run, row) = (&plan.runs[index], &collected.rows[index]);
         let log = Files::of(plan, run).log;
-        let why = row.note.clone().filter(|_| row.status == Status::Failed).or_else(|| first_words(&log));
+        let known = match row.status {
+            Status::Failed => row.note.clone(),
+            Status::Differs => {
+                row.note.as_ref().map(|what| format!("its result was made from other inputs: {what}; move it away"))
+            }
+            _ => None,
+        };
+        let why = known.or_else(|| first_words(&log));
         let why = why.unwrap_or_else(|| "it ended without a word".into());
         let first = why.lines().next().unwrap_or_default().to_owned();
         format!("{}: {first} ({})", run.told(&plan.facts.parameters), log.display())
@@ -112,7 +119,8 @@ fn tell_failures(collected: &Collected, failed: &[u32]) -> Result<()> {
     }
     Err(Error::Numbers {
         message: format!("{} of {} runs failed\n{}", failed.len(), plan.runs.len(), lines.join("\n")),
-        help: "all others are complete; the same command tries these again, `sweep collect` takes what there is".into(),
+        help: "all others are complete; the same command tries these again, and `sweep collect` takes what there is"
+            .into(),
         kept: None,
     })
 }

@@ -126,7 +126,7 @@ pub fn pull_contacts(model: &Model, controls: &Controls, cells: &[KindState], s:
     live.clear();
     live.resize(contact.scene.atoms, Vec3::zeros());
     let noted = s.tractions.counting(share);
-    contact.law.add_forces(&contact.scene, controls, (&s.rows, &s.law), (&s.start, &s.positions), live, noted);
+    contact.law.add_forces(&contact.scene, controls, (&s.rows, &mut s.law), (&s.start, &s.positions), live, noted);
 }
 
 /// The energy of the law of contact where cells stand, with what was found where the step began, pN·µm.

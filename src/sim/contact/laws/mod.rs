@@ -108,14 +108,14 @@ impl Law {
         &self,
         scene: &Scene,
         controls: &Controls,
-        (rows, found): (&[Row], &LawScratch),
+        (rows, found): (&[Row], &mut LawScratch),
         (start, now): (&[Vec3], &[Vec3]),
         force: &mut [Vec3],
         mut noted: Option<&mut ContactTractions>,
     ) {
         match self {
             Self::Adhesives | Self::VirtualAdhesives(_) => 0.0,
-            Self::Cohesion(table) => table.add_forces(scene, &found.cohesion, now, force, noted),
+            Self::Cohesion(table) => table.add_forces(scene, &mut found.cohesion, now, force, noted),
             Self::Links(table) => table.act(scene, controls, &found.links.links, now, |atom, pull| {
                 force[atom as usize] += pull;
                 noted.iter_mut().for_each(|noted| noted.by_cell(atom, pull));

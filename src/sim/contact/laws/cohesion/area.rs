@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::patch::Partner;
-use super::search::{Around, Seen, Surroundings};
+use super::search::{Around, Seen};
+use super::surroundings::Surroundings;
 use super::table::CohesionTable;
 use crate::Vec3;
 use crate::contact::Scene;
@@ -39,7 +40,7 @@ impl CohesionTable {
             areas.clear();
             for body in scene.bodies_of(batch) {
                 let first = areas.len();
-                seen.find(body, near.of_body(scene, body), around, |_, patch| {
+                seen.find(body, near.of_body(scene, body), &mut [], around, |_, patch| {
                     let area = patch.area_within(scene, positions);
                     let (other, area) = match patch.other {
                         Partner::Facet([atom, ..], _) => (scene.body_of_atom(atom), 0.5 * area),

@@ -1,7 +1,7 @@
 //! Areas of contact against shapes whose area is known, and against a search of all facets for each point.
 
 use super::patch::part_that_faces;
-use super::search::points_of_facet;
+use super::points::points_of_facet;
 use super::*;
 use crate::contact::test_scenes::{Stage, packed_stage};
 use crate::contact::{Opening, Plane, Reach, Shape, Sides, opening_to_facet, opening_to_plane};

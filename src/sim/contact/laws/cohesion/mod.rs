@@ -5,12 +5,17 @@
 mod area;
 #[cfg(test)]
 mod area_tests;
+mod attracted;
 mod bonds;
+mod bounds;
 mod candidates;
 mod closed;
+mod facet;
 mod facing;
 mod patch;
+mod points;
 mod search;
+mod surroundings;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -24,7 +29,8 @@ pub use self::closed::Earlier;
 use self::closed::PatchBonds;
 pub use self::facing::{Faced, Facing, area_between, number_of};
 use self::patch::{Partner, Patch, PatchPull};
-use self::search::{Around, Seen, Surroundings};
+use self::search::{Around, Seen, UNKNOWN};
+use self::surroundings::Surroundings;
 pub use self::table::{CohesionTable, Cohesive};
 use self::turnover::Turnover;
 use crate::Vec3;
@@ -39,8 +45,8 @@ pub struct CohesionScratch {
     around: Surroundings,
     /// Those of each batch of bodies.
     patches: Vec<Vec<Patch>>,
-    /// What each batch looks at.
-    looks: Vec<Around>,
+    /// What each batch looks at, and which facets attracted each of its points when it looked last.
+    looks: Vec<(Around, Vec<u32>)>,
     /// Areas in contact around the atoms of each batch.
     of_batches: Vec<Vec<Facing>>,
     /// Those of all, in the order of atoms.
@@ -49,11 +55,17 @@ pub struct CohesionScratch {
     bonds: Vec<Vec<PatchBonds>>,
     /// What their turnover changes of the forces on atoms, pN.
     change: Vec<Vec3>,
+    /// What parts of some batches do.
+    pulls: Vec<Vec<Option<PatchPull>>>,
 }
+
+/// Batches of bodies for each thread whose parts are looked at before what they do is added up.
+const BATCHES_A_THREAD: usize = 2;
 
 impl CohesionScratch {
     /// Forgets what was near, so that the next look finds it anew.
     pub fn forget(&mut self) {
+        self.looks.clear();
         self.around.near.forget();
     }
 
@@ -115,53 +127,69 @@ impl CohesionTable {
         } = to;
         let seen = Seen { table: self, scene, controls, positions, facets, nearer, range };
         patches.resize_with(scene.batches(), Vec::new);
-        looks.resize_with(scene.batches(), Around::default);
+        looks.resize_with(scene.batches(), Default::default);
         of_batches.resize_with(scene.batches(), Vec::new);
         bonds.resize_with(scene.batches(), Vec::new);
         let has_bonds = self.has_bonds();
         let batches = patches.par_iter_mut().zip(looks.par_iter_mut()).zip(of_batches.par_iter_mut());
-        batches.zip(bonds.par_iter_mut()).enumerate().for_each(|(batch, (((patches, around), facing), bonds))| {
-            patches.clear();
-            bonds.clear();
-            let mut before = before.from_body(scene, scene.bodies_of(batch).start);
-            scene.bodies_of(batch).for_each(|body| {
-                seen.find(body, near.of_body(scene, body), around, |spot, mut patch| {
-                    if has_bonds {
-                        bonds.push(before.bind(self, scene, (body, spot), &mut patch));
-                    }
-                    patches.push(patch);
+        batches.zip(bonds.par_iter_mut()).enumerate().for_each(
+            |(batch, (((patches, (around, known)), facing), bonds))| {
+                patches.clear();
+                bonds.clear();
+                known.resize(scene.bodies_of(batch).map(|body| self.points_of(scene, body)).sum(), UNKNOWN);
+                let mut known = &mut known[..];
+                let mut before = before.from_body(scene, scene.bodies_of(batch).start);
+                scene.bodies_of(batch).for_each(|body| {
+                    let (of_body, rest) = std::mem::take(&mut known).split_at_mut(self.points_of(scene, body));
+                    known = rest;
+                    seen.find(body, near.of_body(scene, body), of_body, around, |spot, mut patch| {
+                        if has_bonds {
+                            bonds.push(before.bind(self, scene, (body, spot), &mut patch));
+                        }
+                        patches.push(patch);
+                    });
                 });
-            });
-            facing.clear();
-            if self.resists {
-                Facing::add((patches, bonds), scene, positions, facing);
-            }
-        });
+                facing.clear();
+                if self.resists {
+                    Facing::add((patches, bonds), scene, positions, facing);
+                }
+            },
+        );
         facing.clear();
         of_batches.iter().for_each(|of_batch| facing.extend_from_slice(of_batch));
     }
 
-    /// Adds the forces of what attracts each other where the atoms are now, and returns the energy, pN·µm.
+    /// Adds the forces of what attracts each other where the atoms are now, and returns the energy, pN·µm. Threads find what parts do, some
+    /// batches at a time; it is added up in the order of parts, so that no sum depends on who found it.
     pub(super) fn add_forces(
         &self,
         scene: &Scene,
-        found: &CohesionScratch,
+        found: &mut CohesionScratch,
         now: &[Vec3],
         force: &mut [Vec3],
         mut noted: Option<&mut ContactTractions>,
     ) -> f64 {
         let mut energy = 0.0;
-        for patch in found.patches.iter().flatten() {
-            let Some(pull) = patch.pull(scene, now) else { continue };
-            energy += pull.energy;
-            let mut add = |atoms: [u32; 3], forces: [Vec3; 3]| {
-                atoms.iter().zip(forces).for_each(|(atom, pull)| force[*atom as usize] += pull);
-            };
-            add(patch.own, pull.on_own);
-            if let Partner::Facet(atoms, _) = patch.other {
-                add(atoms, pull.on_other);
+        let CohesionScratch { patches, pulls, .. } = found;
+        pulls.resize_with(BATCHES_A_THREAD * rayon::current_num_threads(), Vec::new);
+        for batches in patches.chunks(pulls.len()) {
+            pulls.par_iter_mut().zip(batches).for_each(|(pulls, patches)| {
+                pulls.clear();
+                pulls.extend(patches.iter().map(|patch| patch.pull(scene, now)));
+            });
+            let parts = batches.iter().zip(&*pulls).flat_map(|(patches, pulls)| patches.iter().zip(pulls));
+            for (patch, pull) in parts {
+                let Some(pull) = pull else { continue };
+                energy += pull.energy;
+                let mut add = |atoms: [u32; 3], forces: [Vec3; 3]| {
+                    atoms.iter().zip(forces).for_each(|(atom, pull)| force[*atom as usize] += pull);
+                };
+                add(patch.own, pull.on_own);
+                if let Partner::Facet(atoms, _) = patch.other {
+                    add(atoms, pull.on_other);
+                }
+                noted.iter_mut().for_each(|noted| note(patch, pull, noted));
             }
-            noted.iter_mut().for_each(|noted| note(patch, &pull, noted));
         }
         energy
     }

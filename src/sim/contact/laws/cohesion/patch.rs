@@ -68,6 +68,7 @@ pub fn part_that_faces(opening: &Opening) -> f64 {
 }
 
 /// What a patch and its partner do to each other.
+#[derive(Debug, Clone)]
 pub struct PatchPull {
     /// pN·µm.
     pub energy: f64,

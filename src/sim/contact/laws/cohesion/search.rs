@@ -1,56 +1,15 @@
 //! What attracts each part of a surface most.
 
 use super::super::super::vectors::gather_corners;
-use super::candidates::{Candidates, Facet, apart, least_opening_between, may_meet, nearer};
-use super::patch::{Partner, Patch, depth_of_well, width_of_well};
+use super::attracted::{Attracted, Attracting, more};
+use super::candidates::Candidates;
+use super::facet::{Facet, Looking};
+use super::patch::{Partner, Patch, depth_of_well};
+use super::points::points_of_facet;
 use super::table::CohesionTable;
 use crate::Vec3;
-use crate::contact::{Near, NearFacets, Plane, Scene, Sides, is_surely_beyond, opening_to_facet, opening_to_plane};
+use crate::contact::{Near, Plane, Scene, is_surely_beyond, opening_to_facet, opening_to_plane};
 use crate::sim::controls::Controls;
-
-/// The facets at an instant, and which are near which.
-#[derive(Debug, Clone, Default)]
-pub struct Surroundings {
-    pub near: NearFacets,
-    /// All facets.
-    pub facets: Vec<Facet>,
-    /// What they were when it was looked for what is near.
-    then: Vec<Facet>,
-    /// By how much each may have come nearer to others since then, µm.
-    pub nearer: Vec<f64>,
-}
-
-impl Surroundings {
-    /// Those at these positions, of facets nearer than `range` (µm) to each other. Where they are followed from instant to instant,
-    /// what is near is looked for some way farther and kept as long as it will do.
-    pub fn find(&mut self, scene: &Scene, positions: &[Vec3], range: f64, are_followed: bool) {
-        let Self { near, facets, then, nearer: of_facets } = self;
-        facets.clear();
-        facets.extend((0..scene.bodies.len() as u32).flat_map(|body| {
-            let first = scene.bodies[body as usize].first_atom;
-            let corners = move |facet: &[u32; 3]| gather_corners(positions, facet.map(|atom| first + atom));
-            scene.shape(body).facets.iter().map(move |facet| Facet::of(&corners(facet)))
-        }));
-        // Rounded so that it is less than it was.
-        let apart = |own: u32, other: u32| {
-            let has_two = scene.shape(scene.body_of_facet(own)).sides == Sides::Both;
-            let [own, other] = [own, other].map(|facet| &facets[facet as usize]);
-            let before = apart(own, own.normal, other, range);
-            (if has_two { before.min(apart(own, -own.normal, other, range)) } else { before } - 1e-5) as f32
-        };
-        let are_new = if are_followed {
-            near.follow(scene, positions, range, apart)
-        } else {
-            near.find(scene, positions, range, apart);
-            true
-        };
-        if are_new {
-            then.clone_from(facets);
-        }
-        of_facets.clear();
-        of_facets.extend(facets.iter().zip(&*then).map(|(now, then)| nearer(now, then, range)));
-    }
-}
 
 /// All surfaces at an instant.
 pub struct Seen<'a> {
@@ -74,68 +33,70 @@ pub struct Spot {
     pub point: u32,
 }
 
-/// What attracts a point.
-struct Attracted {
-    /// Of the point's side, pN/µm².
-    strength: f64,
-    /// µm.
-    range: f64,
-    partner: Partner,
-}
-
-/// A body whose facets may attract points of a facet.
-#[derive(Debug, Clone, Copy)]
-struct Attracting {
-    body: u32,
-    /// The end of its candidates; they begin where those of the body before it end.
-    end: usize,
-    /// Of the point's side, pN/µm².
-    strength: f64,
-    /// µm.
-    range: f64,
-}
-
 /// What may attract points of the facet that is looked at.
 #[derive(Debug, Clone, Default)]
 pub struct Around {
+    /// What is near it, and what of this its points may be attracted by.
+    near: Candidates,
     candidates: Candidates,
     bodies: Vec<Attracting>,
+    /// What is known to attract each of its points before candidates are looked at.
+    first: Vec<Option<Attracted>>,
 }
 
+/// No facet is known.
+pub const UNKNOWN: u32 = u32::MAX;
+
 impl Seen<'_> {
-    /// Calls `found` with the parts of a body that are attracted; `near` are the facets near each of its.
+    /// Calls `found` with the parts of a body that are attracted; `near` are the facets near each of its. `known` are the facets that
+    /// attracted each of its points when it was looked last, and becomes those of now, or is empty: a guess that spares looking at most
+    /// others and changes nothing.
     pub fn find<'a>(
         &self,
         body: u32,
         near: impl Iterator<Item = Near<'a>>,
+        known: &mut [u32],
         around: &mut Around,
         mut found: impl FnMut(Spot, Patch),
     ) {
         let (scene, of) = (self.scene, self.scene.bodies[body as usize]);
         let points = points_of_facet(self.table.points[of.shape as usize]);
         let share = 1.0 / points.len() as f64;
-        let has_two = scene.shape(body).sides == Sides::Both;
+        let sides = scene.sides_of(body);
+        let mut known = known.chunks_exact_mut(sides * points.len());
         for (facet, near) in (of.first_facet..).zip(near) {
             let Facet { normal, middle, radius } = self.facets[facet as usize];
-            self.look_around(body, (facet, has_two), near, around);
+            let known = known.next().unwrap_or_default();
             let is_near = |plane: &Plane| (middle - plane.point).dot(&plane.normal) < self.range + radius;
-            if around.candidates.facets.is_empty() && !scene.planes.iter().any(is_near) {
+            if near.facets.is_empty() && !scene.planes.iter().any(is_near) {
+                known.fill(UNKNOWN);
                 continue;
             }
             let own = scene.facet_atoms(body, facet);
             let corners = gather_corners(self.positions, own);
             let at = |weights: &[f64; 3]| weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
-            let other_side = has_two.then_some(([own[0], own[2], own[1]], -normal));
-            for (side, (own, n)) in (0..).zip(std::iter::once((own, normal)).chain(other_side)) {
-                around.candidates.bound(points.iter().map(at), n);
-                let mut first = 0;
+            let seen_from = [(own, normal), ([own[0], own[2], own[1]], -normal)];
+            around.first.clear();
+            for (side, (_, n)) in seen_from[..sides].iter().enumerate() {
+                around.first.extend(points.iter().enumerate().map(|(number, weights)| {
+                    let known = known.get(side * points.len() + number).copied().unwrap_or(UNKNOWN);
+                    more(self.of_known(body, (at(weights), *n), known), self.of_planes(body, (at(weights), *n)))
+                }));
+            }
+            self.look_around(body, (facet, &corners, sides), near, around);
+            for (side, (own, n)) in seen_from[..sides].iter().enumerate() {
+                around.candidates.bound(points.iter().map(at), *n);
                 for (number, weights) in points.iter().enumerate() {
-                    if let Some(most) = self.strongest(body, (at(weights), n), (around, number), &mut first) {
-                        let Attracted { strength, range, partner: other } = most;
-                        let strength = strength * self.adhesion_of(own, weights, other);
-                        let spot = Spot { facet, point: (side * points.len() + number) as u32 };
-                        found(spot, Patch { own, other, weights, share, strength: share * strength, range });
+                    let point = side * points.len() + number;
+                    let first = around.first[point];
+                    let most = self.strongest((at(weights), *n), first, (around, number));
+                    if let Some(known) = known.get_mut(point) {
+                        *known = most.map_or(UNKNOWN, |most| most.number);
                     }
+                    let Some(Attracted { strength, range, partner: other, .. }) = most else { continue };
+                    let strength = share * strength * self.adhesion_of(*own, weights, other);
+                    let spot = Spot { facet, point: point as u32 };
+                    found(spot, Patch { own: *own, other, weights, share, strength, range });
                 }
             }
         }
@@ -150,160 +111,127 @@ impl Seen<'_> {
         self.controls.adhesion_between(own, *weights) * of_other
     }
 
-    /// Finds what of the facets near one of a body may attract a point of it, be it from behind where it `has_two` sides.
-    fn look_around(&self, body: u32, (facet, has_two): (u32, bool), near: Near, around: &mut Around) {
-        let (scene, kinds) = (self.scene, self.table.points.len());
+    /// How a body's points are attracted by another body, as if no candidates were known.
+    fn between(&self, body: u32, other: u32) -> Attracting {
+        let [kind, of_other] = [body, other].map(|body| self.scene.bodies[body as usize].shape as usize);
+        let cohesive = self.table.between[kind * self.table.points.len() + of_other];
+        let factors = self.controls.adhesion_of(body as usize) * self.controls.adhesion_of(other as usize);
+        Attracting { body: other, end: 0, strength: 0.5 * factors * cohesive.strength, range: cohesive.range() }
+    }
+
+    /// Finds what of the facets near one of a body, with these corners and so many sides, may attract a point of it more than what is known
+    /// to.
+    fn look_around(
+        &self,
+        body: u32,
+        (facet, corners, sides): (u32, &[Vec3; 3], usize),
+        near: Near,
+        around: &mut Around,
+    ) {
         let (own, own_nearer) = (self.facets[facet as usize], self.nearer[facet as usize]);
-        let kind = scene.bodies[body as usize].shape as usize;
-        let factor = self.controls.adhesion_of(body as usize);
-        let Around { candidates, bodies } = around;
-        candidates.clear();
+        let Around { near: all, candidates, bodies, first } = around;
+        all.empty_for(near.facets.len());
         bodies.clear();
         let Near { facets: mut rest, apart: mut rest_apart } = near;
         while let Some(&next) = rest.first() {
-            let other = scene.body_of_facet(next);
-            let there = scene.bodies[other as usize];
-            let facets_end = there.first_facet + scene.shape(other).facets.len() as u32;
+            let other = self.scene.body_of_facet(next);
+            let facets_end =
+                self.scene.bodies[other as usize].first_facet + self.scene.shape(other).facets.len() as u32;
             let end = rest.partition_point(|facet| *facet < facets_end);
             let (facets, apart);
             (facets, rest) = rest.split_at(end);
             (apart, rest_apart) = rest_apart.split_at(end);
-            let cohesive = self.table.between[kind * kinds + there.shape as usize];
-            let strength = 0.5 * factor * self.controls.adhesion_of(other as usize) * cohesive.strength;
-            let range = cohesive.range();
             for (&facet, &apart) in facets.iter().zip(apart) {
-                // What was too far apart then and has not come near enough since.
-                if f64::from(apart) > own_nearer + self.nearer[facet as usize] {
-                    continue;
-                }
-                let seen = &self.facets[facet as usize];
-                let is_met = |n: Vec3| may_meet(&own, n, seen, range) && least_opening_between(&own, n, seen) < range;
-                if is_met(own.normal) || has_two && is_met(-own.normal) {
-                    candidates.push(facet, seen);
-                }
+                // Not what was too far apart then and has not come near enough since.
+                let counts = f64::from(apart) <= own_nearer + self.nearer[facet as usize];
+                all.add_if(counts, facet, &self.facets[facet as usize]);
             }
-            bodies.push(Attracting { body: other, end: candidates.facets.len(), strength, range });
+            bodies.push(Attracting { end: all.count(), ..self.between(body, other) });
+        }
+        all.bound_all(&Looking::from(own, corners), sides == 2);
+        let released = first.iter().map(|first| first.map_or(0.0, |first| first.released));
+        let released = released.reduce(f64::min).unwrap_or_default();
+        candidates.empty_for(all.count());
+        let mut start = 0;
+        for attracting in bodies {
+            candidates.take_nearer(all, start..attracting.end, attracting.widest(released));
+            (start, attracting.end) = (attracting.end, candidates.count());
         }
     }
 
-    /// What attracts a point of a body most, with the normal of its surface there; its number is that by which bounds were found. `first`
-    /// is what to look at first: the candidate found for a point beside it.
+    /// What attracts a point most, with the normal of its surface there, of this and all candidates; its number is that by which their
+    /// bounds were found.
     fn strongest(
         &self,
-        body: u32,
         point: (Vec3, Vec3),
+        first: Option<Attracted>,
         (around, number): (&Around, usize),
-        first: &mut usize,
     ) -> Option<Attracted> {
-        let (mut most, mut best, mut start) = (0.0, None, 0);
-        for &Attracting { body: other, end, strength, range } in &around.bodies {
-            let candidates = start..end;
-            start = end;
-            let whole = strength * range;
-            if whole <= most {
-                continue;
+        let bounds = around.candidates.bounds_of(number);
+        let (mut most, mut start) = (first, 0);
+        for attracting in &around.bodies {
+            let widest = |most: &Option<Attracted>| attracting.widest(most.map_or(0.0, |most| most.released));
+            let mut least = widest(&most);
+            for candidate in start..attracting.end {
+                if bounds[candidate] >= least {
+                    continue;
+                }
+                let facet = around.candidates.facets[candidate];
+                if first.is_some_and(|first| first.number == facet) {
+                    continue;
+                }
+                if let Some(found) = self.of_facet(attracting, facet, point, least)
+                    && most.is_none_or(|most| found.is_more_than(&most))
+                {
+                    most = Some(found);
+                    least = widest(&most);
+                }
             }
-            let widest = range * width_of_well(most / whole);
-            let found = self.nearest(other, point, (&around.candidates, number, candidates), widest, first);
-            if let Some((width, partner)) = found {
-                most = whole * depth_of_well(width / range);
-                best = Some(Attracted { strength, range, partner });
-            }
+            start = attracting.end;
         }
-        let (x, n) = point;
+        most
+    }
+
+    /// How a facet attracts a point of a body, if there is such a one.
+    fn of_known(&self, body: u32, point: (Vec3, Vec3), facet: u32) -> Option<Attracted> {
+        let is_there = (facet as usize) < self.facets.len();
+        let other = is_there.then(|| self.scene.body_of_facet(facet)).filter(|other| *other != body)?;
+        let attracting = self.between(body, other);
+        self.of_facet(&attracting, facet, point, attracting.range)
+    }
+
+    /// How a facet of a body attracts a point, where the opening is less than the `widest`, µm.
+    fn of_facet(&self, by: &Attracting, facet: u32, (x, n): (Vec3, Vec3), widest: f64) -> Option<Attracted> {
+        let Facet { normal: mut m, middle, .. } = self.facets[facet as usize];
+        let mut atoms = self.scene.facet_atoms(by.body, facet);
+        if self.scene.sides_of(by.body) == 2 && (x - middle).dot(&m) < 0.0 {
+            (atoms, m) = ([atoms[0], atoms[2], atoms[1]], -m);
+        }
+        let corners = gather_corners(self.positions, atoms);
+        if is_surely_beyond(x, n, &corners, m, widest) {
+            return None;
+        }
+        let (opening, feature) = opening_to_facet(x, n, &corners, m)?;
+        self.attracted(by, facet, opening.width, Partner::Facet(atoms, feature))
+    }
+
+    /// What attracts a point so far open, if it does.
+    fn attracted(&self, by: &Attracting, number: u32, width: f64, partner: Partner) -> Option<Attracted> {
+        let Attracting { strength, range, .. } = *by;
+        let released = strength * range * depth_of_well(width / range);
+        (released > 0.0).then_some(Attracted { released, width, number, strength, range, partner })
+    }
+
+    /// What of the planes attracts a point of a body most.
+    fn of_planes(&self, body: u32, (x, n): (Vec3, Vec3)) -> Option<Attracted> {
         let kind = self.scene.bodies[body as usize].shape as usize;
-        for (number, plane) in (0..).zip(&self.scene.planes) {
+        let planes = (0..).zip(&self.scene.planes).filter_map(|(number, plane)| {
             let cohesive = self.table.on_planes[kind * self.scene.planes.len() + number as usize];
             let strength = self.controls.adhesion_of(body as usize) * cohesive.strength;
-            let range = cohesive.range();
-            let height = (x - plane.point).dot(&plane.normal);
-            let Some((width, _)) = opening_to_plane(n, height, plane.normal) else { continue };
-            let depth = strength * range * depth_of_well(width / range);
-            if depth > most {
-                (most, best) = (depth, Some(Attracted { strength, range, partner: Partner::Plane(number) }));
-            }
-        }
-        best
-    }
-
-    /// The facet of a body with the least opening to a point, and that, if it is less than `widest` (µm), of the candidates in a range of
-    /// their numbers.
-    fn nearest(
-        &self,
-        other: u32,
-        (x, n): (Vec3, Vec3),
-        (candidates, point, numbers): (&Candidates, usize, std::ops::Range<usize>),
-        mut widest: f64,
-        first: &mut usize,
-    ) -> Option<(f64, Partner)> {
-        let is_thin = self.scene.shape(other).sides == Sides::Both;
-        let bounds = &candidates.bounds_of(point)[..numbers.end];
-        let known = numbers.contains(first).then_some(*first);
-        let mut best = None;
-        let mut look = |number: usize, widest: &mut f64| {
-            let facet = candidates.facets[number];
-            let Facet { normal: mut m, middle, .. } = self.facets[facet as usize];
-            let mut atoms = self.scene.facet_atoms(other, facet);
-            if is_thin && (x - middle).dot(&m) < 0.0 {
-                (atoms, m) = ([atoms[0], atoms[2], atoms[1]], -m);
-            }
-            let corners = gather_corners(self.positions, atoms);
-            if is_surely_beyond(x, n, &corners, m, *widest) {
-                return;
-            }
-            let found = opening_to_facet(x, n, &corners, m);
-            if let Some((opening, feature)) = found.filter(|(opening, _)| opening.width < *widest) {
-                (*widest, *first) = (opening.width, number);
-                best = Some((opening.width, Partner::Facet(atoms, feature)));
-            }
-        };
-        // What is surely farther than the best so far is passed over: so what is likely the best is looked at first.
-        let likely = numbers.clone().min_by(|one, other| bounds[*one].total_cmp(&bounds[*other]));
-        let likely = likely.filter(|likely| Some(*likely) != known);
-        for number in [known, likely].into_iter().flatten() {
-            if bounds[number] < widest {
-                look(number, &mut widest);
-            }
-        }
-        for number in numbers {
-            if bounds[number] < widest && Some(number) != known && Some(number) != likely {
-                look(number, &mut widest);
-            }
-        }
-        best
-    }
-}
-
-/// Barycentric weights of the middles of the parts of a facet whose sides are cut into so many.
-pub fn points_of_facet(parts: u32) -> &'static [[f64; 3]] {
-    const fn middles<const N: usize>(parts: usize) -> [[f64; 3]; N] {
-        let (mut all, mut next) = ([[0.0; 3]; N], 0);
-        let mut i = 0;
-        while i < parts {
-            let mut j = 0;
-            while i + j < parts {
-                let mut half = 0;
-                while half < 2 && i + j + half < parts {
-                    let third = (1 + half) as f64 / 3.0;
-                    let (v, w) = ((i as f64 + third) / parts as f64, (j as f64 + third) / parts as f64);
-                    all[next] = [1.0 - v - w, v, w];
-                    next += 1;
-                    half += 1;
-                }
-                j += 1;
-            }
-            i += 1;
-        }
-        all
-    }
-    const ONE: [[f64; 3]; 1] = middles(1);
-    const TWO: [[f64; 3]; 4] = middles(2);
-    const THREE: [[f64; 3]; 9] = middles(3);
-    const FOUR: [[f64; 3]; 16] = middles(4);
-    match parts {
-        0 | 1 => &ONE,
-        2 => &TWO,
-        3 => &THREE,
-        _ => &FOUR,
+            let by = Attracting { body, end: 0, strength, range: cohesive.range() };
+            let (width, _) = opening_to_plane(n, (x - plane.point).dot(&plane.normal), plane.normal)?;
+            self.attracted(&by, self.facets.len() as u32 + number, width, Partner::Plane(number))
+        });
+        planes.fold(None, |most, found| more(most, Some(found)))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::bonds::BondKinetics;
 use super::facing::Faced;
+use super::points::points_of_facet;
 use crate::contact::Scene;
 
 /// How two surfaces stick.
@@ -101,6 +102,12 @@ impl CohesionTable {
     /// The farthest that anything attracts, µm.
     pub(in super::super) fn range(&self) -> f64 {
         self.between.iter().chain(&self.on_planes).map(Cohesive::range).fold(0.0, f64::max)
+    }
+
+    /// At how many points of its facets, on all sides, it is looked what attracts a body.
+    pub fn points_of(&self, scene: &Scene, body: u32) -> usize {
+        let of_facet = points_of_facet(self.points[scene.bodies[body as usize].shape as usize]).len();
+        scene.sides_of(body) * scene.shape(body).facets.len() * of_facet
     }
 
     /// How a body and what it faces stick to each other.

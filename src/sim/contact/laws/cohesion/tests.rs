@@ -56,9 +56,9 @@ fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
     for planes in [vec![], vec![Plane { point: Vec3::new(0.0, 0.0, -3.1), normal: Vec3::z() }]] {
         let on_plane = !planes.is_empty();
         let (table, scene, positions) = scene(&surfaces, planes, GLUE);
-        let found = found(&table, &scene, &positions);
+        let mut found = found(&table, &scene, &positions);
         let mut force = vec![Vec3::zeros(); positions.len()];
-        let energy = table.add_forces(&scene, &found, &positions, &mut force, None);
+        let energy = table.add_forces(&scene, &mut found, &positions, &mut force, None);
         assert!(energy < -0.5, "{energy}");
         let acted = force.iter().filter(|force| force.norm() > 0.0).count();
         assert!(acted > 30, "{acted}");
@@ -83,6 +83,32 @@ fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
             assert!(sum.norm() < 1e-11 && torque.norm() < 1e-10, "{sum} {torque}");
         }
     }
+}
+
+#[test]
+fn what_attracts_a_point_does_not_depend_on_what_did_before() {
+    let surfaces = [
+        (icosphere(3.0, 2), Sides::Outer),
+        (moved(icosphere(2.0, 2), Vec3::new(0.7, 0.4, 5.05)), Sides::Outer),
+        (moved(icosphere(2.5, 1), Vec3::new(0.2, 5.5, 1.0)), Sides::Outer),
+        (moved(sheet(4.0, 4.0, 5, 5), Vec3::new(0.1, 0.0, -3.1)), Sides::Both),
+    ];
+    let (table, scene, mut positions) =
+        scene(&surfaces, vec![Plane { point: -4.0 * Vec3::z(), normal: Vec3::z() }], GLUE);
+    let mut stream = Stream::new(5, Purpose::Placement, 0, 0);
+    let (mut followed, mut changed, mut before) = (CohesionScratch::default(), 0, Vec::new());
+    for _ in 0..12 {
+        table.find(&scene, &Controls::default(), NONE, &positions, &mut followed);
+        let anew = found(&table, &scene, &positions);
+        assert!(followed.patches == anew.patches && anew.patches.iter().flatten().count() > 100);
+        changed += usize::from(before != anew.patches);
+        before = anew.patches;
+        for x in &mut positions {
+            let [[a, b], [c, _]] = [stream.uniform_pair(), stream.uniform_pair()];
+            *x += 0.2 * Vec3::new(a - 0.5, b - 0.5, c - 0.5);
+        }
+    }
+    assert_eq!(changed, 12);
 }
 
 #[test]
@@ -145,5 +171,5 @@ fn a_box_on_a_floor_is_in_contact_with_its_floor_alone() {
 
 #[test]
 fn a_patch_takes_as_much_memory_as_its_decision_says() {
-    assert_eq!((size_of::<Patch>(), size_of::<candidates::Facet>()), (64, 56));
+    assert_eq!((size_of::<Patch>(), size_of::<facet::Facet>()), (64, 56));
 }

@@ -1,0 +1,72 @@
+//! Paths and fingerprints of the files that a study reads.
+
+use std::path::{Component, Path, PathBuf};
+
+/// A number by which contents are told apart: FNV-1a in 64 bits, in hexadecimal.
+pub fn fingerprint(bytes: &[u8]) -> String {
+    let hash = bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("{hash:016x}")
+}
+
+/// A path from the root, without links where it leads somewhere.
+pub fn absolute(path: &Path) -> PathBuf {
+    if let Ok(whole) = path.canonicalize() {
+        return whole;
+    }
+    // A folder that is still to be made lies in one that is there, or in one to be made, too.
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    match (path.parent(), path.file_name()) {
+        (Some(parent), Some(name)) => absolute(parent).join(name),
+        _ => path,
+    }
+}
+
+/// A path from a folder, both from the root. Where the two have no folder in common it stays as it is.
+pub fn relative(path: &Path, folder: &Path) -> PathBuf {
+    let (path_parts, folder_parts): (Vec<_>, Vec<_>) = (path.components().collect(), folder.components().collect());
+    let shared = path_parts.iter().zip(&folder_parts).take_while(|(one, other)| one == other).count();
+    if shared <= 1 {
+        return path.to_path_buf();
+    }
+    let up = (shared..folder_parts.len()).map(|_| Component::ParentDir);
+    up.chain(path_parts[shared..].iter().copied()).collect()
+}
+
+/// A path without steps into folders that it leaves again.
+pub fn tidy(path: &Path) -> PathBuf {
+    let mut short = PathBuf::new();
+    for part in path.components() {
+        let leaves =
+            part == Component::ParentDir && matches!(short.components().next_back(), Some(Component::Normal(_)));
+        if leaves {
+            short.pop();
+        } else {
+            short.push(part);
+        }
+    }
+    short
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_lead_from_one_folder_to_another() {
+        let from = |path: &str, folder: &str| relative(Path::new(path), Path::new(folder)).display().to_string();
+        assert_eq!(from("/a/b/c.toml", "/a/b"), "c.toml");
+        assert_eq!(from("/a/b/c.toml", "/a/b/study/one"), "../../c.toml");
+        assert_eq!(from("/a/x/c.toml", "/a/b"), "../x/c.toml");
+        assert_eq!(from("/x/c.toml", "/a/b"), "/x/c.toml");
+    }
+
+    #[test]
+    fn steps_into_a_folder_and_out_again_are_left_out() {
+        let short = |path: &str| tidy(Path::new(path)).display().to_string();
+        assert_eq!(short("out/../cells.toml"), "cells.toml");
+        assert_eq!(short("a/b/../../../cells.toml"), "../cells.toml");
+        assert_eq!(short("../out/./cells.toml"), "../out/cells.toml");
+    }
+}
