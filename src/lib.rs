@@ -5,7 +5,7 @@
 //! stepped, looked at, driven and saved in memory. What is behind it goes the course of a run: the experiment says what the
 //! user wants, [`experiment::compile()`] turns it into a [`sim::Model`] (what it means) and a [`sim::State`] (where it
 //! starts), [`sim::step()`] moves the state. [`run`] records a simulation in a file, which [`analysis`] and [`picture`] read;
-//! [`study`] makes many such runs of one experiment.
+//! [`study`] makes many such runs of one experiment, and [`verify`] holds a run to what is claimed of it.
 #![warn(missing_docs)]
 
 #[cfg(test)]
@@ -37,6 +37,7 @@ pub mod simulation;
 pub mod study;
 pub mod units;
 pub mod values;
+pub mod verify;
 pub mod xml;
 
 pub use simulation::{CancelToken, Simulation, SimulationError};

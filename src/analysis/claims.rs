@@ -1,8 +1,8 @@
 //! What an experiment claims to reproduce, as its `expected.toml` says it, and whether a run keeps the word.
 
 use crate::error::{Error, Fault, Location, Result, Source};
+use crate::output::Measure;
 use serde::Deserialize;
-use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
@@ -22,6 +22,10 @@ pub struct Claim {
     pub source: String,
     /// Why the tolerance is what it is.
     pub reason: Option<String>,
+    /// Where the name of the measure stands.
+    pub measure_location: Location,
+    /// Where the name of the document stands; that of the measure when there is none.
+    pub document_location: Location,
 }
 
 /// Where a value has to lie, ends included, in the unit of the measure.
@@ -62,16 +66,24 @@ impl Bound {
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::AtMost(most) => write!(f, "at most {most}"),
-            Self::AtLeast(least) => write!(f, "at least {least}"),
-            Self::Between(least, most) => write!(f, "from {least} to {most}"),
-            Self::NearRelative(value, share) => write!(f, "{value} within {} %", rounded(100.0 * share)),
-            Self::NearAbsolute(value, distance) => write!(f, "{value} within ±{distance}"),
+            Self::AtMost(most) => write!(f, "at most {}", exact(most)),
+            Self::AtLeast(least) => write!(f, "at least {}", exact(least)),
+            Self::Between(least, most) => write!(f, "from {} to {}", exact(least), exact(most)),
+            Self::NearRelative(value, share) => {
+                write!(f, "{} within {} %", exact(value), exact(rounded(100.0 * share)))
+            }
+            Self::NearAbsolute(value, distance) => write!(f, "{} within ±{}", exact(value), exact(distance)),
         }
     }
 }
 
-/// Six digits, without the zeros at the end.
+/// All digits of a number; with a power of ten where there would be a row of zeros.
+fn exact(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{value:e}") } else { value.to_string() }
+}
+
+/// Six digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
@@ -80,8 +92,8 @@ fn rounded(value: f64) -> f64 {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
-    document: Option<String>,
-    measure: String,
+    document: Option<Spanned<String>>,
+    measure: Spanned<String>,
     at_most: Option<f64>,
     at_least: Option<f64>,
     equals: Option<f64>,
@@ -135,7 +147,7 @@ pub fn parse(name: &str, text: &str) -> Result<Vec<Claim>> {
     let (mut claims, mut faults) = (Vec::new(), Vec::new());
     for written in document.claims {
         let span = written.span();
-        match understand(written.into_inner()) {
+        match understand(written.into_inner(), &source) {
             Ok(claim) => claims.push(claim),
             Err(fault) => faults.push(fault.at(location(&source, span, "this claim"))),
         }
@@ -148,8 +160,23 @@ fn location(source: &Arc<Source>, span: Range<usize>, label: &str) -> Location {
 }
 
 /// Makes one bound of the keys that were written.
-fn understand(written: Written) -> std::result::Result<Claim, Fault> {
-    let name = &written.measure;
+fn understand(written: Written, source: &Arc<Source>) -> std::result::Result<Claim, Fault> {
+    let bound = bound(&written)?;
+    let measure_location = location(source, written.measure.span(), "this measure");
+    let document_location = written.document.as_ref().map(|name| location(source, name.span(), "this document"));
+    Ok(Claim {
+        document: written.document.map(Spanned::into_inner),
+        measure: written.measure.into_inner(),
+        bound,
+        source: written.source,
+        reason: written.reason,
+        document_location: document_location.unwrap_or_else(|| measure_location.clone()),
+        measure_location,
+    })
+}
+
+fn bound(written: &Written) -> std::result::Result<Bound, Fault> {
+    let name = written.measure.get_ref();
     let numbers = [written.at_most, written.at_least, written.equals, written.within, written.within_absolute];
     if numbers.iter().flatten().any(|number| !number.is_finite()) {
         return Err(Fault::new(format!("the claim about {name} has a bound that is not finite")).help("give a number"));
@@ -160,6 +187,11 @@ fn understand(written: Written) -> std::result::Result<Claim, Fault> {
         [Some(most), Some(least), None, None, None] if least <= most => Bound::Between(least, most),
         [None, None, Some(value), Some(share), None] if share >= 0.0 => Bound::NearRelative(value, share),
         [None, None, Some(value), None, Some(distance)] if distance >= 0.0 => Bound::NearAbsolute(value, distance),
+        [None, None, Some(value), None, None] => {
+            let fault = Fault::new(format!("the claim about {name} equals {value} without a tolerance"));
+            let help = "add within (a share of the value) or within_absolute (in the unit of the measure), and reason";
+            return Err(fault.help(help));
+        }
         _ => {
             let help = "give at_most, at_least or both in order, or equals with one tolerance that is not negative: \
                         within (a share) or within_absolute";
@@ -170,13 +202,28 @@ fn understand(written: Written) -> std::result::Result<Claim, Fault> {
         let fault = Fault::new(format!("the claim about {name} has a tolerance without a reason"));
         return Err(fault.help("add reason = \"why this tolerance\""));
     }
-    Ok(Claim {
-        document: written.document,
-        measure: written.measure,
-        bound,
-        source: written.source,
-        reason: written.reason,
-    })
+    Ok(bound)
+}
+
+/// What became of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The value lies where it has to.
+    Holds,
+    /// It does not.
+    Fails,
+    /// There is no such value.
+    NotMeasured,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Holds => "holds",
+            Self::Fails => "fails",
+            Self::NotMeasured => "not measured",
+        })
+    }
 }
 
 /// Whether one claim holds.
@@ -185,32 +232,49 @@ pub struct ClaimResult {
     /// The claim.
     pub claim: Claim,
     /// What was measured; none when the run has no such measure.
-    pub found: Option<f64>,
+    pub found: Option<Measure>,
 }
 
 impl ClaimResult {
+    /// What became of the claim.
+    pub fn verdict(&self) -> Verdict {
+        match &self.found {
+            None => Verdict::NotMeasured,
+            Some(found) if self.claim.bound.holds(found.value) => Verdict::Holds,
+            Some(_) => Verdict::Fails,
+        }
+    }
+
     /// Whether the claim holds. One about a measure that is not there does not.
     pub fn holds(&self) -> bool {
-        self.found.is_some_and(|found| self.claim.bound.holds(found))
+        self.verdict() == Verdict::Holds
+    }
+
+    /// What was measured, with its unit; `-` for nothing.
+    pub fn found_text(&self) -> String {
+        match &self.found {
+            None => "-".to_owned(),
+            Some(Measure { value, unit, .. }) if unit == "1" => exact(rounded(*value)),
+            Some(Measure { value, unit, .. }) => format!("{} {unit}", exact(rounded(*value))),
+        }
     }
 }
 
-/// One line: `ok      axial_rms = 0.031 (at most 0.049; Mills et al. 2004)`.
+/// In a sentence: `arrived = 5.9 nM (at least 6)`.
 impl fmt::Display for ClaimResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Claim { measure, bound, source, .. } = &self.claim;
-        let verdict = if self.holds() { "ok    " } else { "FAILED" };
-        match self.found {
-            Some(found) => write!(f, "{verdict}  {measure} = {} ({bound}; {source})", rounded(found)),
-            None => write!(f, "{verdict}  {measure} is not measured by this experiment ({bound}; {source})"),
+        let Claim { measure, bound, .. } = &self.claim;
+        match self.verdict() {
+            Verdict::NotMeasured => write!(f, "{measure} is not measured ({bound})"),
+            _ => write!(f, "{measure} = {} ({bound})", self.found_text()),
         }
     }
 }
 
 /// Holds claims against the measures of a run.
-pub fn check_claims(claims: &[Claim], measures: &BTreeMap<String, f64>) -> Vec<ClaimResult> {
-    let result = |claim: &Claim| ClaimResult { claim: claim.clone(), found: measures.get(&claim.measure).copied() };
-    claims.iter().map(result).collect()
+pub fn check_claims(claims: &[Claim], measures: &[Measure]) -> Vec<ClaimResult> {
+    let found = |claim: &Claim| measures.iter().find(|measure| measure.name == claim.measure).cloned();
+    claims.iter().map(|claim| ClaimResult { claim: claim.clone(), found: found(claim) }).collect()
 }
 
 #[cfg(test)]

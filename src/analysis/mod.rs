@@ -33,6 +33,5 @@ use claims::{Claim, ClaimResult};
 /// # Errors
 /// A damaged file.
 pub fn check_result(file: &ResultFile, claims: &[Claim]) -> Result<Vec<ClaimResult>> {
-    let measures = file.summary()?.into_iter().map(|measure| (measure.name, measure.value)).collect();
-    Ok(claims::check_claims(claims, &measures))
+    Ok(claims::check_claims(claims, &file.summary()?))
 }

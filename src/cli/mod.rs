@@ -1,7 +1,9 @@
 //! The command line: one file per command. Names and exit codes are a contract.
 
 pub mod check;
+pub mod claims;
 mod crash;
+pub mod demo;
 pub mod eml;
 pub mod export;
 pub mod files;
@@ -9,6 +11,7 @@ pub mod frames;
 pub mod info;
 pub mod measure;
 pub mod memory;
+pub mod new;
 pub mod own_fault;
 pub mod plot;
 pub mod progress;
@@ -18,8 +21,10 @@ pub mod resume;
 pub mod run;
 pub mod run_one;
 pub mod schema;
+pub mod shipped;
 pub mod sweep;
 pub mod track_file;
+pub mod verify;
 
 use crate::error::{Paint, Result, render, say};
 use clap::{Parser, Subcommand};
@@ -38,12 +43,18 @@ pub struct Arguments {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Lists the experiments that ship, or copies one and runs it.
+    Demo(demo::DemoArgs),
+    /// Writes an experiment document to begin with.
+    New(new::NewArgs),
     /// Runs an experiment.
     Run(run::RunArgs),
     /// Goes on with a run that was stopped or killed.
     Resume(resume::ResumeArgs),
     /// Checks experiment documents.
     Check(check::CheckArgs),
+    /// Holds experiments, or results, to what is claimed of them.
+    Verify(verify::VerifyArgs),
     /// Describes a result file.
     Info(info::InfoArgs),
     /// Makes pictures and movies of a result file.
@@ -66,9 +77,12 @@ impl Command {
     /// Its name on the command line, and how it tells what it did.
     fn manner(&self) -> (&'static str, Form) {
         let (name, json) = match self {
+            Self::Demo(args) => ("demo", args.how.json),
+            Self::New(args) => ("new", args.json),
             Self::Run(args) => ("run", args.how.json),
             Self::Resume(args) => ("resume", args.how.json),
             Self::Check(args) => ("check", args.json),
+            Self::Verify(args) => ("verify", args.json),
             Self::Info(args) => ("info", args.json),
             Self::Render(args) => ("render", args.json),
             Self::Plot(args) => ("plot", args.json),
@@ -86,11 +100,18 @@ impl Command {
 pub fn main(arguments: Arguments) -> i32 {
     let (name, form) = arguments.command.manner();
     let work = || act(arguments.command, name, form).and_then(|report| report.print(name, form));
-    let Err(error) = own_fault::guarded(work).and_then(|outcome| outcome) else { return 0 };
-    if form == Form::Json {
-        // First of all, so that scripts get their object whatever becomes of the words; these tell the same.
-        let _ = report::print_failure(name, &error);
-    }
+    let error = match own_fault::guarded(work).and_then(|outcome| outcome) {
+        Ok(None) => return 0,
+        // Its object is printed with the report.
+        Ok(Some(error)) => error,
+        Err(error) => {
+            if form == Form::Json {
+                // First of all, so that scripts get their object whatever becomes of the words; these tell the same.
+                let _ = report::print_failure(name, &error);
+            }
+            error
+        }
+    };
     let paint = if std::io::stderr().is_terminal() { Paint::Coloured } else { Paint::Plain };
     let words = own_fault::guarded(|| render(&error, paint)).unwrap_or_else(|_| format!("{error}\n"));
     say(words.strip_suffix('\n').unwrap_or(&words));
@@ -99,10 +120,13 @@ pub fn main(arguments: Arguments) -> i32 {
 
 fn act(command: Command, name: &str, form: Form) -> Result<Report> {
     match command {
+        Command::Demo(args) => demo::run(&args),
+        Command::New(args) => new::run(&args),
         Command::Run(args) if args.plan.is_some() => run_one::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => resume::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Verify(args) => verify::run(&args),
         Command::Info(args) => crash::told_as_damage(name, form, &args.result, || info::run(&args)),
         Command::Render(args) => crash::told_as_damage(name, form, &args.result, || render::run(&args)),
         Command::Plot(args) => crash::told_as_damage(name, form, &args.result, || plot::run(&args)),

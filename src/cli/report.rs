@@ -16,12 +16,14 @@ pub enum Form {
 }
 
 /// What a command did.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Default)]
 pub struct Report {
     /// Lines for people, each ended.
     pub words: String,
     /// What the JSON object says besides `command` and `ok`.
     pub facts: Map<String, Value>,
+    /// What failed though the command did its work: it is told after the words, and decides the exit status.
+    pub failure: Option<Error>,
 }
 
 impl Report {
@@ -37,15 +39,22 @@ impl Report {
         self
     }
 
-    /// Prints the report of a command to standard output.
+    /// Prints the report of a command to standard output; what failed is left to be told in words.
     ///
     /// # Errors
     /// [`Error::Machine`] if standard output refuses; a reader that has gone away (`| head`) is no error.
-    pub fn print(self, command: &str, form: Form) -> Result<()> {
-        match form {
-            Form::Words => print(&self.words),
-            Form::Json => print_object(command, true, self.facts),
+    pub fn print(self, command: &str, form: Form) -> Result<Option<Error>> {
+        let Self { words, facts, failure } = self;
+        match (form, &failure) {
+            (Form::Words, _) => print(&words)?,
+            (Form::Json, None) => print(&object_text(command, true, facts))?,
+            (Form::Json, Some(error)) => {
+                let mut all = failure_facts(error);
+                all.extend(facts);
+                print(&object_text(command, false, all))?;
+            }
         }
+        Ok(failure)
     }
 }
 
@@ -59,6 +68,10 @@ pub fn print_failure(command: &str, error: &Error) -> Result<()> {
 
 /// The same as a text.
 pub fn failure_text(command: &str, error: &Error) -> String {
+    object_text(command, false, failure_facts(error))
+}
+
+fn failure_facts(error: &Error) -> Map<String, Value> {
     let mut facts = Map::new();
     facts.insert("exit".to_owned(), error.exit_code().into());
     let faults = match error {
@@ -80,7 +93,7 @@ pub fn failure_text(command: &str, error: &Error) -> String {
         }
     };
     facts.insert("faults".to_owned(), faults.into());
-    object_text(command, false, facts)
+    facts
 }
 
 /// Counts lines and columns, from the last location on: faults come in the order of the text, and a hundred thousand of them in one
@@ -120,10 +133,6 @@ fn fault_object(fault: &Fault, counter: &mut Counter) -> Value {
         object["column"] = column.into();
     }
     object
-}
-
-fn print_object(command: &str, ok: bool, facts: Map<String, Value>) -> Result<()> {
-    print(&object_text(command, ok, facts))
 }
 
 fn object_text(command: &str, ok: bool, facts: Map<String, Value>) -> String {

@@ -37,7 +37,7 @@ pub fn run(args: &ResumeArgs) -> Result<Report> {
         return Ok(Report { words, ..Report::of_files(&args.result, &[]) });
     }
     let (threads, cancel) = (args.how.threads, cancelled_by_signals());
-    let outcome = crate::run::resume(&args.result, threads, &cancel, &mut *reporter(&args.how))?;
+    let outcome = crate::run::resume(&args.result, threads, &cancel, &mut *reporter(args.how.quiet))?;
     tell(&args.result, &outcome, &args.how)
 }
 

@@ -1,12 +1,13 @@
 //! `pseudopod run`: runs an experiment and leaves its result, picture and charts.
 
+use super::claims::Claims;
 use super::files::{Named, refuse_existing};
 use super::memory;
 use super::progress::Progress;
 use super::report::{Report, path_text, paths};
 use crate::error::{Error, Fault, Result, say};
 use crate::experiment::Document;
-use crate::output::Overwrite;
+use crate::output::{Overwrite, ResultFile};
 use crate::run::{self, Outcome, Quiet, RunOptions};
 use crate::simulation::CancelToken;
 use std::fmt::Write as _;
@@ -93,15 +94,20 @@ pub fn run(args: &RunArgs) -> Result<Report> {
     }
     let options =
         RunOptions { result: result.clone(), overwrite, threads: args.how.threads, cancel: cancelled_by_signals() };
-    let outcome = run::run(&document, &options, &mut *reporter(&args.how)).inspect_err(|_| {
+    let outcome = run::run(&document, &options, &mut *reporter(args.how.quiet)).inspect_err(|_| {
         // A run that did not begin leaves no folder behind; one that holds something is not removed.
         folder.map(std::fs::remove_dir);
     })?;
     tell(&result, &outcome, &args.how)
 }
 
-/// results/<folder>-<document>.vtkhdf, or results/<folder>.vtkhdf for a document named experiment.toml.
+/// The result of a document for which no other file is named.
 fn default_result(experiment: &Path) -> PathBuf {
+    Path::new("results").join(default_name(experiment))
+}
+
+/// The name of the result of a document: <folder>-<document>.vtkhdf, or <folder>.vtkhdf for a document named experiment.toml.
+pub fn default_name(experiment: &Path) -> String {
     let stem = experiment.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let folder = experiment.parent().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
     let name = match folder {
@@ -109,10 +115,14 @@ fn default_result(experiment: &Path) -> PathBuf {
         Some(folder) => format!("{folder}-{stem}"),
         None => stem,
     };
-    Path::new("results").join(format!("{name}.vtkhdf"))
+    format!("{name}.vtkhdf")
 }
 
-fn make_folder(folder: &Path) -> Result<()> {
+/// Makes a folder for results, and those around it.
+///
+/// # Errors
+/// [`Error::Machine`] when the system refuses.
+pub fn make_folder(folder: &Path) -> Result<()> {
     std::fs::create_dir_all(folder).map_err(|error| Error::Machine {
         message: format!("the folder {} could not be made: {error}", folder.display()),
         help: "name a result file in a folder you may write to with -o".into(),
@@ -135,9 +145,9 @@ pub fn cancelled_by_signals() -> CancelToken {
     token
 }
 
-/// The listener that the options ask for.
-pub fn reporter(how: &How) -> Box<dyn run::Report> {
-    if how.quiet { Box::new(Quiet) } else { Box::new(Progress::default()) }
+/// Who listens to a run: nobody where it shall be quiet.
+pub fn reporter(quiet: bool) -> Box<dyn run::Report> {
+    if quiet { Box::new(Quiet) } else { Box::new(Progress::default()) }
 }
 
 /// Makes the pictures and says what was done.
@@ -146,7 +156,9 @@ pub fn reporter(how: &How) -> Box<dyn run::Report> {
 /// As [`crate::picture::make_defaults`].
 pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<Report> {
     let files = if how.no_pictures { Vec::new() } else { crate::picture::make_defaults(result)? };
-    let summary = crate::output::ResultFile::open(result)?.summary()?;
+    let file = ResultFile::open(result)?;
+    let summary = file.summary()?;
+    let claims = Claims::of(&file, &summary);
     let mut words = String::new();
     // Writing to a text cannot fail.
     if !how.quiet {
@@ -163,9 +175,11 @@ pub fn tell(result: &Path, outcome: &Outcome, how: &How) -> Result<Report> {
             let line = format!("{} = {value} {unit}  {}", measure.name, measure.description);
             let _ = writeln!(words, "{}", line.trim_end());
         }
+        claims.add_words(&mut words);
     }
     let measures = summary.into_iter().map(|m| (m.name, serde_json::json!({ "value": m.value, "unit": m.unit })));
     let report = Report { words, ..Report::default() }.fact("result", path_text(result)).fact("files", paths(&files));
+    let report = claims.add_facts(report);
     Ok(report
         .fact("steps", outcome.steps)
         .fact("frames", outcome.frames)

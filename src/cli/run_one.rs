@@ -28,7 +28,7 @@ pub fn run(args: &RunArgs) -> Result<Report> {
         complete: if args.skip_complete { Complete::Skip } else { Complete::Refuse },
         memory: memory::allowed(args.memory.as_deref())?,
     };
-    let done = run_one(&plan, run, &options, &mut *reporter(&args.how))?;
+    let done = run_one(&plan, run, &options, &mut *reporter(args.how.quiet))?;
     let result = Files::of(&plan, run).result;
     match done {
         Done::Skipped => {

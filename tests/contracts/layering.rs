@@ -47,12 +47,15 @@ const TABLE: &[(&str, &[&str])] = &[
     // The door for programs: it records frames, and writes none.
     ("simulation", &["experiment", "sim", "output", "cell", "mechanics", "equations", "contact", "geometry"]),
     ("run", &["simulation", "experiment", "sim", "output", "analysis"]),
+    // Claims are held against the measures of a run.
+    ("verify", &["run", "experiment", "output", "analysis"]),
     // Studies make runs, and charts of what these measured.
     ("study", &["picture", "run", "simulation", "experiment", "output", "analysis"]),
     (
         "cli",
         &[
             "study",
+            "verify",
             "run",
             "simulation",
             "experiment",

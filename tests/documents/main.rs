@@ -6,6 +6,7 @@ mod kept_state;
 mod meaning;
 mod population;
 mod random_scenes;
+mod shipped;
 mod start;
 mod studies;
 

@@ -1,35 +1,20 @@
 //! Every experiment that ships runs, and keeps what its `expected.toml` claims.
 
-use pseudopod::analysis::claims;
-use pseudopod::experiment::Document;
-use pseudopod::output::ResultFile;
-use pseudopod::run::{Quiet, RunOptions, run};
-use std::collections::BTreeMap;
+use pseudopod::analysis::claims::ClaimResult;
+use pseudopod::run::{Quiet, RunOptions};
+use pseudopod::verify::{subjects, table};
 use std::path::Path;
 
 /// Runs a document and checks the claims beside it; prints each with what was found.
 fn experiment_keeps_its_word(folder: &str, document: &str) {
     let experiments = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments");
-    let (name, folder) = (document, experiments.join(folder));
-    let experiment = folder.join(document);
-    let document = Document::read(&experiment, &[]).unwrap();
+    let experiment = experiments.join(folder).join(document);
+    let subject = subjects(&experiment, None).unwrap().remove(0);
     let scratch = tempfile::tempdir().unwrap();
     let result = scratch.path().join("result.h5");
-    let options = RunOptions::new(&result);
-    run(&document, &options, &mut Quiet).unwrap();
-    let measures: BTreeMap<String, f64> = ResultFile::open(&result)
-        .unwrap()
-        .summary()
-        .unwrap()
-        .into_iter()
-        .map(|measure| (measure.name, measure.value))
-        .collect();
-    let mut claims = claims::read(&folder.join("expected.toml")).unwrap();
-    claims.retain(|claim| claim.is_about(name));
-    assert!(!claims.is_empty());
-    let results = claims::check_claims(&claims, &measures);
-    results.iter().for_each(|result| println!("{result}"));
-    assert!(results.iter().all(claims::ClaimResult::holds), "a claim does not hold; see above");
+    let results = subject.verify(&RunOptions::new(&result), &mut Quiet).unwrap();
+    println!("{}", table(&results));
+    assert!(results.iter().all(ClaimResult::holds), "a claim does not hold; see above");
     let made = pseudopod::picture::make_defaults(&result).unwrap();
     assert!(made.iter().all(|path| path.metadata().is_ok_and(|file| file.len() > 1000)), "{made:?}");
     for (_, made, shown) in SHOWN.iter().filter(|(about, ..)| experiments.join(about) == experiment) {

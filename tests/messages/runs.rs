@@ -1,6 +1,6 @@
 //! What the program says on the terminal when something goes wrong: transcripts of commands beside their inputs.
 //!
-//! Every `.txt` file of `tests/messages/runs`, `tests/messages/equations`, `tests/messages/tracks` and `tests/messages/sweeps` is a transcript. It begins with a comment
+//! Every `.txt` file of `tests/messages/runs`, `tests/messages/equations`, `tests/messages/tracks`, `tests/messages/sweeps` and `tests/messages/verify` is a transcript. It begins with a comment
 //! (`# …`) that says what must hold; each line `$ …` is a command of the shell, run in a folder of its own that holds the
 //! documents of its folder (`*.toml`, `*.eml`, `*.xml`, `*.csv`) and, for runs, the meshes of `tests/messages/meshes`; below it
 //! stand what the command printed on standard output, then on standard error, and its exit status if that is not 0.
@@ -13,6 +13,7 @@ const RUNS: &str = "tests/messages/runs";
 const EQUATIONS: &str = "tests/messages/equations";
 const TRACKS: &str = "tests/messages/tracks";
 const SWEEPS: &str = "tests/messages/sweeps";
+const VERIFY: &str = "tests/messages/verify";
 
 /// Files of a folder that end in `ending`, in order.
 fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
@@ -96,6 +97,12 @@ fn every_transcript_of_studies_comes_out_as_it_is_kept() {
     compare(SWEEPS, 2);
 }
 
+#[test]
+fn every_transcript_of_claims_and_beginnings_comes_out_as_it_is_kept() {
+    let _turn = take_turn();
+    compare(VERIFY, 4);
+}
+
 /// Plays the transcripts of a folder, of which there are some at least.
 fn compare(folder: &str, least: usize) {
     let transcripts = files(folder, "txt");
@@ -118,7 +125,7 @@ fn compare(folder: &str, least: usize) {
 #[test]
 fn every_refusal_says_what_to_do_and_ends_as_promised() {
     let _turn = take_turn();
-    for path in [RUNS, EQUATIONS, TRACKS, SWEEPS].into_iter().flat_map(|folder| files(folder, "txt")) {
+    for path in [RUNS, EQUATIONS, TRACKS, SWEEPS, VERIFY].into_iter().flat_map(|folder| files(folder, "txt")) {
         let text = std::fs::read_to_string(&path).unwrap();
         for part in text.split("\n$ ").skip(1).filter(|part| part.starts_with("pseudopod ")) {
             let Some((_, code)) = part.trim_end().rsplit_once("exit ") else { continue };
