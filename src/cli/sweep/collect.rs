@@ -56,9 +56,11 @@ pub fn run(args: &CollectArgs) -> Result<Report> {
 
 fn write_tables(collected: &Collected, folder: &Path) -> Result<Vec<PathBuf>> {
     let columns = collected.columns();
-    let mut tables = vec![("summary.csv", csv_text(&columns).into_bytes())];
-    #[cfg(feature = "parquet")]
-    tables.push(("summary.parquet", crate::study::table::parquet_bytes(&columns)?));
+    let tables = [
+        ("summary.csv", csv_text(&columns).into_bytes()),
+        #[cfg(feature = "parquet")]
+        ("summary.parquet", crate::study::table::parquet_bytes(&columns)?),
+    ];
     let mut written = Vec::new();
     for (name, bytes) in tables {
         let path = folder.join(name);
