@@ -10,6 +10,8 @@ mod normals;
 pub use choices::Choices;
 pub use normals::Normals;
 
+use crate::elementary::{FNV_START, fnv1a};
+
 use std::convert::Infallible;
 
 use rand::TryRng;
@@ -83,7 +85,7 @@ fn named_key(seed: u64, purpose: Purpose, name: &[&str]) -> [u32; 2] {
 /// FNV-1a in 64 bits of the parts of a name. 0xff, which never occurs in UTF-8, parts them.
 fn label(name: &[&str]) -> u64 {
     let bytes = name.iter().flat_map(|part| part.bytes().chain([0xff]));
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    fnv1a(FNV_START, bytes)
 }
 
 /// The numbers of one purpose and one cell, addressed by draw.

@@ -114,15 +114,15 @@ pub fn copy(experiment: &Shipped, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A line for each experiment, with what it shows below it.
+/// A line for each experiment; what it shows is told to scripts, and by its document.
 fn list(all: &[Shipped]) -> Report {
     let width = all.iter().map(|experiment| experiment.folder.len()).max().unwrap_or(0);
     let mut words = String::new();
     for experiment in all {
-        let Shipped { folder, title, description, seconds, .. } = experiment;
+        let Shipped { folder, title, seconds, .. } = experiment;
         let takes = seconds.map(about).unwrap_or_default();
         // Writing to a text cannot fail.
-        let _ = writeln!(words, "{folder:width$}  {takes:>6}  {title}. {description}");
+        let _ = writeln!(words, "{folder:width$}  {takes:>6}  {title}");
     }
     words.push_str("\npseudopod demo NAME copies one into the folder NAME and runs it; times are of one core\n");
     Report { words, ..Report::default() }.fact("experiments", all.iter().map(object).collect::<Vec<_>>())

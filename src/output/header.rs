@@ -4,6 +4,8 @@ use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::{FNV_START, fnv1a};
+
 /// What identifies a run. It is written once, when the file is made, and is the same on every machine but for
 /// [`Header::started`].
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -51,14 +53,9 @@ impl Header {
         let seed = self.seed.to_le_bytes();
         let texts = std::iter::once(self.experiment.as_bytes()).chain(self.sets.iter().map(|set| set.as_bytes()));
         let texts = texts.chain(self.equations.iter().flat_map(|(path, text)| [path.as_bytes(), text.as_bytes()]));
-        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-        for part in texts.chain([seed.as_slice()]) {
-            // 0xff never occurs in UTF-8, so it parts the texts without doubt.
-            for byte in part.iter().chain(&[0xff]) {
-                hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-            }
-        }
-        hash
+        // 0xff never occurs in UTF-8, so it parts the texts without doubt.
+        let parted = texts.chain([seed.as_slice()]).flat_map(|part| part.iter().copied().chain([0xff]));
+        fnv1a(FNV_START, parted)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::fmt::{Debug, Write};
 
+use crate::elementary::{FNV_START, fnv1a};
 use crate::sim::contact::ContactModel;
 use crate::sim::{Chemistry, Kind, Model};
 
@@ -10,9 +11,7 @@ struct Fnv(u64);
 
 impl Fnv {
     fn bytes(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
+        self.0 = fnv1a(self.0, bytes.iter().copied());
     }
 
     /// Takes in a value as `Debug` writes it, which tells numbers of all bits apart. 0xff, which never occurs in UTF-8, parts
@@ -35,7 +34,7 @@ impl Write for Fnv {
 pub fn fingerprint(model: &Model) -> u64 {
     let Model { seed, kinds, planes, contact, chemistry, integrator, until, kinks: _, changes, keeps_tractions } =
         model;
-    let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
+    let mut hash = Fnv(FNV_START);
     hash.value(&(seed, integrator, until, planes, changes, keeps_tractions));
     kinds.iter().for_each(|kind| add_kind(&mut hash, kind));
     if let Some(contact) = contact {

@@ -131,7 +131,9 @@ fn add(faults: &mut Vec<Fault>, error: Error) {
                 faults.push(fault);
             }
         }),
-        other => faults.push(Fault::new(other.to_string()).help("see the message")),
+        other => faults.push(Fault::new(other.to_string()).help(
+            "leave these values out, or try them by themselves: pseudopod run, with the values as --set KEY=VALUE",
+        )),
     }
 }
 

@@ -4,7 +4,7 @@
 //! one, and what a kill leaves behind is found by whoever makes the run next.
 
 use super::facts::Run;
-use super::paths::fingerprint;
+use super::paths::{fingerprint, refused};
 use super::plan::Plan;
 use crate::error::{Error, Fault, Result, short};
 use crate::experiment::Document;
@@ -212,11 +212,4 @@ fn move_out(files: &Files) -> std::io::Result<()> {
     }
     std::fs::rename(&files.partial, &files.result)?;
     std::fs::remove_dir_all(&files.part)
-}
-
-fn refused(path: &Path, error: &std::io::Error) -> Error {
-    Error::Machine {
-        message: format!("{} could not be written: {error}", path.display()),
-        help: "make the folder of the study writable, or free some space".into(),
-    }
 }

@@ -1,13 +1,20 @@
 //! Paths and fingerprints of the files that a study reads.
 
+use crate::elementary::{FNV_START, fnv1a};
+use crate::error::Error;
 use std::path::{Component, Path, PathBuf};
 
 /// A number by which contents are told apart: FNV-1a in 64 bits, in hexadecimal.
 pub fn fingerprint(bytes: &[u8]) -> String {
-    let hash = bytes
-        .iter()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3));
-    format!("{hash:016x}")
+    format!("{:016x}", fnv1a(FNV_START, bytes.iter().copied()))
+}
+
+/// That the machine refuses to write a file or a folder of a study.
+pub fn refused(path: &Path, error: &std::io::Error) -> Error {
+    Error::Machine {
+        message: format!("{} could not be written: {error}", path.display()),
+        help: "make the folder of the study writable, or free some space".into(),
+    }
 }
 
 /// A path from the root, without links where it leads somewhere.

@@ -3,7 +3,7 @@
 use super::design::{Points, run_seed};
 use super::document::StudyDocument;
 use super::facts::{Facts, Measured, Run};
-use super::paths::{absolute, fingerprint, relative, tidy};
+use super::paths::{absolute, fingerprint, refused, relative, tidy};
 use super::runs_table::{parse, table};
 use crate::error::{Error, Fault, Result};
 use crate::experiment::Document;
@@ -94,17 +94,13 @@ impl Plan {
             }
             return Ok(());
         }
-        let refused = |path: &Path, error: std::io::Error| Error::Machine {
-            message: format!("{} could not be written: {error}", path.display()),
-            help: "name a folder that you may write to with -o".into(),
-        };
         let runs = self.folder.join("runs");
-        std::fs::create_dir_all(&runs).map_err(|error| refused(&runs, error))?;
+        std::fs::create_dir_all(&runs).map_err(|error| refused(&runs, &error))?;
         let facts = format!("{:#}\n", serde_json::to_value(&self.facts).unwrap_or_default());
         // The plan comes last: without it there is no study in the folder.
         for (name, text) in [(RUNS_FILE, table(&self.facts.parameters, &self.runs)), (PLAN_FILE, facts)] {
             let path = self.folder.join(name);
-            std::fs::write(&path, text).map_err(|error| refused(&path, error))?;
+            std::fs::write(&path, text).map_err(|error| refused(&path, &error))?;
         }
         Ok(())
     }

@@ -1,7 +1,8 @@
 //! A workflow for Snakemake that makes the runs of a plan, each by itself, and collects them.
 
+use super::paths::refused;
 use super::plan::Plan;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use std::path::PathBuf;
 
 /// The workflow; the program can be another one, by `--config pseudopod=PATH`.
@@ -55,15 +56,12 @@ rule run:
 /// Writes the workflow of a plan beside it; one that is there is replaced.
 ///
 /// # Errors
-/// [`Error::Machine`] when the disk refuses.
+/// [`Machine`](crate::error::Error::Machine) when the disk refuses.
 pub fn write(plan: &Plan) -> Result<PathBuf> {
     let path = plan.folder.join("Snakefile");
     let outputs =
         if cfg!(feature = "parquet") { "\"summary.csv\",\n        \"summary.parquet\"," } else { "\"summary.csv\"," };
     let text = SNAKEFILE.replace("COUNT", &plan.runs.len().to_string()).replace("OUTPUTS", outputs);
-    std::fs::write(&path, text).map_err(|error| Error::Machine {
-        message: format!("{} could not be written: {error}", path.display()),
-        help: "name a folder that you may write to with -o".into(),
-    })?;
+    std::fs::write(&path, text).map_err(|error| refused(&path, &error))?;
     Ok(path)
 }

@@ -6,6 +6,7 @@ mod documents;
 mod eml;
 mod experiments;
 mod fields;
+mod kept;
 mod meshes;
 mod runs;
 mod sbml;

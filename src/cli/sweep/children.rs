@@ -19,7 +19,7 @@ pub struct Running {
 pub fn start(plan: &Plan, run: &Run, threads: usize) -> Result<Running> {
     let log = Files::of(plan, run).log;
     let opened = File::create(&log).and_then(|file| Ok((file.try_clone()?, file)));
-    let (out, err) = opened.map_err(|error| super::plan::refused(&log, &error))?;
+    let (out, err) = opened.map_err(|error| crate::study::refused(&log, &error))?;
     let table = plan.folder.join(crate::study::RUNS_FILE);
     let program = std::env::current_exe().map_err(|error| not_started(&error))?;
     let mut command = Command::new(program);

@@ -1,11 +1,10 @@
 //! `pseudopod sweep collect`: what the runs of a study measured, as tables and charts.
 
-use super::plan::refused;
 use crate::cli::report::{Report, path_text, paths};
-use crate::error::{Error, Result, say};
+use crate::error::{Result, say};
 use crate::picture::save_chart;
 use crate::study::table::csv_text;
-use crate::study::{Collected, Plan, Status, charts, collect};
+use crate::study::{Collected, Plan, Status, charts, collect, refused};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -64,7 +63,7 @@ fn write_tables(collected: &Collected, folder: &Path) -> Result<Vec<PathBuf>> {
     let mut written = Vec::new();
     for (name, bytes) in tables {
         let path = folder.join(name);
-        std::fs::write(&path, bytes).map_err(|error| -> Error { refused(&path, &error) })?;
+        std::fs::write(&path, bytes).map_err(|error| refused(&path, &error))?;
         written.push(path);
     }
     Ok(written)

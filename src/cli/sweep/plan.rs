@@ -2,7 +2,7 @@
 
 use crate::cli::memory;
 use crate::cli::report::{Report, path_text, paths};
-use crate::error::{Error, Result, say};
+use crate::error::{Result, say};
 use crate::study::{
     Design, Looked, PLAN_FILE, Plan, Points, RUNS_FILE, Replaces, StudyDocument, look_over, points, probe, snakemake,
     told,
@@ -109,12 +109,4 @@ fn told_points(study: &StudyDocument, points: &Points, looked: &Looked) -> Strin
         );
     }
     words
-}
-
-/// That the machine refuses to write a file.
-pub(super) fn refused(path: &std::path::Path, error: &std::io::Error) -> Error {
-    Error::Machine {
-        message: format!("{} could not be written: {error}", path.display()),
-        help: "make the folder of the study writable, or free some space".into(),
-    }
 }

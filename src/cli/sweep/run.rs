@@ -1,13 +1,12 @@
 //! `pseudopod sweep run`: makes the runs of a plan.
 
 use super::children::{Ended, Running, start};
-use super::plan::refused;
 use super::runs_told::RunsTold;
 use crate::cli::report::{Report, path_text};
 use crate::cli::run::cancelled_by_signals;
 use crate::error::{Error, Fault, Result};
 use crate::simulation::CancelToken;
-use crate::study::{Collected, Files, PLAN_FILE, Plan, Run, Status, collect};
+use crate::study::{Collected, Files, PLAN_FILE, Plan, Run, Status, collect, refused};
 use std::collections::VecDeque;
 use std::fs::{File, TryLockError};
 use std::path::PathBuf;

@@ -110,7 +110,7 @@ fn most(a: f64, b: f64) -> f64 {
 }
 
 /// The least opening, µm, that a facet can have to a point with the unit normal n: that of the ball that just touches the sphere
-/// around the facet, and of the one that just touches its plane, the greater of the two.
+/// around the facet, and of the one that just touches its plane, the greater of the two; infinity where all of it lies below the surface.
 #[inline(always)]
 fn least_opening(x: V, n: V, Seen { middle, normal, radius }: Seen) -> f64 {
     let from = minus(x, middle);
@@ -130,7 +130,8 @@ fn least_opening(x: V, n: V, Seen { middle, normal, radius }: Seen) -> f64 {
     SURELY * most(to_sphere, to_plane)
 }
 
-/// The least opening, µm, that a facet can have to any point of another one, as seen from the side of the other to which n looks.
+/// The least opening, µm, that a facet can have to any point of another one, as seen from the side of the other to which n looks: the greatest
+/// of what [`least_opening`] has for all of these points, and what it takes to reach beyond the sides of the other.
 #[inline(always)]
 fn least_opening_between(of: &Looking, n: V, Seen { middle, normal, radius }: Seen) -> f64 {
     let own = of.facet;

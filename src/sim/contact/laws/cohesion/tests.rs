@@ -112,6 +112,29 @@ fn what_attracts_a_point_does_not_depend_on_what_did_before() {
 }
 
 #[test]
+fn of_facets_that_attract_a_point_alike_the_same_counts_whatever_is_guessed_first() {
+    // Meshes that are the same on both sides of the gaps: many points have several facets as near, by sides and corners that these share.
+    let ball = |by: Vec3| (moved(icosphere(3.0, 1), by), Sides::Outer);
+    let lid = |height: f64| (moved(sheet(4.0, 4.0, 4, 4), height * Vec3::z()), Sides::Both);
+    let surfaces = [ball(Vec3::zeros()), ball(5.9 * Vec3::x()), ball(5.9 * Vec3::y()), lid(3.2), lid(3.5)];
+    let (table, scene, positions) = scene(&surfaces, vec![], GLUE);
+    let anew = found(&table, &scene, &positions);
+    assert!(anew.patches.iter().flatten().count() > 100);
+    let mut guessing = CohesionScratch::default();
+    table.find(&scene, &Controls::default(), NONE, &positions, &mut guessing);
+    for turn in 1..=20 {
+        for (_, known) in &mut guessing.looks {
+            known
+                .iter_mut()
+                .enumerate()
+                .for_each(|(point, guess)| *guess = (point * 7 + turn * 13) as u32 % scene.facets as u32);
+        }
+        table.find(&scene, &Controls::default(), NONE, &positions, &mut guessing);
+        assert!(guessing.patches == anew.patches, "guesses of turn {turn} changed what was found");
+    }
+}
+
+#[test]
 fn flat_surfaces_that_touch_have_the_work_of_separation_an_area_and_pull_with_the_strength_whatever_their_meshes() {
     for (parts, other) in [(3, 3), (4, 7), (1, 10)] {
         for gap in [1e-6, 0.1, 0.4, 0.79] {
