@@ -19,8 +19,9 @@ const MOST_FAULTS: usize = 20;
 /// What was found out about the points.
 #[derive(Debug, Clone)]
 pub struct Looked {
-    /// The experiment with the values of the first point.
-    pub first: Document,
+    /// The experiment with the values of the first point, of the last and of one between, if there are so many: one alone does not tell
+    /// how long runs take, as what is varied makes some longer.
+    pub some: Vec<Document>,
     /// The files that runs read.
     pub files: Vec<PathBuf>,
     /// Points whose documents were read.
@@ -64,24 +65,27 @@ pub fn look_over(study: &StudyDocument, points: &Points, memory: Option<u64>) ->
     // What is wrong with a large or a small value shows at the ends.
     if read > 2 {
         documents.swap(1, read - 1);
+        documents.swap(2, read / 2);
     }
-    let (began, mut built, mut first) = (Instant::now(), 0, None);
+    let (began, mut built, mut some) = (Instant::now(), 0, Vec::new());
     for (number, document) in documents {
-        if built > 1 && began.elapsed() > LONGEST {
+        if built > 2 && began.elapsed() > LONGEST {
             break;
         }
         if let Err(error) = prepare(&document) {
             add(&mut faults, of_the_study(error, study, Some((points, number))));
         }
         built += 1;
-        first.get_or_insert(document);
+        if some.len() < 3 {
+            some.push(document);
+        }
         if faults.len() >= MOST_FAULTS {
             break;
         }
     }
-    match first {
-        Some(first) if faults.is_empty() => Ok(Looked { first, files: files.into_iter().collect(), read, built }),
-        _ => Err(Error::Input(in_order(faults, study))),
+    match faults.is_empty() {
+        true => Ok(Looked { some, files: files.into_iter().collect(), read, built }),
+        false => Err(Error::Input(in_order(faults, study))),
     }
 }
 

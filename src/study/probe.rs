@@ -1,4 +1,4 @@
-//! How long a run will take, from a few seconds of one.
+//! How long runs will take, from a few seconds of some.
 
 use crate::error::Result;
 use crate::experiment::Document;
@@ -8,17 +8,24 @@ use std::time::{Duration, Instant};
 /// What a probe found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Probe {
-    /// Seconds that a whole run takes on one thread, if it goes on as it began.
+    /// Seconds that a whole run takes on one thread in the mean, if they go on as they began.
     pub seconds: f64,
-    /// The share of a run that was made.
+    /// The share of these runs that was made.
     pub share: f64,
 }
 
-/// Runs an experiment in memory, on one thread, for about as long as `limit`. Nothing is written.
+/// Runs some experiments in memory, on one thread, together for about as long as `limit`. Nothing is written.
 ///
 /// # Errors
 /// As [`Simulation::from_document`], and when a step fails.
-pub fn probe(document: &Document, limit: Duration) -> Result<Probe> {
+pub fn probe(documents: &[Document], limit: Duration) -> Result<Probe> {
+    let number = documents.len().max(1) as u32;
+    let each = documents.iter().map(|document| probe_one(document, limit / number)).collect::<Result<Vec<_>>>()?;
+    let mean = |of: fn(&Probe) -> f64| each.iter().map(of).sum::<f64>() / f64::from(number);
+    Ok(Probe { seconds: mean(|one| one.seconds), share: mean(|one| one.share) })
+}
+
+fn probe_one(document: &Document, limit: Duration) -> Result<Probe> {
     let began = Instant::now();
     let failed = |error: SimulationError| crate::error::Error::from(error);
     let mut simulation = Simulation::builder().threads(1).document(document).map_err(failed)?;

@@ -57,7 +57,7 @@ pub fn run(args: &PlanArgs) -> Result<Report> {
     let looked = look_over(&study, &points, memory::allowed(args.memory.as_deref())?)?;
     let mut words = told_points(&study, &points, &looked);
     let number = points.rows.len() as u64;
-    let plan = Plan::new(&study, points, &looked.first, &looked.files, &args.output);
+    let plan = Plan::new(&study, points, &looked.some[0], &looked.files, &args.output);
     plan.write(if args.force { Replaces::Plan } else { Replaces::Nothing })?;
     let mut files = [RUNS_FILE, PLAN_FILE].map(|name| args.output.join(name)).to_vec();
     if args.engine == Some(Engine::Snakemake) {
@@ -67,19 +67,20 @@ pub fn run(args: &PlanArgs) -> Result<Report> {
     let mut report =
         Report::default().fact("runs", runs).fact("points", number).fact("replicates", plan.facts.replicates);
     if !args.no_probe {
-        match probe(&looked.first, PROBE) {
+        match probe(&looked.some, PROBE) {
             Ok(found) => {
                 let all = found.seconds * runs as f64;
                 let (one, all_told, four) = (told(found.seconds), told(all), told(all / 4.0));
                 let _ = writeln!(
                     words,
-                    "about {one} a run on one core, by the first {:.1} % of the first one: {all_told} in all, {four} with -j 4",
-                    100.0 * found.share
+                    "about {one} a run on one core, by {:.1} % of {} of them: {all_told} in all, {four} with -j 4",
+                    100.0 * found.share,
+                    looked.some.len()
                 );
                 report = report.fact("seconds_a_run", found.seconds).fact("seconds", all);
             }
             // The plan stands; what is wrong shows again when the run is made.
-            Err(error) => say(&format!("the first run fails soon: {error}")),
+            Err(error) => say(&format!("a run that was tried fails soon: {error}")),
         }
     }
     for path in &files {
