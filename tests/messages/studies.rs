@@ -22,6 +22,6 @@ fn every_bad_study_gets_the_message_beside_it() {
 #[test]
 fn a_study_that_is_not_there_is_told_with_what_to_name() {
     let error =
-        StudyDocument::read(&Path::new("tests/messages/studies/nowhere.toml")).expect_err("there is nothing to read");
+        StudyDocument::read(Path::new("tests/messages/studies/nowhere.toml")).expect_err("there is nothing to read");
     assert!(render(&error, Paint::Plain).contains("help: name a study document"));
 }
