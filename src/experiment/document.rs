@@ -22,6 +22,8 @@ pub struct Document {
     pub equations: BTreeMap<String, String>,
     /// Bytes of memory that the experiment may take, by an estimate; [`compile`](super::compile()) refuses more. Any number when absent.
     pub memory: Option<u64>,
+    /// What was left out because the run is cut short, in words.
+    pub(super) left_out: Vec<String>,
     /// The texts in it that mean something elsewhere.
     pub(super) references: Vec<check::Reference>,
     pub(super) tree: Node,

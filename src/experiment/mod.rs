@@ -36,6 +36,7 @@ mod check;
 mod chemistry;
 mod compile;
 mod contact;
+mod cut_short;
 mod document;
 mod loads;
 mod mechanics;

@@ -64,9 +64,13 @@ impl Document {
             let experiment = experiment_of(&tree)?;
             let (sets, base_dir) = (sets.to_vec(), base_dir.to_owned());
             let references = found.references;
-            let document = Self { source, sets, base_dir, experiment, equations, memory: None, references, tree };
-            faults = semantics::check(&document);
+            let (memory, left_out) = (None, Vec::new());
+            let mut document =
+                Self { source, sets, base_dir, experiment, equations, memory, left_out, references, tree };
+            let late;
+            (faults, late) = semantics::check(&document);
             if faults.is_empty() {
+                document.leave_out(&late);
                 return Ok(document);
             }
         }

@@ -104,10 +104,13 @@ pub struct Plane {
     "positions": "remove the key: positions are always recorded; for a smaller file make `every` longer",
 }))]
 pub struct Output {
-    /// Simulated time between frames; a hundredth of the run when absent.
+    /// Simulated time between frames, which are at exactly its multiples; a hundredth of the run when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub every: Option<Time>,
+    /// Times of more frames; where only these are given, the start and the end have one besides them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub times: Vec<Time>,
     /// Simulated time between checkpoints to resume from; a tenth of the run when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("x-exclusive-minimum" = 0))]

@@ -1,6 +1,7 @@
 //! Checks that need more than one key: what requires, excludes or names what.
 
 use super::check::Reference;
+use super::cut_short::Late;
 use super::document::{Document, near_file};
 use crate::error::Fault;
 use crate::error::words;
@@ -17,11 +18,13 @@ mod scene;
 pub(super) struct Check<'a> {
     document: &'a Document,
     faults: Vec<Fault>,
+    /// What lies beyond the end of a run that is cut short.
+    late: Vec<Late>,
 }
 
-/// Finds the faults that the keys of a well-formed document have together.
-pub(super) fn check(document: &Document) -> Vec<Fault> {
-    let mut check = Check { document, faults: Vec::new() };
+/// Finds the faults that the keys of a well-formed document have together, and what is left out where its run is cut short.
+pub(super) fn check(document: &Document) -> (Vec<Fault>, Vec<Late>) {
+    let mut check = Check { document, faults: Vec::new(), late: Vec::new() };
     for reference in &document.references {
         check.reference(reference);
     }
@@ -42,7 +45,7 @@ pub(super) fn check(document: &Document) -> Vec<Fault> {
     check.scene();
     check.contact();
     check.measures();
-    check.faults
+    (check.faults, check.late)
 }
 
 impl Check<'_> {

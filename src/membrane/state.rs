@@ -39,6 +39,16 @@ impl MembraneCells {
         new
     }
 
+    /// Moves densities, what is given and the areas that they belong to back towards those of before: all the way where the share is 0, and
+    /// not at all where it is 1.
+    pub(crate) fn go_back_to(&mut self, before: &Self, share: f64) {
+        let pairs = [(&mut self.values, &before.values), (&mut self.given, &before.given)];
+        let shape = [(&mut self.areas, &before.areas), (&mut self.volumes, &before.volumes)];
+        for (now, before) in pairs.into_iter().chain(shape) {
+            now.iter_mut().zip(before).for_each(|(now, before)| *now = before + share * (*now - before));
+        }
+    }
+
     /// How many cells there are.
     pub fn cells(&self) -> usize {
         self.cells

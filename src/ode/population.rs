@@ -50,6 +50,16 @@ impl Population {
         self.errors.clone_from(&other.errors);
     }
 
+    /// Moves variables and open quantities back towards those of a population with the same cells: all the way where the share is 0, and
+    /// not at all where it is 1.
+    pub(crate) fn go_back_to(&mut self, before: &Self, share: f64) {
+        let pairs = [(&mut self.states, &before.states), (&mut self.open_values, &before.open_values)];
+        for (now, before) in pairs {
+            let (now, before) = (now.as_flattened_mut().iter_mut(), before.as_flattened());
+            now.zip(before).for_each(|(now, before)| *now = before + share * (*now - before));
+        }
+    }
+
     /// How many cells there are.
     pub fn cells(&self) -> usize {
         self.cells

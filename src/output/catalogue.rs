@@ -200,7 +200,8 @@ pub const CATALOGUE: &[Entry] = &[
     row("/VTKHDF/Strips/Connectivity", "1", "0", OnceIntegers, "Unused."),
     // Time.
     row("/time", "s", "frame", Link("/VTKHDF/Steps/Values"), "Simulated time of a frame."),
-    row("/step", "1", "frame", Counter(|i| i.frame.step as i64), "Steps made up to a frame."),
+    row("/step", "1", "frame", Counter(|i| i.frame.step as i64), "Steps made up to a frame, the one included within which it lies."),
+    row("/interpolated", "1", "frame", Counter(|i| i64::from(i.frame.interpolated)), "1 where a frame lies within a step, between the states at its ends; 0 where a step ended there."),
     // Types of cells, and the cells of every frame.
     row("/cells/type_names", "1", "type", OnceTexts, "Names of the cell types."),
     row("/types/atoms", "1", "type", OnceIntegers, "Atoms of a cell of a type."),

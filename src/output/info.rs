@@ -58,10 +58,11 @@ pub fn describe(result: &ResultFile) -> Result<String> {
     line(
         "frames",
         format!(
-            "{}, from {} s to {} s (step {} to {})",
+            "{}, from {} s to {} s, {} of them within steps (step {} to {})",
             result.frames(),
             times[0],
             times[times.len() - 1],
+            within(result)?,
             steps[0],
             steps[steps.len() - 1]
         ),
@@ -93,6 +94,11 @@ pub fn describe(result: &ResultFile) -> Result<String> {
         line("measure", format!("{} = {}{unit}  {}", measure.name, measure.value, measure.description));
     }
     Ok(page)
+}
+
+/// How many frames lie within steps.
+fn within(result: &ResultFile) -> Result<usize> {
+    Ok(result.interpolated()?.into_iter().filter(|within| *within).count())
 }
 
 /// Everything in the file but the arrays.
@@ -133,6 +139,7 @@ pub fn to_json(result: &ResultFile) -> Result<Value> {
         "membranes": layout.membranes.iter().map(|m| json!({ "name": m.name, "unit": m.unit })).collect::<Vec<_>>(),
         "planes": layout.planes.iter().map(|plane| &plane.0).collect::<Vec<_>>(),
         "frames": result.frames(),
+        "frames_within_steps": within(result)?,
         "time": { "first": times[0], "last": times[times.len() - 1], "unit": "s" },
         "step": { "first": steps[0], "last": steps[steps.len() - 1] },
         "summary": summary,

@@ -154,8 +154,10 @@ pub struct PseudopodEvent {
 pub struct Frame {
     /// Simulated time, s.
     pub time: f64,
-    /// Number of steps made so far.
+    /// Number of steps made so far, the one included within which the instant lies.
     pub step: u64,
+    /// Whether the instant lies within that step, and the frame between the states at its ends.
+    pub interpolated: bool,
     /// The cells that there are, each id once.
     pub cells: Vec<Cell>,
     /// Positions of all atoms, µm, cell after cell.

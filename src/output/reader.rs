@@ -124,6 +124,19 @@ impl ResultFile {
         Ok(steps.into_iter().map(|step| u64::try_from(step).unwrap_or(0)).collect())
     }
 
+    /// Whether each frame lies within a step, between the states at its ends. Of files that do not say so, made before frames did, none does.
+    ///
+    /// # Errors
+    /// A damaged file.
+    pub fn interpolated(&self) -> Result<Vec<bool>> {
+        if !self.file.link_exists("/interpolated") {
+            return Ok(vec![false; self.frames]);
+        }
+        self.read("/interpolated", |dataset| {
+            Ok(dataset.read_slice_1d::<i64, _>(0..self.frames)?.iter().map(|within| *within != 0).collect())
+        })
+    }
+
     /// Positions of all atoms in a frame, µm.
     ///
     /// # Errors

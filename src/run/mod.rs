@@ -196,6 +196,7 @@ fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Rep
         match ended {
             Ok(ControlFlow::Continue(())) => recording.save(simulation)?,
             Ok(ControlFlow::Break(Stop::Machine(error))) => return Err(error),
+            Ok(ControlFlow::Break(Stop::Within(trouble))) => return Err(recording.keep_last(trouble, simulation)),
             Ok(ControlFlow::Break(Stop::Passed(trouble))) => return Err(recording.keep_good(trouble, simulation)),
             Err(trouble @ (SimulationError::Trouble(_) | SimulationError::Population(_))) => {
                 return Err(recording.keep_last(trouble, simulation));
@@ -207,21 +208,25 @@ fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Rep
             Err(other) => return Err(other.into()),
         }
         let wall_time = began.elapsed().as_secs_f64();
-        let Recording { writer, limited, .. } = recording;
+        let Recording { writer, limited, report, .. } = recording;
         let (steps, frames) = (simulation.steps(), writer.frames());
-        finish(writer, result, wall_time)?;
+        finish(writer, result, wall_time, report)?;
         Ok(Outcome { steps, frames, made: steps - first, limited, wall_time, pushed })
     })
 }
 
 /// Evaluates the measures of the experiment on what was recorded and ends the file.
-fn finish(mut writer: ResultWriter, result: &Path, wall_time: f64) -> Result<()> {
+fn finish(mut writer: ResultWriter, result: &Path, wall_time: f64, report: &mut dyn Report) -> Result<()> {
     let file = writer.read()?;
     let document = document_of(file.header(), result)?;
     let (measures, faults) = measure_result(&file, &document)?;
     drop(file);
     writer.write_summary(&measures);
     writer.finish(wall_time)?;
-    // A measure that cannot be computed is told once the run and all other measures are safe.
+    // A measure that cannot be computed is told once the run and all other measures are safe. A run that was cut short is not to blame.
+    if document.is_cut_short() {
+        faults.iter().for_each(|fault| report.notice(&fault.message));
+        return Ok(());
+    }
     if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
 }

@@ -17,7 +17,7 @@ pub struct Recording<'a> {
     recorder: Recorder,
     schedule: Schedule,
     result: &'a Path,
-    report: &'a mut dyn Report,
+    pub report: &'a mut dyn Report,
     /// Time at the end of the step before, s.
     time: f64,
     /// Steps made when a frame was recorded last.
@@ -34,6 +34,8 @@ pub enum Stop {
     Machine(Error),
     /// Cells have passed through each other since they were looked at last.
     Passed(Trouble),
+    /// There is no good state at an instant within a step.
+    Within(Trouble),
 }
 
 impl<'a> Recording<'a> {
@@ -75,11 +77,17 @@ impl<'a> Recording<'a> {
         let (before, after) = (std::mem::replace(&mut self.time, simulation.time()), simulation.time());
         let last = after >= simulation.end();
         self.limited += u64::from(made.limited);
-        if last || passed(before, after, self.schedule.every) {
+        let due = self.schedule.due(before, after);
+        if last || !due.is_empty() {
             if let Err(trouble) = check_passed(simulation.model(), simulation.state()) {
                 return ControlFlow::Break(Stop::Passed(trouble));
             }
             self.remember_good(simulation);
+        }
+        for &time in due.iter().filter(|time| **time < after) {
+            self.record_within(simulation, time)?;
+        }
+        if last || due.last() == Some(&after) {
             or_stop(self.writer.append(&simulation.record(&mut self.recorder)))?;
             self.recorded = simulation.steps();
         }
@@ -88,6 +96,14 @@ impl<'a> Recording<'a> {
         }
         self.report.step(after, simulation.steps());
         ControlFlow::Continue(())
+    }
+
+    /// Records an instant within the step.
+    fn record_within(&mut self, simulation: &mut Simulation, time: f64) -> ControlFlow<Stop> {
+        match simulation.record_within(&mut self.recorder, time) {
+            Ok(frame) => or_stop(self.writer.append(&frame)),
+            Err(trouble) => ControlFlow::Break(Stop::Within(trouble)),
+        }
     }
 
     /// No more steps are made.

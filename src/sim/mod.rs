@@ -41,6 +41,7 @@ mod thread_buffers;
 mod traction;
 pub mod trouble;
 mod velocity;
+mod within;
 pub mod workspace;
 
 pub use balance::AtomBalance;
@@ -55,4 +56,5 @@ pub use population_trouble::PopulationTrouble;
 pub use state::{Inertia, KindState, NewCell, State};
 pub use step::{begin_chemistry, step};
 pub use trouble::Trouble;
+pub(crate) use within::state_within;
 pub use workspace::Workspace;

@@ -10,7 +10,9 @@ use super::history::History;
 use super::record::Recorder;
 use crate::output::Frame;
 use crate::sim::contact::check_passed;
-use crate::sim::{Model, State, StepReport, Trouble, Workspace, apply_due_changes, begin_chemistry, step};
+use crate::sim::{
+    Model, State, StepReport, Trouble, Workspace, apply_due_changes, begin_chemistry, state_within, step,
+};
 
 /// A simulation in memory.
 ///
@@ -249,5 +251,15 @@ impl Simulation {
     /// The frame of this instant, with the runs that ended since the last one.
     pub(crate) fn record(&mut self, recorder: &mut Recorder) -> Frame {
         recorder.record(&self.model, &mut self.state, &mut self.scratch, self.last_step)
+    }
+
+    /// The frame of an instant within the step made last, after which nothing else was done, with the runs that had ended by then.
+    ///
+    /// # Errors
+    /// A volume that could not be made exact.
+    pub(crate) fn record_within(&mut self, recorder: &mut Recorder, time: f64) -> Result<Frame, Trouble> {
+        let mut within = state_within(&self.model, &mut self.state, time, &mut self.scratch)?;
+        let frame = recorder.record(&self.model, &mut within, &mut self.scratch, self.last_step);
+        Ok(Frame { interpolated: true, ..frame })
     }
 }

@@ -66,3 +66,13 @@ fn the_template_of_a_study_is_good_and_its_experiment_takes_its_values() {
     look_over(&study, &points, None).unwrap();
     check(vec![folder.path().join("cells.toml")]);
 }
+
+#[test]
+fn every_experiment_may_be_cut_short() {
+    for subject in subjects(Path::new("experiments"), None).unwrap() {
+        let document = &subject.path;
+        if let Err(error) = Document::read(document, &["run.until=0.01 s".to_owned()]) {
+            panic!("{}", pseudopod::error::render(&error, pseudopod::error::Paint::Plain));
+        }
+    }
+}

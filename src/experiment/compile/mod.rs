@@ -13,6 +13,7 @@ mod overlap;
 mod population;
 mod positions;
 mod pseudopods;
+mod schedule;
 mod select;
 mod size;
 mod spacing;
@@ -22,6 +23,7 @@ mod steps;
 pub(super) use builder::Builder;
 pub use notices::notices;
 pub(super) use numbers::{course, unit};
+pub use schedule::Schedule;
 pub use size::Size;
 pub use start::{PushedApart, Settling, settle_start, settle_start_told};
 
@@ -36,17 +38,6 @@ use crate::sim::kind::kinks;
 use crate::sim::{Kind, Model, Plane, State, VolumeRule};
 use builder::Built;
 use numbers::vector;
-
-/// When the run records.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Schedule {
-    /// Simulated time between frames, s.
-    pub every: f64,
-    /// Simulated time between checkpoints, s.
-    pub checkpoint: f64,
-    /// Whether the force on every atom is recorded.
-    pub forces: bool,
-}
 
 /// An experiment ready to run.
 #[derive(Debug, Clone)]
@@ -153,7 +144,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         until: experiment.run.until.value(),
         keeps_tractions,
     };
-    let schedule = steps::schedule(document, &model)?;
+    let schedule = schedule::schedule(document);
     Ok(Prepared { model, schedule, centres, size, fields })
 }
 

@@ -2,9 +2,10 @@
 
 use super::super::{CellType, Document, LengthUnit, Mesh};
 use super::size::{Size, bytes};
-use super::{Prepared, bonds};
+use super::{Prepared, Schedule, bonds};
 use crate::Vec3;
 use crate::cell::Behaviour;
+use crate::error::short;
 use crate::geometry::{area, bounding_box};
 use crate::mechanics::Force;
 use crate::mechanics::integrator::Method;
@@ -31,6 +32,8 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
     let Prepared { model, centres, .. } = prepared;
     let mut notices: Vec<String> = model.kinds.iter().filter_map(|kind| unusual_width(document, kind)).collect();
     notices.extend(large_result(&prepared.size));
+    notices.extend(document.what_is_left_out());
+    notices.extend(late_frame(&prepared.schedule, model.until));
     notices.extend(model.kinds.iter().filter_map(|kind| unordered_skin(document, kind)));
     notices.extend(model.kinds.iter().filter_map(|kind| pushes_off_nothing(document, kind)));
     if model.contact.is_some() {
@@ -61,6 +64,12 @@ fn large_result(size: &Size) -> Option<String> {
             bytes(size.result / size.frames)
         )
     })
+}
+
+/// That there is no frame at a time that is asked for.
+fn late_frame(schedule: &Schedule, until: f64) -> Option<String> {
+    let last = *schedule.times.last()?;
+    (last > until).then(|| format!("a frame is asked for at {} s, and the run ends at {} s", short(last), short(until)))
 }
 
 /// That the pseudopods of a kind have nothing that resists sliding to push off from.

@@ -1,6 +1,7 @@
 //! How large an experiment is, from the numbers of its documents alone: told before anything is made that no memory holds.
 
 use super::super::{CellType, Document, Mesh};
+use super::schedule::schedule;
 use crate::error::{Error, Fault, Result};
 
 /// Bytes of memory an atom of a cell: 120 measured where cells pass through each other, and 440 to 1 020 where they are packed and touch
@@ -220,8 +221,7 @@ fn of_mesh(document: &Document, mesh: &Mesh) -> [f64; 2] {
 
 /// Frames that the run records.
 fn frames(document: &Document) -> f64 {
-    let (until, every) = (document.experiment.run.until.value(), document.experiment.output.every);
-    1.0 + every.map_or(100.0, |every| (until / every.value()).ceil())
+    schedule(document).frames(document.experiment.run.until.value())
 }
 
 /// A number of things, as messages show it.

@@ -1,17 +1,16 @@
-//! Chooses how the run steps and when it records.
+//! Chooses how the run steps.
 
 use super::super::{Document, Method as Text, Pseudopods};
-use super::Schedule;
 use crate::error::{Error, Fault, Result, short};
 use crate::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use crate::mechanics::stability::{Body, largest_stable_step};
-use crate::sim::{Kind, Model};
+use crate::sim::Kind;
 
 /// The part of the largest stable step that is taken where the user names none: stiffness grows as a cell deforms.
 const SAFETY: f64 = 0.5;
 
 /// The default longest step, and the default time between frames, over the duration of the run.
-const HUNDREDTH: f64 = 0.01;
+pub(super) const HUNDREDTH: f64 = 0.01;
 
 /// Scheme and step; measures the true stiffness of every kind where the scheme needs it.
 pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator> {
@@ -110,26 +109,4 @@ fn longest_with_fibres(document: &Document, kinds: &[Kind]) -> Result<f64> {
         }
     }
     Ok(longest(kind))
-}
-
-/// When to record. Output never shortens a step, so that frames may not be asked for more often than steps are made.
-pub fn schedule(document: &Document, model: &Model) -> Result<Schedule> {
-    let output = &document.experiment.output;
-    let every = output.every.map_or(HUNDREDTH * model.until, |every| every.value());
-    let longest = match model.integrator.size {
-        StepSize::Fixed(step) => step,
-        StepSize::Adaptive { largest, .. } => largest,
-    };
-    if every < longest * (1.0 - 1e-9) {
-        let fault = Fault::new(format!(
-            "frames are asked for every {} s, but a step may take {} s",
-            short(every),
-            short(longest)
-        ))
-        .help("output never shortens a step: set run.integrator.max_step (or step) to at most output.every");
-        let location = document.location("output.every", "shorter than a step");
-        return Err(Error::input(location.into_iter().fold(fault, Fault::at)));
-    }
-    let checkpoint = output.checkpoint.map_or(0.1 * model.until, |checkpoint| checkpoint.value());
-    Ok(Schedule { every, checkpoint, forces: output.forces })
 }

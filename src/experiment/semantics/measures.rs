@@ -1,5 +1,6 @@
 //! Has measures check their keys, each its own, beside the document that declares them.
 
+use super::super::cut_short::Late;
 use super::Check;
 use crate::analysis::measures::Declared;
 use crate::units::Time;
@@ -8,6 +9,7 @@ use crate::units::Time;
 struct InDocument<'c, 'd> {
     check: &'c mut Check<'d>,
     path: String,
+    name: &'c str,
 }
 
 impl InDocument<'_, '_> {
@@ -60,7 +62,8 @@ impl Declared for InDocument<'_, '_> {
     }
 
     fn instant(&mut self, key: &str, time: Time) {
-        self.check.instant(&self.of(key), time.value());
+        let late = Late::Measure(self.name.to_owned());
+        self.check.instant(&self.of(key), time.value(), late);
     }
 
     fn direction(&mut self, key: &str, direction: [f64; 3]) {
@@ -71,7 +74,7 @@ impl Declared for InDocument<'_, '_> {
 impl Check<'_> {
     pub(super) fn measures(&mut self) {
         for (name, measure) in &self.document.experiment.measure {
-            measure.kind.check(&mut InDocument { check: self, path: format!("measure.{name}") });
+            measure.kind.check(&mut InDocument { check: self, path: format!("measure.{name}"), name });
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What must hold between planes, pictures, plots and the run.
 
 use super::Check;
+use crate::experiment::cut_short::Late;
 use crate::experiment::{MeasureCurve, OneOrMany, PlotKind, When};
 use crate::units::{Dimension, pretty};
 use std::collections::HashSet;
@@ -37,8 +38,13 @@ impl Check<'_> {
                 "choose another direction as up, such as [0, 1, 0]",
             );
         }
+        for (index, time) in experiment.output.times.iter().enumerate().filter(|(_, time)| time.value() < 0.0) {
+            let (path, time) = (format!("output.times[{index}]"), pretty(time.value(), Dimension::TIME));
+            let message = format!("`{path}` is {time}, before the start of the run");
+            self.fault(&path, "before the start", message, "times of frames count from the start of the run, 0 s");
+        }
         if let When::At(time) = experiment.picture.time {
-            self.instant("picture.time", time.value());
+            self.instant("picture.time", time.value(), Late::Picture);
         }
         self.range("picture.colour_range", experiment.picture.colour_range);
         self.range("picture.field_range", experiment.picture.field_range);
@@ -48,7 +54,8 @@ impl Check<'_> {
                     for (number, time) in times.as_slice().iter().enumerate() {
                         let within = if let OneOrMany::Many(_) = times { format!("[{number}]") } else { String::new() };
                         if let When::At(time) = time {
-                            self.instant(&format!("plot[{index}].times{within}"), time.value());
+                            let late = Late::Plot(index, number);
+                            self.instant(&format!("plot[{index}].times{within}"), time.value(), late);
                         }
                     }
                 }
@@ -93,10 +100,12 @@ impl Check<'_> {
         }
     }
 
-    /// An instant must lie within the run.
-    pub(super) fn instant(&mut self, path: &str, time: f64) {
+    /// An instant must lie within the run. Of one that is cut short what is `late` is left out.
+    pub(super) fn instant(&mut self, path: &str, time: f64, late: Late) {
         let until = self.document.experiment.run.until.value();
-        if !(0.0..=until).contains(&time) {
+        if time > until && self.document.is_cut_short() {
+            self.late.push(late);
+        } else if !(0.0..=until).contains(&time) {
             let (time, until) = (pretty(time, Dimension::TIME), pretty(until, Dimension::TIME));
             let message = format!("`{path}` is {time}, which the run does not reach");
             self.fault(path, "outside of the run", message, format!("give a time from 0 s to {until} (run.until)"));
