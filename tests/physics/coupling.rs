@@ -58,10 +58,50 @@ fn what_a_cell_secretes_is_what_the_field_gains() {
     scene.run();
     let values = &scene.state().chemistry.fields[0].values;
     let amount = values.iter().sum::<f64>() * 4.0;
-    // Each step releases the rate at its start: the left sum of 3 (2 + t/2) over 40 steps of 0.1 s.
-    let released: f64 = (0..40).map(|n| 0.1 * 3.0 * (2.0 + 0.05 * f64::from(n))).sum();
+    // Rates go on a line in a step, as this one does: 3 (2 + t/2) over 4 s.
+    let released = 36.0;
     assert!((amount / released - 1.0).abs() < 1e-12, "{amount} against {released}");
     assert!(values.iter().all(|value| *value >= 0.0));
+}
+
+/// What is there at a time of what is released at a rate of 1 + cos(ω t) and decays with k.
+fn beaten(omega: f64, k: f64, time: f64) -> f64 {
+    let (sin, cos) = (omega * time).sin_cos();
+    let fading = (-k * time).exp();
+    (1.0 - fading) / k + (k * cos + omega * sin - k * fading) / (k * k + omega * omega)
+}
+
+/// Documents of a cell that releases at a rate of 1 + cos(ω t) into a field where it decays with k.
+fn beat(omega: f64, k: f64) -> (String, String) {
+    let field = format!(
+        r#"<eml name="field"><grid dimension="2" spacing="2" origin="-40 -40" size="80 80"/>
+        <field id="c" diffusion="30" decay="{k}" initial="0"/></eml>"#
+    );
+    let own = format!(
+        r#"<eml name="own" level="cell"><parameter id="w" value="{omega}"/>
+        <variable id="U" initial="1" rate="w*V"/><variable id="V" initial="0" rate="-w*U"/>
+        <solver scheme="rosenbrock" rtol="1e-10" atol="1e-12"/>
+        <link from="system.U" to="cell.secretion[c]" transfer="1 + value"/></eml>"#
+    );
+    (field, own)
+}
+
+#[test]
+fn what_is_released_at_a_rate_that_changes_is_there_to_second_order() {
+    for k in [1e-9, 0.5, 8.0] {
+        let (field, own) = beat(1.0, k);
+        let error = |step: &str| {
+            let mut scene = scene(&[("field", &field), ("own", &own)], &one_cell("7.2 s", step));
+            scene.begin();
+            let rows =
+                scene.rows_until(7.2, |scene| scene.state().chemistry.fields[0].values.iter().sum::<f64>() * 4.0);
+            rows.iter().map(|(time, amount)| (amount - beaten(1.0, k, *time)).abs()).fold(0.0, f64::max)
+        };
+        let errors = ["0.4 s", "0.2 s", "0.1 s"].map(error);
+        let order = (errors[0] / errors[2]).log2() / 2.0;
+        println!("k = {k}: errors {errors:?}, order {order}");
+        assert!((1.7..2.3).contains(&order), "{order}: {errors:?}");
+    }
 }
 
 #[test]

@@ -54,6 +54,27 @@ pub(super) fn carry_links(
     Ok(())
 }
 
+/// Carries what cells and atoms release, as their systems have come to it by themselves at `time`: what these are told then comes after.
+///
+/// # Errors
+/// As [`carry_links`].
+pub(super) fn carry_releases(model: &Model, time: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+    let chemistry = &model.chemistry;
+    ws.chemistry.observed.forget(&chemistry.observations);
+    for (number, link) in chemistry.links.iter().enumerate().filter(|(_, link)| link.is_own_release()) {
+        let Owner::Reactor(owner) = link.owner else { continue };
+        match link.from {
+            _ if !is_due(&chemistry.reactors[owner], time) => {}
+            Source::Atoms(source) => {
+                observe(model, number, time, state, &mut ws.chemistry);
+                carry_atoms(model, (number, source), time, state, &mut ws.chemistry, (None, &[]))?;
+            }
+            _ => carry(model, number, time, state, &mut ws.chemistry)?,
+        }
+    }
+    Ok(())
+}
+
 /// What cells sense: the mean of value and gradient over the atoms of each.
 fn sense_fields(model: &Model, state: &State, scratch: &mut ChemistryScratch) {
     for (&(field, species), cells) in model.chemistry.sensed.iter().zip(&mut scratch.sensed) {

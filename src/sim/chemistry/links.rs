@@ -24,6 +24,15 @@ pub struct Link {
     pub gain: f64,
 }
 
+impl Link {
+    /// Whether a system lets a cell or atoms release something by what it knows itself.
+    pub fn is_own_release(&self) -> bool {
+        let releases =
+            matches!(self.to, Target::Cell(_, Control::Secretion(_) | Control::Atoms(AtomControl::Secretion(_))));
+        releases && matches!(self.from, Source::Own(_) | Source::Time | Source::Atoms(AtAtoms::Shown(_)))
+    }
+}
+
 /// Whose link it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {

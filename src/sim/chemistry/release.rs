@@ -3,6 +3,7 @@
 //! Cells release all the time. Fields that take up what is released move by half of a part of the step, are given what is released in the whole
 //! part, and move by the other half, eq. (coupling.4): second order, and exact in amount where they decay.
 
+use super::super::controls::Controls;
 use super::super::model::Model;
 use super::super::state::{State, vector};
 use super::super::trouble::Trouble;
@@ -37,38 +38,67 @@ impl Parts {
         Self { count: count as u32, length, rest: 0.5 * length.min(LONGEST / decay) }
     }
 
-    /// What a part releases, over the rate, s: as much as leaves (1 − e^(−kδ))/k at its end when the rest of it has decayed.
-    fn released(&self, decay: f64) -> f64 {
+    /// The length of a part over that of the step.
+    fn share(&self) -> f64 {
+        1.0 / f64::from(self.count)
+    }
+
+    /// What a part releases, over the rates where it begins and where it ends, s: as much as is left at its end of what flows in at a rate on a
+    /// line between the two, when the rest of the part has decayed.
+    fn released(&self, decay: f64) -> [f64; 2] {
         let turns = decay * self.length;
-        let left = if turns == 0.0 { self.length } else { -f64::exp_m1(-turns) / decay };
-        left * (decay * self.rest).exp()
+        // What is left of a constant rate, and of one that rises from nothing to 1.
+        let constant = if turns == 0.0 { self.length } else { -f64::exp_m1(-turns) / decay };
+        let rising = match turns < 1e-3 {
+            true => self.length * (0.5 - turns / 6.0 * (1.0 - turns / 4.0 * (1.0 - turns / 5.0))),
+            false => (self.length - constant) / turns,
+        };
+        [constant - rising, rising].map(|left| left * (decay * self.rest).exp())
     }
 }
 
-/// Moves all fields through a step, with what cells release into them meanwhile.
+/// A step of a field into which something is released: its number, its parts, and the states between whose rates those in the step lie.
+#[derive(Clone, Copy)]
+struct Release<'a> {
+    model: &'a Model,
+    field: usize,
+    parts: Parts,
+    from: &'a Controls,
+    to: &'a Controls,
+}
+
+/// Moves all fields through a step, with what cells release into them meanwhile: at rates that go on a line from those where it began to those
+/// to which the systems have come at its end. Returns the error of the amounts over what is there or comes.
 pub fn move_fields(
     model: &Model,
     (start, dt): (f64, f64),
+    from: &State,
     state: &mut State,
     ws: &mut Workspace,
 ) -> Result<(), Trouble> {
     for number in 0..model.chemistry.fields.len() {
-        let all = model.chemistry.secreted.iter().chain(&state.chemistry.controls.secreted);
-        let into = all.filter(|(field, _)| *field == number);
-        let parts = Parts::new(dt, into.map(|(_, species)| decay((model, number), *species)));
+        let into = channels(model, &state.chemistry.controls).filter(|(field, _)| *field == number);
+        let parts = Parts::new(dt, into.map(|(_, species)| decay((model, number), species)));
         if parts.count == 0 {
             advance_field((model, number), (start, dt), state, ws)?;
+            continue;
         }
         let before = parts.length - parts.rest;
         for part in 0..parts.count {
             let begin = start + f64::from(part) * parts.length;
             advance_field((model, number), (begin, before), state, ws)?;
-            deposit_secretion((model, number), parts, state, ws);
-            deposit_at_atoms((model, number), parts, state, ws);
+            let release =
+                Release { model, field: number, parts, from: &from.chemistry.controls, to: &state.chemistry.controls };
+            release.deposit(f64::from(part) * parts.share(), state, &mut ws.chemistry);
             advance_field((model, number), (begin + before, parts.rest), state, ws)?;
         }
     }
     Ok(())
+}
+
+/// Fields and species that anything is released into, one for each list of rates.
+fn channels<'a>(model: &'a Model, controls: &'a Controls) -> impl Iterator<Item = (usize, usize)> + 'a {
+    model.chemistry.secreted.iter().chain(&controls.secreted).copied()
 }
 
 /// The rate of decay of what is released, 1/s.
@@ -76,50 +106,77 @@ fn decay((model, field): (&Model, usize), species: usize) -> f64 {
     model.chemistry.fields[field].system.species()[species].decay
 }
 
-/// Releases into a field what cells secrete in a part of a step, spread evenly over the atoms.
-fn deposit_secretion((model, field): (&Model, usize), parts: Parts, state: &State, ws: &mut Workspace) {
-    let scratch = &mut ws.chemistry;
-    let controls = &state.chemistry.controls;
-    let channels = model.chemistry.secreted.iter().chain(&controls.secreted).zip(&controls.secretion);
-    for (&(_, species), rates) in channels.filter(|((into, _), _)| *into == field) {
-        let time = parts.released(decay((model, field), species));
-        for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+impl Release<'_> {
+    /// Releases what comes in the part of the step that begins at a share of it.
+    fn deposit(self, part: f64, state: &State, scratch: &mut ChemistryScratch) {
+        for (channel, (_, species)) in
+            channels(self.model, self.to).enumerate().filter(|(_, into)| into.0 == self.field)
+        {
+            let [first, last] = self.parts.released(decay((self.model, self.field), species));
+            let rate = |begin: f64, end: f64| {
+                let change = end - begin;
+                first * (begin + part * change) + last * (begin + (part + self.parts.share()) * change)
+            };
+            self.by_cells((channel, species), state, scratch, rate);
+            self.by_atoms((channel, species), state, scratch, rate);
+        }
+    }
+
+    /// What cells secrete, spread evenly over their atoms.
+    fn by_cells(
+        self,
+        (channel, species): (usize, usize),
+        state: &State,
+        scratch: &mut ChemistryScratch,
+        rate: impl Fn(f64, f64) -> f64,
+    ) {
+        let (Some(before), Some(after)) = (self.from.secretion.get(channel), self.to.secretion.get(channel)) else {
+            return;
+        };
+        for (kind, now) in self.model.kinds.iter().zip(&state.kinds) {
             let atoms = kind.atoms();
             scratch.amounts.clear();
             scratch.positions.clear();
-            for cell in 0..now.cells() {
-                let rate = rates[now.first_cell + cell];
-                if rate != 0.0 {
-                    scratch.positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
-                    scratch.amounts.resize(scratch.positions.len(), rate * time / atoms as f64);
+            for cell in now.numbers() {
+                let (begin, end) = (before[cell], after[cell]);
+                if begin != 0.0 || end != 0.0 {
+                    let amount = rate(begin, end) / atoms as f64;
+                    let own = cell - now.first_cell;
+                    scratch.positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, own, atom)));
+                    scratch.amounts.resize(scratch.positions.len(), amount);
                 }
             }
-            scratch.fields[field].deposit_all(species, &scratch.positions, &scratch.amounts);
+            scratch.fields[self.field].deposit_all(species, &scratch.positions, &scratch.amounts);
         }
     }
-}
 
-/// Releases into a field what atoms secrete in a part of a step, each on its own area.
-fn deposit_at_atoms((model, field): (&Model, usize), parts: Parts, state: &State, ws: &mut Workspace) {
-    let scratch = &mut ws.chemistry;
-    let of_kinds = model.kinds.iter().zip(&state.kinds).zip(&state.chemistry.controls.of_atoms);
-    for ((kind, now), controls) in of_kinds {
-        let atoms = kind.atoms();
-        for (channel, rates) in controls.secretion.iter().enumerate().filter(|(_, rates)| !rates.is_empty()) {
-            let (into, species) = model.chemistry.secreted[channel];
-            if into != field {
+    /// What atoms secrete, each on its own area.
+    fn by_atoms(
+        self,
+        (channel, species): (usize, usize),
+        state: &State,
+        scratch: &mut ChemistryScratch,
+        rate: impl Fn(f64, f64) -> f64,
+    ) {
+        let of_kinds = self.model.kinds.iter().zip(&state.kinds).zip(self.from.of_atoms.iter().zip(&self.to.of_atoms));
+        for ((kind, now), (before, after)) in of_kinds {
+            let (Some(before), Some(after)) = (before.secretion.get(channel), after.secretion.get(channel)) else {
+                continue;
+            };
+            if before.is_empty() || after.is_empty() {
                 continue;
             }
-            let time = parts.released(decay((model, field), species));
+            let atoms = kind.atoms();
             for cell in 0..now.cells() {
                 let ChemistryScratch { positions, amounts, shapes, fields, .. } = scratch;
                 positions.clear();
                 positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, cell, atom)));
                 shapes.take(&kind.rest.facets, positions);
                 amounts.clear();
-                let own = &rates[cell * atoms..(cell + 1) * atoms];
-                amounts.extend(own.iter().zip(&shapes.areas).map(|(rate, area)| rate * area * time));
-                fields[field].deposit_all(species, positions, amounts);
+                let own = cell * atoms..(cell + 1) * atoms;
+                let rates = before[own.clone()].iter().zip(&after[own]).zip(&shapes.areas);
+                amounts.extend(rates.map(|((begin, end), area)| rate(begin * area, end * area)));
+                fields[self.field].deposit_all(species, positions, amounts);
             }
         }
     }
@@ -178,9 +235,18 @@ mod tests {
                 } else {
                     (1.0 - (-turns).exp()) / decay
                 };
-                let found = parts.released(decay) * f64::exp(-decay * parts.rest);
+                let [first, last] = parts.released(decay).map(|left| left * f64::exp(-decay * parts.rest));
                 // What both round.
-                assert!((found / exact - 1.0).abs() < 1e-12, "{decay} {dt}: {found} {exact}");
+                assert!(((first + last) / exact - 1.0).abs() < 1e-12, "{decay} {dt}: {first} {last} {exact}");
+                // Of a rate that rises from nothing in the part, by Simpson's rule.
+                let (n, length) = (2000, parts.length);
+                let weight = |i: usize| if i % n == 0 { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
+                let left = |i: usize| {
+                    let share = i as f64 / n as f64;
+                    share * (-turns * (1.0 - share)).exp() * weight(i)
+                };
+                let rising = (0..=n).map(left).sum::<f64>() * length / (3 * n) as f64;
+                assert!(turns > 10.0 || (last / rising - 1.0).abs() < 1e-9, "{decay} {dt}: {last} {rising}");
             }
         }
         assert_eq!(Parts::new(1.0, std::iter::empty()).count, 0);

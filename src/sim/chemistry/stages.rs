@@ -8,7 +8,7 @@ use super::super::targets::measure_volumes;
 use super::super::trouble::Trouble;
 use super::super::velocity::measure_velocities;
 use super::super::workspace::Workspace;
-use super::carry::carry_links;
+use super::carry::{carry_links, carry_releases};
 use super::census::cell_of_member;
 use super::exchange::is_due;
 use super::membranes::{advance_membrane, begin_membranes};
@@ -53,7 +53,8 @@ pub fn advance_chemistry(
     let (start, end) = (from.time, from.time + dt);
     ws.chemistry.exchange_values(&mut to.chemistry, start);
     advance_systems(model, end, from, to, &mut ws.chemistry)?;
-    move_fields(model, (start, dt), to, ws)?;
+    carry_releases(model, end, to, ws)?;
+    move_fields(model, (start, dt), from, to, ws)?;
     carry_links(model, end, false, to, ws)?;
     ws.chemistry.exchange_values(&mut to.chemistry, end);
     impose(model, end, to, ws)?;
