@@ -52,3 +52,20 @@ pub fn refuse_existing(path: &Path, force: bool, named: Named) -> Result<()> {
     };
     Err(Error::input(Fault::new(format!("{} exists", path.display())).help(help)))
 }
+
+/// The same for a folder that the program names after a file, and fills.
+///
+/// # Errors
+/// [`Error::Input`] if it exists and `force` is not set, or if it is no folder.
+pub fn refuse_existing_folder(path: &Path, force: bool) -> Result<()> {
+    let (message, help) = match () {
+        () if path.exists() && !path.is_dir() => {
+            ("is a file", "the frames go into a folder of that name: name another file with -o")
+        }
+        () if path.exists() && !force => {
+            ("exists", "name another file with -o, or use --force to replace what it holds of this kind")
+        }
+        () => return Ok(()),
+    };
+    Err(Error::input(Fault::new(format!("{} {message}", path.display())).help(help)))
+}

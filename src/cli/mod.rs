@@ -63,7 +63,7 @@ pub enum Command {
     Plot(plot::PlotArgs),
     /// Measures tracks of cells: those of a result file, or measured ones.
     Measure(measure::MeasureArgs),
-    /// Writes a frame of a result file as a mesh, or its numbers as a table.
+    /// Writes frames of a result file as meshes or fields for other programs, or its numbers as a table.
     Export(export::ExportArgs),
     /// Checks, solves and converts documents of equations: EML, and SBML models.
     Eml(eml::EmlArgs),

@@ -6,16 +6,24 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Writes a surface to a file, as OBJ, PLY or STL by its extension; an existing file is replaced.
+/// A quantity of atoms that a file of a surface may carry: its name, one word, and a number for each atom.
+pub type OfAtoms<'a> = (&'a str, Vec<f64>);
+
+/// Writes a surface to a file, as OBJ, PLY or STL by its extension; an existing file is replaced. Quantities are left out where
+/// the format has none: only PLY does.
 ///
 /// # Errors
 /// [`Error::Input`] for another extension, [`Error::Machine`] when the file cannot be written.
-pub fn export_surface(surface: &Surface, path: &Path) -> Result<()> {
+///
+/// # Panics
+/// If a quantity does not have a number for each atom.
+pub fn export_surface(surface: &Surface, quantities: &[OfAtoms], path: &Path) -> Result<()> {
+    type Out = BufWriter<File>;
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-    let write: fn(&Surface, &mut BufWriter<File>) -> io::Result<()> = match extension.as_deref() {
-        Some("obj") => write_obj,
+    let write: fn(&Surface, &[OfAtoms], &mut Out) -> io::Result<()> = match extension.as_deref() {
+        Some("obj") => |surface, _, out| write_obj(surface, out),
         Some("ply") => write_ply,
-        Some("stl") => write_stl,
+        Some("stl") => |surface, _, out| write_stl(surface, out),
         _ => {
             let fault = Fault::new(format!("mesh file `{}` names no format that can be written", path.display()));
             return Err(Error::input(fault.help("mesh files end in .obj, .ply or .stl")));
@@ -23,7 +31,7 @@ pub fn export_surface(surface: &Surface, path: &Path) -> Result<()> {
     };
     let outcome = File::create(path).and_then(|file| {
         let mut out = BufWriter::new(file);
-        write(surface, &mut out)?;
+        write(surface, quantities, &mut out)?;
         out.flush()
     });
     outcome.map_err(|failure| Error::Machine {
@@ -48,17 +56,25 @@ pub fn write_obj(surface: &Surface, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a surface as binary little-endian PLY in double precision. Every digit is kept.
+/// Writes a surface as binary little-endian PLY in double precision, with these quantities of its atoms. Every digit is kept.
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write_ply(surface: &Surface, out: &mut impl Write) -> io::Result<()> {
+///
+/// # Panics
+/// If a quantity does not have a number for each atom.
+pub fn write_ply(surface: &Surface, quantities: &[OfAtoms], out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment lengths in um")?;
     writeln!(out, "element vertex {}", surface.positions.len())?;
     writeln!(out, "property double x\nproperty double y\nproperty double z")?;
+    for (name, _) in quantities {
+        writeln!(out, "property double {name}")?;
+    }
     writeln!(out, "element face {}\nproperty list uchar uint vertex_indices\nend_header", surface.facets.len())?;
-    for value in surface.positions.iter().flat_map(|position| position.iter()) {
-        out.write_all(&value.to_le_bytes())?;
+    for (atom, position) in surface.positions.iter().enumerate() {
+        for value in position.iter().chain(quantities.iter().map(|(_, values)| &values[atom])) {
+            out.write_all(&value.to_le_bytes())?;
+        }
     }
     for facet in &surface.facets {
         out.write_all(&[3])?;

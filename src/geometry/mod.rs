@@ -18,7 +18,7 @@ mod weld;
 pub use boxes::box_surface;
 pub use check::{Boundary, LEAST_FACET_QUALITY, MeshFault, SurfaceRules, check_surface};
 pub use curvature::{gaussian_curvature, mean_curvature, mixed_areas};
-pub use export::{export_surface, write_obj, write_ply, write_stl};
+pub use export::{OfAtoms, export_surface, write_obj, write_ply, write_stl};
 pub use import::{read_checked_surface, read_surface};
 pub use measure::{
     area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,

@@ -1,11 +1,13 @@
 //! A frame of a field for other programs: a table of positions and values, or an image for VTK.
 
-use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use super::ResultFile;
 use super::container::machine_error;
 use super::field_layout::{Along, FieldLayout};
+use super::vtk_xml::{Numbers, opening, time_value, write_array};
+use super::{ResultFile, write_text};
 use crate::error::Result;
 
 /// Writes a frame of a field as a table: a row for each box with its centre (µm; no z for a field of the substrate)
@@ -23,7 +25,7 @@ pub fn write_field_table(
     frame: usize,
     path: &Path,
 ) -> Result<()> {
-    save(path, &table(field, &values_of(result, field, species, frame)?))
+    write_text(&table(field, &values_of(result, field, species, frame)?), path)
 }
 
 /// Writes a frame of a field as an image of VTK (`.vti`) with one array for each of these species. An existing file is
@@ -41,8 +43,13 @@ pub fn write_field_image(
     frame: usize,
     path: &Path,
 ) -> Result<()> {
-    let time = result.times()?[frame];
-    save(path, &image(field, &values_of(result, field, species, frame)?, time))
+    let (time, values) = (result.times()?[frame], values_of(result, field, species, frame)?);
+    let written = File::create(path).and_then(|file| {
+        let mut out = BufWriter::new(file);
+        write_image(&mut out, field, &values, time)?;
+        out.flush()
+    });
+    written.map_err(|error| machine_error(path, "cannot be written", &error.to_string()))
 }
 
 /// A species with its name and unit, and its values.
@@ -59,10 +66,6 @@ fn values_of<'a>(
         Ok((named, result.field_frame(&field.name, &named.0, frame)?))
     };
     species.iter().map(value).collect()
-}
-
-fn save(path: &Path, text: &str) -> Result<()> {
-    std::fs::write(path, text).map_err(|error| machine_error(path, "cannot be written", &error.to_string()))
 }
 
 fn table(field: &FieldLayout, species: &[Values]) -> String {
@@ -91,28 +94,20 @@ fn rounded(coordinate: f64) -> f64 {
     (coordinate * 1e9).round() / 1e9
 }
 
-fn image(field: &FieldLayout, species: &[Values], time: f64) -> String {
+fn write_image(out: &mut impl Write, field: &FieldLayout, species: &[Values], time: f64) -> io::Result<()> {
     let list = |numbers: &[f64; 3]| numbers.map(|number| number.to_string()).join(" ");
     let [nx, ny, nz] = field.cells;
     let (extent, origin, spacing) = (format!("0 {nx} 0 {ny} 0 {nz}"), list(&field.origin), list(&field.spacing));
-    let mut text = format!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\">\n\
-         <ImageData WholeExtent=\"{extent}\" Origin=\"{origin}\" Spacing=\"{spacing}\">\n\
-         <FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{time}\
-         </DataArray></FieldData>\n<Piece Extent=\"{extent}\">\n<CellData>\n"
-    );
-    for ((name, _), values) in species {
-        let _ = writeln!(text, "<DataArray type=\"Float32\" Name=\"{}\" format=\"ascii\">", escaped(name));
-        for row in values.chunks(nx) {
-            let row: Vec<String> = row.iter().map(|value| (*value as f32).to_string()).collect();
-            let _ = writeln!(text, "{}", row.join(" "));
-        }
-        text.push_str("</DataArray>\n");
+    writeln!(
+        out,
+        "{}<ImageData WholeExtent=\"{extent}\" Origin=\"{origin}\" Spacing=\"{spacing}\">\n{}<Piece Extent=\"{extent}\">\n<CellData>",
+        opening("ImageData"),
+        time_value(time)
+    )?;
+    for ((name, unit), values) in species {
+        // As many digits as were stored.
+        let values: Vec<f32> = values.iter().map(|value| *value as f32).collect();
+        write_array(out, name, 1, unit, &Numbers::Singles(&values))?;
     }
-    text.push_str("</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
-    text
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    writeln!(out, "</CellData>\n</Piece>\n</ImageData>\n</VTKFile>")
 }

@@ -70,8 +70,9 @@ exit 2
 "#);
     insta::assert_snapshot!(say(&["export", "made_up.vtkhdf", "-o", "a.obj", "--field", "medium"]), @r#"
   × --field has no meaning for a.obj
-  help: --frame and --time belong to a mesh (.obj, .ply, .stl) or a field (.vti, or .csv with --field),
-        --cell to a mesh, --field to a field, --table and --series to a table (.csv)
+  help: --frame and --time belong to one frame of a mesh (.obj, .ply, .stl, .vtu) or of a field
+        (.vti, .ome.tiff, or .csv with --field), --every to all frames (.pvd, .ome.tiff), --cell to a mesh,
+        --field to a field, --table and --series to a table (.csv)
 
 1 fault
 exit 2
@@ -115,7 +116,12 @@ fn the_commands_make_what_they_are_asked_for() {
     say(&["plot", "made_up.vtkhdf", "--y", "clock.U", "--each-cell"]);
     say(&["export", "made_up.vtkhdf", "-o", "flat.csv", "--field", "attractant", "--time", "first"]);
     say(&["export", "made_up.vtkhdf", "-o", "medium.vti", "--field", "oxygen"]);
+    say(&["export", "made_up.vtkhdf", "-o", "medium.OME.tif", "--every", "5"]);
+    say(&["export", "made_up.vtkhdf", "-o", "series.pvd", "--every", "5", "--field", "attractant.inhibitor"]);
     let made = |name: &str| folder.path().join(name);
+    for name in ["medium.OME.tif", "series.pvd", "series/series_000010.vti"] {
+        assert!(made(name).exists(), "{name}");
+    }
     for name in ["made_up.png", "made_up.kymograph-attractant-inhibitor.svg", "made_up.profile-oxygen.png"] {
         assert!(made(name).exists() || path.with_extension("").join(name).exists(), "{name}");
     }

@@ -2,6 +2,7 @@
 
 mod crafted;
 mod example;
+mod exported;
 mod faults;
 mod fields;
 mod populations;

@@ -50,7 +50,7 @@ fn every_format_brings_a_red_cell_back() {
     let folder = tempfile::tempdir().unwrap();
     for (name, tolerance) in [("cell.obj", 0.0), ("cell.ply", 0.0), ("cell.STL", 1e-6)] {
         let path = folder.path().join(name);
-        export_surface(&cell, &path).unwrap();
+        export_surface(&cell, &[("cell", vec![7.0; 42])], &path).unwrap();
         let back = read_surface(&path, 1.0).unwrap();
         assert_eq!(check_surface(&back, &SurfaceRules::CELL), Ok(()));
         assert_eq!((back.positions.len(), back.facets.len()), (42, 80));
@@ -177,7 +177,7 @@ fn headers_that_promise_the_moon_fail_without_taking_memory() {
 fn files_cut_anywhere_are_bad_input_and_never_panic() {
     let (mut binary_ply, mut binary_stl) = (Vec::new(), Vec::new());
     let cell = red_cell(7.82, 0);
-    write_ply(&cell, &mut binary_ply).unwrap();
+    write_ply(&cell, &[], &mut binary_ply).unwrap();
     write_stl(&cell, &mut binary_stl).unwrap();
     for length in 0..binary_ply.len() {
         assert!(ply::parse("c.ply", &binary_ply[..length]).is_err(), "{length}");
