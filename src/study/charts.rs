@@ -208,7 +208,8 @@ fn shared_out(found: &Sensitivity, name: &str, columns: &[Column]) -> Option<Cha
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     let ends = rows.iter().flatten().flat_map(|of| [of.value, of.low, of.high]).filter(|end| end.is_finite());
     let [low, high] = ends.fold([0.0, 1.0_f64], |[low, high]: [f64; 2], end| [low.min(end), high.max(end)]);
-    // Tenths, as estimates leave the range from 0 to 1 where there are few points.
+    // Few points leave intervals that are many times as wide as the range of shares: they end at the frame, so that bars can be seen.
+    let [low, high] = [low.max(-0.5), high.min(1.5)];
     let range = Range::Fixed((10.0 * low).floor() / 10.0, (10.0 * high).ceil() / 10.0);
     let told = format!("share of the variance of {name}, and its 95 % interval");
     bars(&names, &["alone (first order)", "with others (total)"], &rows, Axis::linear(told).range(range))

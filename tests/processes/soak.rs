@@ -90,6 +90,7 @@ fn run(program: &Path, folder: &Path) -> Vec<Sample> {
             samples.push(Sample { time, steps, processors, memory });
         } else {
             said.push_str(&line);
+            said.push('\n');
         }
     }
     assert!(child.wait().unwrap().success(), "{said}");
