@@ -1,12 +1,15 @@
-//! Experiment documents: read, checked, compiled and begun, as `pseudopod check` and the start of `pseudopod run` do.
+//! Experiment documents: read, checked, compiled and begun, as `pseudopod check` and the start of `pseudopod run` do. The same texts are read as
+//! studies and as claims, which are documents of their own.
 #![no_main]
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use libfuzzer_sys::{Corpus, fuzz_mutator, fuzz_target};
+use pseudopod::analysis::claims;
 use pseudopod::experiment::{Document, Size};
 use pseudopod::simulation::{Simulation, SimulationError};
+use pseudopod::study::{Design, StudyDocument, points};
 use pseudopod_fuzz::commands::told;
 use pseudopod_fuzz::mutate::mutate;
 use pseudopod_fuzz::shipped::{ROOT, Shipped};
@@ -28,8 +31,30 @@ fn folder_of(text: &str) -> &'static Path {
     SHIPPED.folders.iter().max_by_key(there).map_or(&ROOT, PathBuf::as_path)
 }
 
+/// Points at random of a study that are worked out: more take their time.
+const MOST_POINTS: u32 = 1_000;
+
+/// Reads a text as a study, works out its points, and reads it as claims.
+fn read_others(text: &str) {
+    let read = StudyDocument::parse("fuzzed.toml", text, &ROOT).and_then(|study| match study.study.design {
+        Design::LatinHypercube { number } | Design::Sobol { number } | Design::Saltelli { number }
+            if number > MOST_POINTS =>
+        {
+            Ok(())
+        }
+        _ => points(&study).map(drop),
+    });
+    if let Err(error) = read {
+        told(&error);
+    }
+    if let Err(error) = claims::parse("fuzzed.toml", text) {
+        told(&error);
+    }
+}
+
 fuzz_target!(init: pseudopod_fuzz::one_thread(), |data: &[u8]| -> Corpus {
     let Ok(text) = std::str::from_utf8(data) else { return Corpus::Reject };
+    read_others(text);
     let mut document = match Document::parse("fuzzed.toml", text, folder_of(text), &[]) {
         Ok(document) => document,
         Err(error) => {

@@ -17,6 +17,7 @@ pub mod over;
 pub mod pattern;
 pub mod recording;
 pub mod sensing;
+pub mod sobol_indices;
 pub mod speed_persistence;
 pub mod statistics;
 pub mod table;

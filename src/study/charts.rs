@@ -1,9 +1,12 @@
-//! A chart for each measure of a study: a curve over one parameter, a map over two, rank correlations with more.
+//! A chart for each measure of a study: a curve over one parameter, a map over two, rank correlations with more, or Sobol's indices.
 
+use super::bars::bars;
 use super::collect::{Collected, Status};
 use super::document::Design;
 use super::ranks::correlation;
+use super::sensitivity::{Sensitivity, sensitivity};
 use super::variation::Column;
+use crate::analysis::bootstrap::Estimate;
 use crate::analysis::statistics::mean;
 use crate::error::short;
 use crate::picture::colour::{Colour, ColourMap};
@@ -14,28 +17,23 @@ use crate::picture::{Axis, Chart, Heat, Range, Series, Shading};
 const LONGEST_LABEL: usize = 48;
 /// The same beside the colours of a map, where the number of runs follows.
 const LONGEST_BAR: usize = 62;
-/// Longest name of a parameter beside its bar, letters.
-const LONGEST_NAME: usize = 30;
 
 /// The charts of all measures that some run has, each with the name of its files.
 pub fn charts(collected: &Collected) -> Vec<(String, Chart)> {
     let facts = &collected.plan.facts;
-    let sampled = matches!(facts.design, Design::LatinHypercube { .. } | Design::Sobol { .. });
     let mut made = Vec::new();
     for (index, measure) in facts.measures.iter().enumerate() {
         let data = Data::of(collected, index);
         if data.values.is_empty() {
             continue;
         }
-        let chart = match &facts.parameters[..] {
-            [only] => curve(&data, only, sampled),
-            [one, other] if facts.design == Design::Grid => map(&data, one, other),
-            columns => match bars(&data, columns) {
-                Some(chart) => chart,
-                None => continue,
-            },
+        let chart = match (sensitivity(collected, index), &facts.parameters[..]) {
+            (Some(found), columns) => shared_out(&found, &measure.name, columns),
+            (None, [only]) => Some(curve(&data, only, facts.design.is_sampled())),
+            (None, [one, other]) if facts.design == Design::Grid => Some(map(&data, one, other)),
+            (None, columns) => ranked(&data, columns),
         };
-        made.push((measure.name.clone(), Chart { title: facts.title.clone(), ..chart }));
+        made.extend(chart.map(|chart| (measure.name.clone(), Chart { title: facts.title.clone(), ..chart })));
     }
     made
 }
@@ -188,67 +186,41 @@ fn rounded_text(value: f64) -> String {
 }
 
 /// How much the ranks of a measure follow those of each parameter; none where no parameter is a number.
-fn bars(data: &Data, columns: &[Column]) -> Option<Chart> {
+fn ranked(data: &Data, columns: &[Column]) -> Option<Chart> {
     let numeric: Vec<(usize, &Column)> =
         columns.iter().enumerate().filter(|(_, column)| column.kind.is_numeric()).collect();
     let (points, measured): (Vec<u32>, Vec<f64>) = data.values.iter().copied().unzip();
-    let (mut outlines, mut intervals) = (Vec::new(), Vec::new());
-    // The first parameter stands on top.
-    for (row, (index, _)) in numeric.iter().rev().enumerate() {
+    let of_column = |index: usize| {
         let values: Vec<f64> =
-            points.iter().map(|point| data.cell(*point, *index).parse().unwrap_or(f64::NAN)).collect();
-        let found = correlation(&points, &values, &measured, data.collected.plan.facts.seed);
-        if !found.value.is_finite() {
-            continue;
-        }
-        let (middle, half) = (row as f64, 0.32);
-        let [low, high] = [middle - half, middle + half];
-        outlines.push(vec![[0.0, low], [found.value, low], [found.value, high], [0.0, high]]);
-        if found.low.is_finite() {
-            intervals.push(vec![[found.low, middle], [found.high, middle]]);
-            intervals.extend([found.low, found.high].map(|end| vec![[end, middle - 0.1], [end, middle + 0.1]]));
-        }
-    }
-    if outlines.is_empty() {
-        return None;
-    }
-    let areas = Series::Areas { label: String::new(), outlines, colour: Some(Colour::of_palette(0)) };
-    let mut series = vec![areas];
-    let dark = Colour([0x33; 3]);
-    series.extend(intervals.into_iter().map(|points| Series::line("", points).coloured(dark)));
-    series.push(Series::line("", vec![[0.0, -0.5], [0.0, numeric.len() as f64 - 0.5]]).coloured(dark));
-    let names = numeric.iter().rev().map(|(_, column)| shortened(&column.name));
+            points.iter().map(|point| data.cell(*point, index).parse().unwrap_or(f64::NAN)).collect();
+        vec![correlation(&points, &values, &measured, data.collected.plan.facts.seed)]
+    };
+    let rows: Vec<_> = numeric.iter().map(|(index, _)| of_column(*index)).collect();
+    let names: Vec<&str> = numeric.iter().map(|(_, column)| column.name.as_str()).collect();
     // What the lines on the bars are stands in the label: a legend would take half of the width.
     let told = format!("rank correlation with {}, and its 95 % interval", data.name);
-    let x = Axis { range: Range::Fixed(-1.0, 1.0), ..Axis::linear(told) };
-    Some(Chart { x, y: Axis::named("", names), series, ..Chart::default() })
+    bars(&names, &[""], &rows, Axis::linear(told).range(Range::Fixed(-1.0, 1.0)))
 }
 
-/// A name that is not too long: of a long key its last words, which say most.
-fn shortened(name: &str) -> String {
-    if name.chars().count() <= LONGEST_NAME {
-        return name.to_owned();
-    }
-    let ends = name.match_indices('.').map(|(at, _)| &name[at + 1..]);
-    let fitting = ends.filter(|end| !end.is_empty() && end.chars().count() < LONGEST_NAME).max_by_key(|end| end.len());
-    let skipped = name.chars().count() - LONGEST_NAME + 1;
-    fitting.map_or_else(|| format!("…{}", name.chars().skip(skipped).collect::<String>()), |end| format!("…{end}"))
+/// Sobol's indices of a measure, of first order and total, for each parameter.
+fn shared_out(found: &Sensitivity, name: &str, columns: &[Column]) -> Option<Chart> {
+    let rows: Vec<Vec<Estimate>> = found.shares.indices.iter().map(|one| vec![one.first, one.total]).collect();
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    let ends = rows.iter().flatten().flat_map(|of| [of.value, of.low, of.high]).filter(|end| end.is_finite());
+    let [low, high] = ends.fold([0.0, 1.0_f64], |[low, high]: [f64; 2], end| [low.min(end), high.max(end)]);
+    // Few points leave intervals that are many times as wide as the range of shares: they end at the frame, so that bars can be seen.
+    let [low, high] = [low.max(-0.5), high.min(1.5)];
+    let range = Range::Fixed((10.0 * low).floor() / 10.0, (10.0 * high).ceil() / 10.0);
+    let told = format!("share of the variance of {name}, and its 95 % interval");
+    bars(&names, &["alone (first order)", "with others (total)"], &rows, Axis::linear(told).range(range))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{LONGEST_NAME, rounded_text, shortened};
+    use super::rounded_text;
 
     #[test]
     fn marks_have_three_digits() {
         assert_eq!([0.00316227766, 0.1, -12.345, 0.0].map(rounded_text), ["0.00316", "0.1", "−12.3", "0"]);
-    }
-
-    #[test]
-    fn long_names_keep_their_ends() {
-        assert_eq!(shortened("adhesion"), "adhesion");
-        assert_eq!(shortened("cells.cell.motility.attraction.stiffness"), "…motility.attraction.stiffness");
-        let odd = shortened(&"a long name without any key in it".repeat(2));
-        assert!(odd.starts_with('…') && odd.chars().count() == LONGEST_NAME, "{odd}");
     }
 }

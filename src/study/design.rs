@@ -1,8 +1,8 @@
 //! The points of a study: which values its parameters have together. They depend on the study and its seed alone.
 
 use super::document::{Design, StudyDocument};
-use super::sobol;
 use super::variation::{Column, Values, Variation, variations};
+use super::{saltelli, sobol};
 use crate::error::{Error, Fault, Result};
 use crate::random::{Purpose, Stream};
 
@@ -31,6 +31,7 @@ pub fn points(document: &StudyDocument) -> Result<Points> {
         Design::List => list(&varied),
         Design::LatinHypercube { .. } => sampled(&varied, &latin_hypercube(number, varied.len(), study.seed)),
         Design::Sobol { .. } => sampled(&varied, &sobol::points(number, varied.len(), study.seed)),
+        Design::Saltelli { number } => sampled(&varied, &saltelli::points(number, varied.len(), study.seed)),
     };
     Ok(Points { columns: varied.into_iter().map(|one| one.column).collect(), rows })
 }
@@ -53,27 +54,47 @@ fn check_size(document: &StudyDocument, varied: &[Variation]) -> Result<u32> {
             lengths.first().copied().unwrap_or(0)
         }
         Design::LatinHypercube { number } | Design::Sobol { number } => u64::from(number),
+        Design::Saltelli { number } => u64::from(number) * saltelli::each(varied.len()) as u64,
     };
-    let most = sobol::MOST_DIMENSIONS;
-    if matches!(study.design, Design::Sobol { .. }) && varied.len() > most {
-        let message = format!("{} parameters are varied; a Sobol sequence has at most {most} here", varied.len());
-        let location = document.location("design.kind", "too many parameters for it");
-        return Err(Error::input(
-            Fault::new(message).at(location).help("take `kind = \"latin_hypercube\"`, or fewer parameters"),
-        ));
-    }
+    check_dimensions(document, varied.len())?;
     let runs = number.saturating_mul(u64::from(study.replicates));
     if runs > MOST_RUNS {
         let product = lengths.iter().map(u64::to_string).collect::<Vec<_>>().join(" × ");
-        let points =
-            if study.design == Design::Grid { format!("{product} values") } else { format!("{number} points") };
+        let points = match study.design {
+            Design::Grid => format!("{product} values"),
+            Design::Saltelli { number } => {
+                format!("{number} base points with {} points each,", saltelli::each(varied.len()))
+            }
+            _ => format!("{number} points"),
+        };
         let message =
             format!("{points} with {} replicates are {runs} runs; at most {MOST_RUNS} are made", study.replicates);
         let location = document.location("parameter", "too many runs");
-        let help = "take fewer values or replicates, or `kind = \"sobol\"` with a `number` of points";
+        let help = match study.design {
+            Design::Saltelli { .. } => "take fewer base points, parameters or replicates",
+            _ => "take fewer values or replicates, or `kind = \"sobol\"` with a `number` of points",
+        };
         return Err(Error::input(Fault::new(message).at(location).help(help)));
     }
     Ok(number as u32)
+}
+
+/// Whether a Sobol sequence has a coordinate for each parameter, or two where each point needs two.
+fn check_dimensions(document: &StudyDocument, parameters: usize) -> Result<()> {
+    let most = sobol::MOST_DIMENSIONS;
+    let (message, help) = match document.study.design {
+        Design::Sobol { .. } if parameters > most => (
+            format!("{parameters} parameters are varied; a Sobol sequence has at most {most} here"),
+            "take `kind = \"latin_hypercube\"`, or fewer parameters",
+        ),
+        Design::Saltelli { .. } if parameters > most / 2 => (
+            format!("{parameters} parameters are varied; Saltelli's points are for at most {} here", most / 2),
+            "vary those only that matter, which a Latin hypercube with some hundred points finds",
+        ),
+        _ => return Ok(()),
+    };
+    let location = document.location("design.kind", "too many parameters for it");
+    Err(Error::input(Fault::new(message).at(location).help(help)))
 }
 
 fn listed(one: &Variation) -> &[String] {

@@ -63,6 +63,19 @@ pub enum Design {
         #[schemars(range(min = 2, max = 100_000))]
         number: u32,
     },
+    /// Saltelli's points for Sobol's indices, from a scrambled Sobol sequence; best are 64, 128, 256 base points and so on.
+    Saltelli {
+        /// Base points. Each makes two points, and one more for each parameter.
+        #[schemars(range(min = 2, max = 50_000))]
+        number: u32,
+    },
+}
+
+impl Design {
+    /// Whether its points lie anywhere in ranges.
+    pub fn is_sampled(self) -> bool {
+        matches!(self, Self::LatinHypercube { .. } | Self::Sobol { .. } | Self::Saltelli { .. })
+    }
 }
 
 /// Something of the experiment that is varied.

@@ -5,6 +5,8 @@
 //! of what they measured. Who runs them, and how many at a time, is not decided here.
 
 #[cfg(feature = "pictures")]
+mod bars;
+#[cfg(feature = "pictures")]
 pub mod charts;
 mod check;
 mod collect;
@@ -19,6 +21,8 @@ mod range;
 #[cfg(feature = "pictures")]
 mod ranks;
 mod runs_table;
+mod saltelli;
+mod sensitivity;
 pub mod snakemake;
 mod sobol;
 pub mod table;
@@ -34,5 +38,6 @@ pub use one::{Complete, Done, Files, OneOptions, run_one};
 pub use paths::refused;
 pub use plan::{PLAN_FILE, Plan, RUNS_FILE, Replaces};
 pub use probe::{Probe, probe, told};
+pub use sensitivity::{Sensitivity, sensitivities, sensitivity, sensitivity_columns};
 pub use value::Kind;
 pub use variation::Column;

@@ -1,6 +1,8 @@
 //! The table of the runs of a plan, `runs.csv`: written, and read again.
 
+use super::document::Design;
 use super::facts::{Facts, Run};
+use super::saltelli;
 use super::variation::Column;
 use crate::error::{Error, Fault, Result};
 use std::path::{Path, PathBuf};
@@ -44,13 +46,19 @@ pub fn parse(text: &str, facts: &Facts, path: &Path) -> Result<Vec<Run>> {
             output: PathBuf::from(field(width + 3)?),
         });
     }
-    if runs.is_empty() { Err(damaged()) } else { Ok(runs) }
+    // Where a plan was changed by hand, its points would be others than those of the runs.
+    let points = u64::from(facts.points);
+    let is_whole = match facts.design {
+        Design::Saltelli { number } => points == u64::from(number) * saltelli::each(width) as u64,
+        _ => true,
+    };
+    let is_good = !runs.is_empty() && is_whole && runs.len() as u64 == points * u64::from(facts.replicates);
+    if is_good { Ok(runs) } else { Err(damaged()) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::document::Design;
     use crate::study::paths::fingerprint;
     use crate::study::value::Kind;
     use std::collections::BTreeMap;
@@ -89,5 +97,11 @@ mod tests {
         assert_eq!(parse(&text, &facts, Path::new("runs.csv")).unwrap(), runs);
         let wanted = ["run.until=1 s", "strength, of all=\"0.1 pN/um^2\"", "word='a \"b\", 1'", "seed=1099511627776"];
         assert_eq!(facts.sets_of(&runs[0]), wanted);
+        for (points, replicates, design) in
+            [(0, 2, facts.design), (3, 2, facts.design), (2, 2, Design::Saltelli { number: 1 })]
+        {
+            let other = Facts { points, replicates, design, ..facts.clone() };
+            assert!(parse(&text, &other, Path::new("runs.csv")).is_err(), "{points} points, {replicates} times");
+        }
     }
 }

@@ -112,7 +112,7 @@ impl Reader<'_> {
 
     fn read(&self) -> std::result::Result<Variation, Fault> {
         let Parameter { values, from, to, .. } = self.parameter;
-        let sampled = matches!(self.document.study.design, Design::LatinHypercube { .. } | Design::Sobol { .. });
+        let sampled = self.document.study.design.is_sampled();
         match (values, from, to) {
             (Some(values), None, None) if !sampled => self.listed(values),
             (None, Some(from), Some(to)) => self.range(from, to, sampled),

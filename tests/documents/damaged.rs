@@ -8,12 +8,14 @@ use std::time::{Duration, Instant};
 
 use pseudopod::analysis::claims;
 use pseudopod::analysis::table::Table;
-use pseudopod::analysis::tracks::read as tracks;
+use pseudopod::analysis::tracks::{package, read as tracks};
 use pseudopod::equations;
 use pseudopod::error::{Error, Paint, Source, render};
 use pseudopod::experiment::Document;
 use pseudopod::geometry::read_surface;
-use pseudopod::study::{StudyDocument, look_over, points};
+use pseudopod::study::{
+    PLAN_FILE, Plan, RUNS_FILE, Replaces, StudyDocument, charts, collect, look_over, points, sensitivities,
+};
 
 use crate::chance::Chance;
 use crate::damage::{damaged, files, parts};
@@ -82,6 +84,51 @@ fn read_claims(text: &str, _: &Path) -> Result<(), Error> {
     claims::parse("damaged.toml", text).map(|_| ())
 }
 
+/// The plan of a study in a folder of its own, without any run.
+fn write_plan(folder: &Path) -> PathBuf {
+    let study = StudyDocument::read(Path::new("tests/messages/sweeps/variance.toml")).unwrap();
+    let points = points(&study).unwrap();
+    let looked = look_over(&study, &points, None).unwrap();
+    Plan::new(&study, points, &looked.some[0], &looked.files, folder).write(Replaces::Nothing).unwrap();
+    folder.join(PLAN_FILE)
+}
+
+/// Plans are read and what there is of their runs is collected.
+fn read_plan(text: &str, path: &Path) -> Result<(), Error> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(path.with_file_name(RUNS_FILE), folder.path().join(RUNS_FILE)).unwrap();
+    std::fs::write(folder.path().join(PLAN_FILE), text).unwrap();
+    let collected = collect(Plan::read(folder.path())?);
+    let found = sensitivities(&collected);
+    found.iter().for_each(|one| drop(one.notes(&collected)));
+    charts::charts(&collected);
+    Ok(())
+}
+
+const DESCRIPTION: &str = "dp.json";
+/// Tracks in the layout of biotracks: the description of a package, and its tables.
+const PACKAGE: [(&str, &str); 3] = [
+    (
+        DESCRIPTION,
+        r#"{"name": "tracks", "cmso_space_unit": "micron", "cmso_time_unit": "second", "resources": [
+            {"name": "cmso_objects_table", "path": "objects.csv"}, {"name": "cmso_links_table", "path": "links.csv"}]}"#,
+    ),
+    (
+        "objects.csv",
+        "cmso_object_id,cmso_frame_id,time,cmso_x_coord,cmso_y_coord\n1,0,0,1.5,2\n2,1,10,2,2.5\n3,0,0,5,5\n4,1,10,6,5\n",
+    ),
+    ("links.csv", "cmso_link_id,cmso_object_id\n1,1\n1,2\n2,3\n2,4\n"),
+];
+
+/// A package with one file damaged.
+fn read_package(text: &str, path: &Path) -> Result<(), Error> {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, whole) in PACKAGE {
+        std::fs::write(folder.path().join(name), if path.ends_with(name) { text } else { whole }).unwrap();
+    }
+    package::read(&folder.path().join(DESCRIPTION), &tracks::Options::default()).map(|_| ())
+}
+
 /// All kinds, each so many times.
 fn all(times: u32) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -97,6 +144,16 @@ fn all(times: u32) {
     for ending in ["obj", "ply", "stl"] {
         read_damaged(ending, &files(root, ending, &["tests/messages/meshes"]), times / 4, read_mesh);
     }
+    let folder = tempfile::tempdir().unwrap();
+    read_damaged("plan", &[write_plan(folder.path())], times / 4, read_plan);
+    let parts = PACKAGE.map(|(name, text)| {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        folder.path().join(name)
+    });
+    for (path, (_, text)) in parts.iter().zip(PACKAGE) {
+        read_package(text, path).expect("a good package");
+    }
+    read_damaged("package", &parts, times / 4, read_package);
     read_damaged("table", &files(root, "csv", &["experiments", "tests"]), times / 2, read_table);
 }
 
@@ -106,7 +163,7 @@ fn readers_bear_damaged_texts() {
 }
 
 #[test]
-#[ignore = "slow: reads 450 000 damaged texts (6 min)"]
+#[ignore = "slow: reads 500 000 damaged texts (7 min)"]
 fn readers_bear_many_damaged_texts() {
     all(100_000);
 }

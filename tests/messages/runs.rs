@@ -94,7 +94,7 @@ fn every_transcript_of_tracks_comes_out_as_it_is_kept() {
 #[test]
 fn every_transcript_of_studies_comes_out_as_it_is_kept() {
     let _turn = take_turn();
-    compare(SWEEPS, 2);
+    compare(SWEEPS, 3);
 }
 
 #[test]

@@ -16,7 +16,7 @@ fn looked_over(path: &Path) -> Result<(), Error> {
 fn every_bad_study_gets_the_message_beside_it() {
     let _turn = take_turn();
     let studies = kept::documents("studies", |path| !path.ends_with("cells.toml"));
-    kept::every_message_is_that_beside(&studies, 18, looked_over);
+    kept::every_message_is_that_beside(&studies, 20, looked_over);
 }
 
 #[test]

@@ -11,6 +11,8 @@ mod python;
 mod running;
 #[cfg(target_os = "linux")]
 mod shim;
+#[cfg(target_os = "linux")]
+mod soak;
 mod sweep;
 
 #[path = "../support/chance.rs"]

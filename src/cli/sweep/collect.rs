@@ -4,11 +4,14 @@ use crate::cli::report::{Report, path_text, paths};
 use crate::error::{Result, say};
 use crate::picture::save_chart;
 use crate::study::table::csv_text;
-use crate::study::{Collected, Plan, Status, charts, collect, refused};
+use crate::study::{
+    Collected, Plan, Sensitivity, Status, charts, collect, refused, sensitivities, sensitivity_columns,
+};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Writes what the runs of a study measured: summary.csv, summary.parquet, and a chart of each measure in figures/.
+/// Writes what the runs of a study measured: summary.csv, summary.parquet, sensitivity.csv for Saltelli's points, and a chart of each
+/// measure in figures/.
 #[derive(Debug, Clone, clap::Args)]
 pub struct CollectArgs {
     /// The folder of the plan.
@@ -27,7 +30,8 @@ pub struct CollectArgs {
 /// [`Error::Input`] for a folder without a plan; [`Error::Machine`] when the disk refuses.
 pub fn run(args: &CollectArgs) -> Result<Report> {
     let collected = collect(Plan::read(&args.folder)?);
-    let mut files = write_tables(&collected, &args.folder)?;
+    let found = sensitivities(&collected);
+    let mut files = write_tables(&collected, &found, &args.folder)?;
     if !args.no_pictures {
         let folder = args.folder.join("figures");
         std::fs::create_dir_all(&folder).map_err(|error| refused(&folder, &error))?;
@@ -41,6 +45,7 @@ pub fn run(args: &CollectArgs) -> Result<Report> {
             say(&format!("{} {}: {note}", run.told(&collected.plan.facts.parameters), row.status.word()));
         }
     }
+    found.iter().flat_map(|one| one.notes(&collected)).for_each(|note| say(&note));
     let counts: Vec<(Status, usize)> = collected.counts().filter(|(_, count)| *count > 0).collect();
     let told = counts.iter().map(|(status, count)| format!("{count} {}", status.word())).collect::<Vec<_>>().join(", ");
     let mut words = format!("{} runs: {told}\n", collected.rows.len());
@@ -53,13 +58,16 @@ pub fn run(args: &CollectArgs) -> Result<Report> {
     Ok(report.fact("files", paths(&files)).fact("runs", collected.rows.len()).fact("statuses", facts))
 }
 
-fn write_tables(collected: &Collected, folder: &Path) -> Result<Vec<PathBuf>> {
+fn write_tables(collected: &Collected, found: &[Sensitivity], folder: &Path) -> Result<Vec<PathBuf>> {
     let columns = collected.columns();
-    let tables = [
+    let mut tables = vec![
         ("summary.csv", csv_text(&columns).into_bytes()),
         #[cfg(feature = "parquet")]
         ("summary.parquet", crate::study::table::parquet_bytes(&columns)?),
     ];
+    if !found.is_empty() {
+        tables.push(("sensitivity.csv", csv_text(&sensitivity_columns(collected, found)).into_bytes()));
+    }
     let mut written = Vec::new();
     for (name, bytes) in tables {
         let path = folder.join(name);

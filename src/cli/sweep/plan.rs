@@ -99,7 +99,11 @@ fn told_points(study: &StudyDocument, points: &Points, looked: &Looked) -> Strin
         write!(words, "{}", if replicates == 1 { String::new() } else { format!(", each with {replicates} seeds") });
     let all = |checked: usize| if checked == number { "all".to_owned() } else { format!("{checked} of them") };
     let _ = writeln!(words, "; {} read and {} built without a fault", all(looked.read), all(looked.built));
-    if let Design::Sobol { number } = study.study.design
+    if let Design::Saltelli { number: base } = study.study.design {
+        let (each, parameters) = (number / base as usize, study.study.parameter.len());
+        let _ = writeln!(words, "{base} base points of {parameters} parameters, each with {each} points");
+    }
+    if let Design::Sobol { number } | Design::Saltelli { number } = study.study.design
         && !number.is_power_of_two()
     {
         let _ = writeln!(
