@@ -56,6 +56,8 @@ enum Acting {
     Loads,
     Planes,
     Motility,
+    /// A program.
+    Forces,
 }
 
 fn scene(method: Method, acting: Acting, cells: usize) -> Model {
@@ -66,7 +68,8 @@ fn scene(method: Method, acting: Acting, cells: usize) -> Model {
     kind.bound_stiffness();
     let mut planes = Vec::new();
     match acting {
-        Acting::Elastic => {}
+        // What a program exerts is in the state.
+        Acting::Elastic | Acting::Forces => {}
         Acting::Loads => kind.forces.extend([pull(Vec3::z(), 0), pull(-Vec3::z(), 7)]),
         Acting::Planes => {
             let plane = |name: &str, side: f64| Plane {
@@ -101,6 +104,9 @@ fn allocations(method: Method, acting: Acting, threads: usize) -> usize {
     let model = scene(method, acting, 20);
     let positions = vec![model.kinds[0].rest.positions.clone(); 20];
     let (mut state, mut ws) = (State::new(&model, &[positions]), Workspace::new(&model));
+    if acting == Acting::Forces {
+        state.chemistry.controls.atom_forces = vec![Vec3::x(); state.atoms(&model)];
+    }
     pool.install(|| {
         let mut run = |steps: usize| {
             for _ in 0..steps {
@@ -169,7 +175,7 @@ fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
         Method::RungeKutta4,
     ];
     for method in methods {
-        for acting in [Acting::Elastic, Acting::Loads, Acting::Planes, Acting::Motility] {
+        for acting in [Acting::Elastic, Acting::Loads, Acting::Planes, Acting::Motility, Acting::Forces] {
             assert_eq!(allocations(method, acting, 1), 0, "{method:?} with scene {}", acting as usize);
         }
         // Idle threads of the pool now and then allocate for their own queues; ours would come in every step.

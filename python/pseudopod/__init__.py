@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import os
 from importlib import metadata
+from typing import TYPE_CHECKING, Any
 
 from ._errors import Fault, PseudopodError, ResultError, RunError
 from ._fields import Fields
@@ -20,6 +21,9 @@ from ._provenance import Measure, Measures, Provenance
 from ._result import Result
 from ._run import check, resume, run
 from ._sweep import read_summary, sweep
+
+if TYPE_CHECKING:
+    from pseudopod_stepping import Simulation as Simulation
 
 try:
     __version__ = metadata.version("pseudopod")
@@ -48,6 +52,22 @@ def open(path: str | os.PathLike[str]) -> Result:
         If it is no result, or is damaged.
     """
     return Result(path)
+
+
+def __getattr__(name: str) -> Any:
+    """``pseudopod.Simulation`` is that of another package, which not everybody has."""
+    if name != "Simulation":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    try:
+        from pseudopod_stepping import Simulation
+    except ModuleNotFoundError as error:
+        if error.name != "pseudopod_stepping":
+            raise
+        raise ImportError(
+            "stepping a simulation from Python needs the package pseudopod-stepping: "
+            "pip install ./python/stepping, in a clone of the repository"
+        ) from None
+    return Simulation
 
 
 __all__ = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 
 import matplotlib
@@ -27,7 +28,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_the_first_steps(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names: dict[str, object] = {}
-    for block in blocks("python", PAGE.split("## Studies")[0]):
+    for block in blocks("python", PAGE.split("## Step it yourself")[0]):
         exec(block, names)
     told = capsys.readouterr().out
     assert re.search(r"619 +19 +600\.0", told)
@@ -35,6 +36,25 @@ def test_the_first_steps(here: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert "True" in told
     assert float(re.search(r"^([\d.]+) um/min$", told, re.MULTILINE)[1]) == pytest.approx(2.8, abs=0.05)
     assert names["axes"].get_ylabel() == "mean speed (um/min)"
+
+
+def test_stepping(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("pseudopod_stepping")
+    for block in blocks("python", PAGE.split("## Step it yourself")[1].split("## Studies")[0]):
+        exec(block, {})
+    told = capsys.readouterr().out
+    assert re.search(r"^far at \d+ s$", told, re.MULTILINE), told
+    assert "(240, 3)" in told
+    held = float(re.search(r"^([\d.]+) um apart$", told, re.MULTILINE)[1])
+    assert held == pytest.approx(14.0, abs=0.5)
+
+
+def test_without_the_module_stepping_says_which_command_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pseudopod_stepping", None)
+    with pytest.raises(ImportError, match=r"pip install \./python/stepping"):
+        from pseudopod import Simulation  # noqa: F401
+    with pytest.raises(AttributeError, match="no attribute 'Simulations'"):
+        pseudopod.Simulations  # noqa: B018
 
 
 def test_the_search_by_optuna(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,7 +14,7 @@ pub struct AtomBalance {
     pub of_cells: [f64; 3],
     /// Drag of the medium, on the atom.
     pub drag: [f64; 3],
-    /// Loads, gravity, attraction and what drives a walk, on the atom.
+    /// Loads, forces that a program exerts, gravity, attraction and what drives a walk, on the atom.
     pub outer: [f64; 3],
     /// Mass times acceleration; 0 in over-damped runs.
     pub inertia: [f64; 3],

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::atom_controls::AtomControls;
 use super::chemistry::Control;
+use crate::Vec3;
 use crate::cell::pseudopods::Told;
 use crate::mechanics::CONTROLLED;
 
@@ -34,6 +35,8 @@ pub struct Controls {
     pub secretion: Vec<Vec<f64>>,
     /// Fields and species that a program lets cells secrete into and the model does not.
     pub secreted: Vec<(usize, usize)>,
+    /// Force that a program exerts on each atom of all cells, pN, in their order; empty where it exerts none.
+    pub atom_forces: Vec<Vec3>,
 }
 
 impl Controls {
@@ -75,6 +78,7 @@ impl Controls {
         self.forces.clone_from(&other.forces);
         self.secretion.clone_from(&other.secretion);
         self.secreted.clone_from(&other.secreted);
+        self.atom_forces.clone_from(&other.atom_forces);
     }
 
     /// The velocity added to a cell's walk, µm/s.

@@ -27,7 +27,7 @@ pub struct Forces<'a> {
     pub kind: &'a Kind,
     /// Its cells, wherever their atoms are.
     pub cells: &'a KindState,
-    /// What chemistry sets.
+    /// What chemistry and programs set.
     pub controls: &'a Controls,
     /// What acts on them beside what they are made of.
     pub acting: Acting<'a>,
@@ -81,6 +81,7 @@ impl Forces<'_> {
         }
         add_pressure(kind, time, x, rest, spare, f, energy);
         add_to_atoms(kind, cells, block, pushes, f);
+        add_to_atoms(kind, cells, block, &controls.atom_forces, f);
         add_fibres(kind, cells, block, fibres, x, f, energy);
         add_contact_forces(kind, cells, block, contact, f);
     }
@@ -97,6 +98,7 @@ impl Forces<'_> {
         if cells.is_driven(kind) {
             add_drive(kind, &drive[numbers], spare);
         }
+        add_to_atoms(kind, cells, block, &controls.atom_forces, spare);
         outer.iter_mut().zip(spare).for_each(|(outer, force)| *outer += share * *force);
     }
 }

@@ -66,6 +66,16 @@ pub enum SimulationError {
         /// Positions that fit into the buffer.
         found: usize,
     },
+    /// Forces on more or fewer atoms than a cell has.
+    #[error("forces on {found} atoms of cell {cell} were given, which has {expected}")]
+    Forces {
+        /// The cell.
+        cell: CellId,
+        /// Atoms that it has.
+        expected: usize,
+        /// Forces that were given.
+        found: usize,
+    },
     /// A model and a state that do not belong together.
     #[error("the state is not one of this model: {0}")]
     Mismatch(String),
@@ -126,6 +136,9 @@ impl SimulationError {
             }
             Self::NotSettable { help, .. } => (*help).to_owned(),
             Self::Length { .. } => "ask `atom_count` for the length of the buffer".to_owned(),
+            Self::Forces { .. } => {
+                "give one for each atom, in the order of positions, or one for the whole cell by `set_force`".to_owned()
+            }
             Self::Mismatch(_) => "make the state with `State::new` from this model".to_owned(),
             Self::Fibre(fault) => fault.help().to_owned(),
             Self::Checkpoint(fault) => fault.help().to_owned(),

@@ -1,5 +1,7 @@
 //! The fields of a simulation: grids and values.
 
+use std::sync::Arc;
+
 use super::error::SimulationError;
 use super::stepping::Simulation;
 use crate::sim::chemistry::{FieldReactor, FieldState};
@@ -45,13 +47,32 @@ impl<'a> FieldView<'a> {
         Ok(&self.reactor.system.units()[self.number(species)?])
     }
 
-    /// The values of a species, one a box, x fastest, then y, then z, in its unit.
+    /// The values of a species, one a box, x fastest, then y, then z, in its unit, without a copy.
     ///
     /// # Errors
     /// [`SimulationError::Unknown`] for a species that the field does not have.
     pub fn values(&self, species: &str) -> Result<&'a [f64], SimulationError> {
         let (number, length) = (self.number(species)?, self.reactor.system.grid().len());
         Ok(&self.now.values[number * length..(number + 1) * length])
+    }
+
+    /// The values of all species, one species after the other, each as [`FieldView::values`] has it: without a copy, to be held on to.
+    /// They stay what they are while the simulation goes on, which takes memory of its own for what comes.
+    ///
+    /// ```
+    /// # use pseudopod::simulation::{Simulation, EXAMPLE};
+    /// let text = format!("{EXAMPLE}[chemistry.medium]\ndocument = \"medium.eml\"");
+    /// let medium = r#"<eml name="medium"><grid dimension="2" spacing="5" origin="-20 -20" size="40 40"/>
+    ///     <field id="food" decay="0.1" initial="1"/></eml>"#;
+    /// let mut simulation = Simulation::builder().equations("medium.eml", medium).text("example", &text)?;
+    /// let before = simulation.field("medium")?.share();
+    /// simulation.run_until(1.0)?;
+    /// assert!(before.iter().all(|value| *value == 1.0));
+    /// assert!(simulation.field("medium")?.values("food")?.iter().all(|value| *value < 0.91));
+    /// # Ok::<(), pseudopod::simulation::SimulationError>(())
+    /// ```
+    pub fn share(&self) -> Arc<Vec<f64>> {
+        self.now.values.share()
     }
 
     fn number(&self, species: &str) -> Result<usize, SimulationError> {

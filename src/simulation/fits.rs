@@ -51,7 +51,7 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
         return mismatch("its contacts are those of other cells".to_owned());
     }
     let fields = model.chemistry.fields.iter().map(|field| FieldState {
-        values: vec![0.0; field.system.species().len() * field.system.grid().len()],
+        values: vec![0.0; field.system.species().len() * field.system.grid().len()].into(),
         inputs: vec![0.0; field.system.inputs().len()],
         ..FieldState::default()
     });
@@ -92,6 +92,7 @@ fn check_controls(model: &Model, state: &State, controls: &Controls) -> Result<(
         forces,
         secretion,
         secreted,
+        atom_forces,
     } = controls;
     let fields = &model.chemistry.fields;
     let is_known = |&(field, species): &(usize, usize)| {
@@ -108,6 +109,10 @@ fn check_controls(model: &Model, state: &State, controls: &Controls) -> Result<(
     if ![0, atoms].contains(&elasticity_of_atoms.len()) {
         let length = elasticity_of_atoms.len();
         return Err(SimulationError::Mismatch(format!("elasticity is set of {length} atoms, not {atoms}")));
+    }
+    if ![0, atoms].contains(&atom_forces.len()) {
+        let length = atom_forces.len();
+        return Err(SimulationError::Mismatch(format!("forces are set of {length} atoms, not {atoms}")));
     }
     let numbers = |kind: usize| state.kinds[kind].cells() * model.kinds[kind].atoms();
     let kinds = model.kinds.len();

@@ -36,6 +36,7 @@ mod fibres;
 mod fields;
 mod fingerprint;
 mod fits;
+mod forces;
 mod history;
 mod id;
 mod population;

@@ -4,6 +4,7 @@ mod book;
 mod circles;
 mod examples;
 mod layering;
+mod own_forces;
 mod run;
 mod simulation;
 mod transaction;

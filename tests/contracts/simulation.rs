@@ -75,6 +75,7 @@ fn driven(threads: usize) -> Simulation {
     for (cell, what, value) in SET {
         simulation.set(cells[cell], what, value).unwrap_or_else(|error| panic!("{what}: {error}"));
     }
+    simulation.set_force(cells[4], [0.3, 0.0, 0.1]).unwrap();
     simulation
 }
 

@@ -363,7 +363,7 @@ fn an_experiment_chooses_the_scheme_of_a_fields_reactions() {
         let idle = r#"<eml name="own" level="cell"><variable id="idle" initial="0" rate="0"/></eml>"#;
         let mut scene = scene(&[("field", field), ("own", idle)], &text);
         scene.run();
-        scene.state().chemistry.fields[0].values.clone()
+        scene.state().chemistry.fields[0].values.to_vec()
     };
     let own = end("");
     for scheme in ["rk45", "rk65", "rosenbrock"] {

@@ -9,6 +9,7 @@ mod carry;
 mod census;
 mod exchange;
 mod expected;
+mod field_values;
 mod links;
 mod measure;
 mod membrane;
@@ -28,6 +29,7 @@ pub use carry::set_control;
 pub use census::member_cells;
 pub use exchange::next_exchange;
 pub use expected::missed;
+pub use field_values::FieldValues;
 pub use links::{
     AtAtoms, AtomControl, Control, Link, LinkObservations, Observation, Observations, Owner, Source, Target, Whole,
     Whose,

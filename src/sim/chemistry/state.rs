@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::super::atom_controls::AtomControls;
 use super::super::controls::Controls;
 use super::super::model::Model;
+use super::field_values::FieldValues;
 use super::links::{Control, Owner, Target, Whose};
 use super::model::{Members, Reactor};
 use crate::field::Fields;
@@ -36,7 +37,7 @@ pub struct ChemistryState {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FieldState {
     /// `[species][box]`, in the document's unit of concentration.
-    pub values: Vec<f64>,
+    pub values: FieldValues,
     /// The pace of the adaptive steps.
     pub pace: (u32, u32),
     /// Values of the document's inputs.
@@ -61,7 +62,7 @@ impl ChemistryState {
             _ => MembraneState::default(),
         };
         let field = |(fields, reactor): (&Fields, &super::FieldReactor)| FieldState {
-            values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect(),
+            values: (0..fields.species().len()).flat_map(|s| fields.values(s)).copied().collect::<Vec<_>>().into(),
             pace: fields.pace(),
             inputs: reactor.system.inputs().iter().map(|(_, value)| *value).collect(),
             kicks: 0,
@@ -91,7 +92,7 @@ impl ChemistryState {
             self.fields.clone_from(&other.fields);
         }
         for (to, from) in self.fields.iter_mut().zip(&other.fields) {
-            to.values.clone_from(&from.values);
+            to.values.copy_from(&from.values);
             to.inputs.clone_from(&from.inputs);
             (to.pace, to.kicks) = (from.pace, from.kicks);
         }

@@ -1,9 +1,11 @@
 //! Cells come and go between steps: what chemistry knows of each comes and goes with it, and stands in the order of the cells.
 
 use super::super::controls::Controls;
+use super::super::kind::Kind;
 use super::super::model::Model;
 use super::model::Members;
 use super::state::{ChemistryState, admit_atoms};
+use crate::Vec3;
 use crate::cell::pseudopods::Told;
 use crate::mechanics::CONTROLLED;
 
@@ -29,6 +31,8 @@ impl ChemistryState {
             }
         }
         self.controls.insert_cell(cells[..kind].iter().sum::<usize>() + local);
+        self.controls
+            .insert_forces(first_atom(model, cells, kind) + local * model.kinds[kind].atoms(), &model.kinds[kind]);
         // Where there was no cell before, lists that links write were as empty as those that none does.
         let all = cells.iter().sum::<usize>() + 1;
         chemistry
@@ -57,6 +61,14 @@ impl ChemistryState {
         }
         let stays: Vec<bool> = (0..cells.len()).flat_map(all).map(|(kind, at)| keep(kind, at)).collect();
         self.controls.retain_cells(&stays);
+        let of_cells = (0..cells.len()).flat_map(|kind| std::iter::repeat_n(model.kinds[kind].atoms(), cells[kind]));
+        let atoms: Vec<bool> =
+            of_cells.zip(&stays).flat_map(|(atoms, stays)| std::iter::repeat_n(*stays, atoms)).collect();
+        let forces = &mut self.controls.atom_forces;
+        retain(forces, &atoms);
+        if forces.iter().all(|force| *force == Vec3::zeros()) {
+            forces.clear();
+        }
         for (number, (of_atoms, kind)) in self.controls.of_atoms.iter_mut().zip(&model.kinds).enumerate() {
             of_atoms.retain_cells(kind.atoms(), |local| keep(number, local));
         }
@@ -83,6 +95,13 @@ impl Controls {
         self.secretion.iter_mut().for_each(|list| list.insert(at, 0.0));
     }
 
+    /// Adds the atoms of a cell of a kind before the one with this number, on which a program exerts nothing.
+    fn insert_forces(&mut self, at: usize, kind: &Kind) {
+        if !self.atom_forces.is_empty() {
+            self.atom_forces.splice(at..at, std::iter::repeat_n(Vec3::zeros(), kind.atoms()));
+        }
+    }
+
     fn retain_cells(&mut self, stays: &[bool]) {
         let single = [&mut self.speed, &mut self.stiffness, &mut self.adhesion];
         let many = self.forces.iter_mut().flatten().chain(&mut self.secretion);
@@ -92,7 +111,12 @@ impl Controls {
     }
 }
 
-/// Keeps what stays of a list with one thing a cell; an empty one stays so.
+/// The number of the first atom of a kind, with so many cells of each.
+fn first_atom(model: &Model, cells: &[usize], kind: usize) -> usize {
+    model.kinds.iter().zip(cells).take(kind).map(|(kind, cells)| cells * kind.atoms()).sum()
+}
+
+/// Keeps what stays of a list with one thing a cell, or an atom; an empty one stays so.
 fn retain<T>(list: &mut Vec<T>, stays: &[bool]) {
     let mut stays = stays.iter();
     list.retain(|_| stays.next().copied().unwrap_or(false));
