@@ -53,6 +53,14 @@ class Frames:
         return self.file.read("/step").astype(np.int64)
 
     @cached_property
+    def interpolated(self) -> npt.NDArray[np.bool_]:
+        # Files of versions whose frames were where steps ended do not say so.
+        self.need()
+        if not self.file.has("/interpolated"):
+            return np.zeros(len(self), dtype=np.bool_)
+        return self.file.read("/interpolated").astype(np.bool_)
+
+    @cached_property
     def first(self) -> Integers:
         return self._of_frames("/cells/first")
 

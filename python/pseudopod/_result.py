@@ -140,6 +140,11 @@ class Result:
         """Steps made up to each frame."""
         return self._frames.steps
 
+    @property
+    def interpolated(self) -> npt.NDArray[np.bool_]:
+        """Whether each frame lies within a step, between the states at its ends."""
+        return self._frames.interpolated
+
     # Cells.
 
     @property

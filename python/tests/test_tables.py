@@ -76,6 +76,15 @@ def test_some_columns_and_frames_are_those_of_all(amoebae: pseudopod.Result) -> 
         amoebae.read_tracks(["mass"])
 
 
+def test_frames_are_at_the_times_asked_for(amoebae: pseudopod.Result) -> None:
+    np.testing.assert_allclose(amoebae.times, 5.0 * np.arange(7), rtol=1e-12)
+    within = amoebae.interpolated
+    assert within.dtype == np.bool_
+    assert len(within) == len(amoebae)
+    assert not within[0]
+    assert not within[-1]
+
+
 def test_cells_of_a_frame(amoebae: pseudopod.Result) -> None:
     last = amoebae.cells()
     assert list(last.index) == [0, 1]
