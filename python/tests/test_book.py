@@ -75,7 +75,8 @@ def test_every_attribute_that_the_page_lists_is_there() -> None:
     assert len(listed) > 15
     assert not [name for name in listed if not hasattr(pseudopod.Result, name)]
     called = {name for name in re.findall(r"pseudopod\.(\w+)", PAGE)}
-    assert not [name for name in called if not hasattr(pseudopod, name)]
+    # That one is of another package, which is tested beside it.
+    assert not [name for name in called - {"Simulation"} if not hasattr(pseudopod, name)]
 
 
 def test_every_public_name_is_on_the_page() -> None:

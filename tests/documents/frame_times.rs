@@ -126,8 +126,8 @@ times = [{}]
         assert!(within[1..within.len() - 1].iter().all(|within| *within), "all of these are within steps");
         result.cell_series("size_x").unwrap()
     };
-    // Its steps of 3/1024 s end nowhere near the frames either, and leave a thousandth of the error.
-    let fine = lengths("2.9296875 ms");
+    // Its steps end nowhere near the frames either, and leave a sixtieth of the error.
+    let fine = lengths("4.1 ms");
     let error = |step: &str| {
         let coarse = lengths(step);
         (1..18).map(|frame| (coarse[[frame, 0]] - fine[[frame, 0]]).abs()).fold(0.0, f64::max)
