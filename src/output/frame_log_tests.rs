@@ -2,10 +2,7 @@
 
 use super::*;
 
-#[path = "../../tests/result_file/example.rs"]
-#[allow(dead_code)]
-mod example;
-use example::{cells, frame_with_fields, header, layout_with_fields as layout};
+use crate::output::example::{cells, frame_with_fields, header, layout_with_fields as layout};
 
 /// A run: headers are made anew each time, and begin at another second.
 fn owner() -> Owner {

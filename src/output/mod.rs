@@ -19,6 +19,10 @@ mod columns;
 mod contacts;
 mod contacts_reader;
 mod container;
+#[cfg(test)]
+#[path = "../../tests/result_file/example.rs"]
+#[allow(dead_code)]
+mod example;
 mod field_column;
 mod field_export;
 mod field_layout;

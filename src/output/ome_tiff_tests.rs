@@ -1,12 +1,8 @@
 //! Words about pictures, and files too large for plain TIFF.
 
 use super::*;
-use crate::output::{Overwrite, ResultWriter};
+use crate::output::{Overwrite, ResultWriter, example};
 use tiff::decoder::{Decoder, DecodingResult};
-
-#[path = "../../tests/result_file/example.rs"]
-#[allow(dead_code)]
-mod example;
 
 #[test]
 fn intervals_are_told_where_they_are_equal_and_signs_beyond_ascii_are_references() {

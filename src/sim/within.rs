@@ -1,16 +1,19 @@
 //! Where a run is at an instant within a step: between the states at its ends, eq. (step.11).
 
-use super::chemistry::ChemistryState;
+use super::chemistry::{ChemistryState, advance_systems_to};
 use super::constraints::enforce_constraints;
 use super::model::Model;
+use super::motility::advance_behaviours;
 use super::state::{KindState, State};
 use super::targets::measure_volumes;
 use super::trouble::Trouble;
 use super::workspace::Workspace;
+use crate::Vec3;
 
 /// The state at a time (s) within the step that was made last and led to `to`. What moves or changes steadily lies on the line between the
-/// ends of the step, volumes are exact, and no atom is behind a plane. What is set between steps is as in the step, and what jumps (fibres,
-/// adhesives, bonds) as the step left it. Runs and pseudopods that had ended by then are moved from `to` into it.
+/// ends of the step, volumes are exact, and no atom is behind a plane. Cells that nothing stops are where their walk has led them by then, and
+/// systems without noise are solved until then. What is set between steps is as in the step, and what jumps (fibres, adhesives, bonds) as the
+/// step left it. Runs and pseudopods that had ended by then are moved from `to` into it.
 ///
 /// Nothing else of `to` is changed, nor anything that the next step reads.
 ///
@@ -20,15 +23,40 @@ pub fn state_within(model: &Model, to: &mut State, time: f64, ws: &mut Workspace
     let from = std::mem::take(&mut ws.next);
     debug_assert!(from.time <= time && time <= to.time && from.counts() == to.counts(), "the step led elsewhere");
     let share = (time - from.time) / (to.time - from.time);
-    let mut within = State { time, ended_runs: Vec::new(), ended_pseudopods: Vec::new(), ..to.clone() };
-    within.ended_runs.extend(to.ended_runs.extract_if(.., |(_, end, _)| *end <= time));
-    within.ended_pseudopods.extend(to.ended_pseudopods.extract_if(.., |(_, end, _)| *end <= time));
+    let mut within = State { time, ..to.clone() };
     within.kinds.iter_mut().zip(&from.kinds).for_each(|(now, from)| now.go_back_to(from, share));
     within.chemistry.go_back_to(&from.chemistry, share);
+    follow_walks(model, (&from, to.time), &mut within, ws);
+    advance_systems_to(model, &from.chemistry, &mut within, &mut ws.chemistry);
     ws.next = from;
+    within.ended_runs = to.ended_runs.extract_if(.., |(_, end, _)| *end <= time).collect();
+    within.ended_pseudopods = to.ended_pseudopods.extract_if(.., |(_, end, _)| *end <= time).collect();
     measure_volumes(model, time, &within, ws);
     enforce_constraints(model, time, &mut within, ws)?;
     Ok(within)
+}
+
+/// Moves cells from the line between the ends of the step to where their walks have led them: free of each other they go by what these ask
+/// for, whatever else they do. Of cells that touch both stay on their lines, beside each other.
+fn follow_walks(model: &Model, (from, end): (&State, f64), within: &mut State, ws: &mut Workspace) {
+    let (passed, whole) = (within.time - from.time, end - from.time);
+    if model.contact.is_some() {
+        return;
+    }
+    let mut walked = |dt: f64, within: &mut State| -> Vec<[f64; 3]> {
+        advance_behaviours(model, dt, from, within, ws);
+        ws.drive.iter().map(|velocity| velocity.map(|along| along * dt)).collect()
+    };
+    let (all, part) = (walked(whole, within), walked(passed, within));
+    let share = passed / whole;
+    for ((kind, begun), now) in model.kinds.iter().zip(&from.kinds).zip(&mut within.kinds) {
+        if !begun.is_driven(kind) || kind.is_held() {
+            continue;
+        }
+        for (local, cell) in begun.numbers().enumerate() {
+            now.shift(kind, local, &Vec3::from_fn(|axis, _| part[cell][axis] - share * all[cell][axis]));
+        }
+    }
 }
 
 /// Moves numbers back towards those of before: all the way where the share of the step is 0.

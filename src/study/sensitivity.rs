@@ -62,9 +62,8 @@ pub fn sensitivity_columns(collected: &Collected, found: &[Sensitivity]) -> Vec<
         words("parameter", &|_, parameter| facts.parameters[parameter].name.clone()),
     ];
     for (name, is_first) in [("first", true), ("total", false)] {
-        let ends: [(&str, fn(&Estimate) -> f64); 3] =
-            [("", |of| of.value), ("_low", |of| of.low), ("_high", |of| of.high)];
-        for (end, of) in ends {
+        for (number, end) in ["", "_low", "_high"].into_iter().enumerate() {
+            let of = |estimate: &Estimate| [estimate.value, estimate.low, estimate.high][number];
             let numbers =
                 rows().map(|(_, (_, indices))| Some(of(if is_first { &indices.first } else { &indices.total })));
             columns.push(TableColumn { title: format!("{name}{end}"), cells: Cells::Numbers(numbers.collect()) });

@@ -143,3 +143,49 @@ fn frames_at_given_times_only() {
     let (_kept, result) = dish("times = [\"1 s\", \"10 s\", \"2.5 s\"]");
     assert_eq!(result.times().unwrap(), [0.0, 1.0, 2.5, 10.0, 12.0]);
 }
+
+#[test]
+fn walks_that_nothing_stops_and_systems_are_where_they_are_at_that_time() {
+    let positions = |step: &str| {
+        let text = format!(
+            r#"
+title = "Free"
+seed = 3
+[run]
+until = "140 s"
+integrator = {{ step = "{step}" }}
+[cells.walker]
+number = 20
+mesh = {{ shape = "icosphere", radius = "5 um", level = 0 }}
+mechanics = {{ drag = "20 pN s/um", shape_memory = {{ shape_modulus = "10 pN/um" }} }}
+motility = {{ brownian = {{ speed = "5 um/min", persistence = "30 s" }} }}
+chemistry = ["decay"]
+[chemistry.decay]
+document = "decay.eml"
+[output]
+every = "7 s"
+"#
+        );
+        let decay = r#"<eml name="decay" level="cell"><parameter id="k" value="0.05"/><variable id="U" initial="1" rate="-k*U"/>
+            <solver scheme="rk45" rtol="1e-10" atol="1e-12"/></eml>"#;
+        let equations = BTreeMap::from([("decay.eml".to_owned(), decay.to_owned())]);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("free.h5");
+        let document = Document::parse_beside("free.toml", &text, Path::new("."), &[], equations).unwrap();
+        run(&document, &RunOptions::new(&path), &mut Quiet).unwrap_or_else(|error| panic!("{error:?}"));
+        let result = ResultFile::open(&path).unwrap();
+        let series = ["position_x", "position_y", "decay.U"].map(|name| result.cell_series(name).unwrap());
+        (series, result.interpolated().unwrap(), result.times().unwrap())
+    };
+    let (ends, none, _) = positions("7 s");
+    assert!(none.iter().all(|within| !within));
+    let (within, some, times) = positions("20 s");
+    assert!(some[1..20].iter().all(|within| *within), "{some:?}");
+    for (one, other) in ends[..2].iter().zip(&within[..2]) {
+        one.iter().zip(other).for_each(|(one, other)| assert!((one - other).abs() < 1e-9, "{one} {other}"));
+    }
+    for (frame, time) in times.iter().enumerate() {
+        let exact = (-0.05 * time).exp();
+        within[2].row(frame).iter().for_each(|found| assert!((found - exact).abs() < 1e-8, "{found} {exact}"));
+    }
+}

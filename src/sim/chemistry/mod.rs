@@ -38,5 +38,5 @@ pub use membrane::Membrane;
 pub use membranes::begin_membranes;
 pub use model::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
 pub use scratch::ChemistryScratch;
-pub use stages::{advance_chemistry, begin_chemistry};
+pub use stages::{advance_chemistry, advance_systems_to, begin_chemistry};
 pub use state::{ChemistryState, FieldState};

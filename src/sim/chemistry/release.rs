@@ -240,7 +240,7 @@ mod tests {
                 assert!(((first + last) / exact - 1.0).abs() < 1e-12, "{decay} {dt}: {first} {last} {exact}");
                 // Of a rate that rises from nothing in the part, by Simpson's rule.
                 let (n, length) = (2000, parts.length);
-                let weight = |i: usize| if i % n == 0 { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
+                let weight = |i: usize| if i.is_multiple_of(n) { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
                 let left = |i: usize| {
                     let share = i as f64 / n as f64;
                     share * (-turns * (1.0 - share)).exp() * weight(i)

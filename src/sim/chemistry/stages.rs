@@ -16,6 +16,7 @@ use super::model::Reactor;
 use super::populations::{advance_population, eventful, ids};
 use super::release::move_fields;
 use super::scratch::ChemistryScratch;
+use super::state::ChemistryState;
 use crate::ode::{Numbers, OdeTrouble, PopulationScratch, Substeps};
 
 /// Lets the links carry the numbers of the start, and executes the events of the start, in `state`; after an error that holds
@@ -96,6 +97,36 @@ fn advance_systems(
         state.chemistry.kicks[number] = substeps.kicks_at_end();
     }
     Ok(())
+}
+
+/// Solves systems from where a step began to the time of a state within it, what they are told standing still as in the step: those without noise
+/// that are no membranes', and that move in it at all. The others, and one that fails, are left as they are.
+pub fn advance_systems_to(model: &Model, from: &ChemistryState, within: &mut State, scratch: &mut ChemistryScratch) {
+    let time = within.time;
+    for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
+        let begun = from.times[number];
+        let stands_still = begun == within.chemistry.times[number] || begun >= time;
+        if !from.carried || stands_still || reactor.membrane.is_some() || reactor.noise.is_some() {
+            continue;
+        }
+        let State { kinds, chemistry, .. } = &mut *within;
+        let between = (chemistry.populations[number].clone(), chemistry.events[number].clone());
+        (chemistry.populations[number], chemistry.events[number]) =
+            (from.populations[number].clone(), from.events[number].clone());
+        let substeps =
+            Substeps::between(reactor.pace, from.kicks[number], begun / reactor.seconds, time / reactor.seconds);
+        let solved = advance_population(
+            model,
+            (number, reactor),
+            substeps,
+            (kinds, chemistry),
+            &mut scratch.populations[number],
+        );
+        match solved {
+            Ok(()) => chemistry.times[number] = time,
+            Err(_) => (chemistry.populations[number], chemistry.events[number]) = between,
+        }
+    }
 }
 
 /// Executes the events of the start. Returns whether there were any.
