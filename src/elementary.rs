@@ -11,6 +11,11 @@ pub fn fnv1a(hash: u64, bytes: impl IntoIterator<Item = u8>) -> u64 {
     bytes.into_iter().fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
+/// Moves numbers back on the lines to what they were before: all the way where the share is 0, and not at all where it is 1.
+pub fn go_back(now: &mut [f64], before: &[f64], share: f64) {
+    now.iter_mut().zip(before).for_each(|(now, before)| *now = before + share * (*now - before));
+}
+
 const LN2_HIGH: f64 = 0.693_147_180_369_123_8; // the first 33 bits of ln 2, so that k·LN2_HIGH is exact
 const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5·2^52: adding it leaves a whole number in the low bits

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ._errors import Fault, PseudopodError, RunError
+from ._toml import toml
 
 #: Names the program, where another than that of the package is wanted.
 VARIABLE = "PSEUDOPOD_BINARY"
@@ -73,28 +74,6 @@ def version() -> str:
     if answer.returncode != 0:
         raise RunError(answer.returncode, answer.stderr.strip())
     return answer.stdout.split()[-1]
-
-
-def toml(value: Any) -> str:
-    """A value as TOML has it: texts in quotes, numbers with all their digits."""
-    if hasattr(value, "tolist") and not isinstance(value, str):
-        value = value.tolist()  # numbers and arrays of NumPy
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, int):
-        return str(value)
-    if isinstance(value, float):
-        return repr(value).replace("e+", "e")
-    if isinstance(value, str):
-        # JSON escapes a little more than TOML has to, and nothing that TOML does not know; but surrogates.
-        return json_text.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{json_text.dumps(str(key))} = {toml(entry)}" for key, entry in value.items()) + " }"
-    if isinstance(value, Sequence):
-        return "[" + ", ".join(toml(entry) for entry in value) + "]"
-    raise TypeError(
-        f"a document has no value like {value!r}: give a text with its unit, a number, a truth, or a list of these"
-    )
 
 
 def settings(overrides: Mapping[str, Any] | None) -> list[str]:

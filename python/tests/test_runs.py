@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import pseudopod
-from pseudopod._program import toml
 from pseudopod._progress import Progress
+from pseudopod._toml import toml
 
 from .conftest import DOCUMENTS
 
@@ -43,6 +43,13 @@ def test_a_run_takes_changes_of_every_kind(tmp_path: Path, monkeypatch: pytest.M
     again = pseudopod.run(WALK, changes, seed=9, until="4 s", force=True, pictures=True, progress=False)
     assert again.provenance.seed == 9
     assert list(tmp_path.glob("results/*.png"))
+
+
+def test_the_package_for_stepping_writes_values_in_the_same_way() -> None:
+    # Neither needs the other, so that each has this file.
+    python = Path(__file__).parents[1]
+    here, there = python / "pseudopod", python / "stepping" / "python" / "pseudopod_stepping"
+    assert (here / "_toml.py").read_bytes() == (there / "_toml.py").read_bytes()
 
 
 def test_values_are_written_as_toml_has_them() -> None:

@@ -3,6 +3,7 @@
 use super::document::Document;
 use super::{Experiment, MeasureCurve, OneOrMany, PlotKind, When};
 use crate::error::words;
+use crate::units::{Dimension, pretty};
 
 /// Something in a document that lies beyond the end of the run.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,11 +17,6 @@ pub(super) enum Late {
 }
 
 impl Document {
-    /// Whether the end of the run was set from outside. What lies beyond it is left out then, and not a fault.
-    pub(crate) fn is_cut_short(&self) -> bool {
-        self.sets.iter().any(|set| set.split('=').next().is_some_and(|key| key.trim() == "run.until"))
-    }
-
     /// Leaves out what lies beyond the end, and the plots that show it; notes what that was.
     pub(super) fn leave_out(&mut self, late: &[Late]) {
         let experiment = &mut self.experiment;
@@ -41,7 +37,9 @@ impl Document {
 
     /// What was left out because the run is cut short, as a sentence; none where nothing was.
     pub(super) fn what_is_left_out(&self) -> Option<String> {
-        (!self.left_out.is_empty()).then(|| format!("left out, being beyond the end: {}", self.left_out.join("; ")))
+        let until = pretty(self.experiment.run.until.value(), Dimension::TIME);
+        let all = self.left_out.join("; ");
+        (!self.left_out.is_empty()).then(|| format!("left out, as the run ends at {until} and they look beyond: {all}"))
     }
 }
 

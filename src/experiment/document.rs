@@ -22,6 +22,8 @@ pub struct Document {
     pub equations: BTreeMap<String, String>,
     /// Bytes of memory that the experiment may take, by an estimate; [`compile`](super::compile()) refuses more. Any number when absent.
     pub memory: Option<u64>,
+    /// Whether `--until` or `--set` makes the run end before the end in the text. What lies beyond is left out then, and not a fault.
+    pub(crate) is_cut_short: bool,
     /// What was left out because the run is cut short, in words.
     pub(super) left_out: Vec<String>,
     /// The texts in it that mean something elsewhere.

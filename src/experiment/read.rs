@@ -4,6 +4,7 @@ use super::document::{Document, near_file};
 use super::tree::{Node, Value};
 use super::{Experiment, check, schema, semantics};
 use crate::error::{Error, Fault, Location, Result, Source};
+use crate::units::Time;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -48,6 +49,7 @@ impl Document {
     ) -> Result<Self> {
         let source = Arc::new(Source { name: name.to_owned(), text: text.to_owned() });
         let mut tree = Node::parse(&source).map_err(Error::Input)?;
+        let written_end = end_of(&tree);
         let mut sources = vec![source.clone()];
         let mut faults = Vec::new();
         for set in sets {
@@ -65,8 +67,19 @@ impl Document {
             let (sets, base_dir) = (sets.to_vec(), base_dir.to_owned());
             let references = found.references;
             let (memory, left_out) = (None, Vec::new());
-            let mut document =
-                Self { source, sets, base_dir, experiment, equations, memory, left_out, references, tree };
+            let is_cut_short = written_end.is_some_and(|end| experiment.run.until.value() < end);
+            let mut document = Self {
+                source,
+                sets,
+                base_dir,
+                experiment,
+                equations,
+                memory,
+                is_cut_short,
+                left_out,
+                references,
+                tree,
+            };
             let late;
             (faults, late) = semantics::check(&document);
             if faults.is_empty() {
@@ -92,6 +105,14 @@ impl Document {
             Error::input(fault.help("numbers must be finite and the seed below 2^63"))
         })?;
         Self::parse("experiment built by a program", &text, Path::new("."), &[])
+    }
+}
+
+/// The end of the run as the text has it, s; none where there is none that can be read.
+fn end_of(tree: &Node) -> Option<f64> {
+    match &tree.follow("run.until") {
+        (Node { value: Value::Text(text), .. }, true) => text.parse::<Time>().ok().map(Time::value),
+        _ => None,
     }
 }
 

@@ -51,6 +51,16 @@ pub enum StepSize {
     },
 }
 
+impl StepSize {
+    /// The longest step that may be made, s.
+    pub fn longest(self) -> f64 {
+        match self {
+            Self::Fixed(step) => step,
+            Self::Adaptive { largest, .. } => largest,
+        }
+    }
+}
+
 /// Scheme and step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Integrator {

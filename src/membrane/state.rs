@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::go_back;
+
 /// What is on the surfaces of all cells with a system.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MembraneState {
@@ -45,7 +47,7 @@ impl MembraneCells {
         let pairs = [(&mut self.values, &before.values), (&mut self.given, &before.given)];
         let shape = [(&mut self.areas, &before.areas), (&mut self.volumes, &before.volumes)];
         for (now, before) in pairs.into_iter().chain(shape) {
-            now.iter_mut().zip(before).for_each(|(now, before)| *now = before + share * (*now - before));
+            go_back(now, before, share);
         }
     }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Method;
 use super::buffers::PopulationScratch;
+use crate::elementary::go_back;
 use crate::equations::program::{Lanes, Program, run};
 use crate::equations::tree::QuantityId;
 
@@ -55,8 +56,7 @@ impl Population {
     pub(crate) fn go_back_to(&mut self, before: &Self, share: f64) {
         let pairs = [(&mut self.states, &before.states), (&mut self.open_values, &before.open_values)];
         for (now, before) in pairs {
-            let (now, before) = (now.as_flattened_mut().iter_mut(), before.as_flattened());
-            now.zip(before).for_each(|(now, before)| *now = before + share * (*now - before));
+            go_back(now.as_flattened_mut(), before.as_flattened(), share);
         }
     }
 

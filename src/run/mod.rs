@@ -224,7 +224,7 @@ fn finish(mut writer: ResultWriter, result: &Path, wall_time: f64, report: &mut 
     writer.write_summary(&measures);
     writer.finish(wall_time)?;
     // A measure that cannot be computed is told once the run and all other measures are safe. A run that was cut short is not to blame.
-    if document.is_cut_short() {
+    if document.is_cut_short {
         faults.iter().for_each(|fault| report.notice(&fault.message));
         return Ok(());
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::progress::Report;
 use crate::error::{Error, Result};
 use crate::experiment::Schedule;
-use crate::output::ResultWriter;
+use crate::output::{Frame, ResultWriter};
 use crate::sim::contact::{check_passed, help_at};
 use crate::sim::{State, StepReport, Trouble};
 use crate::simulation::{Recorder, Simulation, SimulationError, passed};
@@ -84,11 +84,13 @@ impl<'a> Recording<'a> {
             }
             self.remember_good(simulation);
         }
-        for &time in due.iter().filter(|time| **time < after) {
+        let (ends, within): (Vec<f64>, Vec<f64>) = due.into_iter().partition(|time| Schedule::is_end(*time, after));
+        for time in within {
             self.record_within(simulation, time)?;
         }
-        if last || due.last() == Some(&after) {
-            or_stop(self.writer.append(&simulation.record(&mut self.recorder)))?;
+        if let Some(time) = ends.last().copied().or(last.then_some(after)) {
+            // As the time was asked for, without the round-off of the clock.
+            or_stop(self.writer.append(&Frame { time, ..simulation.record(&mut self.recorder) }))?;
             self.recorded = simulation.steps();
         }
         if passed(before, after, self.schedule.checkpoint) && !last {

@@ -21,8 +21,8 @@ const LEFT: f64 = 1e-5;
 /// What a volume may be off its target without pressure doing work to put that right, over the target.
 const VOLUME_OFF: f64 = 1e-9;
 
-/// The energy where a step begins, pN·µm; none where something may do work on the cells: loads that are not zero, forces that a program exerts, gravity, motility, chemistry, the
-/// energy that contacts release, volumes that change, elastic forces without an energy.
+/// The energy where a step begins, pN·µm; none where something may do work on the cells: loads that are not zero, forces that a program exerts,
+/// gravity, motility, chemistry, the energy that contacts release, volumes that change, elastic forces without an energy.
 pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option<f64> {
     is_left_alone(model, state).then(|| {
         measure_energy(model, state.time, &state.chemistry.controls, &state.kinds, ws);

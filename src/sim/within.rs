@@ -9,6 +9,7 @@ use super::targets::measure_volumes;
 use super::trouble::Trouble;
 use super::workspace::Workspace;
 use crate::Vec3;
+use crate::elementary::go_back;
 
 /// The state at a time (s) within the step that was made last and led to `to`. What moves or changes steadily lies on the line between the
 /// ends of the step, volumes are exact, and no atom is behind a plane. Cells that nothing stops are where their walk has led them by then, and
@@ -36,11 +37,11 @@ pub fn state_within(model: &Model, to: &mut State, time: f64, ws: &mut Workspace
     Ok(within)
 }
 
-/// Moves cells from the line between the ends of the step to where their walks have led them: free of each other they go by what these ask
-/// for, whatever else they do. Of cells that touch both stay on their lines, beside each other.
+/// Moves cells from the line between the ends of the step to where their walks have led them: where nothing is in their way they go by what
+/// these ask for, whatever else they do. What may be in the way keeps them on their lines: other cells, planes, across these, and mass.
 fn follow_walks(model: &Model, (from, end): (&State, f64), within: &mut State, ws: &mut Workspace) {
     let (passed, whole) = (within.time - from.time, end - from.time);
-    if model.contact.is_some() {
+    if model.contact.is_some() || model.integrator.method.is_inertial() {
         return;
     }
     let mut walked = |dt: f64, within: &mut State| -> Vec<[f64; 3]> {
@@ -54,14 +55,11 @@ fn follow_walks(model: &Model, (from, end): (&State, f64), within: &mut State, w
             continue;
         }
         for (local, cell) in begun.numbers().enumerate() {
-            now.shift(kind, local, &Vec3::from_fn(|axis, _| part[cell][axis] - share * all[cell][axis]));
+            let off = Vec3::from_fn(|axis, _| part[cell][axis] - share * all[cell][axis]);
+            let along = model.planes.iter().fold(off, |off, plane| off - off.dot(&plane.normal) * plane.normal);
+            now.shift(kind, local, &along);
         }
     }
-}
-
-/// Moves numbers back towards those of before: all the way where the share of the step is 0.
-pub(super) fn go_back(now: &mut [f64], before: &[f64], share: f64) {
-    now.iter_mut().zip(before).for_each(|(now, before)| *now = before + share * (*now - before));
 }
 
 impl KindState {

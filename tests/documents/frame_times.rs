@@ -81,19 +81,20 @@ fn frames_are_at_the_times_asked_for_with_exact_volumes_and_change_nothing() {
     assert_eq!(alone.times().unwrap(), [0.0, 12.0]);
     let end = |result: &ResultFile| load_checkpoint(result.path()).unwrap().unwrap();
     let (seen, unseen) = (end(&result), end(&alone));
-    // But for what waits to be recorded, of which nothing is left, and the document's fingerprint, which has no part in it.
     assert_eq!(seen.payload, unseen.payload, "looking within steps changes no bit of the run");
 }
 
 #[test]
-fn depths_within_steps_are_those_at_their_ends() {
+fn cells_that_press_on_each_other_are_hardly_deeper_within_steps() {
     let (_kept, result) = dish("every = \"0.05 s\"");
     let (depths, within) = (result.scene_series("contact.deepest").unwrap(), result.interpolated().unwrap());
     let deepest = |wanted: bool| {
         depths.iter().zip(&within).filter(|(_, within)| **within == wanted).map(|(depth, _)| *depth).fold(0.0, f64::max)
     };
-    println!("deepest at ends {}, within {}", deepest(false), deepest(true));
-    assert!(deepest(true) < 0.02, "{} of an edge", deepest(true));
+    let steps = result.steps().unwrap().last().copied().unwrap();
+    println!("{steps} steps in 12 s, deepest at ends {}, within {}", deepest(false), deepest(true));
+    // Of an edge: a fifth of the 2 % that cells keep to. Chords of paths that bend were measured to cut by 0.2 %.
+    assert!(deepest(true) < 0.004, "{} of an edge", deepest(true));
 }
 
 #[test]
@@ -135,6 +136,7 @@ times = [{}]
     let [whole, half, quarter] = ["0.1 s", "0.0666666666667 s", "0.0333333333333 s"].map(error);
     let orders = [(whole / half).ln() / 1.5f64.ln(), (half / quarter).log2()];
     println!("errors {whole}, {half}, {quarter} um: orders {orders:?}");
+    // Frames lie at other places of steps of other lengths, so that the order is seen through some scatter.
     assert!(orders.iter().all(|order| (1.6..2.4).contains(order)), "{orders:?}");
 }
 

@@ -5,7 +5,6 @@ use super::size::{Size, bytes};
 use super::{Prepared, Schedule, bonds};
 use crate::Vec3;
 use crate::cell::Behaviour;
-use crate::error::short;
 use crate::geometry::{area, bounding_box};
 use crate::mechanics::Force;
 use crate::mechanics::integrator::Method;
@@ -33,7 +32,8 @@ pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
     let mut notices: Vec<String> = model.kinds.iter().filter_map(|kind| unusual_width(document, kind)).collect();
     notices.extend(large_result(&prepared.size));
     notices.extend(document.what_is_left_out());
-    notices.extend(late_frame(&prepared.schedule, model.until));
+    notices.extend(late_frames(&prepared.schedule, model.until));
+    notices.extend(frames_of_lines(&prepared.schedule, model));
     notices.extend(model.kinds.iter().filter_map(|kind| unordered_skin(document, kind)));
     notices.extend(model.kinds.iter().filter_map(|kind| pushes_off_nothing(document, kind)));
     if model.contact.is_some() {
@@ -66,10 +66,29 @@ fn large_result(size: &Size) -> Option<String> {
     })
 }
 
-/// That there is no frame at a time that is asked for.
-fn late_frame(schedule: &Schedule, until: f64) -> Option<String> {
-    let last = *schedule.times.last()?;
-    (last > until).then(|| format!("a frame is asked for at {} s, and the run ends at {} s", short(last), short(until)))
+/// That there are no frames at times that are asked for.
+fn late_frames(schedule: &Schedule, until: f64) -> Option<String> {
+    let late: Vec<f64> = schedule.times.iter().copied().filter(|time| *time > until).collect();
+    let (first, told) = (late.first()?, |time: f64| pretty(time, Dimension::TIME));
+    let times = if late.len() > 1 { format!("{} of `output.times` are", late.len()) } else { told(*first) + " is" };
+    Some(format!("no frame is recorded beyond {}, where the run ends: {times} later", told(until)))
+}
+
+/// Frames in the longest step from which on the time between them is more likely a unit that was mistaken than wanted.
+const FRAMES_IN_A_STEP: f64 = 100.0;
+
+/// That many frames lie within one step, and show little but the line between its ends.
+fn frames_of_lines(schedule: &Schedule, model: &Model) -> Option<String> {
+    let (every, longest) = (schedule.every?, model.integrator.size.longest());
+    (FRAMES_IN_A_STEP * every < longest).then(|| {
+        let told = |time: f64| pretty(time, Dimension::TIME);
+        format!(
+            "frames are {} apart, and a step may take {}: those within a step lie on lines between its ends. For more to be seen set \
+             run.integrator.max_step; for a smaller file make `output.every` longer",
+            told(every),
+            told(longest)
+        )
+    })
 }
 
 /// That the pseudopods of a kind have nothing that resists sliding to push off from.

@@ -103,7 +103,7 @@ impl Check<'_> {
     /// An instant must lie within the run. Of one that is cut short what is `late` is left out.
     pub(super) fn instant(&mut self, path: &str, time: f64, late: Late) {
         let until = self.document.experiment.run.until.value();
-        if time > until && self.document.is_cut_short() {
+        if time > until && self.document.is_cut_short {
             self.late.push(late);
         } else if !(0.0..=until).contains(&time) {
             let (time, until) = (pretty(time, Dimension::TIME), pretty(until, Dimension::TIME));
