@@ -1,8 +1,9 @@
 //! One system from one time to another: its steps, cut where a trigger turns true or the clock switches.
 
 use super::OdeTrouble;
-use super::events::{Events, STOPS, TRIGGERS};
+use super::events::{Events, TRIGGERS};
 use super::stepper::Stepper;
+use super::switches::{Ahead, Switch, Switches, after};
 
 /// Points within a step at which triggers are looked at.
 const SAMPLES: usize = 8;
@@ -27,25 +28,25 @@ pub struct CourseBuffers {
     /// The state within a step, and the triggers there.
     within: Vec<f64>,
     now: Vec<f64>,
-    /// The present state, and differences that are met exactly at three times.
-    present: Vec<f64>,
-    differences: [Vec<f64>; 3],
+    switches: Switches,
     /// The largest that any variable has been, without its sign.
     pub largest: f64,
 }
 
 impl<'c, 'a> Course<'c, 'a> {
-    /// The course until a time, with the values of all quantities handed to `each` at the points.
+    /// The course until a time, with the values of all quantities handed to `each` at the points. It is looked so often at what the clock
+    /// switches and does not run evenly.
     pub fn new(
         stepper: &'c mut Stepper<'a>,
         events: &'c mut Events<'a>,
-        until: f64,
+        (until, looks): (f64, usize),
         points: &'c [f64],
         each: &'c mut dyn FnMut(f64, &[f64]),
         buffers: &'c mut CourseBuffers,
     ) -> Self {
         buffers.within.resize(stepper.program.size(), 0.0);
         buffers.largest = 0.0;
+        buffers.switches.begin(stepper, until, looks);
         Self { stepper, events, points, written: 0, each, until, buffers }
     }
 
@@ -56,15 +57,18 @@ impl<'c, 'a> Course<'c, 'a> {
     pub fn run(mut self) -> Result<(), OdeTrouble> {
         let fixed = self.stepper.has_fixed_steps();
         self.arrive()?;
+        if self.buffers.switches.are_any() {
+            self.pass_to(after(self.stepper.time, self.until))?;
+        }
         while self.stepper.time < self.until {
-            let stop = self.next_stop();
+            let Ahead { switch: Switch { before, at: stop, after }, seen } = self.buffers.switches.next(self.stepper);
             let mark = self.stepper.next_mark();
-            let mut limit = self.until.min(self.events.next()).min(stop).min(mark);
+            let mut limit = self.until.min(self.events.next()).min(stop).min(seen).min(mark);
             if let Some(&point) = self.points.get(self.written).filter(|_| fixed) {
                 limit = limit.min(point);
             }
             // Everything within the step happens before the stop; the stop itself is then met without a step.
-            let end = if limit == stop { before(limit) } else { limit };
+            let end = if limit == stop { before } else { limit };
             if end > self.stepper.time {
                 let fired = self.one_step(end)?;
                 if fired || self.stepper.time < end {
@@ -79,6 +83,20 @@ impl<'c, 'a> Course<'c, 'a> {
                 self.stepper.mark(false);
             }
             self.arrive()?;
+            if limit == stop {
+                self.pass_to(after)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes on right after a switch, so that rates are those of the time that follows, be they at the instant itself those of the time before. What
+    /// looks back must find the instant itself.
+    fn pass_to(&mut self, after: f64) -> Result<(), OdeTrouble> {
+        if after < self.until && self.stepper.program.delays.is_empty() {
+            self.stepper.time = after;
+            self.stepper.forget_rates();
+            self.arrive()?;
         }
         Ok(())
     }
@@ -87,7 +105,9 @@ impl<'c, 'a> Course<'c, 'a> {
     fn arrive(&mut self) -> Result<(), OdeTrouble> {
         self.note_largest();
         self.events.update(self.stepper);
-        self.events.execute(self.stepper)?;
+        if self.events.execute(self.stepper)? {
+            self.buffers.switches.forget();
+        }
         self.write_present();
         self.stepper.check_delays()
     }
@@ -162,33 +182,6 @@ impl<'c, 'a> Course<'c, 'a> {
         high
     }
 
-    /// The next time at which a comparison with the clock changes, if it runs evenly.
-    fn next_stop(&mut self) -> f64 {
-        let program = self.stepper.program;
-        let code = &program.further[STOPS];
-        if code.outputs.is_empty() {
-            return f64::INFINITY;
-        }
-        let time = self.stepper.time;
-        let length = (self.until - time).max(1e-3 * self.until.abs());
-        let CourseBuffers { present, differences, .. } = &mut *self.buffers;
-        self.stepper.state_into(present);
-        for (share, results) in [0.0, 0.5, 1.0].into_iter().zip(&mut *differences) {
-            self.stepper.evaluate(code, time + share * length, present, results);
-        }
-        let [now, half, whole] = &*differences;
-        let mut next = f64::INFINITY;
-        for ((now, half), whole) in now.iter().zip(half).zip(whole) {
-            let (slope, size) = ((whole - now) / length, now.abs().max(whole.abs()));
-            let even = (half - 0.5 * (now + whole)).abs() <= 1e-12 * size;
-            let root = time - now / slope;
-            if even && slope != 0.0 && root > time + 16.0 * f64::EPSILON * time.abs() {
-                next = next.min(nice(root));
-            }
-        }
-        next
-    }
-
     /// Writes the points before a time, from within the step.
     fn write_between(&mut self, begin: f64, reached: f64, time: f64) {
         while let Some(&point) = self.points.get(self.written).filter(|point| **point < time) {
@@ -216,16 +209,4 @@ impl<'c, 'a> Course<'c, 'a> {
             (self.each)(point, &values);
         }
     }
-}
-
-/// A time a few units in the last place before another.
-fn before(time: f64) -> f64 {
-    time - 4.0 * f64::EPSILON * time.abs()
-}
-
-/// The number of few digits within round-off of a time, if there is one: 0.3 for 0.30000000000000004.
-fn nice(time: f64) -> f64 {
-    let scale = 10_f64.powi(12 - time.abs().log10().ceil() as i32);
-    let rounded = (time * scale).round() / scale;
-    if (rounded - time).abs() <= 8.0 * f64::EPSILON * time.abs() { rounded } else { time }
 }

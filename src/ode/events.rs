@@ -2,7 +2,7 @@
 
 use super::memory::{EventMemory, reserve};
 use super::stepper::Stepper;
-use super::stops::stops;
+use super::stops::{Stops, stops};
 use super::{OdeTrouble, Reason};
 use crate::equations::program::Program;
 use crate::equations::tree::{Event, Expr, QuantityId, Role, System};
@@ -15,8 +15,10 @@ const MOST_AT_ONCE: u32 = 10_000;
 pub const TRIGGERS: usize = 0;
 const PRIORITIES: usize = 1;
 /// Group of the differences whose roots in time are met exactly.
-pub const STOPS: usize = 2;
-const FIRST_EVENT: usize = 3;
+pub const DIFFERENCES: usize = 2;
+/// Group of what is met exactly where it is a whole number.
+pub const COUNTS: usize = 3;
+const FIRST_EVENT: usize = 4;
 
 /// The events of a system beside its program.
 #[derive(Debug, Clone, Default)]
@@ -110,7 +112,8 @@ fn groups(system: &System) -> Vec<Vec<Expr>> {
     let number = Expr::Number;
     let triggers = system.events.iter().map(|event| event.trigger.clone()).collect();
     let priority = |event: &Event| event.priority.clone().unwrap_or(number(f64::NEG_INFINITY));
-    let mut groups = vec![triggers, system.events.iter().map(priority).collect(), stops(system)];
+    let Stops { differences, counts } = stops(system);
+    let mut groups = vec![triggers, system.events.iter().map(priority).collect(), differences, counts];
     for event in &system.events {
         let mut group = vec![event.delay.clone().unwrap_or(number(0.0))];
         group.extend(event.assignments.iter().map(|(_, value)| value.clone()));

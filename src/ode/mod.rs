@@ -14,6 +14,7 @@ mod events;
 mod explicit;
 mod fixed;
 mod history;
+mod jump;
 mod lookback;
 mod lu;
 mod marks;
@@ -33,6 +34,7 @@ mod solve;
 mod stepper;
 mod stops;
 mod substeps;
+mod switches;
 pub mod tableau;
 mod wide;
 

@@ -7,7 +7,10 @@ use diffsol::{
 };
 
 use super::scheme::Scheme;
-use super::{OdeTrouble, Reason, Tolerances, Work};
+use super::solve::LOOKS;
+use super::stepper::Stepper;
+use super::switches::{Ahead, Switches, after};
+use super::{Method, OdeTrouble, Reason, Tolerances, Work};
 use crate::equations::program::{Lanes, Program, run};
 
 type Matrix = NalgebraMat<f64>;
@@ -85,70 +88,116 @@ fn set(file: &mut [Lanes<1>], state: &[f64], time: f64) {
     file[1..].iter_mut().zip(state).for_each(|(to, &from)| *to = [from]);
 }
 
-/// Solves with one of diffsol's methods, from the initial values.
+/// Solves with one of diffsol's methods, from the initial values. What the clock switches is met exactly: the method, which goes by what was before,
+/// begins anew after it.
 pub fn solve(
     program: &Program,
     scheme: Scheme,
-    from: f64,
-    until: f64,
+    (from, until): (f64, f64),
     points: &[f64],
     tolerances: &Tolerances,
     each: &mut dyn FnMut(f64, &[f64]),
 ) -> Result<Work, OdeTrouble> {
-    let machine = Machine::new(program);
-    let initial: Vec<f64> = program.variables.iter().map(|&quantity| program.initial[quantity as usize]).collect();
-    let failed = |error: diffsol::error::DiffsolError| trouble(program, from, Reason::Solver, error.to_string());
-    let problem = OdeBuilder::<Matrix>::new()
-        .t0(from)
-        .rtol(tolerances.relative)
-        .atol(program.sizes.iter().map(|size| tolerances.absolute * size))
-        .rhs_implicit(
-            |state: &[f64], _: &[f64], time: f64, rates: &mut [f64]| machine.rates(state, time, rates),
-            |state: &[f64], _: &[f64], time: f64, vector: &[f64], product: &mut [f64]| {
-                machine.jacobian_times(state, time, vector, product);
-            },
-        )
-        .init(|_: &[f64], _: f64, state: &mut [f64]| state.copy_from_slice(&initial), initial.len())
-        .build()
-        .map_err(failed)?;
-    let course = Course { machine: &machine, until, points, most: tolerances.max_steps, each };
-    match scheme {
-        Scheme::Bdf => course.run(problem.bdf::<Factors>().map_err(failed)?),
-        Scheme::Esdirk34 => course.run(problem.esdirk34::<Factors>().map_err(failed)?),
-        Scheme::TrBdf2 => course.run(problem.tr_bdf2::<Factors>().map_err(failed)?),
-        Scheme::Tsit45 | Scheme::OneStep(_) => course.run(problem.tsit45().map_err(failed)?),
+    let state = program.variables.iter().map(|&quantity| program.initial[quantity as usize]).collect();
+    let (machine, work) = (Machine::new(program), Work::default());
+    let mut course = Course { machine: &machine, scheme, tolerances, time: from, state, points, work, each };
+    // Tells the time alone.
+    let mut clock = Stepper::new(program, Method::Euler { step: 1.0 }, *tolerances, from);
+    let mut switches = Switches::default();
+    switches.begin(&clock, until, LOOKS);
+    course.write_until(from);
+    if switches.are_any() {
+        course.time = after(from, until).min(until);
     }
+    while course.time < until {
+        clock.time = course.time;
+        let Ahead { switch, seen } = switches.next(&mut clock);
+        let limit = until.min(switch.at).min(seen);
+        course.run(if limit == switch.at { switch.before } else { limit })?;
+        course.write_until(limit);
+        course.time = if limit == switch.at { switch.after } else { limit };
+    }
+    course.work.rates = machine.asked.get();
+    Ok(course.work)
 }
 
+/// A piece shorter than this share of its time is gone through by Euler's rule.
+const SHORT: f64 = 64.0 * f64::EPSILON;
+
+/// A solve, as far as it has come.
 struct Course<'a> {
     machine: &'a Machine<'a>,
-    until: f64,
+    scheme: Scheme,
+    tolerances: &'a Tolerances,
+    time: f64,
+    state: Vec<f64>,
+    /// Those that are still to be written.
     points: &'a [f64],
-    most: u32,
+    work: Work,
     each: &'a mut dyn FnMut(f64, &[f64]),
 }
 
 impl Course<'_> {
-    fn run<'p, Equations, Solver>(self, mut solver: Solver) -> Result<Work, OdeTrouble>
+    /// Writes the points until a time with the present state.
+    fn write_until(&mut self, time: f64) {
+        while let Some((&point, rest)) = self.points.split_first().filter(|(point, _)| **point <= time) {
+            (self.each)(point, &self.machine.observe(&self.state, point));
+            self.points = rest;
+        }
+    }
+
+    /// Goes on until a time, before which the clock switches nothing.
+    fn run(&mut self, until: f64) -> Result<(), OdeTrouble> {
+        let (program, from) = (self.machine.program, self.time);
+        if until - from <= SHORT * until.abs() {
+            let mut rates = vec![0.0; self.state.len()];
+            self.machine.rates(&self.state, from, &mut rates);
+            let length = (until - from).max(0.0);
+            self.state.iter_mut().zip(rates).for_each(|(value, rate)| *value += length * rate);
+            return Ok(());
+        }
+        let failed = |error: diffsol::error::DiffsolError| trouble(program, from, Reason::Solver, error.to_string());
+        let (machine, initial) = (self.machine, self.state.clone());
+        let problem = OdeBuilder::<Matrix>::new()
+            .t0(from)
+            .rtol(self.tolerances.relative)
+            .atol(program.sizes.iter().map(|size| self.tolerances.absolute * size))
+            .rhs_implicit(
+                |state: &[f64], _: &[f64], time: f64, rates: &mut [f64]| machine.rates(state, time, rates),
+                |state: &[f64], _: &[f64], time: f64, vector: &[f64], product: &mut [f64]| {
+                    machine.jacobian_times(state, time, vector, product);
+                },
+            )
+            .init(|_: &[f64], _: f64, state: &mut [f64]| state.copy_from_slice(&initial), initial.len())
+            .build()
+            .map_err(failed)?;
+        match self.scheme {
+            Scheme::Bdf => self.steps(problem.bdf::<Factors>().map_err(failed)?, until),
+            Scheme::Esdirk34 => self.steps(problem.esdirk34::<Factors>().map_err(failed)?, until),
+            Scheme::TrBdf2 => self.steps(problem.tr_bdf2::<Factors>().map_err(failed)?, until),
+            Scheme::Tsit45 | Scheme::OneStep(_) => self.steps(problem.tsit45().map_err(failed)?, until),
+        }
+    }
+
+    /// The steps of a solver until a time.
+    fn steps<'p, Equations, Solver>(&mut self, mut solver: Solver, until: f64) -> Result<(), OdeTrouble>
     where
         Equations: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'p,
         Solver: OdeSolverMethod<'p, Equations>,
     {
         let program = self.machine.program;
-        let (mut work, mut written) = (Work::default(), 0);
         let fail =
             |time: f64, error: diffsol::error::DiffsolError| trouble(program, time, Reason::Solver, error.to_string());
-        let begin = solver.state().t;
-        solver.set_stop_time(self.until).map_err(|error| fail(begin, error))?;
+        solver.set_stop_time(until).map_err(|error| fail(self.time, error))?;
         let mut reason = OdeSolverStopReason::InternalTimestep;
         loop {
             let time = solver.state().t;
-            while let Some(&point) = self.points.get(written).filter(|point| **point <= time) {
+            while let Some((&point, rest)) = self.points.split_first().filter(|(point, _)| **point <= time) {
                 let state = solver.interpolate(point).map_err(|error| fail(time, error))?;
                 (self.each)(point, &self.machine.observe(&state.clone_as_vec(), point));
-                written += 1;
+                self.points = rest;
             }
-            if matches!(reason, OdeSolverStopReason::TstopReached) || time >= self.until {
+            if matches!(reason, OdeSolverStopReason::TstopReached) || time >= until {
                 break;
             }
             let before = solver.state().y.clone_as_vec();
@@ -158,16 +207,16 @@ impl Course<'_> {
                 let trouble = trouble(program, time, Reason::NotFinite, String::new());
                 return Err(OdeTrouble { variable: worst(), ..trouble });
             }
-            work.steps += 1;
-            if work.steps >= u64::from(self.most) {
+            self.work.steps += 1;
+            if self.work.steps >= u64::from(self.tolerances.max_steps) {
                 return Err(trouble(program, time, Reason::TooManySteps, String::new()));
             }
         }
+        self.state = solver.state().y.clone_as_vec();
         let statistics = solver.get_statistics();
-        work.rejected = statistics.number_of_error_test_failures as u64;
-        work.rates = self.machine.asked.get();
-        work.jacobians = statistics.number_of_linear_solver_setups as u64;
-        Ok(work)
+        self.work.rejected += statistics.number_of_error_test_failures as u64;
+        self.work.jacobians += statistics.number_of_linear_solver_setups as u64;
+        Ok(())
     }
 }
 

@@ -121,9 +121,12 @@ pub fn solve_each(
         #[cfg(not(feature = "diffsol"))]
         _ => Err(trouble("this program was built without diffsol: use rosenbrock, rk45, rk65, rk4 or euler".into())),
         #[cfg(feature = "diffsol")]
-        scheme => multistep::solve(&program, scheme, from, until, points, &tolerances, each),
+        scheme => multistep::solve(&program, scheme, (from, until), points, &tolerances, each),
     }
 }
+
+/// How often it is looked in a course at what the clock switches and does not run evenly.
+pub const LOOKS: usize = 4096;
 
 /// A system and how it is solved in one course.
 struct Solver<'a> {
@@ -174,7 +177,7 @@ impl Solver<'_> {
             stepper.longest = LONGEST_SHARE * (until - from);
         }
         let mut scratch = CourseBuffers::default();
-        Course::new(&mut stepper, &mut events, until, points, each, &mut scratch).run()?;
+        Course::new(&mut stepper, &mut events, (until, LOOKS), points, each, &mut scratch).run()?;
         let mut state = Vec::new();
         stepper.state_into(&mut state);
         Ok((Ended { state, largest: scratch.largest }, stepper.work))

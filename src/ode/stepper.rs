@@ -10,6 +10,12 @@ use super::{Method, OdeTrouble, Reason, Work, explicit, rosenbrock};
 use crate::equations::program::code::Code;
 use crate::equations::program::{Program, run};
 
+/// How long the step is that passes a jump of the rates, over the shortest that the clock can tell.
+const PASSED: f64 = 8.0;
+
+/// How far two such jumps are apart, over the same: what is driven to one again and again slides along it.
+const APART: f64 = 1e4;
+
 /// A system while it is solved.
 pub struct Stepper<'a> {
     /// Its program.
@@ -24,6 +30,8 @@ pub struct Stepper<'a> {
     step: f64,
     error: f64,
     fresh: bool,
+    /// When a jump was passed last that no step was short enough for.
+    jumped: f64,
     pub(super) taken: f64,
     /// The state in the middle of the last step, for methods that need it for values between and once it was asked for.
     pub(super) middle: Vec<f64>,
@@ -74,6 +82,7 @@ impl<'a> Stepper<'a> {
             step: 0.0,
             error: 1.0,
             fresh: true,
+            jumped: f64::NEG_INFINITY,
             taken: 0.0,
             middle,
             work,
@@ -98,6 +107,7 @@ impl<'a> Stepper<'a> {
         self.open.iter_mut().zip(open).for_each(|(to, from)| *to = from);
         (self.step, self.error) = pace;
         (self.time, self.taken, self.fresh, self.work) = (time, 0.0, true, Work::default());
+        self.jumped = f64::NEG_INFINITY;
         self.s.past.start(time);
     }
 
@@ -218,7 +228,8 @@ impl<'a> Stepper<'a> {
                 control::first_step(&self.s.state, &self.s.stages[..n], &self.program.sizes, window, &self.tolerances)
                     [0];
         }
-        let shortest = control::shortest(self.time, 1e-3 * limit);
+        // Where time is near nothing the clock tells much shorter steps apart than at the end.
+        let shortest = control::shortest(self.time, 1e-9 * limit);
         let mut most = M::CONTROLLER.most;
         loop {
             let rest = limit - self.time;
@@ -246,6 +257,12 @@ impl<'a> Stepper<'a> {
             most = 1.0;
             if self.step <= shortest {
                 self.check_delays()?;
+                let step = rest.min(PASSED * shortest);
+                let is_first = self.time - self.jumped > APART * shortest;
+                if error.is_finite() && is_first && self.passes_jump(step) {
+                    (self.step, self.error, self.jumped) = (0.0, 1.0, self.time);
+                    return Ok(step);
+                }
                 return Err(self.trouble(if error.is_finite() { Reason::StepUnderflow } else { Reason::NotFinite }));
             }
         }

@@ -1,10 +1,19 @@
-//! Where the clock switches something: comparisons whose sides depend on time alone.
+//! Where the clock switches something: comparisons whose sides depend on time alone, and whole numbers that it counts.
 
-use crate::equations::tree::{Binary, Expr, Role, System};
+use crate::equations::tree::{Binary, Expr, Role, System, Unary};
 
-/// Differences of the sides of every comparison that depends on time but on no variable.
-pub fn stops(system: &System) -> Vec<Expr> {
-    let mut found = Vec::new();
+/// What depends on time, but on no variable, where the clock switches something.
+#[derive(Debug, Default)]
+pub struct Stops {
+    /// Differences of the sides of comparisons, which switch something where they are nothing, and arguments of what has a kink or jumps there.
+    pub differences: Vec<Expr>,
+    /// What is rounded to a whole number, which jumps where it is one.
+    pub counts: Vec<Expr>,
+}
+
+/// All of them in a system.
+pub fn stops(system: &System) -> Stops {
+    let mut found = Stops::default();
     let mut steady = vec![None; system.quantities.len()];
     for quantity in &system.quantities {
         match &quantity.role {
@@ -19,18 +28,35 @@ pub fn stops(system: &System) -> Vec<Expr> {
     found
 }
 
-fn comparisons(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>, found: &mut Vec<Expr>) {
+fn comparisons(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>, found: &mut Stops) {
     match expression {
         Expr::Number(_) | Expr::Time | Expr::Quantity(_) => {}
-        Expr::Unary(_, a) => comparisons(system, a, steady, found),
+        Expr::Unary(function, a) => {
+            let to = match function {
+                Unary::Floor | Unary::Ceil => Some(&mut found.counts),
+                Unary::Heaviside | Unary::Sign | Unary::Abs => Some(&mut found.differences),
+                _ => None,
+            };
+            if let Some(to) = to.filter(|_| is_steady(system, a, steady)) {
+                add(to, (**a).clone());
+            }
+            comparisons(system, a, steady, found);
+        }
         Expr::Binary(function, a, b) => {
-            let compares =
-                matches!(function, Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne);
-            if compares && is_steady(system, a, steady) && is_steady(system, b, steady) {
-                let difference = Expr::Binary(Binary::Sub, a.clone(), b.clone());
-                if !found.contains(&difference) {
-                    found.push(difference);
+            let of_both = |function: Binary| Expr::Binary(function, a.clone(), b.clone());
+            let to = match function {
+                Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne => {
+                    Some((&mut found.differences, of_both(Binary::Sub)))
                 }
+                Binary::Min | Binary::Max => Some((&mut found.differences, of_both(Binary::Sub))),
+                Binary::Rem | Binary::Quotient => Some((&mut found.counts, of_both(Binary::Div))),
+                _ => None,
+            };
+            if let Some((to, switching)) = to
+                && is_steady(system, a, steady)
+                && is_steady(system, b, steady)
+            {
+                add(to, switching);
             }
             comparisons(system, a, steady, found);
             comparisons(system, b, steady, found);
@@ -46,6 +72,12 @@ fn comparisons(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>
             comparisons(system, value, steady, found);
             comparisons(system, delay, steady, found);
         }
+    }
+}
+
+fn add(to: &mut Vec<Expr>, expression: Expr) {
+    if !to.contains(&expression) {
+        to.push(expression);
     }
 }
 

@@ -9,6 +9,7 @@ mod engine_nothing;
 mod engine_order;
 mod engine_program;
 mod engine_stiff;
+mod engine_switches;
 mod field_defaults;
 mod field_system;
 mod fields;

@@ -1,0 +1,155 @@
+//! What the clock switches: rates are those of each side, be they what they may at the instant itself, and schedules are met however they are
+//! written. Jumps of rates where a variable comes to something from nothing are passed.
+
+use pseudopod::equations::eml;
+use pseudopod::equations::tree::System;
+use pseudopod::error::Source;
+use pseudopod::ode::{Method, OdeTrouble, Reason, Scheme, Solution, SolveOptions, solve};
+use std::sync::Arc;
+
+/// The equations of a document with these parts.
+fn system(parts: &str) -> System {
+    let text = format!("<eml name=\"test\">{parts}</eml>");
+    eml::read(Arc::new(Source { name: "test.eml".into(), text })).expect(parts).system
+}
+
+/// One variable from 0 on that changes by a rate.
+fn one(rate: &str) -> System {
+    system(&format!("<variable id=\"x\" initial=\"0\" rate=\"{rate}\"/>"))
+}
+
+fn solved(system: &System, method: Method, points: &[f64]) -> Result<Solution, OdeTrouble> {
+    let options = SolveOptions { scheme: Scheme::OneStep(method), ..SolveOptions::default() };
+    solve(system, 0.0, points[points.len() - 1], points, &options)
+}
+
+/// The last value of the first variable, and the number of steps.
+fn end(system: &System, method: Method, until: f64) -> (f64, u64) {
+    let solution = solved(system, method, &[until]).unwrap_or_else(|trouble| panic!("{trouble}"));
+    (solution.values[0][0], solution.work.steps)
+}
+
+const METHODS: [Method; 3] = [Method::Rosenbrock, Method::Rk45, Method::Rk65];
+
+#[test]
+fn an_infusion_that_begins_or_ends_counts_to_the_last_bit_whichever_side_has_the_instant() {
+    for (condition, amount) in
+        [("time lt 9.3", 9.3), ("time le 9.3", 9.3), ("time gt 9.3", 10.7), ("time ge 9.3", 10.7), ("time gt 0", 20.0)]
+    {
+        let system = one(&format!("piecewise(1, {condition}, 0)"));
+        for method in METHODS {
+            let (x, steps) = end(&system, method, 20.0);
+            assert!((x - amount).abs() < 1e-12 && steps < 60, "{condition} {method:?}: {x} in {steps} steps");
+        }
+        let (x, _) = end(&system, Method::Rk4 { step: 0.7 }, 20.0);
+        assert!((x - amount).abs() < 1e-12, "{condition}: {x} by rk4");
+    }
+}
+
+#[test]
+fn methods_of_many_steps_begin_anew_after_a_switch_and_give_all_rows() {
+    let points: Vec<f64> = (0..=20).map(f64::from).collect();
+    let schemes = [Scheme::Bdf, Scheme::Esdirk34, Scheme::TrBdf2, Scheme::Tsit45];
+    // An infusion that one long step would pass over, one that ends where all does, and none that begins there.
+    for (condition, decay, at_end) in [
+        ("time ge 5 and time lt 5.001", 0.0, 0.001),
+        ("time lt 20", 0.0, 20.0),
+        ("time ge 20", 0.0, 0.0),
+        ("time gt 0 and time le 1", 0.1, 10.0 * (-1.9_f64).exp() * (1.0 - (-0.1_f64).exp())),
+    ] {
+        let system = one(&format!("piecewise(1, {condition}, 0) - {decay}*x"));
+        for scheme in schemes {
+            let options = SolveOptions { scheme, ..SolveOptions::default() };
+            let solution = solve(&system, 0.0, 20.0, &points, &options).unwrap_or_else(|trouble| panic!("{trouble}"));
+            assert_eq!(solution.times, points, "{condition} {scheme:?}");
+            let x = solution.values[20][0];
+            // A hundred tolerances of a step: one of these methods has the order 2.
+            assert!((x - at_end).abs() < 1e-5 * (0.001 + at_end), "{condition} {scheme:?}: {x} {at_end}");
+        }
+    }
+}
+
+#[test]
+fn doses_of_a_schedule_are_taken_whole_however_it_is_written() {
+    // Every three hours for 0.44, with decay: each dose is an exact sum of exponentials.
+    let exact = |time: f64| -> f64 {
+        let of_dose = |begin: f64| match time - begin {
+            since if since <= 0.0 => 0.0,
+            since => 2.0 * ((-0.5 * (since - 0.44).max(0.0)).exp() - (-0.5 * since).exp()),
+        };
+        (0..40).map(|dose| of_dose(3.0 * f64::from(dose))).sum()
+    };
+    let points: Vec<f64> = (1..=100).map(|point| f64::from(point)).collect();
+    for schedule in [
+        "rem(time, 3) lt 0.44",
+        "time - 3*floor(time/3) le 0.44",
+        "0 lt time - 3*quotient(time, 3) and time - 3*quotient(time, 3) lt 0.44",
+        "time*604800/604800 - floor(time*604800/(3*604800))*3 lt 0.44",
+        // Not even in time between its jumps.
+        "(time - 3*floor(time/3))^2 lt 0.1936",
+    ] {
+        let system = one(&format!("piecewise(1, {schedule}, 0) - 0.5*x"));
+        for method in METHODS {
+            let solution = solved(&system, method, &points).unwrap_or_else(|trouble| panic!("{schedule}: {trouble}"));
+            for (time, values) in points.iter().zip(&solution.values) {
+                let off = (values[0] - exact(*time)).abs();
+                assert!(off < 1e-6 * exact(*time), "{schedule} {method:?} at {time}: {} {}", values[0], exact(*time));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_day_by_a_rounded_sine_is_as_long_as_it_is() {
+    // Light by a sine that is rounded up: half of each period, though nothing of it runs evenly.
+    let system = one("ceil(sin(2*pi*time/24 + 0.001)/2)");
+    for method in METHODS {
+        let (x, steps) = end(&system, method, 96.0);
+        assert!((x - 48.0).abs() < 1e-9 && steps < 400, "{method:?}: {x} in {steps} steps");
+    }
+}
+
+#[test]
+fn an_event_at_one_instant_of_a_schedule_happens_each_time() {
+    let system = system(
+        "<variable id=\"x\" initial=\"0\" rate=\"0\"/>\
+         <event id=\"dose\" when=\"rem(time, 28) eq 27\"><set id=\"x\">x + 1</set></event>\
+         <event id=\"end\" when=\"time gt 100\"><set id=\"x\">x + 10</set></event>",
+    );
+    let (x, _) = end(&system, Method::Rosenbrock, 200.0);
+    assert_eq!(x, 7.0 + 10.0);
+}
+
+#[test]
+fn what_comes_to_something_from_nothing_where_another_variable_passes_a_bound_does_so_there() {
+    let system = system(
+        "<variable id=\"x\" initial=\"0\" rate=\"piecewise(1 - 0.3*x, y gt 0.5, 0)\"/>\
+         <variable id=\"y\" initial=\"0\" rate=\"1 - y\"/>",
+    );
+    let exact = (1.0 - (-0.3 * (2.0 - 2.0_f64.ln())).exp()) / 0.3;
+    for method in METHODS {
+        let (x, steps) = end(&system, method, 2.0);
+        assert!((x - exact).abs() < 1e-6 && steps < 400, "{method:?}: {x} {exact} in {steps} steps");
+    }
+}
+
+#[test]
+fn a_pulse_faster_than_any_clock_tells_at_the_end_is_followed_from_the_start() {
+    // Comes to rest within 1e-15 of a time of 100: of that the clock tells no 1e-14 apart in the end.
+    let (x, _) = end(&one("1e6 - 5e16*x"), Method::Rosenbrock, 100.0);
+    assert!((x - 2e-11).abs() < 1e-17, "{x}");
+}
+
+#[test]
+fn what_grows_without_bound_or_is_driven_to_and_fro_is_told() {
+    // Along a bound that it is driven to from both sides, it comes on in steps that its tolerance allows, and no farther than these are many.
+    for (rate, time, within) in [("(1 + x)^2", 1.0, 1e-3), ("piecewise(1, x lt 0.5, -1)", 0.5, 0.1)] {
+        for method in METHODS {
+            let options =
+                SolveOptions { scheme: Scheme::OneStep(method), max_steps: 20_000, ..SolveOptions::default() };
+            let trouble = solve(&one(rate), 0.0, 2.0, &[2.0], &options).expect_err("no step is short enough");
+            let known = matches!(trouble.reason, Reason::StepUnderflow | Reason::NotFinite | Reason::TooManySteps);
+            assert!(known && (trouble.time - time).abs() < within, "{rate} {method:?}: {trouble}");
+        }
+    }
+}
