@@ -179,7 +179,8 @@ pub fn between<P>(s: &Scratch<1, P>, share: f64, state: &mut [f64]) {
         };
         let rest = 1.0 - share;
         let bend = weighted(&D2) + share * weighted(&D3);
-        *value = rest * s.state[v][0] + share * (s.proposal[v][0] + rest * bend);
+        // So that what stands still does so to the last bit.
+        *value = s.state[v][0] + share * (s.proposal[v][0] - s.state[v][0] + rest * bend);
         if s.keeps_side && s.state[v][0] >= 0.0 && *value < 0.0 {
             *value = 0.0;
         }

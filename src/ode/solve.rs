@@ -27,13 +27,15 @@ pub struct SolveOptions {
     pub max_steps: u32,
     /// Seed of the choices between events of one time and one priority.
     pub seed: u64,
+    /// The longest step that a method takes which chooses its steps, in the unit of time; those of diffsol heed it not.
+    pub longest: f64,
 }
 
 impl Default for SolveOptions {
     /// The Rosenbrock method, which takes stiff and other systems, with and without events.
     fn default() -> Self {
         let scheme = Scheme::OneStep(Method::Rosenbrock);
-        Self { scheme, relative: 1e-7, absolute: 1e-14, max_steps: 2_000_000, seed: 0 }
+        Self { scheme, relative: 1e-7, absolute: 1e-14, max_steps: 2_000_000, seed: 0, longest: f64::INFINITY }
     }
 }
 
@@ -105,7 +107,8 @@ pub fn solve_each(
         Tolerances { relative: options.relative, absolute: options.absolute, max_steps: options.max_steps };
     match options.scheme {
         Scheme::OneStep(method) => {
-            let solver = Solver { program: &program, plan: &plan, method, tolerances, seed: options.seed };
+            let SolveOptions { seed, longest, .. } = *options;
+            let solver = Solver { program: &program, plan: &plan, method, tolerances, seed, longest };
             solver.solve((from, until), points, each)
         }
         _ if program.size() == 0 => {
@@ -135,6 +138,7 @@ struct Solver<'a> {
     method: Method,
     tolerances: Tolerances,
     seed: u64,
+    longest: f64,
 }
 
 impl Solver<'_> {
@@ -173,8 +177,9 @@ impl Solver<'_> {
         let (mut memory, mut buffers) = (self.plan.before_start(), EventBuffers::default());
         let choices = Numbers { seed: self.seed, system: &self.program.name }.choices();
         let mut events = Events::new(self.plan, &mut memory, &mut buffers, Chooser { choices, cell: 0 });
+        stepper.longest = self.longest;
         if !self.plan.is_empty() {
-            stepper.longest = LONGEST_SHARE * (until - from);
+            stepper.longest = self.longest.min(LONGEST_SHARE * (until - from));
         }
         let mut scratch = CourseBuffers::default();
         Course::new(&mut stepper, &mut events, (until, LOOKS), points, each, &mut scratch).run()?;

@@ -134,6 +134,36 @@ fn what_comes_to_something_from_nothing_where_another_variable_passes_a_bound_do
 }
 
 #[test]
+fn what_stands_still_does_so_to_the_last_bit_at_all_points() {
+    let system =
+        system("<variable id=\"x\" initial=\"0.1\" rate=\"0\"/><variable id=\"y\" initial=\"1\" rate=\"-y\"/>");
+    let points: Vec<f64> = (0..=1000).map(|point| 0.007 * f64::from(point)).collect();
+    for method in METHODS {
+        let solution = solved(&system, method, &points).expect("a decay");
+        assert!(solution.values.iter().all(|values| values[0] == 0.1), "{method:?}");
+    }
+}
+
+#[test]
+fn no_step_is_longer_than_is_asked_for_so_that_a_narrow_pulse_of_a_variable_is_seen() {
+    // Nothing happens but around y = 7, for two hundredths.
+    let system = system(
+        "<variable id=\"x\" initial=\"0\" rate=\"exp(-(y - 7)^2/0.0001)\"/><variable id=\"y\" initial=\"0\" rate=\"1\"/>",
+    );
+    let exact = 0.01 * std::f64::consts::PI.sqrt();
+    for method in METHODS {
+        let solved = |longest: f64| {
+            let options = SolveOptions { scheme: Scheme::OneStep(method), longest, ..SolveOptions::default() };
+            let solution = solve(&system, 0.0, 10.0, &[10.0], &options).unwrap_or_else(|trouble| panic!("{trouble}"));
+            (solution.values[0][0], solution.work.steps)
+        };
+        let ((passed_over, few), (seen, many)) = (solved(f64::INFINITY), solved(0.005));
+        assert!(passed_over < 0.5 * exact && few < 100 && many >= 2000, "{passed_over} {few} {many}");
+        assert!((seen - exact).abs() < 1e-5 * exact, "{method:?}: {seen} {exact}");
+    }
+}
+
+#[test]
 fn a_pulse_faster_than_any_clock_tells_at_the_end_is_followed_from_the_start() {
     // Comes to rest within 1e-15 of a time of 100: of that the clock tells no 1e-14 apart in the end.
     let (x, _) = end(&one("1e6 - 5e16*x"), Method::Rosenbrock, 100.0);

@@ -27,6 +27,7 @@ pub const OPTIONS: SolveOptions = SolveOptions {
     absolute: 1e-12,
     max_steps: 1_000_000,
     seed: 0,
+    longest: f64::INFINITY,
 };
 
 /// Values of columns at a time.

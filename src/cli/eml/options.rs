@@ -41,6 +41,9 @@ pub struct SolveArgs {
     /// The step of rk4 and euler.
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub inner_step: Option<f64>,
+    /// The longest step of rk45, rk65 and rosenbrock, so that nothing short is passed over between two.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    pub max_step: Option<f64>,
     /// The most steps that are taken.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_steps: Option<u32>,
@@ -90,7 +93,13 @@ pub(super) fn points(args: &SolveArgs, faults: &mut Vec<Fault>) -> Vec<f64> {
 pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fault>) -> (&'static str, SolveOptions) {
     let usual = SolveOptions::default();
     let mut options = usual;
-    for (name, value) in [("--rtol", args.rtol), ("--atol", args.atol), ("--inner-step", args.inner_step)] {
+    let numbers = [
+        ("--rtol", args.rtol),
+        ("--atol", args.atol),
+        ("--inner-step", args.inner_step),
+        ("--max-step", args.max_step),
+    ];
+    for (name, value) in numbers {
         if value.is_some_and(|value| !(value.is_finite() && value > 0.0)) {
             let fault = Fault::new(format!("{name} {} is not above 0", value.unwrap_or(f64::NAN)));
             faults.push(fault.help("give a number such as 1e-6"));
@@ -99,9 +108,17 @@ pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fa
     let name = scheme(args, document, faults);
     let fixed = ["rk4", "euler"].contains(&name);
     let idle = match fixed {
-        true => vec![("--rtol", args.rtol.is_some()), ("--atol", args.atol.is_some())],
+        true => vec![
+            ("--rtol", args.rtol.is_some()),
+            ("--atol", args.atol.is_some()),
+            ("--max-step", args.max_step.is_some()),
+        ],
         false => vec![("--inner-step", args.inner_step.is_some())],
     };
+    if name == "bdf" && args.max_step.is_some() {
+        let fault = Fault::new("the scheme bdf takes no --max-step");
+        faults.push(fault.help("take --scheme rosenbrock: it is for stiff systems too"));
+    }
     for (option, _) in idle.into_iter().filter(|(_, given)| *given) {
         let help = match fixed {
             true => format!("{name} takes steps of --inner-step; rk45, rk65 and rosenbrock keep to tolerances"),
@@ -113,6 +130,7 @@ pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fa
     options.absolute = args.atol.or(document.solver.atol).unwrap_or(usual.absolute);
     options.max_steps = args.max_steps.unwrap_or(usual.max_steps);
     options.seed = args.seed;
+    options.longest = args.max_step.unwrap_or(usual.longest);
     let inner = args.inner_step.or(document.solver.inner_step);
     match Scheme::named(name, inner) {
         Some(scheme) => options.scheme = scheme,
