@@ -9,6 +9,7 @@ use super::memory::EventMemory;
 use super::narrow::Narrow;
 use super::scratch::Scratch;
 use super::stepper::StepperBuffers;
+use super::switches::Switches;
 use super::{Method, OdeTrouble, Work};
 use crate::equations::program::{LANES, Lanes, Program};
 use crate::random::Normals;
@@ -33,6 +34,8 @@ pub struct PopulationScratch {
     /// Registers for strengths of noise, and whose numbers kick the variables.
     pub(super) kicks: Vec<Lanes<LANES>>,
     pub(super) normals: Vec<Normals>,
+    /// What tells when the clock switches something.
+    pub(super) clock: Option<(StepperBuffers, Switches)>,
 }
 
 /// What one thread works in.

@@ -57,7 +57,7 @@ impl<'c, 'a> Course<'c, 'a> {
     pub fn run(mut self) -> Result<(), OdeTrouble> {
         let fixed = self.stepper.has_fixed_steps();
         self.arrive()?;
-        if self.buffers.switches.are_any() {
+        if self.buffers.switches.are_at_present(self.stepper) {
             self.pass_to(after(self.stepper.time, self.until))?;
         }
         while self.stepper.time < self.until {

@@ -6,6 +6,7 @@ mod advance;
 pub(crate) mod block;
 mod buffers;
 pub(crate) mod cells;
+mod clocked;
 mod control;
 mod course;
 mod digits;
@@ -39,6 +40,7 @@ pub mod tableau;
 mod wide;
 
 pub use buffers::PopulationScratch;
+pub use clocked::clocked;
 pub use control::Tolerances;
 pub use eventful::Eventful;
 pub use events::{EventPlan, assigned_parameters};

@@ -106,7 +106,7 @@ pub fn solve(
     let mut switches = Switches::default();
     switches.begin(&clock, until, LOOKS);
     course.write_until(from);
-    if switches.are_any() {
+    if switches.are_at_present(&mut clock) {
         course.time = after(from, until).min(until);
     }
     while course.time < until {

@@ -65,6 +65,18 @@ impl Switches {
         !self.are_uneven.is_empty()
     }
 
+    /// Whether something switches at the stepper's present itself: whether all stands a little later as it does now.
+    pub fn are_at_present(&mut self, stepper: &mut Stepper) -> bool {
+        if !self.are_any() {
+            return false;
+        }
+        stepper.state_into(&mut self.present);
+        self.are_uneven.fill(true);
+        let times = [stepper.time, after(stepper.time, self.until)];
+        times.into_iter().zip(0..).for_each(|(time, place)| self.stand_at(stepper, time, place));
+        self.stands[0] != self.stands[1]
+    }
+
     /// Forgets what was found, since parameters have been set.
     pub fn forget(&mut self) {
         (self.seen, self.uneven) = (f64::NEG_INFINITY, None);

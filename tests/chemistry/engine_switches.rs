@@ -4,7 +4,9 @@
 use pseudopod::equations::eml;
 use pseudopod::equations::tree::System;
 use pseudopod::error::Source;
-use pseudopod::ode::{Method, OdeTrouble, Reason, Scheme, Solution, SolveOptions, solve};
+use pseudopod::ode::{
+    Method, OdeTrouble, Population, PopulationScratch, Reason, Scheme, Solution, SolveOptions, Tolerances, clocked, solve,
+};
 use std::sync::Arc;
 
 /// The equations of a document with these parts.
@@ -97,6 +99,33 @@ fn doses_of_a_schedule_are_taken_whole_however_it_is_written() {
             }
         }
     }
+}
+
+#[test]
+fn cells_in_windows_have_each_pulse_of_a_schedule_too() {
+    // A thousandth of a second every two: pulses begin at ends of windows, and end within them.
+    for (schedule, exact) in [("rem(time, 2) lt 0.001", 0.003), ("time le 2", 2.0), ("time ge 2.05", 3.95)] {
+        let system = one(&format!("piecewise(1, {schedule}, 0)"));
+        let program = clocked(&system).expect("no circle");
+        for cells in [1, 20] {
+            let mut population = Population::new(&program, cells, Method::Rk45);
+            let (tolerances, mut scratch) = (Tolerances::default(), PopulationScratch::default());
+            for window in 0..60 {
+                let span = [window, window + 1].map(|number| 0.1 * f64::from(number));
+                let advanced = population.advance_by_clock(&program, span.into(), &tolerances, &mut scratch);
+                advanced.unwrap_or_else(|trouble| panic!("{trouble}"));
+            }
+            for cell in 0..cells {
+                let x = population.state(cell, 0);
+                assert!((x - exact).abs() < 1e-13, "{schedule} {cells}: {x}");
+            }
+        }
+    }
+    // What depends on an input is another time for each cell, and left to the error estimate.
+    let system = system(
+        "<input id=\"begin\" default=\"1\"/><variable id=\"x\" initial=\"0\" rate=\"piecewise(1, time ge begin, 0)\"/>",
+    );
+    assert!(clocked(&system).expect("no circle").further.is_empty());
 }
 
 #[test]

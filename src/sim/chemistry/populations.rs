@@ -31,7 +31,7 @@ pub(super) fn advance_population(
             continue;
         }
         match reactor.events.is_empty() {
-            true => population.advance(&reactor.program, begin, end, &reactor.tolerances, scratch)?,
+            true => population.advance_by_clock(&reactor.program, (begin, end), &reactor.tolerances, scratch)?,
             false => {
                 let events = &mut chemistry.events[number];
                 let ids = ids(kinds, &reactor.members);

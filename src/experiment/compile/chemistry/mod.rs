@@ -11,11 +11,11 @@ mod read;
 use super::super::{Chemistry as Entry, Document, Scheme};
 use super::size::{self, Size};
 use crate::equations::eml::{self, Level};
-use crate::equations::program::{Program, initial_values};
+use crate::equations::program::initial_values;
 use crate::equations::tree::{Quantity, QuantityId, Role};
 use crate::error::{Error, Fault, Location};
 use crate::field::{FieldSystem, Fields, Placing};
-use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Noise, Pace, Tolerances, assigned_parameters, too_large};
+use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Noise, Pace, Tolerances, assigned_parameters, clocked, too_large};
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
 
@@ -151,7 +151,7 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         return None;
     }
     let compiled = match eml.system.events.is_empty() {
-        true => Program::new(&eml.system).map(|program| (program, EventPlan::default())),
+        true => clocked(&eml.system).map(|program| (program, EventPlan::default())),
         false => EventPlan::compile(&eml.system, 0.0),
     };
     let compiled = compiled.and_then(|(program, events)| Ok((program, events, Noise::new(eml)?)));
