@@ -4,13 +4,10 @@ use super::buffers::PopulationScratch;
 use super::population::Population;
 use super::stepper::{Stepper, StepperBuffers};
 use super::stops::{Stops, stops};
-use super::switches::{Ahead, Switches, after};
+use super::switches::{Ahead, LOOKS_IN_WINDOW, Switches, after};
 use super::{Method, OdeTrouble, Tolerances, Work};
 use crate::equations::program::Program;
 use crate::equations::tree::{Expr, Role, System};
-
-/// How often it is looked in a window at what the clock switches and does not run evenly.
-const LOOKS: usize = 64;
 
 /// Compiles a system without events for populations, and beside its rates what the clock switches in all cells at the same times: what depends
 /// on no input.
@@ -63,7 +60,7 @@ impl Population {
         let mut clock = Stepper::within(buffers, program, Method::Euler { step: 1.0 }, *tolerances);
         let initial = |quantity: &u32| program.initial[*quantity as usize];
         clock.resume(from, program.variables.iter().map(initial), program.open.iter().map(initial), (0.0, 1.0));
-        switches.begin(&clock, until, LOOKS);
+        switches.begin(&clock, until, LOOKS_IN_WINDOW);
         if switches.are_at_present(&mut clock) {
             clock.time = after(from, until);
         }

@@ -10,11 +10,9 @@ use super::events::{Chooser, EventPlan, Events};
 use super::memory::EventMemory;
 use super::population::Population;
 use super::stepper::{Stepper, StepperBuffers};
+use super::switches::LOOKS_IN_WINDOW;
 use super::{Numbers, OdeTrouble, Tolerances, Work};
 use crate::equations::program::Program;
-
-/// How often it is looked in a window at what the clock switches and does not run evenly.
-const LOOKS: usize = 64;
 
 /// A system with events, and how it is advanced.
 #[derive(Debug, Clone, Copy)]
@@ -103,7 +101,8 @@ impl Eventful<'_> {
         own.longest = LONGEST_SHARE * self.span;
         let chooser = Chooser { choices: self.numbers.choices(), cell: arrived.id };
         let mut events = Events::new(self.plan, &mut arrived.memory, events, chooser);
-        arrived.trouble = Course::new(&mut own, &mut events, (until, LOOKS), &[], &mut |_, _| (), course).run().err();
+        arrived.trouble =
+            Course::new(&mut own, &mut events, (until, LOOKS_IN_WINDOW), &[], &mut |_, _| (), course).run().err();
         own.state_into(&mut arrived.state);
         arrived.open.clone_from(&own.open);
         (arrived.pace, arrived.work) = (own.pace(), own.work);

@@ -7,9 +7,8 @@ use diffsol::{
 };
 
 use super::scheme::Scheme;
-use super::solve::LOOKS;
 use super::stepper::Stepper;
-use super::switches::{Ahead, Switches, after};
+use super::switches::{Ahead, LOOKS_IN_SOLVE, Switches, after};
 use super::{Method, OdeTrouble, Reason, Tolerances, Work};
 use crate::equations::program::{Lanes, Program, run};
 
@@ -104,7 +103,7 @@ pub fn solve(
     // Tells the time alone.
     let mut clock = Stepper::new(program, Method::Euler { step: 1.0 }, *tolerances, from);
     let mut switches = Switches::default();
-    switches.begin(&clock, until, LOOKS);
+    switches.begin(&clock, until, LOOKS_IN_SOLVE);
     course.write_until(from);
     if switches.are_at_present(&mut clock) {
         course.time = after(from, until).min(until);

@@ -10,6 +10,7 @@ use super::events::{Chooser, EventBuffers, EventPlan, Events};
 use super::multistep;
 use super::scheme::Scheme;
 use super::stepper::Stepper;
+use super::switches::LOOKS_IN_SOLVE;
 use super::{Method, Numbers, OdeTrouble, Reason, Work};
 use crate::equations::program::Program;
 use crate::equations::tree::System;
@@ -128,9 +129,6 @@ pub fn solve_each(
     }
 }
 
-/// How often it is looked in a course at what the clock switches and does not run evenly.
-pub const LOOKS: usize = 4096;
-
 /// A system and how it is solved in one course.
 struct Solver<'a> {
     program: &'a Program,
@@ -182,7 +180,7 @@ impl Solver<'_> {
             stepper.longest = self.longest.min(LONGEST_SHARE * (until - from));
         }
         let mut scratch = CourseBuffers::default();
-        Course::new(&mut stepper, &mut events, (until, LOOKS), points, each, &mut scratch).run()?;
+        Course::new(&mut stepper, &mut events, (until, LOOKS_IN_SOLVE), points, each, &mut scratch).run()?;
         let mut state = Vec::new();
         stepper.state_into(&mut state);
         Ok((Ended { state, largest: scratch.largest }, stepper.work))

@@ -27,10 +27,14 @@ impl Switch {
     const NEVER: Self = Self { before: f64::INFINITY, at: f64::INFINITY, after: f64::INFINITY };
 }
 
+/// How often it is looked in a single solve at what does not run evenly.
+pub const LOOKS_IN_SOLVE: usize = 4096;
+/// The same in a window of a run.
+pub const LOOKS_IN_WINDOW: usize = 64;
 /// It is looked ahead for so many of these at once.
 const AHEAD: usize = 64;
-/// By how many units in the last place a time is passed on either side.
-const PLACES: f64 = 4.0;
+/// By how many of its last bits a time is passed on either side.
+const LAST_BITS: f64 = 4.0;
 
 /// What is found of the switches of a course.
 #[derive(Debug, Default)]
@@ -73,7 +77,7 @@ impl Switches {
         stepper.state_into(&mut self.present);
         self.are_uneven.fill(true);
         let times = [stepper.time, after(stepper.time, self.until)];
-        times.into_iter().zip(0..).for_each(|(time, place)| self.stand_at(stepper, time, place));
+        times.into_iter().zip(0..).for_each(|(time, which)| self.stand_at(stepper, time, which));
         self.stands[0] != self.stands[1]
     }
 
@@ -160,9 +164,9 @@ impl Switches {
         }
     }
 
-    /// The switch between two times, the first of which stands in place 0.
+    /// The switch between two times, the first of which stands as 0.
     fn close_in(&mut self, stepper: &mut Stepper, mut low: f64, mut high: f64) -> Switch {
-        let close = |high: f64| PLACES * f64::EPSILON * high.abs();
+        let close = |high: f64| LAST_BITS * f64::EPSILON * high.abs();
         while high - low > close(high) {
             let middle = 0.5 * (low + high);
             if middle <= low || middle >= high {
@@ -179,9 +183,9 @@ impl Switches {
     }
 
     /// How what does not run evenly stands at a time: the signs of differences and the whole numbers around counts.
-    fn stand_at(&mut self, stepper: &mut Stepper, time: f64, place: usize) {
+    fn stand_at(&mut self, stepper: &mut Stepper, time: f64, which: usize) {
         let Self { present, read, are_uneven, stands, .. } = self;
-        let (stands, mut uneven) = (&mut stands[place], are_uneven.iter());
+        let (stands, mut uneven) = (&mut stands[which], are_uneven.iter());
         stands.clear();
         for group in [DIFFERENCES, COUNTS] {
             stepper.evaluate(&stepper.program.further[group], time, present, read);
@@ -195,14 +199,14 @@ impl Switches {
     }
 }
 
-/// A time a few units in the last place before another.
+/// A time a few last bits before another.
 fn before(time: f64) -> f64 {
-    time - PLACES * f64::EPSILON * time.abs()
+    time - LAST_BITS * f64::EPSILON * time.abs()
 }
 
-/// A time a few units in the last place after another, in a course that ends at a time.
+/// A time a few last bits after another, in a course that ends at a time.
 pub fn after(time: f64, until: f64) -> f64 {
-    time + 2.0 * PLACES * f64::EPSILON * time.abs().max(1e-3 * until.abs())
+    time + 2.0 * LAST_BITS * f64::EPSILON * time.abs().max(1e-3 * until.abs())
 }
 
 /// The number of few digits within round-off of a time, if there is one: 0.3 for 0.30000000000000004.

@@ -5,7 +5,8 @@ use pseudopod::equations::eml;
 use pseudopod::equations::tree::System;
 use pseudopod::error::Source;
 use pseudopod::ode::{
-    Method, OdeTrouble, Population, PopulationScratch, Reason, Scheme, Solution, SolveOptions, Tolerances, clocked, solve,
+    Method, OdeTrouble, Population, PopulationScratch, Reason, Scheme, Solution, SolveOptions, Tolerances, clocked,
+    solve,
 };
 use std::sync::Arc;
 
