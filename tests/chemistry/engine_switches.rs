@@ -82,7 +82,7 @@ fn doses_of_a_schedule_are_taken_whole_however_it_is_written() {
         };
         (0..40).map(|dose| of_dose(3.0 * f64::from(dose))).sum()
     };
-    let points: Vec<f64> = (1..=100).map(|point| f64::from(point)).collect();
+    let points: Vec<f64> = (1..=100).map(f64::from).collect();
     for schedule in [
         "rem(time, 3) lt 0.44",
         "time - 3*floor(time/3) le 0.44",
