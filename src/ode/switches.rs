@@ -121,7 +121,9 @@ impl Switches {
         let mut next = f64::INFINITY;
         for (number, ((&now, &half), &end)) in now.iter().zip(half).zip(end).enumerate() {
             let (slope, size) = ((end - now) / length, now.abs().max(end.abs()));
-            let is_even = (half - 0.5 * (now + end)).abs() <= 1e-12 * size;
+            // What time itself is rounded by may be more than what it is of a difference.
+            let rounding = 16.0 * f64::EPSILON * (time + length).abs().max(time.abs()) * slope.abs();
+            let is_even = (half - 0.5 * (now + end)).abs() <= 1e-12 * size + rounding;
             self.are_uneven[first + number] = !is_even;
             if !is_even || slope == 0.0 {
                 continue;

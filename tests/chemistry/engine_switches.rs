@@ -103,6 +103,17 @@ fn doses_of_a_schedule_are_taken_whole_however_it_is_written() {
 }
 
 #[test]
+fn a_schedule_is_kept_long_after_its_begin() {
+    // Pulses from 100 002 to 100 098, which a look at every fortieth of a unit would pass over.
+    let system = one("piecewise(1, rem(time, 3) lt 0.001, 0)");
+    for method in METHODS {
+        let options = SolveOptions { scheme: Scheme::OneStep(method), ..SolveOptions::default() };
+        let solution = solve(&system, 1e5, 1e5 + 100.0, &[1e5 + 100.0], &options).expect("a schedule");
+        assert!((solution.values[0][0] - 0.033).abs() < 1e-8, "{method:?}: {:?}", solution.values);
+    }
+}
+
+#[test]
 fn cells_in_windows_have_each_pulse_of_a_schedule_too() {
     // A thousandth of a second every two: pulses begin at ends of windows, and end within them.
     for (schedule, exact) in [("rem(time, 2) lt 0.001", 0.003), ("time le 2", 2.0), ("time ge 2.05", 3.95)] {
