@@ -7,9 +7,9 @@ use super::course::CourseBuffers;
 use super::events::{EventBuffers, EventPlan};
 use super::memory::EventMemory;
 use super::narrow::Narrow;
+use super::pieces::PieceBuffers;
 use super::scratch::Scratch;
 use super::stepper::StepperBuffers;
-use super::switches::Switches;
 use super::{Method, OdeTrouble, Work};
 use crate::equations::program::{LANES, Lanes, Program};
 use crate::random::Normals;
@@ -35,7 +35,7 @@ pub struct PopulationScratch {
     pub(super) kicks: Vec<Lanes<LANES>>,
     pub(super) normals: Vec<Normals>,
     /// What tells when the clock switches something.
-    pub(super) clock: Option<(StepperBuffers, Switches)>,
+    pub(super) clock: Option<PieceBuffers>,
 }
 
 /// What one thread works in.

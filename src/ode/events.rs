@@ -112,7 +112,7 @@ fn groups(system: &System) -> Vec<Vec<Expr>> {
     let number = Expr::Number;
     let triggers = system.events.iter().map(|event| event.trigger.clone()).collect();
     let priority = |event: &Event| event.priority.clone().unwrap_or(number(f64::NEG_INFINITY));
-    let Stops { differences, counts } = stops(system);
+    let Stops { differences, counts } = stops(system, true);
     let mut groups = vec![triggers, system.events.iter().map(priority).collect(), differences, counts];
     for event in &system.events {
         let mut group = vec![event.delay.clone().unwrap_or(number(0.0))];

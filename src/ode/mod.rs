@@ -26,6 +26,7 @@ mod memory;
 mod multistep;
 mod narrow;
 mod noise;
+mod pieces;
 mod population;
 mod retrace;
 mod rosenbrock;

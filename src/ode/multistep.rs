@@ -6,10 +6,10 @@ use diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason, Vector,
 };
 
+use super::pieces::{Piece, Pieces};
 use super::scheme::Scheme;
-use super::stepper::Stepper;
-use super::switches::{Ahead, LOOKS_IN_SOLVE, Switches, after};
-use super::{Method, OdeTrouble, Reason, Tolerances, Work};
+use super::switches::LOOKS_IN_SOLVE;
+use super::{OdeTrouble, Reason, Tolerances, Work};
 use crate::equations::program::{Lanes, Program, run};
 
 type Matrix = NalgebraMat<f64>;
@@ -100,21 +100,11 @@ pub fn solve(
     let state = program.variables.iter().map(|&quantity| program.initial[quantity as usize]).collect();
     let (machine, work) = (Machine::new(program), Work::default());
     let mut course = Course { machine: &machine, scheme, tolerances, time: from, state, points, work, each };
-    // Tells the time alone.
-    let mut clock = Stepper::new(program, Method::Euler { step: 1.0 }, *tolerances, from);
-    let mut switches = Switches::default();
-    switches.begin(&clock, until, LOOKS_IN_SOLVE);
     course.write_until(from);
-    if switches.are_at_present(&mut clock) {
-        course.time = after(from, until).min(until);
-    }
-    while course.time < until {
-        clock.time = course.time;
-        let Ahead { switch, seen } = switches.next(&mut clock);
-        let limit = until.min(switch.at).min(seen);
-        course.run(if limit == switch.at { switch.before } else { limit })?;
-        course.write_until(limit);
-        course.time = if limit == switch.at { switch.after } else { limit };
+    for Piece { begin, end, until } in Pieces::new(program, (from, until), LOOKS_IN_SOLVE, None) {
+        course.time = begin;
+        course.run(end)?;
+        course.write_until(until);
     }
     course.work.rates = machine.asked.get();
     Ok(course.work)

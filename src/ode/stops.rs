@@ -11,10 +11,16 @@ pub struct Stops {
     pub counts: Vec<Expr>,
 }
 
-/// All of them in a system.
-pub fn stops(system: &System) -> Stops {
+/// All of them in a system, or those alone that depend on no input either, so that they are the same in all cells.
+pub fn stops(system: &System, with_inputs: bool) -> Stops {
     let mut found = Stops::default();
-    let mut steady = vec![None; system.quantities.len()];
+    let is_known = |role: &Role| match role {
+        Role::Variable { .. } => Some(false),
+        Role::Input => Some(with_inputs),
+        Role::Parameter => Some(true),
+        Role::Defined { .. } => None,
+    };
+    let mut steady = system.quantities.iter().map(|quantity| is_known(&quantity.role)).collect();
     for quantity in &system.quantities {
         match &quantity.role {
             Role::Variable { rate } => comparisons(system, rate, &mut steady, &mut found),
@@ -81,7 +87,7 @@ fn add(to: &mut Vec<Expr>, expression: Expr) {
     }
 }
 
-/// Whether an expression depends on no variable, nor on what was.
+/// Whether an expression depends on nothing but what is known to be steady, nor on what was.
 fn is_steady(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>) -> bool {
     if expression.has_delay() {
         return false;
@@ -89,12 +95,11 @@ fn is_steady(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>>)
     let mut used = Vec::new();
     expression.each_quantity(&mut |quantity| used.push(quantity));
     used.into_iter().all(|quantity| match &system.quantities[quantity as usize].role {
-        Role::Variable { .. } => false,
-        Role::Parameter | Role::Input => true,
-        Role::Defined { rule } => steady[quantity as usize].unwrap_or_else(|| {
+        Role::Defined { rule } if steady[quantity as usize].is_none() => {
             let answer = is_steady(system, rule, steady);
             steady[quantity as usize] = Some(answer);
             answer
-        }),
+        }
+        _ => steady[quantity as usize].unwrap_or_default(),
     })
 }

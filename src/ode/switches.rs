@@ -45,6 +45,9 @@ pub struct Switches {
     /// Until when that was looked at, and the switch that was found there.
     seen: f64,
     uneven: Option<Switch>,
+    /// When the switch is that was told last, and that of them which has been passed.
+    told: f64,
+    passed: f64,
     /// The state, and what switches at three times.
     present: Vec<f64>,
     values: [Vec<f64>; 3],
@@ -61,6 +64,7 @@ impl Switches {
         self.are_uneven.clear();
         self.are_uneven.resize(groups[0] + groups[1], false);
         (self.until, self.seen, self.uneven) = (until, f64::NEG_INFINITY, None);
+        (self.told, self.passed) = (f64::INFINITY, f64::NEG_INFINITY);
         self.spacing = (until - stepper.time) / looks as f64;
     }
 
@@ -92,6 +96,9 @@ impl Switches {
             return Ahead { switch: Switch::NEVER, seen: f64::INFINITY };
         }
         let time = stepper.time;
+        if time >= self.told {
+            self.passed = self.told;
+        }
         let whole = (self.until - time).max(1e-3 * self.until.abs());
         stepper.state_into(&mut self.present);
         // Where counts jump, differences may.
@@ -99,10 +106,12 @@ impl Switches {
         let piece = if counted < time + whole { before(counted) - time } else { whole };
         let next = counted.min(self.next_even(stepper, DIFFERENCES, (time, piece)));
         let switch = Switch { before: before(next), at: next, after: after(next, self.until) };
-        match self.are_uneven.contains(&true) {
+        let ahead = match self.are_uneven.contains(&true) {
             true => self.look_ahead(stepper, switch),
             false => Ahead { switch, seen: f64::INFINITY },
-        }
+        };
+        self.told = ahead.switch.at;
+        ahead
     }
 
     /// The next of a group that runs evenly in a time of some length: where a difference is nothing, or a count a whole number. Takes note of
@@ -117,7 +126,8 @@ impl Switches {
             stepper.evaluate(code, time + share * length, &self.present, values);
         }
         let [now, half, end] = &self.values;
-        let close = time + 16.0 * f64::EPSILON * time.abs();
+        // The one that has been passed comes out again a little later by round-off.
+        let is_new = |root: f64| root > time && (root - self.passed).abs() > 16.0 * f64::EPSILON * root.abs();
         let mut next = f64::INFINITY;
         for (number, ((&now, &half), &end)) in now.iter().zip(half).zip(end).enumerate() {
             let (slope, size) = ((end - now) / length, now.abs().max(end.abs()));
@@ -135,7 +145,7 @@ impl Switches {
                 COUNTS => [1.0, 2.0].map(|less| root(now.ceil() - less)),
                 _ => [root(0.0), f64::INFINITY],
             };
-            let is_seen = |root: &f64| *root > close && (group == COUNTS || *root <= time + length * (1.0 + 1e-12));
+            let is_seen = |root: &f64| is_new(*root) && (group == COUNTS || *root <= time + length * (1.0 + 1e-12));
             next = root.into_iter().filter(is_seen).map(nice).fold(next, f64::min);
         }
         next

@@ -42,6 +42,7 @@ fn an_infusion_that_begins_or_ends_counts_to_the_last_bit_whichever_side_has_the
         let system = one(&format!("piecewise(1, {condition}, 0)"));
         for method in METHODS {
             let (x, steps) = end(&system, method, 20.0);
+            // A rate of 1 for what an instant is passed by: some hundred of the last bits of 20.
             assert!((x - amount).abs() < 1e-12 && steps < 60, "{condition} {method:?}: {x} in {steps} steps");
         }
         let (x, _) = end(&system, Method::Rk4 { step: 0.7 }, 20.0);
@@ -96,6 +97,7 @@ fn doses_of_a_schedule_are_taken_whole_however_it_is_written() {
             let solution = solved(&system, method, &points).unwrap_or_else(|trouble| panic!("{schedule}: {trouble}"));
             for (time, values) in points.iter().zip(&solution.values) {
                 let off = (values[0] - exact(*time)).abs();
+                // Ten tolerances: of decays between the doses, not of their edges.
                 assert!(off < 1e-6 * exact(*time), "{schedule} {method:?} at {time}: {} {}", values[0], exact(*time));
             }
         }
@@ -109,7 +111,8 @@ fn a_schedule_is_kept_long_after_its_begin() {
     for method in METHODS {
         let options = SolveOptions { scheme: Scheme::OneStep(method), ..SolveOptions::default() };
         let solution = solve(&system, 1e5, 1e5 + 100.0, &[1e5 + 100.0], &options).expect("a schedule");
-        assert!((solution.values[0][0] - 0.033).abs() < 1e-8, "{method:?}: {:?}", solution.values);
+        // Edges of 33 pulses, each known to some tens of the last bits of 1e5, 1.5e-11.
+        assert!((solution.values[0][0] - 0.033).abs() < 3e-8, "{method:?}: {:?}", solution.values);
     }
 }
 
@@ -129,6 +132,7 @@ fn cells_in_windows_have_each_pulse_of_a_schedule_too() {
             }
             for cell in 0..cells {
                 let x = population.state(cell, 0);
+                // What sums of 60 windows round, and what six edges are passed by.
                 assert!((x - exact).abs() < 1e-13, "{schedule} {cells}: {x}");
             }
         }
@@ -146,6 +150,7 @@ fn a_day_by_a_rounded_sine_is_as_long_as_it_is() {
     let system = one("ceil(sin(2*pi*time/24 + 0.001)/2)");
     for method in METHODS {
         let (x, steps) = end(&system, method, 96.0);
+        // Eight switches, each to the last bits of where a sine is nothing: it varies by a quarter an hour, and no step meets a jump.
         assert!((x - 48.0).abs() < 1e-9 && steps < 400, "{method:?}: {x} in {steps} steps");
     }
 }
@@ -170,6 +175,7 @@ fn what_comes_to_something_from_nothing_where_another_variable_passes_a_bound_do
     let exact = (1.0 - (-0.3 * (2.0 - 2.0_f64.ln())).exp()) / 0.3;
     for method in METHODS {
         let (x, steps) = end(&system, method, 2.0);
+        // Ten tolerances: y is known to one where it passes its bound.
         assert!((x - exact).abs() < 1e-6 && steps < 400, "{method:?}: {x} {exact} in {steps} steps");
     }
 }
