@@ -169,14 +169,16 @@ fn an_event_at_one_instant_of_a_schedule_happens_each_time() {
 #[test]
 fn what_comes_to_something_from_nothing_where_another_variable_passes_a_bound_does_so_there() {
     let system = system(
-        "<variable id=\"x\" initial=\"0\" rate=\"piecewise(1 - 0.3*x, y gt 0.5, 0)\"/>\
-         <variable id=\"y\" initial=\"0\" rate=\"1 - y\"/>",
+        "<variable id=\"x\" initial=\"0\" rate=\"piecewise(1 - 0.01*x, x + y gt 0.5, 0)\"/>\
+         <variable id=\"y\" initial=\"0\" rate=\"0.01*(1 - y)\"/>",
     );
-    let exact = (1.0 - (-0.3 * (2.0 - 2.0_f64.ln())).exp()) / 0.3;
+    // At a time of 69 the clock tells no steps apart that an error of 1e-14 of what is nothing would ask for, and none ends before it sees the jump, as the
+    // bound is passed by what jumps as well.
+    let exact = (1.0 - (-0.01 * (200.0 - 100.0 * 2.0_f64.ln())).exp()) / 0.01;
     for method in METHODS {
-        let (x, steps) = end(&system, method, 2.0);
+        let (x, steps) = end(&system, method, 200.0);
         // Ten tolerances: y is known to one where it passes its bound.
-        assert!((x - exact).abs() < 1e-6 && steps < 400, "{method:?}: {x} {exact} in {steps} steps");
+        assert!((x - exact).abs() < 1e-6 * exact && steps < 400, "{method:?}: {x} {exact} in {steps} steps");
     }
 }
 
