@@ -16,6 +16,7 @@ mod explicit;
 mod fixed;
 mod history;
 mod jump;
+mod linear;
 mod lookback;
 mod lu;
 mod marks;

@@ -2,7 +2,6 @@
 
 use pulp::Simd;
 
-use super::lu;
 use super::scratch::{LooksBack, Scratch};
 use super::tableau::rodas::{A1, A2, A3, A4, A5, C, D2, D3, G, GAMMA, K1, K2, K3, K4, K5, STAGES};
 use super::wide::{combine, negated_where_finite, take_away};
@@ -26,7 +25,7 @@ pub fn step<S: Simd, const L: usize, P: LooksBack<L>>(
     }
     prepare(simd, program, s, time, &inverse);
     let clock = Clock { time, step, inverse: &inverse };
-    solve_stage(simd, s, program.timeless, 0, &clock);
+    solve_stage(simd, program, s, 0, &clock);
     stage(simd, program, s, &A1, &K1, &clock);
     stage(simd, program, s, &A2, &K2, &clock);
     stage(simd, program, s, &A3, &K3, &clock);
@@ -95,21 +94,21 @@ fn stage<S: Simd, const W: usize, const L: usize, P: LooksBack<L>>(
     for (v, rate) in present[..n].iter_mut().enumerate() {
         combine(simd, right, earlier, (n, v), *rate, clock.inverse, rate);
     }
-    solve_stage(simd, s, program.timeless, W, clock);
+    solve_stage(simd, program, s, W, clock);
 }
 
 /// The linear system of a stage whose right side lacks only the derivative by time.
 #[inline(always)]
 fn solve_stage<S: Simd, const L: usize, P>(
     simd: S,
+    program: &Program,
     s: &mut Scratch<L, P>,
-    timeless: bool,
     stage: usize,
     clock: &Clock<L>,
 ) {
     let n = s.state.len();
     let present = &mut s.stages[stage * n..(stage + 1) * n];
-    if G[stage] != 0.0 && !timeless {
+    if G[stage] != 0.0 && !program.timeless {
         let mut weight = *clock.step;
         for l in 0..L {
             weight[l] *= G[stage];
@@ -118,7 +117,7 @@ fn solve_stage<S: Simd, const L: usize, P>(
             take_away(simd, rate, &weight, negated);
         }
     }
-    lu::solve(&s.matrix, n, &s.swaps, present);
+    s.linear.solve(simd, program, present);
 }
 
 /// What a rate takes in a step from a variable that is nothing, over the absolute tolerance, beyond which it is no round-off: the equations lead
@@ -156,18 +155,11 @@ fn prepare<S: Simd, const L: usize, P: LooksBack<L>>(
             }
         }
     }
-    s.matrix.fill([0.0; L]);
-    for (&(row, column), &register) in program.pattern.iter().zip(&program.linear.outputs[2 * n..]) {
-        let to = &mut s.matrix[row as usize * n + column as usize];
-        negated_where_finite(simd, &s.file[register as usize], to);
+    let mut diagonal = *inverse;
+    for l in 0..L {
+        diagonal[l] *= 1.0 / GAMMA;
     }
-    for v in 0..n {
-        let diagonal = &mut s.matrix[v * n + v];
-        for l in 0..L {
-            diagonal[l] += inverse[l] * (1.0 / GAMMA);
-        }
-    }
-    lu::factor(simd, &mut s.matrix, n, &mut s.swaps);
+    s.linear.factor(simd, program, &s.file, &diagonal);
 }
 
 /// The state at a share of the last step, after a step that was accepted.

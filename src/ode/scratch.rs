@@ -1,7 +1,7 @@
 //! Buffers that are kept from window to window so that nothing is allocated meanwhile.
 
 use super::control::Tolerances;
-use super::lu::Swap;
+use super::linear::Linear;
 use crate::equations::program::code::Code;
 use crate::equations::program::{Lanes, Program, run};
 
@@ -35,10 +35,8 @@ pub struct Scratch<const L: usize, P = ()> {
     pub stages: Vec<Lanes<L>>,
     /// Derivatives of the rates by time, negated.
     pub drift: Vec<Lanes<L>>,
-    /// Matrix of the linear systems.
-    pub matrix: Vec<Lanes<L>>,
-    /// Its row exchanges.
-    pub swaps: Vec<Swap<L>>,
+    /// The linear systems of implicit steps.
+    pub linear: Linear<L>,
     /// Whether values of lanes keep to the side of nothing that they are on where the step begins.
     pub keeps_side: bool,
     /// Where they do, what such values may be at least: 0, or minus infinity in the other lanes.
@@ -61,7 +59,6 @@ impl<const L: usize, P: LooksBack<L>> Scratch<L, P> {
     pub fn with(program: &Program, stiff: bool, past: P) -> Self {
         let n = program.size();
         let empty = || vec![[0.0; L]; n];
-        let squares = if stiff { n * n } else { 0 };
         Self {
             file: program.file(),
             state: empty(),
@@ -69,8 +66,7 @@ impl<const L: usize, P: LooksBack<L>> Scratch<L, P> {
             error: empty(),
             stages: vec![[0.0; L]; MOST_STAGES * n],
             drift: empty(),
-            matrix: vec![[0.0; L]; squares],
-            swaps: Vec::with_capacity(squares / 2),
+            linear: Linear::new(program, stiff),
             keeps_side: false,
             floor: [f64::NEG_INFINITY; L],
             absolute: 0.0,

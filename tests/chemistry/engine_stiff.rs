@@ -144,3 +144,30 @@ fn a_value_of_which_round_off_leaves_no_digit_is_told_of() {
     let left = solve(&decay, 0.0, 46.0, &[46.0], &options).expect("a decay").values[0][0];
     assert!((left / (-46.0_f64).exp() - 1.0).abs() < 1e-5, "{left:e}");
 }
+
+/// What diffuses along a chain of 1 000 compartments from the first, against its modes.
+#[test]
+fn a_long_chain_is_solved_as_its_modes_say() {
+    const LENGTH: usize = 1000;
+    let names: Vec<String> = (0..LENGTH).map(|i| format!("x{i}")).collect();
+    let from_neighbours = |i: usize| {
+        let near = [i.checked_sub(1), Some(i + 1).filter(|next| *next < LENGTH)].into_iter().flatten();
+        near.map(|other| format!("k*(x{other} - x{i})")).collect::<Vec<_>>().join(" + ")
+    };
+    let rates: Vec<String> = (0..LENGTH).map(from_neighbours).collect();
+    let at = |i: usize| (names[i].as_str(), f64::from(u8::from(i == 0)), rates[i].as_str());
+    let variables: Vec<_> = (0..LENGTH).map(at).collect();
+    let system = system("chain", &variables, &[("k", 100.0)]);
+    let options = SolveOptions { scheme: ROSENBROCK, relative: 1e-8, absolute: 1e-12, ..SolveOptions::default() };
+    let solution = solve(&system, 0.0, 10.0, &[10.0], &options).unwrap_or_else(|trouble| panic!("{trouble}"));
+    for (i, found) in solution.values[0][..LENGTH].iter().enumerate() {
+        let mode = |m: usize| {
+            let wave = std::f64::consts::PI * m as f64 / LENGTH as f64;
+            let share = if m == 0 { 1.0 } else { 2.0 };
+            let decay = (-100.0 * 2.0 * (1.0 - wave.cos()) * 10.0).exp();
+            share * (0.5 * wave).cos() * ((i as f64 + 0.5) * wave).cos() * decay
+        };
+        let wanted = (0..LENGTH).map(mode).sum::<f64>() / LENGTH as f64;
+        assert!((found - wanted).abs() < 1e-9, "{i}: {found} for {wanted}");
+    }
+}

@@ -8,6 +8,7 @@
 pub mod code;
 mod delayed;
 mod derivative;
+mod elimination;
 pub mod graph;
 mod initial;
 mod past;
@@ -15,6 +16,7 @@ mod run;
 mod simplify;
 
 pub use delayed::DelayedValue;
+pub use elimination::Elimination;
 pub use initial::initial_values;
 pub use past::Past;
 pub use run::{Lanes, run};
@@ -56,6 +58,8 @@ pub struct Program {
     pub mark: u64,
     /// Row and column of the Jacobian's entries that are not always zero, row after row.
     pub pattern: Vec<(u32, u32)>,
+    /// How implicit steps solve with them where that is cheaper than with whole matrices.
+    pub elimination: Option<Elimination>,
     /// All quantities.
     pub observe: Code,
     /// One code for each further group of expressions.
@@ -128,6 +132,7 @@ impl Program {
         let behind = delays.iter().flat_map(|delayed| [&delayed.delay, &delayed.value]);
         let registers = all.iter().chain(behind).map(|code| code.registers).max().unwrap_or(0);
         let further = all.split_off(3);
+        let elimination = Elimination::of(variables.len(), &pattern);
         let [rates, linear, observe] = all.try_into().expect("three codes are left");
         Ok(Self {
             name: system.name.clone(),
@@ -141,6 +146,7 @@ impl Program {
             rates,
             linear,
             timeless,
+            elimination,
             pattern,
             observe,
             further,
