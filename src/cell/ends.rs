@@ -115,7 +115,7 @@ pub enum Sense {
 }
 
 /// What can be read, as messages list it.
-pub const READABLE: [&str; 24] = [
+pub const READABLE: [&str; 26] = [
     "position.x",
     "atom[0].x",
     "velocity.x",
@@ -131,6 +131,8 @@ pub const READABLE: [&str; 24] = [
     "field[NAME].gradient.x",
     "field[NAME].steepness",
     "chemistry[NAME].ID",
+    "neighbours.count",
+    "neighbours.chemistry[NAME].ID.mean",
     "atoms.normal.x",
     "atoms.curvature",
     "atoms.area_strain",
@@ -261,7 +263,8 @@ mod tests {
             assert!(setting(&path(&text)).is_some(), "{text} can be set");
         }
         // What has the name of a field, a system, a type or a plane is looked up in the experiment.
-        let elsewhere = |text: &&str| text.contains("[NAME]") || text.contains("[TYPE]");
+        let elsewhere =
+            |text: &&str| text.contains("[NAME]") || text.contains("[TYPE]") || text.starts_with("neighbours.");
         for text in READABLE.into_iter().filter(|text| !elsewhere(text)) {
             let of_atoms = text.strip_prefix("atoms.").map(|text| atom_reading(&path(text)).is_some());
             assert!(of_atoms.unwrap_or_else(|| reading(&path(text)).is_some()), "{text} can be read");

@@ -23,6 +23,19 @@ pub fn clocked(system: &System) -> Result<Program, Vec<String>> {
     }
 }
 
+impl PopulationScratch {
+    /// Shows the pieces of a window of a program from [`clocked`], or of one with events, between which the clock switches something in all cells.
+    pub fn each_piece(&mut self, program: &Program, window: (f64, f64), each: impl FnMut(Piece)) {
+        if program.further.is_empty() || after(window.0, window.1) >= window.1 {
+            std::iter::once(Piece { begin: window.0, end: window.1, until: window.1 }).for_each(each);
+            return;
+        }
+        let mut pieces = Pieces::new(program, window, LOOKS_IN_WINDOW, self.clock.take());
+        pieces.by_ref().for_each(each);
+        self.clock = Some(pieces.into_buffers());
+    }
+}
+
 impl Population {
     /// As [`Self::advance`], of a program from [`clocked`]: piece by piece between the times at which the clock switches something.
     ///

@@ -48,6 +48,7 @@ pub use eventful::Eventful;
 pub use events::{EventPlan, assigned_parameters};
 pub use memory::EventMemory;
 pub use noise::{Noise, Numbers};
+pub use pieces::Piece;
 pub use population::{BlockView, LANES, Population};
 pub use scheme::Scheme;
 pub use solve::{Solution, SolveOptions, solve, solve_each};
@@ -78,7 +79,7 @@ pub enum Method {
     Rk65,
 }
 
-/// Most variables of a system that an implicit method takes. Its matrices are dense: those of eight cells take 1.6 GB then, and
+/// Most variables of a system that an implicit method takes. Its matrices may have to be dense: those of eight cells take 1.6 GB then, and
 /// the time to factor them grows with the third power.
 pub const MOST_IMPLICIT: usize = 5000;
 
@@ -92,6 +93,11 @@ impl Method {
     /// Whether matrices are factored.
     pub fn is_implicit(self) -> bool {
         self == Self::Rosenbrock
+    }
+
+    /// Whether steps are chosen by an estimate of their error.
+    pub fn has_error(self) -> bool {
+        matches!(self, Self::Rk45 | Self::Rk65 | Self::Rosenbrock)
     }
 
     /// Whether the rates at the end of a step are those with which the next begins.

@@ -1,6 +1,7 @@
 //! Equations, the engine that solves them, and fields.
 
 mod delays;
+mod documents;
 mod eml;
 mod eml_write;
 mod engine_events;

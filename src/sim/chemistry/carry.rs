@@ -8,7 +8,7 @@ use super::atoms::{carry_atoms, set_all};
 use super::census::{cell_of_member, cells_of, member_of_cell, names_nobody};
 use super::exchange::is_due;
 use super::expected::missed;
-use super::links::{Control, Observation, Owner, Source, Target};
+use super::links::{Control, Link, Observation, Owner, Source, Target};
 use super::measure::measure_cells;
 use super::model::Members;
 use super::observe::{observe, read_cell};
@@ -34,6 +34,10 @@ pub(super) fn carry_links(
     if chemistry.measures_cells {
         measure_cells(model, state, contact.as_ref(), &ws.contact.found.atoms, &mut ws.chemistry.cells);
     }
+    if chemistry.reads_neighbours() {
+        let touching = contact.as_ref().map(|contact| (&*contact.scene, &ws.contact.found.atoms[..]));
+        ws.chemistry.neighbours.find(model, state, touching);
+    }
     sense_fields(model, state, &mut ws.chemistry);
     ws.chemistry.observed.forget(&chemistry.observations);
     for (number, link) in chemistry.links.iter().enumerate() {
@@ -54,22 +58,30 @@ pub(super) fn carry_links(
     Ok(())
 }
 
-/// Carries what cells and atoms release, as their systems have come to it by themselves at `time`: what these are told then comes after.
+/// Carries what cells and atoms release by links of a choice, as their systems have come to it by themselves at `time`: what these are told then
+/// comes after.
 ///
 /// # Errors
 /// As [`carry_links`].
-pub(super) fn carry_releases(model: &Model, time: f64, state: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
+pub(super) fn carry_releases(
+    model: &Model,
+    time: f64,
+    state: &mut State,
+    scratch: &mut ChemistryScratch,
+    is_chosen: impl Fn(&Link) -> bool,
+) -> Result<(), Trouble> {
     let chemistry = &model.chemistry;
-    ws.chemistry.observed.forget(&chemistry.observations);
-    for (number, link) in chemistry.links.iter().enumerate().filter(|(_, link)| link.is_own_release()) {
+    scratch.observed.forget(&chemistry.observations);
+    let chosen = chemistry.links.iter().enumerate().filter(|(_, link)| link.is_own_release() && is_chosen(link));
+    for (number, link) in chosen {
         let Owner::Reactor(owner) = link.owner else { continue };
         match link.from {
             _ if !is_due(&chemistry.reactors[owner], time) => {}
             Source::Atoms(source) => {
-                observe(model, number, time, state, &mut ws.chemistry);
-                carry_atoms(model, (number, source), time, state, &mut ws.chemistry, (None, &[]))?;
+                observe(model, number, time, state, scratch);
+                carry_atoms(model, (number, source), time, state, scratch, (None, &[]))?;
             }
-            _ => carry(model, number, time, state, &mut ws.chemistry)?,
+            _ => carry(model, number, time, state, scratch)?,
         }
     }
     Ok(())
@@ -128,6 +140,13 @@ fn carry(
             Observation::Own(slot) => scratch.observed.quantity(slot, member),
             Observation::Shared(slot) => scratch.observed.shared(slot),
             Observation::Cell => own.map_or(f64::NAN, |cell| read_cell(model, &link.from, cell, state, scratch)),
+            Observation::OfNeighbours(slot) => match (link.from, own) {
+                (Source::Neighbours(reading), Some(cell)) => {
+                    let known = (&scratch.observed, &scratch.cells[..]);
+                    scratch.neighbours.read(model, state, (reading, slot), cell, known)
+                }
+                _ => f64::NAN,
+            },
             Observation::OfOwnCell(slot) => {
                 let members = &chemistry.reactors[chemistry.observations.quantities[slot].0].members;
                 let other = own.and_then(|cell| member_of_cell(&state.kinds, members, cell));

@@ -70,6 +70,8 @@ pub enum Source {
     Whole(usize, usize, Whole),
     /// A quantity of another system: (reactor, quantity, whose copy); the scene's only one for systems of the scene.
     Other(usize, QuantityId, Whose),
+    /// A number of the cells that the cell touches which has the system.
+    Neighbours(NeighbourReading),
     /// A number of each atom of the cell that has the system, for what differs from atom to atom.
     Atoms(AtAtoms),
 }
@@ -92,9 +94,61 @@ impl Source {
             Self::Cell(whose, _) | Self::Sensed(whose, ..) | Self::AtAtom(whose, ..) | Self::Other(.., whose) => {
                 Some(whose)
             }
-            Self::Own(_) | Self::Time | Self::Whole(..) | Self::Atoms(_) => None,
+            Self::Own(_) | Self::Time | Self::Whole(..) | Self::Neighbours(_) | Self::Atoms(_) => None,
         }
     }
+
+    /// The system and the quantity of it that is read, where it may be another one than the owner.
+    pub fn quantity_of_other(&self) -> Option<(usize, QuantityId)> {
+        match *self {
+            Self::Other(number, quantity, _) => Some((number, quantity)),
+            Self::Neighbours(NeighbourReading { number: NeighbourNumber::Quantity(number, quantity), .. }) => {
+                Some((number, quantity))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// What is read of the cells that a cell touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NeighbourReading {
+    /// The kind of those that are meant; none for all.
+    pub of_kind: Option<usize>,
+    /// What each of them has.
+    pub number: NeighbourNumber,
+    /// How these become one number.
+    pub taken: Taken,
+}
+
+/// A number of a neighbour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NeighbourNumber {
+    /// 1: how many there are.
+    Count,
+    /// The area that it shares with the cell, µm².
+    Area,
+    /// A measure of it.
+    Cell(Reading),
+    /// A quantity of a system that it has.
+    Quantity(usize, QuantityId),
+}
+
+/// How numbers of neighbours become one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Taken {
+    /// Their mean.
+    Mean,
+    /// Their sum.
+    Sum,
+    /// Their mean with the areas that are shared as weights.
+    AreaMean,
+    /// Their sum with these weights, µm².
+    AreaSum,
+    /// The largest.
+    Largest,
+    /// The smallest.
+    Smallest,
 }
 
 /// What links read, each thing once: however many links and members read it, it is observed once an exchange.
@@ -128,6 +182,8 @@ pub enum Observation {
     Shared(usize),
     /// Read from the member's cell.
     Cell,
+    /// Read from its neighbours, with the position of what is observed of their systems.
+    OfNeighbours(Option<usize>),
 }
 
 impl Observations {
@@ -154,6 +210,11 @@ impl Observations {
                     Observation::Cell
                 }
                 (Source::Atoms(_), _) => Observation::Cell,
+                (Source::Neighbours(_), _) => {
+                    let slot = link.from.quantity_of_other().map(|(number, own)| quantity(&mut all, number, own));
+                    quantities.extend(slot);
+                    Observation::OfNeighbours(slot)
+                }
                 _ => Observation::Shared(position_of(&mut all.shared, link.from)),
             };
             all.links.push(LinkObservations { quantities, from });

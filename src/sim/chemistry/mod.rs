@@ -4,21 +4,25 @@
 //! and then the links carry numbers both ways, as they are at the end of the step. Within a step what comes through
 //! links stands still.
 
+mod advance;
 mod atoms;
 mod carry;
 mod census;
 mod exchange;
 mod expected;
 mod field_values;
+mod follow;
 mod links;
 mod measure;
 mod membrane;
 mod membranes;
 mod model;
+mod neighbours;
 mod observe;
 mod observed;
 mod populations;
 mod release;
+mod released;
 mod scratch;
 mod stages;
 mod state;
@@ -31,8 +35,8 @@ pub use exchange::next_exchange;
 pub use expected::missed;
 pub use field_values::FieldValues;
 pub use links::{
-    AtAtoms, AtomControl, Control, Link, LinkObservations, Observation, Observations, Owner, Source, Target, Whole,
-    Whose,
+    AtAtoms, AtomControl, Control, Link, LinkObservations, NeighbourNumber, NeighbourReading, Observation,
+    Observations, Owner, Source, Taken, Target, Whole, Whose,
 };
 pub use membrane::Membrane;
 pub use membranes::begin_membranes;

@@ -130,7 +130,12 @@ impl Chemistry {
     /// Whether some link reads what touches.
     pub fn reads_contact(&self) -> bool {
         let at_atoms = |link: &Link| matches!(link.from, Source::Atoms(AtAtoms::Read(AtomReading::InContact(_))));
-        self.measures_cells || self.links.iter().any(at_atoms)
+        self.measures_cells || self.reads_neighbours() || self.links.iter().any(at_atoms)
+    }
+
+    /// Whether some link reads what neighbours have.
+    pub fn reads_neighbours(&self) -> bool {
+        self.links.iter().any(|link| matches!(link.from, Source::Neighbours(_)))
     }
 
     /// Whether some link reads what cells do to what is around them.

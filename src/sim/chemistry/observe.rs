@@ -52,7 +52,7 @@ fn observe_quantities(model: &Model, slots: &[usize], state: &State, scratch: &m
 /// A number that is the same for all members of a system.
 fn shared(model: &Model, from: &Source, time: f64, state: &State, scratch: &mut ChemistryScratch) -> f64 {
     match *from {
-        Source::Own(_) | Source::Atoms(_) => f64::NAN,
+        Source::Own(_) | Source::Neighbours(_) | Source::Atoms(_) => f64::NAN,
         Source::Time => time,
         Source::Whole(field, species, what) => whole(&scratch.fields[field], species, what, &mut scratch.observed.sums),
         Source::Cell(whose, _) | Source::Sensed(whose, ..) | Source::AtAtom(whose, ..) => {
@@ -92,7 +92,12 @@ pub(super) fn read_cell(model: &Model, from: &Source, cell: usize, state: &State
         Source::AtAtom(_, atom, field, species, sense) => {
             pick(&scratch.fields[field].sense(species, position(atom)), sense)
         }
-        Source::Own(_) | Source::Time | Source::Whole(..) | Source::Other(..) | Source::Atoms(_) => f64::NAN,
+        Source::Own(_)
+        | Source::Time
+        | Source::Whole(..)
+        | Source::Other(..)
+        | Source::Neighbours(_)
+        | Source::Atoms(_) => f64::NAN,
     }
 }
 

@@ -4,7 +4,7 @@ use super::super::model::Model;
 use super::super::state::KindState;
 use super::model::{Members, Reactor};
 use super::state::ChemistryState;
-use crate::ode::{Eventful, Numbers, OdeTrouble, PopulationScratch, Substep, Substeps};
+use crate::ode::{Eventful, Numbers, OdeTrouble, PopulationScratch, Substep, Substeps, Work};
 
 /// A system with events, as it is advanced in a run.
 pub(super) fn eventful<'a>(model: &Model, reactor: &'a Reactor) -> Eventful<'a> {
@@ -13,16 +13,16 @@ pub(super) fn eventful<'a>(model: &Model, reactor: &'a Reactor) -> Eventful<'a> 
     Eventful { program: &reactor.program, plan: &reactor.events, tolerances: reactor.tolerances, span, numbers }
 }
 
-/// Moves all members of a system through a window of its time.
+/// Moves all members of a system through a window of its time. Returns the work of a method that chooses its steps.
 pub(super) fn advance_population(
     model: &Model,
     (number, reactor): (usize, &Reactor),
     substeps: Substeps,
     (kinds, chemistry): (&[KindState], &mut ChemistryState),
     scratch: &mut PopulationScratch,
-) -> Result<(), OdeTrouble> {
+) -> Result<Work, OdeTrouble> {
     let numbers = Numbers { seed: model.seed, system: &reactor.name };
-    let population = &mut chemistry.populations[number];
+    let (population, mut work) = (&mut chemistry.populations[number], Work::default());
     for Substep { begin, end, length, kick } in substeps {
         if let (Some(kick), Some(noise)) = (kick, &reactor.noise) {
             population.kick(noise, numbers, ids(kinds, &reactor.members), (begin, kick), scratch)?;
@@ -30,7 +30,7 @@ pub(super) fn advance_population(
         if length <= 0.0 {
             continue;
         }
-        match reactor.events.is_empty() {
+        let done = match reactor.events.is_empty() {
             true => population.advance_by_clock(&reactor.program, (begin, end), &reactor.tolerances, scratch)?,
             false => {
                 let events = &mut chemistry.events[number];
@@ -38,8 +38,11 @@ pub(super) fn advance_population(
                 eventful(model, reactor).advance(population, events, ids, (begin, end), scratch)?
             }
         };
+        if reactor.method.has_error() {
+            work.add(done);
+        }
     }
-    Ok(())
+    Ok(work)
 }
 
 /// The ids of the cells that have a system, in the order of its members; 0 for the scene.

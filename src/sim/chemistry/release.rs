@@ -8,6 +8,7 @@ use super::super::model::Model;
 use super::super::state::{State, vector};
 use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
+use super::released::parabola;
 use super::scratch::ChemistryScratch;
 use crate::error::Error;
 use crate::ode::{Numbers, Substeps};
@@ -43,32 +44,48 @@ impl Parts {
         1.0 / f64::from(self.count)
     }
 
-    /// What a part releases, over the rates where it begins and where it ends, s: as much as is left at its end of what flows in at a rate on a
-    /// line between the two, when the rest of the part has decayed.
-    fn released(&self, decay: f64) -> [f64; 2] {
-        let turns = decay * self.length;
-        // What is left of a constant rate, and of one that rises from nothing to 1.
-        let constant = if turns == 0.0 { self.length } else { -f64::exp_m1(-turns) / decay };
-        let rising = match turns < 1e-3 {
-            true => self.length * (0.5 - turns / 6.0 * (1.0 - turns / 4.0 * (1.0 - turns / 5.0))),
-            false => (self.length - constant) / turns,
-        };
-        [constant - rising, rising].map(|left| left * (decay * self.rest).exp())
+    /// What a part releases, over the rates where it begins, in its middle and where it ends, s: as much as is left at its end of what flows in at a
+    /// rate on a parabola through the three, when the rest of the part has decayed.
+    fn released(&self, decay: f64) -> [f64; 3] {
+        let [constant, rising, square] = left_of_powers(decay * self.length);
+        let left = [constant - 3.0 * rising + 2.0 * square, 4.0 * (rising - square), 2.0 * square - rising];
+        left.map(|left| left * self.length * (decay * self.rest).exp())
     }
 }
 
-/// A step of a field into which something is released: its number, its parts, and the states between whose rates those in the step lie.
+/// What is left at 1 of what flows in from 0 on at the rates 1, u and u² and decays with a rate x.
+fn left_of_powers(x: f64) -> [f64; 3] {
+    // Of that which rises with the power n, (1 − n times that of the power before) / x; of small x the sum of its powers.
+    if x < 1.0 {
+        return [0.0, 1.0, 2.0].map(|n| {
+            let (mut term, mut sum, mut next) = (1.0 / (n + 1.0), 0.0, n + 2.0);
+            while term != 0.0 && sum + term != sum {
+                sum += term;
+                term *= -x / next;
+                next += 1.0;
+            }
+            sum
+        });
+    }
+    let constant = -f64::exp_m1(-x) / x;
+    let rising = (1.0 - constant) / x;
+    [constant, rising, (1.0 - 2.0 * rising) / x]
+}
+
+/// A piece of a step of a field into which something is released: the number of the field, which piece it is and the shares of the step at which it
+/// begins and ends, its parts, and the states between whose rates those of atoms in the step lie.
 #[derive(Clone, Copy)]
 struct Release<'a> {
     model: &'a Model,
     field: usize,
+    piece: (usize, [f64; 2]),
     parts: Parts,
     from: &'a Controls,
     to: &'a Controls,
 }
 
-/// Moves all fields through a step, with what cells release into them meanwhile: at rates that go on a line from those where it began to those
-/// to which the systems have come at its end.
+/// Moves all fields through a step, with what cells release into them meanwhile: at rates that go on parabolas, piece after piece, from those
+/// where it began to those to which the systems have come at its end.
 pub fn move_fields(
     model: &Model,
     (start, dt): (f64, f64),
@@ -77,20 +94,23 @@ pub fn move_fields(
     ws: &mut Workspace,
 ) -> Result<(), Trouble> {
     for number in 0..model.chemistry.fields.len() {
-        let into = channels(model, &state.chemistry.controls).filter(|(field, _)| *field == number);
-        let parts = Parts::new(dt, into.map(|(_, species)| decay((model, number), species)));
-        if parts.count == 0 {
+        if !channels(model, &state.chemistry.controls).any(|(field, _)| field == number) {
             advance_field((model, number), (start, dt), state, ws)?;
             continue;
         }
-        let before = parts.length - parts.rest;
-        for part in 0..parts.count {
-            let begin = start + f64::from(part) * parts.length;
-            advance_field((model, number), (begin, before), state, ws)?;
-            let release =
-                Release { model, field: number, parts, from: &from.chemistry.controls, to: &state.chemistry.controls };
-            release.deposit(f64::from(part) * parts.share(), state, &mut ws.chemistry);
-            advance_field((model, number), (begin + before, parts.rest), state, ws)?;
+        for piece in 0..ws.chemistry.released.pieces.len() {
+            let shares @ [begins, ends] = ws.chemistry.released.pieces[piece];
+            let into = channels(model, &state.chemistry.controls).filter(|(field, _)| *field == number);
+            let parts = Parts::new((ends - begins) * dt, into.map(|(_, species)| decay((model, number), species)));
+            let before = parts.length - parts.rest;
+            for part in 0..parts.count {
+                let begin = start + begins * dt + f64::from(part) * parts.length;
+                advance_field((model, number), (begin, before), state, ws)?;
+                let (from, to) = (&from.chemistry.controls, &state.chemistry.controls);
+                let release = Release { model, field: number, piece: (piece, shares), parts, from, to };
+                release.deposit(f64::from(part) * parts.share(), state, &mut ws.chemistry);
+                advance_field((model, number), (begin + before, parts.rest), state, ws)?;
+            }
         }
     }
     Ok(())
@@ -107,56 +127,62 @@ fn decay((model, field): (&Model, usize), species: usize) -> f64 {
 }
 
 impl Release<'_> {
-    /// Releases what comes in the part of the step that begins at a share of it.
+    /// Releases what comes in the part of the piece that begins at a share of it.
     fn deposit(self, part: f64, state: &State, scratch: &mut ChemistryScratch) {
+        let shares = [0.0, 0.5, 1.0].map(|within| part + within * self.parts.share());
+        // What atoms release is on one line through the step.
+        let [begins, ends] = self.piece.1;
+        let of_step = shares.map(|share| begins + share * (ends - begins));
         for (channel, (_, species)) in
             channels(self.model, self.to).enumerate().filter(|(_, into)| into.0 == self.field)
         {
-            let [first, last] = self.parts.released(decay((self.model, self.field), species));
-            let rate = |begin: f64, end: f64| {
-                let change = end - begin;
-                first * (begin + part * change) + last * (begin + (part + self.parts.share()) * change)
-            };
-            self.by_cells((channel, species), state, scratch, rate);
-            self.by_atoms((channel, species), state, scratch, rate);
+            let released = self.parts.released(decay((self.model, self.field), species));
+            let mut of_nodes = [0.0; 3];
+            for (share, released) in shares.into_iter().zip(released) {
+                of_nodes.iter_mut().zip(parabola(share)).for_each(|(sum, weight)| *sum += released * weight);
+            }
+            self.by_cells((channel, species), state, scratch, of_nodes);
+            let at_end = of_step.iter().zip(released).map(|(share, released)| share * released).sum::<f64>();
+            let of_ends = [released.iter().sum::<f64>() - at_end, at_end];
+            self.by_atoms((channel, species), state, scratch, of_ends);
         }
     }
 
-    /// What cells secrete, spread evenly over their atoms.
+    /// What cells secrete, spread evenly over their atoms, with the weights of the rates where the piece begins, in its middle and where it ends, s.
     fn by_cells(
         self,
         (channel, species): (usize, usize),
         state: &State,
         scratch: &mut ChemistryScratch,
-        rate: impl Fn(f64, f64) -> f64,
+        weights: [f64; 3],
     ) {
-        let (Some(before), Some(after)) = (self.from.secretion.get(channel), self.to.secretion.get(channel)) else {
-            return;
-        };
+        let Some(cells) = self.to.secretion.get(channel).map(Vec::len) else { return };
         for (kind, now) in self.model.kinds.iter().zip(&state.kinds) {
             let atoms = kind.atoms();
-            scratch.amounts.clear();
-            scratch.positions.clear();
+            let ChemistryScratch { positions, amounts, fields, released, .. } = &mut *scratch;
+            let [before, between, after] = released.of_channel(self.piece.0, channel, cells);
+            amounts.clear();
+            positions.clear();
             for cell in now.numbers() {
-                let (begin, end) = (before[cell], after[cell]);
-                if begin != 0.0 || end != 0.0 {
-                    let amount = rate(begin, end) / atoms as f64;
+                let rates = [before[cell], between[cell], after[cell]];
+                if rates != [0.0; 3] {
+                    let amount = rates.iter().zip(weights).map(|(rate, weight)| rate * weight).sum::<f64>();
                     let own = cell - now.first_cell;
-                    scratch.positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, own, atom)));
-                    scratch.amounts.resize(scratch.positions.len(), amount);
+                    positions.extend((0..atoms).map(|atom| vector(kind, &now.positions, own, atom)));
+                    amounts.resize(positions.len(), amount / atoms as f64);
                 }
             }
-            scratch.fields[self.field].deposit_all(species, &scratch.positions, &scratch.amounts);
+            fields[self.field].deposit_all(species, positions, amounts);
         }
     }
 
-    /// What atoms secrete, each on its own area.
+    /// What atoms secrete, each on its own area, with the weights of the rates where the step begins and where it ends, s.
     fn by_atoms(
         self,
         (channel, species): (usize, usize),
         state: &State,
         scratch: &mut ChemistryScratch,
-        rate: impl Fn(f64, f64) -> f64,
+        [first, last]: [f64; 2],
     ) {
         let of_kinds = self.model.kinds.iter().zip(&state.kinds).zip(self.from.of_atoms.iter().zip(&self.to.of_atoms));
         for ((kind, now), (before, after)) in of_kinds {
@@ -175,7 +201,7 @@ impl Release<'_> {
                 amounts.clear();
                 let own = cell * atoms..(cell + 1) * atoms;
                 let rates = before[own.clone()].iter().zip(&after[own]).zip(&shapes.areas);
-                amounts.extend(rates.map(|((begin, end), area)| rate(begin * area, end * area)));
+                amounts.extend(rates.map(|((begin, end), area)| (first * begin + last * end) * area));
                 fields[self.field].deposit_all(species, positions, amounts);
             }
         }
@@ -235,19 +261,23 @@ mod tests {
                 } else {
                     (1.0 - (-turns).exp()) / decay
                 };
-                let [first, last] = parts.released(decay).map(|left| left * f64::exp(-decay * parts.rest));
+                let weights = parts.released(decay).map(|left| left * f64::exp(-decay * parts.rest));
                 // What both round.
-                assert!(((first + last) / exact - 1.0).abs() < 1e-12, "{decay} {dt}: {first} {last} {exact}");
-                // Of a rate that rises from nothing in the part, by Simpson's rule.
-                let (n, length) = (2000, parts.length);
-                let weight = |i: usize| if i.is_multiple_of(n) { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
-                let left = |i: usize| {
-                    let share = i as f64 / n as f64;
-                    share * (-turns * (1.0 - share)).exp() * weight(i)
-                };
-                let rising = (0..=n).map(left).sum::<f64>() * length / (3 * n) as f64;
-                // Where parts are at their most and much decays in each, 2 000 points do not resolve it.
-                assert!(turns > 10.0 || (last / rising - 1.0).abs() < 1e-9, "{decay} {dt}: {last} {rising}");
+                let whole = weights.iter().sum::<f64>();
+                assert!((whole / exact - 1.0).abs() < 1e-12, "{decay} {dt}: {weights:?} {exact}");
+                // Of rates on parabolas, by Simpson's rule. Where parts are at their most and much decays in each, 2 000 points do not resolve it.
+                for powers in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+                    let rate = |u: f64| powers[0] + powers[1] * u + powers[2] * u * u;
+                    let n = 2000;
+                    let weight = |i: usize| if i.is_multiple_of(n) { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
+                    let left = |i: usize| {
+                        let share = i as f64 / n as f64;
+                        rate(share) * (-turns * (1.0 - share)).exp() * weight(i)
+                    };
+                    let wanted = (0..=n).map(left).sum::<f64>() * parts.length / (3 * n) as f64;
+                    let found: f64 = weights.iter().zip([0.0, 0.5, 1.0]).map(|(weight, u)| weight * rate(u)).sum();
+                    assert!(turns > 10.0 || (found / wanted - 1.0).abs() < 1e-9, "{decay} {dt}: {found} {wanted}");
+                }
             }
         }
         assert_eq!(Parts::new(1.0, std::iter::empty()).count, 0);

@@ -3,7 +3,9 @@
 use super::super::model::Model;
 use super::super::state::State;
 use super::measure::CellNumbers;
+use super::neighbours::Neighbours;
 use super::observed::Observed;
+use super::released::Released;
 use super::state::ChemistryState;
 use super::surface::AtomShapes;
 use crate::Vec3;
@@ -18,6 +20,8 @@ pub struct ChemistryScratch {
     pub(super) fields: Vec<Fields>,
     /// Measures of all cells, where links read them.
     pub(super) cells: Vec<CellNumbers>,
+    /// Who touches whom, where links read that.
+    pub(super) neighbours: Neighbours,
     /// Means over the atoms of each cell, one list for each species sensed.
     pub(super) sensed: Vec<Vec<Sensed>>,
     /// Buffers of the systems.
@@ -26,6 +30,10 @@ pub struct ChemistryScratch {
     pub(in super::super) membranes: Vec<MembraneScratch>,
     /// What links read.
     pub(super) observed: Observed,
+    /// Rates at which cells release in the step.
+    pub(super) released: Released,
+    /// Steps of its own that each system made meanwhile, all cells together.
+    pub(super) own_steps: Vec<u64>,
     /// Positions of atoms, what is sensed at them, and amounts released at them.
     pub(super) positions: Vec<Vec3>,
     pub(super) senses: Vec<Sensed>,
@@ -46,6 +54,7 @@ impl ChemistryScratch {
         let fields = chemistry.fields.iter().map(|field| field.system.empty());
         Self {
             fields: fields.collect(),
+            own_steps: vec![0; chemistry.reactors.len()],
             populations: chemistry.reactors.iter().map(|_| PopulationScratch::default()).collect(),
             membranes: chemistry.reactors.iter().map(|_| MembraneScratch::default()).collect(),
             sensed: vec![Vec::new(); chemistry.sensed.len()],

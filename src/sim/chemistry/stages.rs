@@ -8,16 +8,15 @@ use super::super::targets::measure_volumes;
 use super::super::trouble::Trouble;
 use super::super::velocity::measure_velocities;
 use super::super::workspace::Workspace;
-use super::carry::{carry_links, carry_releases};
-use super::census::cell_of_member;
-use super::exchange::is_due;
-use super::membranes::{advance_membrane, begin_membranes};
-use super::model::Reactor;
+use super::advance::{advance_system, system_trouble};
+use super::carry::carry_links;
+use super::follow::{follow, is_releasing};
+use super::membranes::begin_membranes;
 use super::populations::{advance_population, eventful, ids};
 use super::release::move_fields;
 use super::scratch::ChemistryScratch;
 use super::state::ChemistryState;
-use crate::ode::{Numbers, OdeTrouble, PopulationScratch, Substeps};
+use crate::ode::{PopulationScratch, Substeps};
 
 /// Lets the links carry the numbers of the start, and executes the events of the start, in `state`; after an error that holds
 /// anything.
@@ -53,48 +52,16 @@ pub fn advance_chemistry(
     }
     let (start, end) = (from.time, from.time + dt);
     ws.chemistry.exchange_values(&mut to.chemistry, start);
-    advance_systems(model, end, from, to, &mut ws.chemistry)?;
-    carry_releases(model, end, to, ws)?;
+    for number in (0..model.chemistry.reactors.len()).filter(|number| !is_releasing(model, *number)) {
+        advance_system(model, number, end, from, to, &mut ws.chemistry)?;
+    }
+    follow(model, (start, dt), from, to, ws)?;
     move_fields(model, (start, dt), from, to, ws)?;
     carry_links(model, end, false, to, ws)?;
     ws.chemistry.exchange_values(&mut to.chemistry, end);
     impose(model, end, to, ws)?;
     if model.chemistry.imposes_atoms {
         measure_velocities(model, dt, from, to);
-    }
-    Ok(())
-}
-
-/// Advances all systems that are due, each from the time that it has reached.
-fn advance_systems(
-    model: &Model,
-    end: f64,
-    before: &State,
-    state: &mut State,
-    scratch: &mut ChemistryScratch,
-) -> Result<(), Trouble> {
-    let ChemistryScratch { populations: scratch, membranes, .. } = scratch;
-    for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
-        let from = state.chemistry.times[number];
-        if !is_due(reactor, end) || from >= end {
-            continue;
-        }
-        let (begin, until) = (from / reactor.seconds, end / reactor.seconds);
-        let substeps = Substeps::between(reactor.pace, state.chemistry.kicks[number], begin, until);
-        let advanced = match &reactor.membrane {
-            Some(membrane) => {
-                let numbers = Numbers { seed: model.seed, system: &reactor.name };
-                let scratch = &mut membranes[number];
-                advance_membrane((number, reactor), membrane, (substeps, numbers), before, state, scratch)
-            }
-            None => {
-                let State { kinds, chemistry, .. } = &mut *state;
-                advance_population(model, (number, reactor), substeps, (kinds, chemistry), &mut scratch[number])
-            }
-        };
-        advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?;
-        state.chemistry.times[number] = end;
-        state.chemistry.kicks[number] = substeps.kicks_at_end();
     }
     Ok(())
 }
@@ -123,7 +90,7 @@ pub fn advance_systems_to(model: &Model, from: &ChemistryState, within: &mut Sta
             &mut scratch.populations[number],
         );
         match solved {
-            Ok(()) => chemistry.times[number] = time,
+            Ok(_) => chemistry.times[number] = time,
             Err(_) => (chemistry.populations[number], chemistry.events[number]) = between,
         }
     }
@@ -141,20 +108,6 @@ fn begin_events(model: &Model, state: &mut State, scratch: &mut [PopulationScrat
         any |= advanced.map_err(|trouble| system_trouble(model, state, reactor, &trouble))?.events > 0;
     }
     Ok(any)
-}
-
-/// Which cell of which type, when and in which variable.
-fn system_trouble(model: &Model, state: &State, reactor: &Reactor, trouble: &OdeTrouble) -> Trouble {
-    let cell = trouble.cell.and_then(|member| cell_of_member(&state.kinds, &reactor.members, member));
-    let owner = cell.map(|cell| state.kind_of(cell)).map(|(kind, cell)| (model.kinds[kind].name.clone(), cell));
-    Trouble::System {
-        system: reactor.name.clone(),
-        owner,
-        time: trouble.time * reactor.seconds,
-        variable: trouble.variable.clone(),
-        reason: trouble.reason,
-        detail: trouble.detail.clone(),
-    }
 }
 
 /// After links imposed positions of atoms: the volumes are exact again with these atoms where they are.

@@ -100,6 +100,13 @@ impl ChemistryState {
         self.carried = other.carried;
     }
 
+    /// Takes a system with its events and its time as it is in another state of the same shape.
+    pub fn take_system(&mut self, other: &Self, number: usize) {
+        self.populations[number].copy_from(&other.populations[number]);
+        copy_each(&mut self.events[number], &other.events[number], EventMemory::copy_from);
+        (self.times[number], self.kicks[number]) = (other.times[number], other.kicks[number]);
+    }
+
     /// Writes NaN over all numbers and forgets what is held in lists.
     pub fn poison(&mut self) {
         self.populations.clear();

@@ -3,6 +3,7 @@
 use super::{Part, within};
 use crate::cell::ends::{self, AtomReading, AtomSetting, PodSetting, Reading, Sense, Setting};
 use crate::equations::eml::{Endpoint, Index, LinkDescription, Root, Step};
+use crate::equations::tree::QuantityId;
 use crate::error::words;
 use crate::error::{Fault, short};
 use crate::mechanics::CONTROLLED;
@@ -89,6 +90,7 @@ impl Ends<'_, '_> {
     fn read_cell(&mut self, end: &Endpoint, whose: Whose) -> Result<Source, Fault> {
         match parts_of(&end.path)[..] {
             [("atoms", None), ..] => return self.read_atoms(end, whose),
+            [("neighbours", _), ..] => return self.read_neighbours(end, whose),
             [("field", Some(index)), ..] => {
                 let (field, species) = self.species(end, index)?;
                 let sense = ends::sense(&end.path[1..]).ok_or_else(|| unknown_of_field(end))?;
@@ -271,8 +273,8 @@ impl Ends<'_, '_> {
         Ok(found.unwrap_or(0))
     }
 
-    /// A quantity of another system.
-    fn other(&self, end: &Endpoint, name: &str, id: &str, whose: Option<Whose>) -> Result<Source, Fault> {
+    /// A quantity of a system, and the document that describes it.
+    pub(super) fn quantity(&self, end: &Endpoint, name: &str, id: &str) -> Result<(&Part<'_>, QuantityId), Fault> {
         let systems = || self.parts.iter().filter(|part| !part.is_field());
         let Some(part) = systems().find(|part| part.name == name) else {
             let message = format!("there is no system `{name}`");
@@ -288,6 +290,12 @@ impl Ends<'_, '_> {
         if part.is_local(quantity) {
             return Err(differs(end));
         }
+        Ok((part, quantity))
+    }
+
+    /// A quantity of another system.
+    fn other(&self, end: &Endpoint, name: &str, id: &str, whose: Option<Whose>) -> Result<Source, Fault> {
+        let (part, quantity) = self.quantity(end, name, id)?;
         let has = |kind: &usize| part.kinds.contains(kind);
         match whose {
             None if !part.kinds.is_empty() => {
@@ -344,7 +352,7 @@ impl Ends<'_, '_> {
     }
 
     /// The number of the type of cells with a name.
-    fn numbered_type(&self, end: &Endpoint, index: &Index, written: &str) -> Result<usize, Fault> {
+    pub(super) fn numbered_type(&self, end: &Endpoint, index: &Index, written: &str) -> Result<usize, Fault> {
         let Index::Name(name) = index else {
             let message = "types of cells have names, not numbers".to_owned();
             return Err(within(&end.location, "not a name", message, format!("write {written}")));
@@ -473,7 +481,7 @@ fn meant<'a>(end: &Endpoint, known: impl IntoIterator<Item = &'a str>) -> String
     words::meant(path, known).map_or("not known".to_owned(), |near| format!("did you mean `{near}`?"))
 }
 
-fn parts_of(path: &[Step]) -> Vec<(&str, Option<&Index>)> {
+pub(super) fn parts_of(path: &[Step]) -> Vec<(&str, Option<&Index>)> {
     path.iter().map(|step| (step.name.as_str(), step.index.as_ref())).collect()
 }
 

@@ -4,13 +4,16 @@ use super::super::super::{ChemistryLink, Document};
 use super::ends::{Ends, Side, differs, kind_of_cell};
 use super::order::order;
 use super::{Part, at, membrane, within};
+use crate::cell::ends::Reading;
 use crate::equations::eml::{self, Endpoint, LinkDescription, Root};
 use crate::equations::expression::Trouble;
 use crate::equations::tree::{Event, Expr, QuantityId, Role, System};
 use crate::error::{Fault, Location};
 use crate::ode::assigned_parameters;
 use crate::sim::Kind;
-use crate::sim::chemistry::{AtAtoms, Chemistry, Control, Link, Owner, Source, Target};
+use crate::sim::chemistry::{
+    AtAtoms, Chemistry, Control, Link, NeighbourNumber, NeighbourReading, Owner, Source, Target,
+};
 
 /// Parameters that a link of the experiment sets become inputs; those that events set do not.
 pub(super) fn open_linked_parameters(parts: &mut [Part]) {
@@ -88,9 +91,12 @@ fn nowhere(document: &Document, key: &str) -> Location {
 
 /// What links do to the model as a whole.
 fn act(link: &Link, chemistry: &mut Chemistry, counts: &[usize], kinds: &mut [Kind]) {
-    if let Source::Cell(_, reading) = link.from {
-        chemistry.measures_cells |= !matches!(reading, crate::cell::ends::Reading::Atom(..));
-    }
+    let of_neighbours = |reading: NeighbourReading| matches!(reading.number, NeighbourNumber::Cell(_));
+    chemistry.measures_cells |= match link.from {
+        Source::Cell(_, reading) => !matches!(reading, Reading::Atom(..)),
+        Source::Neighbours(reading) => of_neighbours(reading),
+        _ => false,
+    };
     let Target::Cell(whose, control) = link.to else { return };
     let cells = link_kinds(link.owner, whose, chemistry, counts);
     for kind in cells {

@@ -4,6 +4,7 @@ mod ends;
 mod links;
 mod membrane;
 mod names;
+mod neighbours;
 mod order;
 mod profile;
 mod read;

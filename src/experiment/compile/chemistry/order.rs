@@ -30,7 +30,7 @@ fn before(link: &Link, links: &[Link], systems: &[&System], reactors: &[Reactor]
     if let Owner::Reactor(number) = link.owner {
         link.needs.iter().for_each(|&quantity| inputs(systems[number], quantity, number, &mut used));
     }
-    if let Source::Other(number, quantity, _) = link.from {
+    if let Some((number, quantity)) = link.from.quantity_of_other() {
         inputs(systems[number], quantity, number, &mut used);
     }
     let feeds = |other: &Link| match (other.owner, other.to, link.from) {
