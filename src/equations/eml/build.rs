@@ -4,7 +4,7 @@ use super::circles::circles;
 use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
 use super::xml::{Element, Text};
-use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
+use crate::equations::expression::{Node, Scope, Unit, UnitScope, is_constant, parse};
 use crate::equations::reactions;
 use crate::equations::tree::{Binary, Expr, Quantity, QuantityId, Role, System};
 use crate::error::Location;
@@ -369,13 +369,5 @@ impl<'a, 'd> Builder<'a, 'd> {
     /// The number of a quantity.
     pub(super) fn find(&self, id: &str) -> Option<QuantityId> {
         self.known.scope.quantities.get(id).copied()
-    }
-}
-
-/// Whether an expression is made of bare numbers alone.
-fn is_constant(node: &Node) -> bool {
-    match &node.kind {
-        NodeKind::Name(_) | NodeKind::Number(_, Some(_)) => false,
-        _ => node.children().iter().all(|child| is_constant(child)),
     }
 }
