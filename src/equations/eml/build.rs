@@ -36,6 +36,8 @@ pub(super) struct Builder<'a, 'd> {
     fixed: Scope,
     pub(super) now: Scope,
     before: Scope,
+    /// Intervals of schedules, which must be above 0, and where they are written.
+    pub(super) schedules: Vec<(Expr, Location)>,
 }
 
 impl<'a, 'd> Builder<'a, 'd> {
@@ -51,7 +53,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             fixed.absent.insert(id.clone(), "this must keep one value: use numbers and parameters".to_owned());
         }
         let before = Scope { no_time: String::new(), ..fixed.clone() };
-        Self { context, known, start, fixed, now, before }
+        Self { context, known, start, fixed, now, before, schedules: Vec::new() }
     }
 
     fn scope(&self, allowed: Use) -> &Scope {
@@ -345,6 +347,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                 let values = super::start::values(system);
                 self.check_finite(&values);
                 self.check_delays(system, &values);
+                self.check_schedules(&values);
             }
         }
     }

@@ -186,6 +186,16 @@ impl Check<'_, '_> {
         }
     }
 
+    /// A part that must be a time; a number alone is one.
+    fn time(&mut self, node: &Node, names: &Names, what: &str) {
+        if let (Measure::Known(unit), Some(time)) = (self.measure(node, names), self.scope.time)
+            && !unit.is_same(time)
+            && !is_number(node)
+        {
+            self.troubles.push(mismatch(&unit, time, what, node.at.clone()));
+        }
+    }
+
     fn power(&mut self, base: &Node, exponent: &Node, names: &Names) -> Measure {
         let unit = self.measure(base, names);
         let told = self.troubles.len();
@@ -290,13 +300,12 @@ impl Check<'_, '_> {
             }
             UnitRule::Delay => {
                 let value = self.measure(parts[0], names);
-                if let (Measure::Known(unit), Some(time)) = (self.measure(parts[1], names), self.scope.time)
-                    && !unit.is_same(time)
-                    && !is_number(parts[1])
-                {
-                    self.troubles.push(mismatch(&unit, time, "the time of `delay`", parts[1].at.clone()));
-                }
+                self.time(parts[1], names, "the time of `delay`");
                 value
+            }
+            UnitRule::Times => {
+                parts.iter().for_each(|part| self.time(part, names, &what));
+                plain()
             }
             UnitRule::Piecewise => {
                 let values: Vec<&Node> = parts.iter().step_by(2).copied().collect();
