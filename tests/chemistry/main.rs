@@ -3,6 +3,8 @@
 mod delays;
 mod documents;
 mod eml;
+mod eml_reactions;
+mod eml_schedules;
 mod eml_write;
 mod engine_events;
 mod engine_members;

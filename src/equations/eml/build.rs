@@ -4,8 +4,9 @@ use super::circles::circles;
 use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
 use super::xml::{Element, Text};
-use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
-use crate::equations::tree::{Expr, Quantity, QuantityId, Role, System};
+use crate::equations::expression::{Node, Scope, Unit, UnitScope, is_constant, parse};
+use crate::equations::reactions;
+use crate::equations::tree::{Binary, Expr, Quantity, QuantityId, Role, System};
 use crate::error::Location;
 use std::collections::HashMap;
 
@@ -35,6 +36,8 @@ pub(super) struct Builder<'a, 'd> {
     fixed: Scope,
     pub(super) now: Scope,
     before: Scope,
+    /// Intervals of schedules, which must be above 0, and where they are written.
+    pub(super) schedules: Vec<(Expr, Location)>,
 }
 
 impl<'a, 'd> Builder<'a, 'd> {
@@ -50,7 +53,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             fixed.absent.insert(id.clone(), "this must keep one value: use numbers and parameters".to_owned());
         }
         let before = Scope { no_time: String::new(), ..fixed.clone() };
-        Self { context, known, start, fixed, now, before }
+        Self { context, known, start, fixed, now, before, schedules: Vec::new() }
     }
 
     fn scope(&self, allowed: Use) -> &Scope {
@@ -135,6 +138,7 @@ impl<'a, 'd> Builder<'a, 'd> {
     /// The quantities of the document and where they are declared.
     pub(super) fn quantities(&mut self, root: &Element) -> (Vec<Quantity>, Vec<Location>) {
         let mut equations = self.equations(root);
+        let mut by_reactions = reactions::rates(&self.known.reactions);
         let (mut quantities, mut locations) = (Vec::new(), Vec::new());
         for number in 0..self.known.quantities.len() {
             let (id, element) = (self.known.quantities[number].id.clone(), self.known.quantities[number].element);
@@ -148,8 +152,12 @@ impl<'a, 'd> Builder<'a, 'd> {
                     let rule = self.expression(&element.text, Use::All, own.as_ref().map(|unit| (unit, what.as_str())));
                     (rule.map(|rule| Role::Defined { rule }), Some(Expr::Number(0.0)))
                 }
+                "reaction" => {
+                    let rule = self.rate_of_reaction(element, &id);
+                    (rule.map(|rule| Role::Defined { rule }), Some(Expr::Number(0.0)))
+                }
                 "field" => {
-                    let rate = self.reaction(element, &id);
+                    let rate = self.reaction(element, &id, by_reactions.remove(&(number as QuantityId)));
                     let initial = element
                         .attribute("initial")
                         .map(|_| ())
@@ -157,7 +165,8 @@ impl<'a, 'd> Builder<'a, 'd> {
                     (rate.map(|rate| Role::Variable { rate }), initial)
                 }
                 _ => {
-                    let rate = self.rate(element, &id, equations.remove(id.as_str()));
+                    let changed = by_reactions.remove(&(number as QuantityId));
+                    let rate = self.rate(element, &id, equations.remove(id.as_str()), changed);
                     (rate.map(|rate| Role::Variable { rate }), self.value(element, "initial", Use::Start, &id))
                 }
             };
@@ -166,7 +175,10 @@ impl<'a, 'd> Builder<'a, 'd> {
                 name: element.word("name"),
                 role: role.unwrap_or(Role::Input),
                 initial: initial.unwrap_or(Expr::Number(0.0)),
-                unit: element.word("unit"),
+                unit: match (element.kind.name, &own) {
+                    ("reaction", Some(unit)) => unit.text(),
+                    _ => element.word("unit"),
+                },
                 id,
             });
             locations.push(self.context.location(element.location("id"), "declared here"));
@@ -223,8 +235,20 @@ impl<'a, 'd> Builder<'a, 'd> {
         found
     }
 
-    fn rate(&mut self, element: &Element, id: &str, equation: Option<&Element>) -> Option<Expr> {
+    /// The rate of a variable: its own, or what reactions make of it.
+    fn rate(&mut self, element: &Element, id: &str, equation: Option<&Element>, changed: Option<Expr>) -> Option<Expr> {
+        let own = equation.map(|equation| equation.location("of"));
+        let own = own.or_else(|| element.attribute("rate").map(|_| element.location("rate")));
+        if let (Some(own), Some(_)) = (&own, &changed) {
+            let message = format!("`{id}` has a rate of its own and is changed by reactions");
+            let help = format!(
+                "write what the rate says as a reaction (\"-> {id}\" makes it, \"{id} ->\" uses it up), or `${id}` where a reaction leaves it as it is"
+            );
+            self.context.fault(own.clone(), &message, "beside reactions", &help);
+            return None;
+        }
         let text = match (element.attribute("rate"), equation) {
+            (None, None) if changed.is_some() || self.known.lost_reactions => return changed,
             (Some(_), Some(equation)) => {
                 let message = format!("`{id}` has a rate and an equation");
                 self.context.fault(equation.location("of"), &message, "a second equation", "remove one of them");
@@ -233,8 +257,9 @@ impl<'a, 'd> Builder<'a, 'd> {
             (Some(rate), None) => rate.clone(),
             (None, Some(equation)) => equation.text.clone(),
             (None, None) => {
-                let help =
-                    format!("write <equation of=\"{id}\">…</equation>, or rate=\"0\" for what only events change");
+                let help = format!(
+                    "write <equation of=\"{id}\">…</equation>, a <reaction> that changes it, or rate=\"0\" for what only events change"
+                );
                 self.context.fault(element.location("id"), &format!("`{id}` has no equation"), "changes how?", &help);
                 return None;
             }
@@ -244,9 +269,15 @@ impl<'a, 'd> Builder<'a, 'd> {
         self.expression(&text, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())))
     }
 
-    fn reaction(&mut self, element: &Element, id: &str) -> Option<Expr> {
+    /// The rate of a field by reaction: its own, or what reactions of the document make of it.
+    fn reaction(&mut self, element: &Element, id: &str, changed: Option<Expr>) -> Option<Expr> {
         let mut reactions = element.all("reaction");
-        let Some(reaction) = reactions.next() else { return Some(Expr::Number(0.0)) };
+        let Some(reaction) = reactions.next() else { return Some(changed.unwrap_or(Expr::Number(0.0))) };
+        if changed.is_some() {
+            let message = format!("`{id}` has a reaction of its own and is changed by others");
+            let help = "write it as <reaction id=\"…\" equation=\"…\" rate=\"…\"/> beside the fields";
+            self.context.fault(reaction.at.clone(), &message, "beside reactions", help);
+        }
         if let Some(second) = reactions.next() {
             let message = format!("`{id}` has two reactions");
             self.context.fault(second.at.clone(), &message, "a second reaction", "write their sum in one <reaction>");
@@ -254,6 +285,27 @@ impl<'a, 'd> Builder<'a, 'd> {
         let unit = self.per_time(id);
         let what = format!("the reaction of `{id}`");
         self.expression(&reaction.text, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())))
+    }
+
+    /// The net rate of a reaction.
+    fn rate_of_reaction(&mut self, element: &Element, id: &str) -> Option<Expr> {
+        let unit = self.unit_of(id);
+        let mut part = |name: &str, what: String| {
+            self.attribute(element, name, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())))
+        };
+        let forward = part("rate", format!("the rate of `{id}`"));
+        if element.attribute("reverse").is_none() {
+            return forward;
+        }
+        let backward = part("reverse", format!("the reverse rate of `{id}`"));
+        let reactions = &self.known.reactions;
+        let number = self.find(id);
+        if reactions.iter().any(|reaction| Some(reaction.rate) == number && !reaction.reversible) {
+            let message = format!("`{id}` goes one way and has a reverse rate");
+            let help = "write `=` for `->` in its equation, or remove `reverse`";
+            self.context.fault(element.location("reverse"), &message, "backwards", help);
+        }
+        Some(forward?.binary(Binary::Sub, backward?))
     }
 
     fn per_time(&self, id: &str) -> Option<Unit> {
@@ -295,6 +347,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                 let values = super::start::values(system);
                 self.check_finite(&values);
                 self.check_delays(system, &values);
+                self.check_schedules(&values);
             }
         }
     }
@@ -319,13 +372,5 @@ impl<'a, 'd> Builder<'a, 'd> {
     /// The number of a quantity.
     pub(super) fn find(&self, id: &str) -> Option<QuantityId> {
         self.known.scope.quantities.get(id).copied()
-    }
-}
-
-/// Whether an expression is made of bare numbers alone.
-fn is_constant(node: &Node) -> bool {
-    match &node.kind {
-        NodeKind::Name(_) | NodeKind::Number(_, Some(_)) => false,
-        _ => node.children().iter().all(|child| is_constant(child)),
     }
 }

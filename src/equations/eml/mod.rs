@@ -14,8 +14,10 @@ mod document;
 mod events;
 mod fields;
 mod links;
+mod measured;
 mod membrane;
 mod noise;
+mod reactions;
 mod solver;
 mod start;
 mod vocabulary;
@@ -47,7 +49,8 @@ use std::sync::Arc;
 pub fn read(source: Arc<Source>) -> Result<Document> {
     let mut context = Context::new(source);
     let Some(root) = xml::tree(&mut context) else { return Err(context.error()) };
-    let known = declare::declare(&mut context, &root);
+    let mut known = declare::declare(&mut context, &root);
+    measured::complete(&mut context, &mut known);
     if known.quantities.is_empty() && context.is_clean() {
         let help = "declare <variable id=\"U\" initial=\"1\" rate=\"-0.1*U\"/>";
         context.fault(root.at.clone(), "the document declares nothing", "empty", help);
@@ -55,6 +58,7 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     let mut builder = Builder::new(&mut context, known);
     let (quantities, locations) = builder.quantities(&root);
     let events = builder.events(&root);
+    let reactions = builder.known.reactions.clone();
     let history = builder.history(&root);
     let grid = builder.grid(&root);
     let mut fields = builder.fields(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
@@ -63,7 +67,7 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     let links = builder.links(&root);
     let solver = builder.solver(&root);
     builder.check_noise(&root, &noise);
-    let system = System { name: root.word("name"), quantities, events, history };
+    let system = System { name: root.word("name"), quantities, events, history, reactions };
     builder.check_values(&system);
     builder.finish_fields(&mut fields, &system);
     if let Some(membrane) = &mut membrane {

@@ -1,9 +1,9 @@
 //! Events: what they set, in amounts.
 
 use super::document;
-use super::pieces::{binary, extent, number, product, quantity, quotient, replaced};
 use super::plan::{Change, Kind, Plan};
 use super::xml::Node;
+use crate::equations::pieces::{binary, extent, number, product, quantity, quotient, replaced};
 use crate::equations::tree::{Binary, Event, Expr, QuantityId, Role};
 use std::collections::{HashMap, HashSet};
 
@@ -45,6 +45,7 @@ impl<'a> Plan<'_, 'a> {
                 values_from_firing: event.values_from_trigger,
                 persistent: event.persistent,
                 assignments,
+                schedule: None,
             });
             made.extend(follower);
         }
@@ -247,5 +248,6 @@ fn follower(id: &str, due: QuantityId, assignments: Vec<(QuantityId, Expr)>) -> 
         values_from_firing: true,
         persistent: true,
         assignments,
+        schedule: None,
     }
 }
