@@ -27,7 +27,7 @@ links = [{ from = "type[cell].chemistry[responder].uptake", to = "system.uptake"
 document = "responder.eml"
 [chemistry.response]
 document = "response.eml"
-size = ["40 um", "40 um"]
+size = ["40 um", "40 um", "0 um"]
 "#;
     let mut scene = scene(&documents, text);
     scene.run();
