@@ -2,6 +2,7 @@
 
 mod delays;
 mod eml;
+mod eml_models;
 mod eml_reactions;
 mod eml_schedules;
 mod eml_write;
