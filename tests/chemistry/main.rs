@@ -3,8 +3,10 @@
 mod delays;
 mod documents;
 mod eml;
+mod eml_models;
 mod eml_reactions;
 mod eml_schedules;
+mod eml_tables;
 mod eml_write;
 mod engine_events;
 mod engine_members;
