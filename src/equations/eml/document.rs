@@ -156,7 +156,7 @@ pub enum Scheme {
 /// The grid of a document's fields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridDescription {
-    /// 2 (on the substrate) or 3 (in the medium).
+    /// 1 (on a line along x), 2 (on the substrate) or 3 (in the medium).
     pub dimension: usize,
     /// Distance of neighbouring points, in `unit`.
     pub spacing: f64,

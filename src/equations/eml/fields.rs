@@ -21,7 +21,11 @@ impl Builder<'_, '_> {
             let help = "the fields of a document share one grid; use a second document for another";
             self.context.fault(second.at.clone(), "there are two grids", "a second one", help);
         }
-        let dimension = 2 + self.choice(element, "dimension", &["2", "3"]);
+        // One that is not told counts as 2.
+        let dimension = match self.choice(element, "dimension", &["1", "2", "3"]) {
+            0 if element.word("dimension").trim() != "1" => 2,
+            number => number + 1,
+        };
         let spacing = self.positive(element, "spacing");
         let origin = self.numbers(element, "origin", dimension);
         let size = self.numbers(element, "size", dimension);
@@ -55,8 +59,9 @@ impl Builder<'_, '_> {
                 Some(found)
             }
             _ => {
-                let message = format!("`{name}` is \"{}\"; {dimension} numbers were expected", text.text.trim());
-                let example = if dimension == 2 { "100 100" } else { "100 100 50" };
+                let plural = if dimension == 1 { "number was" } else { "numbers were" };
+                let message = format!("`{name}` is \"{}\"; {dimension} {plural} expected", text.text.trim());
+                let example = ["100", "100 100", "100 100 50"][dimension - 1];
                 self.context.fault(
                     text.whole(),
                     &message,
@@ -163,7 +168,8 @@ impl Builder<'_, '_> {
             let side = wall.word("side");
             let Some(index) = SIDES[..2 * dimension].iter().position(|known| *known == side) else {
                 let sides = SIDES[..2 * dimension].join(", ");
-                let message = format!("a grid of {dimension} dimensions has no side \"{side}\"");
+                let plural = if dimension == 1 { "dimension" } else { "dimensions" };
+                let message = format!("a grid of {dimension} {plural} has no side \"{side}\"");
                 self.context.fault(wall.location("side"), &message, "unknown side", &format!("its sides are {sides}"));
                 continue;
             };
