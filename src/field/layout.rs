@@ -5,7 +5,7 @@ use super::grid::{FEWEST, Grid, Wall};
 use super::scales::Scales;
 use super::species::Species;
 use crate::Vec3;
-use crate::equations::eml::{self, Document, GridDescription};
+use crate::equations::eml::{self, Document, GridDescription, reads};
 use crate::equations::tree::{Expr, System};
 use crate::error::{Error, Fault, Result};
 
@@ -112,16 +112,24 @@ fn boxes(wanted: &GridDescription, size: [f64; 3], spacing: f64) -> [f64; 3] {
 }
 
 /// A field with its coefficients in µm and s.
-pub fn describe(field: &eml::FieldDescription, constants: &[f64], scales: Scales) -> Species {
+///
+/// One that is carried has no coefficients here: all of its transport is that of [`super::transport`]. A wall whose value does not stay, or
+/// through which it passes otherwise, counts as closed where it is sensed.
+pub fn describe(field: &eml::FieldDescription, system: &System, constants: &[f64], scales: Scales) -> Species {
     let value = |expr: &Expr| expr.evaluate(0.0, &|number| constants[number as usize]);
     let wall = |number: usize| match &field.walls[number] {
         eml::Wall::NoFlux => Wall::NoFlux,
-        eml::Wall::Fixed(held) => Wall::Fixed(value(held)),
+        eml::Wall::Fixed(held) if reads(held, system).is_number() => Wall::Fixed(value(held)),
+        eml::Wall::Fixed(_) | eml::Wall::Flux(_) | eml::Wall::Open(_) => Wall::NoFlux,
         eml::Wall::Periodic => Wall::Periodic,
     };
+    let walls = [[wall(0), wall(1)], [wall(2), wall(3)], [wall(4), wall(5)]];
+    if field.is_carried(system) {
+        return Species::new(field.id.clone(), 0.0, 0.0).with_walls(walls).with_range(field.range);
+    }
     let diffusion = value(&field.diffusion) * scales.micrometres * scales.micrometres / scales.seconds;
     Species::new(field.id.clone(), diffusion, value(&field.decay) / scales.seconds)
-        .with_walls([[wall(0), wall(1)], [wall(2), wall(3)], [wall(4), wall(5)]])
+        .with_walls(walls)
         .with_range(field.range)
 }
 

@@ -13,6 +13,8 @@ mod engine_switches;
 mod field_defaults;
 mod field_line;
 mod field_system;
+mod field_transport;
+mod field_walls;
 mod fields;
 mod fields_analytic;
 mod noise;
