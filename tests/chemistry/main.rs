@@ -11,6 +11,7 @@ mod engine_program;
 mod engine_stiff;
 mod engine_switches;
 mod field_defaults;
+mod field_documents;
 mod field_line;
 mod field_system;
 mod field_transport;
