@@ -60,7 +60,7 @@ pub use along::Checked;
 pub use cells::{CellType, Mesh, Orientation};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{
-    Compiled, Prepared, PushedApart, Schedule, Settling, Size, compile, notices, prepare, settle_start,
+    Compiled, Prepared, PushedApart, Schedule, Settling, Size, compile, load_profile, notices, prepare, settle_start,
     settle_start_told,
 };
 pub use contact::{Between, Bonds, Catch, Contact, ContactModel, Zones};

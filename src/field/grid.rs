@@ -9,7 +9,7 @@ use crate::error::{Error, Fault, Result, short};
 pub struct Grid {
     /// Number of boxes along x, y and z. One box along z makes a field of the substrate, an amount per area.
     pub cells: [usize; 3],
-    /// Size of a box along each axis, µm.
+    /// Size of a box along each axis, µm. On a line the boxes are 1 µm wide and high, so that their measure is their length.
     pub spacing: [f64; 3],
     /// The corner of the first box, µm.
     pub origin: Vec3,
@@ -78,6 +78,11 @@ impl Grid {
         self.cells[2] == 1
     }
 
+    /// The axes along which there are several boxes, from x on: 1 (a line), 2 or 3.
+    pub fn dimension(&self) -> usize {
+        self.cells.iter().rposition(|n| *n > 1).map_or(1, |axis| axis + 1)
+    }
+
     /// What an amount is divided by to be a value: the area of a box, µm², of a flat field, else its volume, µm³.
     pub fn measure(&self) -> f64 {
         let area = self.spacing[0] * self.spacing[1];
@@ -92,8 +97,7 @@ impl Grid {
     /// The centre of a box, µm, as messages tell it: `(1.5, 2.5)`.
     pub(super) fn told(&self, at: usize) -> String {
         let centre = self.centre(at);
-        let numbers: Vec<String> =
-            centre.iter().take(if self.is_flat() { 2 } else { 3 }).map(|n| short(*n).to_string()).collect();
+        let numbers: Vec<String> = centre.iter().take(self.dimension()).map(|n| short(*n).to_string()).collect();
         format!("({})", numbers.join(", "))
     }
 

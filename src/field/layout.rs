@@ -5,7 +5,7 @@ use super::grid::{FEWEST, Grid, Wall};
 use super::scales::Scales;
 use super::species::Species;
 use crate::Vec3;
-use crate::equations::eml::{self, Document, GridDescription};
+use crate::equations::eml::{self, Document, GridDescription, reads};
 use crate::equations::tree::{Expr, System};
 use crate::error::{Error, Fault, Result};
 
@@ -37,20 +37,22 @@ pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
     };
     let fault = |message: String, help: String| Fault::new(message).at(wanted.location.clone()).help(help);
     let in_micrometres = |numbers: [f64; 3]| numbers.map(|number| number * wanted.micrometres);
-    let flat = wanted.dimension == 2;
+    let flat = wanted.dimension < 3;
     let origin = wanted.origin.map(in_micrometres).or(placing.map(|placing| placing.origin));
     let size = wanted.size.map(in_micrometres).or(placing.map(|placing| placing.size));
     let mut faults = Vec::new();
     for (name, open) in [("origin", origin.is_none()), ("size", size.is_none())] {
         if open {
-            let example = match (name, flat) {
-                ("origin", true) => "0 0",
-                ("origin", false) => "0 0 0",
-                (_, true) => "100 100",
+            let example = match (name, wanted.dimension) {
+                ("origin", 1) => "0",
+                ("origin", 2) => "0 0",
+                ("origin", _) => "0 0 0",
+                (_, 1) => "100",
+                (_, 2) => "100 100",
                 _ => "100 100 50",
             };
             let help = format!(
-                "write {name}=\"{example}\" in <grid>, or give `size` (and `origin`) beside the document in the experiment"
+                "write {name}=\"{example}\" in <grid>, or give `size` (and `origin`) beside the document in the experiment, or --size to `eml solve`"
             );
             faults.push(fault(format!("the grid has no {name}, and nothing else places it"), help));
         }
@@ -90,7 +92,12 @@ pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
         let message = format!("the fields need {gigabytes} GB of memory, more than there is");
         return Err(Error::input(fault(message, "choose a wider spacing or a smaller size".into())));
     }
-    Grid::new(counts.map(|count| count as usize), [spacing; 3], Vec3::from(origin)).map_err(|error| match error {
+    let mut spacings = [spacing; 3];
+    if wanted.dimension == 1 {
+        // Around the axis, where y and z are 0.
+        (spacings, origin) = ([spacing, 1.0, 1.0], [origin[0], -0.5, 0.0]);
+    }
+    Grid::new(counts.map(|count| count as usize), spacings, Vec3::from(origin)).map_err(|error| match error {
         Error::Input(more) => Error::Input(more.into_iter().map(|one| one.at(wanted.location.clone())).collect()),
         other => other,
     })
@@ -105,16 +112,24 @@ fn boxes(wanted: &GridDescription, size: [f64; 3], spacing: f64) -> [f64; 3] {
 }
 
 /// A field with its coefficients in µm and s.
-pub fn describe(field: &eml::FieldDescription, constants: &[f64], scales: Scales) -> Species {
+///
+/// One that is carried has no coefficients here: all of its transport is that of [`super::transport`]. A wall whose value does not stay, or
+/// through which it passes otherwise, counts as closed where it is sensed.
+pub fn describe(field: &eml::FieldDescription, system: &System, constants: &[f64], scales: Scales) -> Species {
     let value = |expr: &Expr| expr.evaluate(0.0, &|number| constants[number as usize]);
     let wall = |number: usize| match &field.walls[number] {
         eml::Wall::NoFlux => Wall::NoFlux,
-        eml::Wall::Fixed(held) => Wall::Fixed(value(held)),
+        eml::Wall::Fixed(held) if reads(held, system).is_number() => Wall::Fixed(value(held)),
+        eml::Wall::Fixed(_) | eml::Wall::Flux(_) | eml::Wall::Open(_) => Wall::NoFlux,
         eml::Wall::Periodic => Wall::Periodic,
     };
+    let walls = [[wall(0), wall(1)], [wall(2), wall(3)], [wall(4), wall(5)]];
+    if field.is_carried(system) {
+        return Species::new(field.id.clone(), 0.0, 0.0).with_walls(walls).with_range(field.range);
+    }
     let diffusion = value(&field.diffusion) * scales.micrometres * scales.micrometres / scales.seconds;
     Species::new(field.id.clone(), diffusion, value(&field.decay) / scales.seconds)
-        .with_walls([[wall(0), wall(1)], [wall(2), wall(3)], [wall(4), wall(5)]])
+        .with_walls(walls)
         .with_range(field.range)
 }
 

@@ -53,7 +53,7 @@ impl Noise {
         let Fields { grid, species, values, work, time, .. } = fields;
         let (time, grid) = (*time, &*grid);
         // In the document's units of time and length.
-        let measure = grid.measure() / self.scales.micrometres.powi(if grid.is_flat() { 2 } else { 3 });
+        let measure = grid.measure() / self.scales.micrometres.powi(grid.dimension() as i32);
         let factor = (kick.span / self.scales.seconds / measure).sqrt();
         let one = |chunk: &mut Chunk| {
             let (number, time) = (kick.number, time / self.scales.seconds);

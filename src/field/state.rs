@@ -1,5 +1,6 @@
 //! The values of all species on one grid.
 
+use super::carry::CarryScratch;
 use super::error::Change;
 use super::grid::Grid;
 use super::react::PartScratch;
@@ -55,6 +56,8 @@ pub(super) struct Work {
     pub change: Change,
     /// An error may be negative.
     free: Vec<Range>,
+    /// What transport works in, empty until it does.
+    pub carrying: CarryScratch,
 }
 
 impl Work {
@@ -77,6 +80,7 @@ impl Work {
             spreading: Factors::new(grid, species),
             change: Change::default(),
             free: vec![Range::Free; species.len()],
+            carrying: CarryScratch::default(),
         }
     }
 
@@ -88,6 +92,7 @@ impl Work {
         let lists = [&mut self.start, &mut self.before, &mut self.whole, &mut self.spread];
         lists.into_iter().chain(&mut self.sweeping).for_each(|list| list.fill(f64::NAN));
         self.reacting.iter_mut().for_each(PartScratch::poison);
+        self.carrying.poison();
     }
 
     /// Spreads what stands in `spread` over a time, s, as differences spread: held walls hold zero, and nothing decays.

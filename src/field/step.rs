@@ -1,9 +1,11 @@
 //! Moves fields through a window of time: reactions for half a step, diffusion and decay for a step, reactions for
 //! half a step, eq. (field.1), with steps as small as the splitting asks.
 
+use super::carry::Carrying;
 use super::error::{error_of_rates, error_of_size};
 use super::react::{React, react};
 use super::state::{FINEST, Fields};
+use super::transport::Transport;
 use crate::equations::Range;
 use crate::error::{Error, Result, short};
 
@@ -34,6 +36,19 @@ pub struct Report {
     pub error: f64,
 }
 
+/// What acts on fields beside diffusion and decay.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Acts<'a> {
+    pub reactions: Option<&'a React<'a>>,
+    pub carrying: Option<Carrying<'a>>,
+}
+
+impl Acts<'_> {
+    fn any(&self) -> bool {
+        self.reactions.is_some() || self.carrying.is_some()
+    }
+}
+
 /// Of so many steps one is checked, while nothing speaks for a change of the step.
 const CHECK_EVERY: u32 = 4;
 /// Below this error the step is doubled: the error of a doubled step is 8 times as large, and some slack is left.
@@ -55,13 +70,18 @@ impl Fields {
     /// # Errors
     /// Values that are not finite, or a tolerance that no step meets; the fields are then as they were before.
     pub fn advance(&mut self, window: f64, stepping: Stepping, reactions: Option<&React>) -> Result<Report> {
+        self.advance_all(window, stepping, Acts { reactions, carrying: None })
+    }
+
+    /// The same with what a document does to fields beside diffusion and decay.
+    pub(super) fn advance_all(&mut self, window: f64, stepping: Stepping, acts: Acts) -> Result<Report> {
         if window == 0.0 {
             return Ok(Report::default());
         }
         let (began, pace) = (self.time, self.pace());
         // Diffusion and decay alone cannot fail.
-        if let (Stepping::Fixed(steps), None) = (stepping, reactions) {
-            self.strang(window / f64::from(steps.max(1)), steps.max(1), None);
+        if let (Stepping::Fixed(steps), false) = (stepping, acts.any()) {
+            self.strang(window / f64::from(steps.max(1)), steps.max(1), Acts::default());
             self.time = began + window;
             return Ok(Report { steps: steps.max(1), ..Report::default() });
         }
@@ -70,10 +90,10 @@ impl Fields {
         let report = match stepping {
             Stepping::Fixed(steps) => {
                 let steps = steps.max(1);
-                self.strang(window / f64::from(steps), steps, reactions);
+                self.strang(window / f64::from(steps), steps, acts);
                 Ok(Report { steps, ..Report::default() })
             }
-            Stepping::Adaptive { relative, absolute } => self.adapt(window, [relative, absolute], reactions),
+            Stepping::Adaptive { relative, absolute } => self.adapt(window, [relative, absolute], acts),
         };
         let report = report.and_then(|report| self.check_finite(UNBOUND).map(|()| report));
         if report.is_err() {
@@ -86,15 +106,24 @@ impl Fields {
     }
 
     /// Equal steps, with the half steps of reactions between them joined.
-    fn strang(&mut self, dt: f64, steps: u32, reactions: Option<&React>) {
+    fn strang(&mut self, dt: f64, steps: u32, acts: Acts) {
         let began = self.time;
-        self.react(0.5 * dt, reactions);
+        self.react(0.5 * dt, acts.reactions);
         for step in 1..=steps {
-            self.diffuse(dt);
+            self.move_on(began + f64::from(step - 1) * dt, dt, acts);
             self.time = began + (f64::from(step) - 0.5) * dt;
-            self.react(if step == steps { 0.5 * dt } else { dt }, reactions);
+            self.react(if step == steps { 0.5 * dt } else { dt }, acts.reactions);
         }
         self.time = began + f64::from(steps) * dt;
+    }
+
+    /// Diffusion and decay for a step from a time on, with transport in its middle.
+    fn move_on(&mut self, from: f64, dt: f64, acts: Acts) {
+        let Some(carrying) = acts.carrying else { return self.diffuse(dt) };
+        self.diffuse(0.5 * dt);
+        let Self { grid, values, work, .. } = self;
+        carrying.advance(grid, &mut work.carrying, values, from, dt);
+        self.diffuse(0.5 * dt);
     }
 
     fn react(&mut self, dt: f64, reactions: Option<&React>) {
@@ -105,13 +134,13 @@ impl Fields {
 
     /// Steps of a window / 2^level. A step that is checked is taken whole and in halves; the halves are kept, or, where there are
     /// reactions, what both say of steps that are shorter still. With reactions all are checked.
-    fn adapt(&mut self, window: f64, tolerance: [f64; 2], reactions: Option<&React>) -> Result<Report> {
+    fn adapt(&mut self, window: f64, tolerance: [f64; 2], acts: Acts) -> Result<Report> {
         let (mut report, mut done, began) = (Report::default(), 0_u32, self.time);
         while done < 1 << FINEST {
             let dt = window / f64::from(1_u32 << self.level);
             self.time = began + window * (f64::from(done) / f64::from(1_u32 << FINEST));
             if self.unchecked == 0 {
-                let error = self.checked(dt, tolerance, reactions);
+                let error = self.checked(dt, tolerance, acts);
                 report.checks += 1;
                 if too_large(error) {
                     report.rejected += 1;
@@ -122,14 +151,14 @@ impl Fields {
                     continue;
                 }
                 report.error = report.error.max(error);
-                self.unchecked = if error > WATCH || reactions.is_some() { 0 } else { CHECK_EVERY - 1 };
+                self.unchecked = if error > WATCH || acts.any() { 0 } else { CHECK_EVERY - 1 };
                 done += 1 << (FINEST - self.level);
                 if error < CALM && self.level > 0 && done.is_multiple_of(1 << (FINEST + 1 - self.level)) {
                     self.level -= 1;
                     self.unchecked = 0;
                 }
             } else {
-                self.strang(dt, 1, reactions);
+                self.strang(dt, 1, acts);
                 self.unchecked -= 1;
                 done += 1 << (FINEST - self.level);
             }
@@ -139,35 +168,40 @@ impl Fields {
     }
 
     /// A step, and its error; if that is above 1 the values are as before.
-    fn checked(&mut self, dt: f64, tolerance: [f64; 2], reactions: Option<&React>) -> f64 {
+    fn checked(&mut self, dt: f64, tolerance: [f64; 2], acts: Acts) -> f64 {
         let began = self.time;
         self.work.before.copy_from_slice(&self.values);
-        self.whole(dt, reactions);
+        self.whole(dt, acts);
         std::mem::swap(&mut self.values, &mut self.work.whole);
         self.values.copy_from_slice(&self.work.before);
         self.time = began;
-        self.strang(0.5 * dt, 2, reactions);
-        let error = self.error(dt, tolerance, reactions.is_some());
+        self.strang(0.5 * dt, 2, acts);
+        let error = self.error(dt, tolerance, acts.any());
         if too_large(error) {
             std::mem::swap(&mut self.values, &mut self.work.before);
             self.time = began;
-        } else if reactions.is_some() {
-            self.extrapolate();
+        } else if acts.any() {
+            self.extrapolate(acts.carrying.map(|carrying| carrying.transport));
         }
         error
     }
 
     /// A step in one piece. Where there are reactions what diffusion and decay changed in it is kept.
-    fn whole(&mut self, dt: f64, reactions: Option<&React>) {
-        if reactions.is_none() {
-            return self.strang(dt, 1, None);
+    fn whole(&mut self, dt: f64, acts: Acts) {
+        if !acts.any() {
+            return self.strang(dt, 1, acts);
         }
-        let began = self.time;
+        let (began, reactions) = (self.time, acts.reactions);
         self.react(0.5 * dt, reactions);
         self.work.spread.copy_from_slice(&self.values);
-        self.diffuse(dt);
+        self.move_on(began, dt, acts);
         for (before, after) in self.work.spread.iter_mut().zip(&self.values) {
             *before = after - *before;
+        }
+        // What is carried changes as by a reaction: nothing of it dies by spreading before it adds up.
+        let len = self.grid.len();
+        for carried in acts.carrying.iter().flat_map(|carrying| &carrying.transport.carried) {
+            self.work.spread[carried.species * len..(carried.species + 1) * len].fill(0.0);
         }
         self.time = began + 0.5 * dt;
         self.react(0.5 * dt, reactions);
@@ -196,12 +230,18 @@ impl Fields {
     }
 
     /// What a step in halves and one in one piece say of shorter ones, eq. (field.15); where that is below zero and may not be, the halves
-    /// stand.
-    fn extrapolate(&mut self) {
+    /// stand: for that box, or, so that nothing is lost of what is carried, for all of that species.
+    fn extrapolate(&mut self, transport: Option<&Transport>) {
         let len = self.grid.len();
         for (s, species) in self.species.iter().enumerate() {
             let floor = if species.range == Range::NonNegative { 0.0 } else { f64::NEG_INFINITY };
             let whole = &self.work.whole[s * len..(s + 1) * len];
+            let further = |(fine, whole): (&f64, &f64)| *fine + (*fine - whole) / 3.0;
+            if transport.is_some_and(|transport| transport.carries(s))
+                && self.values[s * len..(s + 1) * len].iter().zip(whole).any(|pair| further(pair) < floor)
+            {
+                continue;
+            }
             for (fine, whole) in self.values[s * len..(s + 1) * len].iter_mut().zip(whole) {
                 let further = *fine + (*fine - whole) / 3.0;
                 if further >= floor {

@@ -3,6 +3,7 @@
 //! A document keeps its own units of time and length; the fields are moved in µm and s, and their values are
 //! concentrations in the unit that the document gives them.
 
+use super::carry::Carrying;
 use super::course::Course;
 use super::grid::Grid;
 use super::layout::{Placing, describe, layout, unit};
@@ -13,7 +14,8 @@ use super::reactor::Reactor;
 use super::scales::{POSITION, Scales, in_circle};
 use super::species::Species;
 use super::state::Fields;
-use super::step::{Report, Stepping};
+use super::step::{Acts, Report, Stepping};
+use super::transport::Transport;
 use crate::equations::eml;
 use crate::equations::program::initial_values;
 use crate::equations::tree::{QuantityId, Role, System};
@@ -43,6 +45,8 @@ pub struct FieldSystem {
     inputs: Vec<(String, f64)>,
     /// None where nothing reacts.
     reactor: Option<Reactor>,
+    /// None where no field is carried.
+    transport: Option<Transport>,
     /// None where there is no noise.
     noise: Option<Noise>,
     scales: Scales,
@@ -80,7 +84,7 @@ impl FieldSystem {
         };
         let mut species = Vec::new();
         for field in &document.fields {
-            let one = describe(field, &constants, scales);
+            let one = describe(field, system, &constants, scales);
             match one.check(&grid) {
                 Err(Error::Input(more)) => {
                     faults.extend(more.into_iter().map(|fault| fault.at(field.location.clone())))
@@ -95,6 +99,7 @@ impl FieldSystem {
             _ => unreachable!("a reactor only finds faults"),
         });
         let (true, Ok(reactor)) = (faults.is_empty(), reactor) else { return Err(Error::Input(faults)) };
+        let transport = Transport::new(document, &grid, &constants, scales)?;
         let given = |quantity: &&crate::equations::tree::Quantity| {
             quantity.role == Role::Input && !POSITION.contains(&quantity.id.as_str())
         };
@@ -110,6 +115,7 @@ impl FieldSystem {
             species,
             reactor,
             noise: Noise::new(document, scales)?,
+            transport,
             scales,
         })
     }
@@ -124,9 +130,14 @@ impl FieldSystem {
         self.noise.as_ref()
     }
 
+    /// What carries the fields, to be looked at as a whole; none where nothing does.
+    pub fn transport(&self) -> Option<&impl std::fmt::Debug> {
+        self.transport.as_ref()
+    }
+
     /// The relative and absolute tolerance of a step where nobody says any.
     pub fn usual_tolerance(&self) -> (f64, f64) {
-        if self.reactor.is_some() { REACTING } else { SPREADING }
+        if self.reactor.is_some() || self.transport.is_some() { REACTING } else { SPREADING }
     }
 
     /// The document's name.
@@ -219,12 +230,15 @@ impl FieldSystem {
     pub fn advance(&self, fields: &mut Fields, window: f64, inputs: &[f64], stepping: Stepping) -> Result<Report> {
         assert_eq!(inputs.len(), self.inputs.len(), "one number for each input of '{}'", self.name);
         assert_eq!(fields.species().len(), self.species.len(), "the fields of '{}'", self.name);
+        let carrying = self.transport.as_ref().map(|transport| Carrying { transport, inputs });
         let Some(reactor) = &self.reactor else {
-            return fields.advance(window, stepping, None).map_err(|error| self.named(error));
+            let acts = Acts { reactions: None, carrying };
+            return fields.advance_all(window, stepping, acts).map_err(|error| self.named(error));
         };
         let course = Course::new(reactor, &self.grid, inputs, matches!(stepping, Stepping::Adaptive { .. }));
         let react = |chunk: &mut super::react::Chunk| course.react(chunk);
-        fields.advance(window, stepping, Some(&react)).map_err(|error| {
+        let acts = Acts { reactions: Some(&react), carrying };
+        fields.advance_all(window, stepping, acts).map_err(|error| {
             let broken = course.broken().map(|broken| broken.error(&self.name, &self.species, &self.grid));
             broken.unwrap_or_else(|| self.named(error))
         })
@@ -258,6 +272,11 @@ impl FieldSystem {
     /// As [`Self::advance`].
     pub fn reference(&self, fields: &Fields, window: f64, inputs: &[f64], rtol: f64, atol: f64) -> Result<Fields> {
         assert_eq!(inputs.len(), self.inputs.len(), "one number for each input of '{}'", self.name);
+        if self.transport.is_some() {
+            let fault =
+                Fault::new(format!("the method of lines takes diffusion alone, and '{}' has transport", self.name));
+            return Err(Error::input(fault.help("compare it with a finer grid and smaller steps")));
+        }
         let inputs: Vec<(&str, f64)> =
             self.inputs.iter().zip(inputs).map(|((id, _), value)| (id.as_str(), *value)).collect();
         lines::solve_lines(&self.system, self.scales, fields, window, &inputs, [rtol, atol])

@@ -8,7 +8,11 @@ use pseudopod::sim::{Model, State, Workspace, begin_chemistry, step};
 /// The field.
 const FIELD: &str = r#"<eml name="field"><grid dimension="2" spacing="4" origin="-40 -40" size="80 80"/>
     <field id="c" diffusion="30" decay="0.1" initial="2 + 0.02*x"><reaction>-0.02*c^2</reaction></field>
-    <field id="n" range="free" diffusion="30" decay="0.1" initial="0" noise="0.1 + 0.01*c"/></eml>"#;
+    <field id="n" range="free" diffusion="30" decay="0.1" initial="0" noise="0.1 + 0.01*c"/>
+    <field id="m" diffusion="2 + 0.1*m" decay="0.1" initial="1">
+        <advection x="0.5 + 0.1*sin(time)" y="0.01*x"/><taxis towards="c" sensitivity="1/(1 + c)^2"/>
+        <source at="3 -7" strength="2 + cos(time)"/>
+        <wall side="x-" kind="flux" value="0.1*(2 - m)"/><wall side="y+" kind="open" value="1 + 0.1*time"/></field></eml>"#;
 
 /// What each walker has.
 const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/><input id="c" default="0"/><input id="gx" default="0"/>

@@ -4,9 +4,11 @@ pub mod check;
 mod columns;
 mod draw;
 pub mod from_sbml;
+mod last_values;
 mod options;
 mod read;
 pub mod solve;
+mod solve_fields;
 
 use super::report::Report;
 use crate::error::Result;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::equations::eml::{Document, SCHEMES};
+use crate::equations::eml::{self, Document, SCHEMES};
 use crate::error::Fault;
 use crate::error::words::meant;
 use crate::ode::{MOST_IMPLICIT, Method, Scheme, SolveOptions, too_large};
@@ -23,13 +23,14 @@ pub struct SolveArgs {
     #[arg(long, value_name = "NUMBER", default_value_t = 101, allow_negative_numbers = true)]
     pub points: i64,
     /// Columns, by commas: time, identifiers, in SBML S for an amount and [S] for a concentration; time and all
-    /// variables when absent.
+    /// variables when absent. Of a field F: F.mean, F.min, F.max and F.total.
     #[arg(long, value_delimiter = ',', value_name = "COLUMNS")]
     pub columns: Vec<String>,
     /// Another value of a parameter or input, or another start of a variable, as in --set k=0.2.
     #[arg(long = "set", value_name = "ID=NUMBER")]
     pub sets: Vec<String>,
-    /// The scheme: rk45, rk65, rosenbrock, bdf, rk4 or euler; the document's when absent, or rosenbrock.
+    /// The scheme: rk45, rk65, rosenbrock, bdf, rk4 or euler; the document's when absent, or rosenbrock. Of
+    /// fields: that of their reactions.
     #[arg(long, value_name = "SCHEME")]
     pub scheme: Option<String>,
     /// Tolerance relative to the size of each variable.
@@ -38,7 +39,7 @@ pub struct SolveArgs {
     /// Tolerance in the unit of each variable.
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub atol: Option<f64>,
-    /// The step of rk4 and euler.
+    /// The step of rk4 and euler; of fields, the longest step, in place of tolerances.
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub inner_step: Option<f64>,
     /// The longest step of rk45, rk65 and rosenbrock, so that nothing short is passed over between two.
@@ -56,6 +57,15 @@ pub struct SolveArgs {
     /// Draws the curves: .svg or .png.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Of fields: writes their values at the end, as .csv (a row for each box) or .h5 (a dataset for each field).
+    #[arg(long, value_name = "FILE")]
+    pub last: Option<PathBuf>,
+    /// Of fields: lengths of the sides of a grid that has no size, by commas, in its unit.
+    #[arg(long, value_delimiter = ',', value_name = "LENGTHS", allow_negative_numbers = true)]
+    pub size: Vec<f64>,
+    /// Of fields: its lower corner, beside --size; when absent the grid lies around the origin, its floor at z = 0.
+    #[arg(long, value_delimiter = ',', value_name = "POSITION", allow_negative_numbers = true)]
+    pub origin: Vec<f64>,
     /// Replaces files that are there.
     #[arg(long)]
     pub force: bool,
@@ -172,13 +182,22 @@ pub(super) fn options(args: &SolveArgs, document: &Document, faults: &mut Vec<Fa
 fn scheme(args: &SolveArgs, document: &Document, faults: &mut Vec<Fault>) -> &'static str {
     let chosen = SCHEMES.iter().find(|(_, scheme)| Some(*scheme) == document.solver.scheme);
     let own = chosen.map_or("rosenbrock", |(name, _)| *name);
-    let Some(wish) = &args.scheme else { return own };
-    let names = SCHEMES.map(|(name, _)| name);
-    if let Some(found) = names.into_iter().find(|name| name == wish) {
-        return found;
+    wished(args, faults).map_or(own, |(name, _)| name)
+}
+
+/// The scheme that the user names.
+pub(super) fn wished_scheme(args: &SolveArgs, faults: &mut Vec<Fault>) -> Option<eml::Scheme> {
+    wished(args, faults).map(|(_, scheme)| scheme)
+}
+
+fn wished(args: &SolveArgs, faults: &mut Vec<Fault>) -> Option<(&'static str, eml::Scheme)> {
+    let wish = args.scheme.as_ref()?;
+    if let Some(found) = SCHEMES.into_iter().find(|(name, _)| name == wish) {
+        return Some(found);
     }
+    let names = SCHEMES.map(|(name, _)| name);
     let near = meant(wish, names).map_or(String::new(), |near| format!("did you mean `{near}`? "));
     let fault = Fault::new(format!("there is no scheme `{wish}`"));
     faults.push(fault.help(format!("{near}there are: {}", names.join(", "))));
-    own
+    None
 }

@@ -4,6 +4,7 @@ use super::columns::{Table, columns, set};
 use super::draw::Drawing;
 use super::options::{SolveArgs, options, points};
 use super::read::read;
+use super::solve_fields;
 
 use crate::cli::files::{Named, refuse_existing, refuse_same};
 use crate::cli::report::{Report, path_text, paths};
@@ -19,10 +20,6 @@ use std::path::{Path, PathBuf};
 /// numbers fail: the rows until then are kept.
 pub fn run(args: &SolveArgs) -> Result<Report> {
     let mut read = read(&args.document)?;
-    if !read.document.fields.is_empty() {
-        let fault = Fault::new(format!("{} is a document of fields, which spread in space", args.document.display()));
-        return Err(Error::input(fault.help("give it to an experiment, under [chemistry.NAME], and run that")));
-    }
     if read.document.membrane.is_some() {
         let fault = Fault::new(format!("{} is a document of membranes, which need surfaces", args.document.display()));
         return Err(Error::input(fault.help("give it to an experiment, under [chemistry.NAME], and run that")));
@@ -32,7 +29,11 @@ pub fn run(args: &SolveArgs) -> Result<Report> {
         let help = "give it to an experiment, under [chemistry.NAME], and run that; or take `noise` out";
         return Err(Error::input(fault.at(noise.location.clone()).help(help)));
     }
+    if !read.document.fields.is_empty() {
+        return solve_fields::run(args, read);
+    }
     let mut faults = Vec::new();
+    refuse_of_fields(args, &mut faults);
     let points = points(args, &mut faults);
     let columns = columns(&args.columns, &read, &mut faults);
     let (scheme, options) = options(args, &read.document, &mut faults);
@@ -73,6 +74,16 @@ pub fn run(args: &SolveArgs) -> Result<Report> {
     let report = Report { words, ..Report::default() }.fact("result", path_text(&args.document));
     let report = report.fact("files", paths(&files)).fact("rows", rows).fact("scheme", scheme);
     Ok(report.fact("work", json!(work)).fact("notices", read.notices))
+}
+
+/// Tells options that only fields have a use for.
+fn refuse_of_fields(args: &SolveArgs, faults: &mut Vec<Fault>) {
+    let given =
+        [("--last", args.last.is_some()), ("--size", !args.size.is_empty()), ("--origin", !args.origin.is_empty())];
+    for (name, _) in given.into_iter().filter(|(_, given)| *given) {
+        let fault = Fault::new(format!("{name} is for fields, and {} has none", args.document.display()));
+        faults.push(fault.help(format!("leave {name} away; -o writes the table of a system")));
+    }
 }
 
 /// Tells what the reader of a model should know, beside what goes to standard output.

@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::document::Level;
 use super::reactions::{changes, equation, shared_unit};
+pub(super) use super::reads::POSITION;
 use super::tables::table;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Function, Scope, Trouble, Unit, is_identifier, is_reserved, parse};
@@ -11,8 +12,6 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Elements whose identifier names a quantity.
 const QUANTITIES: [&str; 8] = ["parameter", "variable", "define", "reaction", "input", "field", "mean", "integral"];
-/// The position in a field.
-pub(super) const POSITION: [&str; 3] = ["x", "y", "z"];
 /// What is given on the surface of a cell: the position from its centre, and area and volume of the cell.
 pub const SURFACE: [&str; 5] = ["x", "y", "z", "area", "volume"];
 

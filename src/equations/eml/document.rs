@@ -156,7 +156,7 @@ pub enum Scheme {
 /// The grid of a document's fields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridDescription {
-    /// 2 (on the substrate) or 3 (in the medium).
+    /// 1 (on a line along x), 2 (on the substrate) or 3 (in the medium).
     pub dimension: usize,
     /// Distance of neighbouring points, in `unit`.
     pub spacing: f64,
@@ -179,10 +179,16 @@ pub struct FieldDescription {
     pub id: String,
     /// Its variable in the system.
     pub quantity: QuantityId,
-    /// Diffusion coefficient in length²/time of the document, an expression of parameters.
+    /// Diffusion coefficient in length²/time of the document, an expression of parameters, the position, the time, inputs and fields.
     pub diffusion: Expr,
     /// Rate of decay per time, an expression of parameters.
     pub decay: Expr,
+    /// The velocity that carries it, length/time of the document, of parameters, the position, the time and inputs.
+    pub advection: Option<[Expr; 3]>,
+    /// The fields whose gradients it follows.
+    pub taxis: Vec<Taxis>,
+    /// Where it comes from, at points and along lines.
+    pub sources: Vec<FieldSource>,
     /// How it starts.
     pub initial: Profile,
     /// Which values it may take.
@@ -191,6 +197,46 @@ pub struct FieldDescription {
     pub walls: [Wall; 6],
     /// Where it is declared.
     pub location: Location,
+}
+
+/// A field that another one moves up the gradient of.
+#[derive(Debug, Clone)]
+pub struct Taxis {
+    /// The variable of the field that is followed.
+    pub towards: QuantityId,
+    /// The sensitivity χ in length²/time of the document for each unit of that field: the velocity over its gradient.
+    pub sensitivity: Expr,
+    /// Where it is written.
+    pub location: Location,
+}
+
+/// A source of a field at a point, or spread evenly along a line.
+#[derive(Debug, Clone)]
+pub struct FieldSource {
+    /// Both ends of the line, in the unit of the grid; the same for a point.
+    pub ends: [[f64; 3]; 2],
+    /// What comes from the whole of it: the field's unit times length, area or volume, over time of the document; of parameters, inputs and
+    /// the time.
+    pub strength: Expr,
+    /// Where it is written.
+    pub location: Location,
+}
+
+impl FieldDescription {
+    /// Whether it is carried or changes at walls and sources in ways that one diffusion coefficient and walls that stay do not tell.
+    pub fn is_carried(&self, system: &System) -> bool {
+        let still = |expr: &Expr| super::reads::reads(expr, system).is_number();
+        let plain = |wall: &Wall| match wall {
+            Wall::NoFlux | Wall::Periodic => true,
+            Wall::Fixed(value) => still(value),
+            Wall::Flux(_) | Wall::Open(_) => false,
+        };
+        self.advection.is_some()
+            || !self.taxis.is_empty()
+            || !self.sources.is_empty()
+            || !still(&self.diffusion)
+            || !self.walls.iter().all(plain)
+    }
 }
 
 /// How a field starts.
@@ -225,8 +271,12 @@ pub enum Profile {
 pub enum Wall {
     /// Nothing passes.
     NoFlux,
-    /// The field has this value there, an expression of parameters.
+    /// The field has this value there, an expression of parameters, the position, the time and inputs.
     Fixed(Expr),
+    /// So much comes in, in the field's unit times length over time of the document: an expression of these and of the fields at the wall.
+    Flux(Expr),
+    /// What flows out leaves, what flows in has this value, as of a fixed wall; nothing passes by diffusion.
+    Open(Expr),
     /// What leaves comes in at the opposite side.
     Periodic,
 }

@@ -2,6 +2,7 @@
 
 use super::build::{Builder, Use};
 use super::document::{FieldDescription, GridDescription, Profile, SIDES, Wall};
+use super::reads::reads;
 use super::xml::Element;
 use crate::equations::Range;
 use crate::equations::tree::{Expr, System};
@@ -21,7 +22,11 @@ impl Builder<'_, '_> {
             let help = "the fields of a document share one grid; use a second document for another";
             self.context.fault(second.at.clone(), "there are two grids", "a second one", help);
         }
-        let dimension = 2 + self.choice(element, "dimension", &["2", "3"]);
+        // One that is not told counts as 2.
+        let dimension = match self.choice(element, "dimension", &["1", "2", "3"]) {
+            0 if element.word("dimension").trim() != "1" => 2,
+            number => number + 1,
+        };
         let spacing = self.positive(element, "spacing");
         let origin = self.numbers(element, "origin", dimension);
         let size = self.numbers(element, "size", dimension);
@@ -43,7 +48,7 @@ impl Builder<'_, '_> {
     }
 
     /// As many numbers as there are dimensions.
-    fn numbers(&mut self, element: &Element, name: &str, dimension: usize) -> Option<[f64; 3]> {
+    pub(super) fn numbers(&mut self, element: &Element, name: &str, dimension: usize) -> Option<[f64; 3]> {
         let text = element.attribute(name)?;
         let words: Vec<&str> = text.text.split_whitespace().collect();
         let read: Option<Vec<f64>> =
@@ -55,8 +60,9 @@ impl Builder<'_, '_> {
                 Some(found)
             }
             _ => {
-                let message = format!("`{name}` is \"{}\"; {dimension} numbers were expected", text.text.trim());
-                let example = if dimension == 2 { "100 100" } else { "100 100 50" };
+                let plural = if dimension == 1 { "number was" } else { "numbers were" };
+                let message = format!("`{name}` is \"{}\"; {dimension} {plural} expected", text.text.trim());
+                let example = ["100", "100 100", "100 100 50"][dimension - 1];
                 self.context.fault(
                     text.whole(),
                     &message,
@@ -81,7 +87,7 @@ impl Builder<'_, '_> {
         let fades = time.to_the(-1.0);
         let none = |expr: Option<Expr>| expr.unwrap_or(Expr::Number(0.0));
         let diffusion =
-            none(self.attribute(element, "diffusion", Use::Fixed, Some((&spreads, "the diffusion coefficient"))));
+            none(self.attribute(element, "diffusion", Use::Now, Some((&spreads, "the diffusion coefficient"))));
         let decay = none(self.attribute(element, "decay", Use::Fixed, Some((&fades, "the decay"))));
         let initial = self.profile(element);
         let range = match self.choice(element, "range", &["non_negative", "free"]) {
@@ -89,10 +95,16 @@ impl Builder<'_, '_> {
             _ => Range::Free,
         };
         let walls = self.walls(element, &id, dimension);
+        let advection = self.advection(element, &id, dimension);
+        let taxis = self.taxis(element, &id);
+        let sources = self.sources(element, &id, dimension);
         Some(FieldDescription {
             quantity: self.find(&id)?,
             diffusion,
             decay,
+            advection,
+            taxis,
+            sources,
             initial: initial?,
             range,
             walls,
@@ -150,20 +162,33 @@ impl Builder<'_, '_> {
         let mut walls: [Option<Wall>; 6] = [const { None }; 6];
         let own = self.unit_of(id);
         for wall in element.all("wall").filter(|wall| wall.attribute("side").is_some()) {
-            let kind = self.choice(wall, "kind", &["no_flux", "fixed", "periodic"]);
-            let what = format!("the value of `{id}` at the wall");
-            let value = self.attribute(wall, "value", Use::Fixed, own.as_ref().map(|unit| (unit, what.as_str())));
-            if (kind == 1) != wall.attribute("value").is_some() && wall.attribute("kind").is_some() {
+            let kind = self.choice(wall, "kind", &["no_flux", "fixed", "periodic", "flux", "open"]);
+            let (unit, what) = match kind {
+                3 => {
+                    let speed = self.known.length.times(&self.known.time.to_the(-1.0));
+                    (own.as_ref().map(|unit| unit.times(&speed)), format!("the flux of `{id}` through the wall"))
+                }
+                _ => (own.clone(), format!("the value of `{id}` at the wall")),
+            };
+            let value = self.attribute(wall, "value", Use::Now, unit.as_ref().map(|unit| (unit, what.as_str())));
+            // What flows in at an open wall may be nothing.
+            let (needs, has) = ([1, 3].contains(&kind), wall.attribute("value").is_some());
+            if needs != has && kind != 4 && wall.attribute("kind").is_some() {
                 let (message, help) = match kind {
                     1 => ("a fixed wall has no value", "write value=\"…\""),
-                    _ => ("only a fixed wall has a value", "write kind=\"fixed\", or remove `value`"),
+                    3 => ("a wall with a flux has no value", "write value=\"…\", what comes in through it"),
+                    _ => (
+                        "only a wall that is fixed, open or has a flux has a value",
+                        "write kind=\"fixed\", or remove `value`",
+                    ),
                 };
                 self.context.fault(wall.location("kind"), message, "this kind", help);
             }
             let side = wall.word("side");
             let Some(index) = SIDES[..2 * dimension].iter().position(|known| *known == side) else {
                 let sides = SIDES[..2 * dimension].join(", ");
-                let message = format!("a grid of {dimension} dimensions has no side \"{side}\"");
+                let plural = if dimension == 1 { "dimension" } else { "dimensions" };
+                let message = format!("a grid of {dimension} {plural} has no side \"{side}\"");
                 self.context.fault(wall.location("side"), &message, "unknown side", &format!("its sides are {sides}"));
                 continue;
             };
@@ -174,6 +199,8 @@ impl Builder<'_, '_> {
             walls[index] = Some(match kind {
                 0 => Wall::NoFlux,
                 1 => Wall::Fixed(value.unwrap_or(Expr::Number(0.0))),
+                3 => Wall::Flux(value.unwrap_or(Expr::Number(0.0))),
+                4 => Wall::Open(value.unwrap_or(Expr::Number(0.0))),
                 _ => Wall::Periodic,
             });
         }
@@ -203,7 +230,11 @@ impl Builder<'_, '_> {
         let values = super::start::values(system);
         for field in fields {
             let element = self.known.quantities[field.quantity as usize].element;
+            self.check_transport(field, system);
             for (name, expr) in [("diffusion", &field.diffusion), ("decay", &field.decay)] {
+                if !reads(expr, system).is_number() {
+                    continue;
+                }
                 let value = expr.evaluate(0.0, &|number| values[number as usize]);
                 if !(value.is_finite() && value >= 0.0) {
                     let message = format!("`{name}` of `{}` is {value}; 0 or more was expected", field.id);

@@ -18,19 +18,23 @@ mod measured;
 mod membrane;
 mod noise;
 mod reactions;
+mod reads;
 mod solver;
 mod start;
 mod tables;
+mod transport;
 mod vocabulary;
 mod write;
 mod xml;
 
 pub use declare::SURFACE;
 pub use document::{
-    Document, Endpoint, FieldDescription, GridDescription, Index, Level, LinkDescription, MembraneDescription,
-    NoiseDescription, Profile, Root, SIDES, Scheme, SolverChoice, Step, SurfaceVariable, Taken, Total, Wall,
+    Document, Endpoint, FieldDescription, FieldSource, GridDescription, Index, Level, LinkDescription,
+    MembraneDescription, NoiseDescription, Profile, Root, SIDES, Scheme, SolverChoice, Step, SurfaceVariable, Taken,
+    Taxis, Total, Wall,
 };
 pub use links::{read_end, read_transfer};
+pub use reads::{Reads, reads};
 pub use solver::SCHEMES;
 pub use vocabulary::{ELEMENTS, Kind};
 pub use write::{Written, write};

@@ -48,7 +48,7 @@ const PARTS: [&str; 15] = [
 
 /// All elements.
 #[rustfmt::skip] // a table
-pub const ELEMENTS: [Kind; 19] = [
+pub const ELEMENTS: [Kind; 22] = [
     kind("eml", &["name"], &["level", "time_unit"], &PARTS, false),
     kind("parameter", &["id", "value"], &["name", "unit"], &[], false),
     kind("variable", &["id", "initial"], &["diffusion", "history", "level", "name", "noise", "rate", "unit"], &[], false),
@@ -66,7 +66,10 @@ pub const ELEMENTS: [Kind; 19] = [
     kind("solver", &[], &["atol", "inner_step", "noise_step", "rtol", "scheme", "step"], &[], false),
     kind("grid", &["dimension", "spacing"], &["origin", "size", "unit"], &[], false),
     kind("field", &["id"], &["dataset", "decay", "diffusion", "image", "initial", "name", "noise", "range", "scale", "unit"],
-        &["reaction", "wall"], false),
+        &["advection", "reaction", "source", "taxis", "wall"], false),
+    kind("advection", &[], &["x", "y", "z"], &[], false),
+    kind("taxis", &["sensitivity", "towards"], &[], &[], false),
+    kind("source", &["strength"], &["at", "from", "to"], &[], false),
     Kind { inside: Some("field"), ..kind("reaction", &[], &[], &[], true) },
     kind("wall", &["kind", "side"], &["value"], &[], false),
     kind("link", &["from", "to"], &["gain", "id", "transfer"], &[], false),

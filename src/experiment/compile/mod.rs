@@ -21,6 +21,7 @@ mod start;
 mod steps;
 
 pub(super) use builder::Builder;
+pub use chemistry::load_profile;
 pub use notices::notices;
 pub(super) use numbers::{course, unit};
 pub use schedule::Schedule;

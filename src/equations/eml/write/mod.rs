@@ -303,13 +303,19 @@ impl<'a> Writer<'a> {
         }
         head.push_str(&self.noise(field.quantity));
         self.line(format_args!("  <field{head}{tail}>"));
+        self.transport(field);
         for (side, wall) in SIDES.iter().zip(&field.walls) {
             match wall {
                 Wall::NoFlux => {}
                 Wall::Periodic => self.line(format_args!("    <wall side=\"{side}\" kind=\"periodic\"/>")),
-                Wall::Fixed(value) => {
+                Wall::Fixed(value) | Wall::Flux(value) | Wall::Open(value) => {
                     let value = attribute("value", &self.expression(value));
-                    self.line(format_args!("    <wall side=\"{side}\" kind=\"fixed\"{value}/>"));
+                    let kind = match wall {
+                        Wall::Flux(_) => "flux",
+                        Wall::Open(_) => "open",
+                        _ => "fixed",
+                    };
+                    self.line(format_args!("    <wall side=\"{side}\" kind=\"{kind}\"{value}/>"));
                 }
             }
         }
@@ -321,6 +327,31 @@ impl<'a> Writer<'a> {
             self.line(format_args!("    <reaction>{rate}</reaction>"));
         }
         self.line(format_args!("  </field>"));
+    }
+
+    /// What carries a field, and its sources.
+    fn transport(&mut self, field: &FieldDescription) {
+        let dimension = self.document.grid.as_ref().map_or(3, |grid| grid.dimension);
+        if let Some(velocity) = &field.advection {
+            let along = velocity.iter().zip(POSITION).take(dimension);
+            let head: String = along.map(|(along, name)| attribute(name, &self.expression(along))).collect();
+            self.line(format_args!("    <advection{head}/>"));
+        }
+        for taxis in &field.taxis {
+            let towards = attribute("towards", &self.names.quantities[taxis.towards as usize]);
+            let sensitivity = attribute("sensitivity", &self.expression(&taxis.sensitivity));
+            self.line(format_args!("    <taxis{towards}{sensitivity}/>"));
+        }
+        for source in &field.sources {
+            let numbers = |ends: &[f64; 3]| ends[..dimension].iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+            let [from, to] = source.ends.each_ref().map(numbers);
+            let head = match from == to {
+                true => attribute("at", &from),
+                false => attribute("from", &from) + &attribute("to", &to),
+            };
+            let strength = attribute("strength", &self.expression(&source.strength));
+            self.line(format_args!("    <source{head}{strength}/>"));
+        }
     }
 
     fn solver(&mut self) {

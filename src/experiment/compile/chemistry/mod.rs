@@ -9,6 +9,8 @@ mod order;
 mod profile;
 mod read;
 
+pub use profile::load as load_profile;
+
 use super::super::{Chemistry as Entry, Document, Scheme};
 use super::size::{self, Size};
 use crate::equations::eml::{self, Level};

@@ -12,7 +12,7 @@ use crate::field::Grid;
 ///
 /// # Errors
 /// A file that cannot be read, or is not of the grid's dimension.
-pub(super) fn load(document: &Path, profile: &Profile, grid: &Grid) -> Result<Vec<f64>> {
+pub fn load(document: &Path, profile: &Profile, grid: &Grid) -> Result<Vec<f64>> {
     let folder = document.parent().unwrap_or(Path::new("."));
     match profile {
         Profile::Expression(_) => Ok(Vec::new()),
