@@ -7,6 +7,8 @@ pub mod from_sbml;
 mod options;
 mod read;
 pub mod solve;
+pub mod to_sbml;
+mod written;
 
 use super::report::Report;
 use crate::error::Result;
@@ -29,6 +31,8 @@ pub enum EmlCommand {
     Solve(options::SolveArgs),
     /// Writes an SBML model as an EML document.
     FromSbml(from_sbml::FromSbmlArgs),
+    /// Writes an EML document as an SBML model.
+    ToSbml(to_sbml::ToSbmlArgs),
 }
 
 impl EmlCommand {
@@ -38,6 +42,7 @@ impl EmlCommand {
             Self::Check(args) => ("eml check", args.json),
             Self::Solve(args) => ("eml solve", args.json),
             Self::FromSbml(args) => ("eml from-sbml", args.json),
+            Self::ToSbml(args) => ("eml to-sbml", args.json),
         }
     }
 }
@@ -51,5 +56,6 @@ pub fn run(args: &EmlArgs) -> Result<Report> {
         EmlCommand::Check(args) => check::run(args),
         EmlCommand::Solve(args) => solve::run(args),
         EmlCommand::FromSbml(args) => from_sbml::run(args),
+        EmlCommand::ToSbml(args) => to_sbml::run(args),
     }
 }

@@ -20,8 +20,10 @@ mod plan;
 mod quantities;
 mod species;
 mod statements;
+mod write;
 mod xml;
 
+pub use write::write;
 pub use xml::LARGEST_DOCUMENT;
 
 use crate::equations::tree::{QuantityId, System};
