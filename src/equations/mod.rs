@@ -6,8 +6,10 @@
 pub mod eml;
 pub mod expression;
 mod fault;
+mod pieces;
 pub mod program;
 mod range;
+pub mod reactions;
 mod read;
 pub mod sbml;
 pub mod tree;

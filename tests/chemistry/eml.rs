@@ -200,7 +200,9 @@ fn schema_words() -> Vec<String> {
             })
             .collect();
         words.sort();
-        let mut children: Vec<&str> = element.descendants().filter_map(|node| node.attribute("ref")).collect();
+        let held = element.descendants().filter(|node| node.index() != element.index() && is_element(node));
+        let mut children: Vec<&str> =
+            held.filter_map(|node| node.attribute("ref").or_else(|| node.attribute("name"))).collect();
         children.sort_unstable();
         found.push(format!("{name}: {} / {}", words.join(" "), children.join(" ")));
     }

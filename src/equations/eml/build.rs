@@ -5,7 +5,8 @@ use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
 use super::xml::{Element, Text};
 use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
-use crate::equations::tree::{Expr, Quantity, QuantityId, Role, System};
+use crate::equations::reactions;
+use crate::equations::tree::{Binary, Expr, Quantity, QuantityId, Role, System};
 use crate::error::Location;
 use std::collections::HashMap;
 
@@ -135,6 +136,7 @@ impl<'a, 'd> Builder<'a, 'd> {
     /// The quantities of the document and where they are declared.
     pub(super) fn quantities(&mut self, root: &Element) -> (Vec<Quantity>, Vec<Location>) {
         let mut equations = self.equations(root);
+        let mut by_reactions = reactions::rates(&self.known.reactions);
         let (mut quantities, mut locations) = (Vec::new(), Vec::new());
         for number in 0..self.known.quantities.len() {
             let (id, element) = (self.known.quantities[number].id.clone(), self.known.quantities[number].element);
@@ -148,8 +150,12 @@ impl<'a, 'd> Builder<'a, 'd> {
                     let rule = self.expression(&element.text, Use::All, own.as_ref().map(|unit| (unit, what.as_str())));
                     (rule.map(|rule| Role::Defined { rule }), Some(Expr::Number(0.0)))
                 }
+                "reaction" => {
+                    let rule = self.rate_of_reaction(element, &id);
+                    (rule.map(|rule| Role::Defined { rule }), Some(Expr::Number(0.0)))
+                }
                 "field" => {
-                    let rate = self.reaction(element, &id);
+                    let rate = self.reaction(element, &id, by_reactions.remove(&(number as QuantityId)));
                     let initial = element
                         .attribute("initial")
                         .map(|_| ())
@@ -157,7 +163,8 @@ impl<'a, 'd> Builder<'a, 'd> {
                     (rate.map(|rate| Role::Variable { rate }), initial)
                 }
                 _ => {
-                    let rate = self.rate(element, &id, equations.remove(id.as_str()));
+                    let changed = by_reactions.remove(&(number as QuantityId));
+                    let rate = self.rate(element, &id, equations.remove(id.as_str()), changed);
                     (rate.map(|rate| Role::Variable { rate }), self.value(element, "initial", Use::Start, &id))
                 }
             };
@@ -166,7 +173,10 @@ impl<'a, 'd> Builder<'a, 'd> {
                 name: element.word("name"),
                 role: role.unwrap_or(Role::Input),
                 initial: initial.unwrap_or(Expr::Number(0.0)),
-                unit: element.word("unit"),
+                unit: match (element.kind.name, &own) {
+                    ("reaction", Some(unit)) => unit.text(),
+                    _ => element.word("unit"),
+                },
                 id,
             });
             locations.push(self.context.location(element.location("id"), "declared here"));
@@ -223,8 +233,20 @@ impl<'a, 'd> Builder<'a, 'd> {
         found
     }
 
-    fn rate(&mut self, element: &Element, id: &str, equation: Option<&Element>) -> Option<Expr> {
+    /// The rate of a variable: its own, or what reactions make of it.
+    fn rate(&mut self, element: &Element, id: &str, equation: Option<&Element>, changed: Option<Expr>) -> Option<Expr> {
+        let own = equation.map(|equation| equation.location("of"));
+        let own = own.or_else(|| element.attribute("rate").map(|_| element.location("rate")));
+        if let (Some(own), Some(_)) = (&own, &changed) {
+            let message = format!("`{id}` has a rate of its own and is changed by reactions");
+            let help = format!(
+                "write what the rate says as a reaction (\"-> {id}\" makes it, \"{id} ->\" uses it up), or `${id}` where a reaction leaves it as it is"
+            );
+            self.context.fault(own.clone(), &message, "beside reactions", &help);
+            return None;
+        }
         let text = match (element.attribute("rate"), equation) {
+            (None, None) if changed.is_some() || self.known.lost_reactions => return changed,
             (Some(_), Some(equation)) => {
                 let message = format!("`{id}` has a rate and an equation");
                 self.context.fault(equation.location("of"), &message, "a second equation", "remove one of them");
@@ -233,8 +255,9 @@ impl<'a, 'd> Builder<'a, 'd> {
             (Some(rate), None) => rate.clone(),
             (None, Some(equation)) => equation.text.clone(),
             (None, None) => {
-                let help =
-                    format!("write <equation of=\"{id}\">…</equation>, or rate=\"0\" for what only events change");
+                let help = format!(
+                    "write <equation of=\"{id}\">…</equation>, a <reaction> that changes it, or rate=\"0\" for what only events change"
+                );
                 self.context.fault(element.location("id"), &format!("`{id}` has no equation"), "changes how?", &help);
                 return None;
             }
@@ -244,9 +267,15 @@ impl<'a, 'd> Builder<'a, 'd> {
         self.expression(&text, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())))
     }
 
-    fn reaction(&mut self, element: &Element, id: &str) -> Option<Expr> {
+    /// The rate of a field by reaction: its own, or what reactions of the document make of it.
+    fn reaction(&mut self, element: &Element, id: &str, changed: Option<Expr>) -> Option<Expr> {
         let mut reactions = element.all("reaction");
-        let Some(reaction) = reactions.next() else { return Some(Expr::Number(0.0)) };
+        let Some(reaction) = reactions.next() else { return Some(changed.unwrap_or(Expr::Number(0.0))) };
+        if changed.is_some() {
+            let message = format!("`{id}` has a reaction of its own and is changed by others");
+            let help = "write it as <reaction id=\"…\" equation=\"…\" rate=\"…\"/> beside the fields";
+            self.context.fault(reaction.at.clone(), &message, "beside reactions", help);
+        }
         if let Some(second) = reactions.next() {
             let message = format!("`{id}` has two reactions");
             self.context.fault(second.at.clone(), &message, "a second reaction", "write their sum in one <reaction>");
@@ -254,6 +283,27 @@ impl<'a, 'd> Builder<'a, 'd> {
         let unit = self.per_time(id);
         let what = format!("the reaction of `{id}`");
         self.expression(&reaction.text, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())))
+    }
+
+    /// The net rate of a reaction.
+    fn rate_of_reaction(&mut self, element: &Element, id: &str) -> Option<Expr> {
+        let unit = self.unit_of(id);
+        let mut part = |name: &str, what: String| {
+            self.attribute(element, name, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())))
+        };
+        let forward = part("rate", format!("the rate of `{id}`"));
+        if element.attribute("reverse").is_none() {
+            return forward;
+        }
+        let backward = part("reverse", format!("the reverse rate of `{id}`"));
+        let reactions = &self.known.reactions;
+        let number = self.find(id);
+        if reactions.iter().any(|reaction| Some(reaction.rate) == number && !reaction.reversible) {
+            let message = format!("`{id}` goes one way and has a reverse rate");
+            let help = "write `=` for `->` in its equation, or remove `reverse`";
+            self.context.fault(element.location("reverse"), &message, "backwards", help);
+        }
+        Some(forward?.binary(Binary::Sub, backward?))
     }
 
     fn per_time(&self, id: &str) -> Option<Unit> {

@@ -2,13 +2,14 @@
 
 use super::context::Context;
 use super::document::Level;
+use super::reactions::{changes, equation, shared_unit};
 use super::xml::{Element, Text};
 use crate::equations::expression::{Function, Scope, Trouble, Unit, is_identifier, is_reserved, parse};
-use crate::equations::tree::{Expr, QuantityId};
+use crate::equations::tree::{Expr, QuantityId, Reaction};
 use std::collections::{BTreeMap, HashMap};
 
 /// Elements whose identifier names a quantity.
-const QUANTITIES: [&str; 7] = ["parameter", "variable", "define", "input", "field", "mean", "integral"];
+const QUANTITIES: [&str; 8] = ["parameter", "variable", "define", "reaction", "input", "field", "mean", "integral"];
 /// The position in a field.
 pub(super) const POSITION: [&str; 3] = ["x", "y", "z"];
 /// What is given on the surface of a cell: the position from its centre, and area and volume of the cell.
@@ -34,6 +35,10 @@ pub(super) struct Declarations<'a> {
     pub(super) length: Unit,
     /// Quantities that every document of this level has, behind those that it declares, with their units.
     pub(super) given: Vec<(&'static str, Unit)>,
+    /// The reactions whose equations are good.
+    pub(super) reactions: Vec<Reaction>,
+    /// Whether the equation of some reaction is at fault, so that it is not known what changes.
+    pub(super) lost_reactions: bool,
     /// Whether the document has any unit; in one without, time and position have none either.
     measured: bool,
 }
@@ -103,6 +108,8 @@ pub(super) fn declare<'a>(context: &mut Context, root: &'a Element) -> Declarati
         length_text,
         given: given(level, &length),
         length,
+        reactions: Vec::new(),
+        lost_reactions: false,
         measured: root.attribute("time_unit").is_some()
             || root.children.iter().any(|child| child.attribute("unit").is_some()),
     };
@@ -130,8 +137,30 @@ pub(super) fn declare<'a>(context: &mut Context, root: &'a Element) -> Declarati
         found.scope.no_delay =
             format!("documents of level {} keep no history: let a chain of substances take the time", level.name());
     }
+    reactions(context, root, &mut found);
     functions(context, root, &mut found.scope);
     found
+}
+
+/// Reads the equations of the reactions, which tell the units of their rates.
+fn reactions(context: &mut Context, root: &Element, found: &mut Declarations) {
+    for element in root.all("reaction") {
+        let id = element.word("id");
+        let Some(rate) = found.scope.quantities.get(&id).copied() else { continue };
+        let find = |id: &str| {
+            let number = found.scope.quantities.get(id).copied()?;
+            Some((number, found.quantities.get(number as usize).map(|declared| declared.element)))
+        };
+        let names = || found.quantities.iter().filter(|other| changes(other.element)).map(|other| other.id.as_str());
+        let Some(terms) = equation(context, element, &find, &names) else {
+            found.lost_reactions = true;
+            continue;
+        };
+        if let Some(unit) = shared_unit(context, &terms, &found.units) {
+            found.units.insert(id, unit.times(&found.time.to_the(-1.0)));
+        }
+        found.reactions.push(terms.reaction(rate));
+    }
 }
 
 /// What every document of a level is given.

@@ -16,6 +16,7 @@ mod fields;
 mod links;
 mod membrane;
 mod noise;
+mod reactions;
 mod solver;
 mod start;
 mod vocabulary;
@@ -55,6 +56,7 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     let mut builder = Builder::new(&mut context, known);
     let (quantities, locations) = builder.quantities(&root);
     let events = builder.events(&root);
+    let reactions = builder.known.reactions.clone();
     let history = builder.history(&root);
     let grid = builder.grid(&root);
     let mut fields = builder.fields(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
@@ -63,7 +65,7 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
     let links = builder.links(&root);
     let solver = builder.solver(&root);
     builder.check_noise(&root, &noise);
-    let system = System { name: root.word("name"), quantities, events, history };
+    let system = System { name: root.word("name"), quantities, events, history, reactions };
     builder.check_values(&system);
     builder.finish_fields(&mut fields, &system);
     if let Some(membrane) = &mut membrane {

@@ -13,6 +13,8 @@ pub struct Kind {
     pub children: &'static [&'static str],
     /// Whether it holds an expression.
     pub text: bool,
+    /// The only element that it stands in, where another one of the same name stands elsewhere.
+    pub inside: Option<&'static str>,
 }
 
 const fn kind(
@@ -22,14 +24,15 @@ const fn kind(
     children: &'static [&'static str],
     text: bool,
 ) -> Kind {
-    Kind { name, required, optional, children, text }
+    Kind { name, required, optional, children, text, inside: None }
 }
 
 /// What stands at the top of a document.
-const PARTS: [&str; 13] = [
+const PARTS: [&str; 14] = [
     "parameter",
     "variable",
     "equation",
+    "reaction",
     "define",
     "function",
     "input",
@@ -44,11 +47,12 @@ const PARTS: [&str; 13] = [
 
 /// All elements.
 #[rustfmt::skip] // a table
-pub const ELEMENTS: [Kind; 17] = [
+pub const ELEMENTS: [Kind; 18] = [
     kind("eml", &["name"], &["level", "time_unit"], &PARTS, false),
     kind("parameter", &["id", "value"], &["name", "unit"], &[], false),
     kind("variable", &["id", "initial"], &["diffusion", "history", "level", "name", "noise", "rate", "unit"], &[], false),
     kind("equation", &["of"], &[], &[], true),
+    kind("reaction", &["equation", "id", "rate"], &["name", "reverse"], &[], false),
     kind("define", &["id"], &["history", "name", "unit"], &[], true),
     kind("function", &["args", "id"], &[], &[], true),
     kind("input", &["default", "id"], &["level", "name", "unit"], &[], false),
@@ -60,7 +64,7 @@ pub const ELEMENTS: [Kind; 17] = [
     kind("grid", &["dimension", "spacing"], &["origin", "size", "unit"], &[], false),
     kind("field", &["id"], &["dataset", "decay", "diffusion", "image", "initial", "name", "noise", "range", "scale", "unit"],
         &["reaction", "wall"], false),
-    kind("reaction", &[], &[], &[], true),
+    Kind { inside: Some("field"), ..kind("reaction", &[], &[], &[], true) },
     kind("wall", &["kind", "side"], &["value"], &[], false),
     kind("link", &["from", "to"], &["gain", "id", "transfer"], &[], false),
 ];
@@ -68,4 +72,10 @@ pub const ELEMENTS: [Kind; 17] = [
 /// The element with a name.
 pub fn kind_of(name: &str) -> Option<&'static Kind> {
     ELEMENTS.iter().find(|kind| kind.name == name)
+}
+
+/// The element with a name that may stand in another.
+pub fn child_of(parent: &Kind, name: &str) -> Option<&'static Kind> {
+    let own = ELEMENTS.iter().find(|kind| kind.name == name && kind.inside == Some(parent.name));
+    own.or_else(|| kind_of(name)).filter(|child| parent.children.contains(&child.name))
 }

@@ -1,7 +1,7 @@
 //! XML as the rest needs it: elements and attributes of the vocabulary, each text with its places in the source.
 
 use super::context::Context;
-use super::vocabulary::{Kind, kind_of};
+use super::vocabulary::{Kind, child_of, kind_of};
 use crate::error::words::{any_of, meant};
 use crate::xml::{Characters, Document, Limits, Node, Trouble, What};
 use std::ops::Range;
@@ -149,6 +149,7 @@ fn broken(context: &mut Context, trouble: Trouble) {
         What::Malformed { message, label, help } => {
             // A sign that expressions have and XML keeps for itself.
             let words = match &context.source.text[at.clone()] {
+                "<" if in_equation(&context.source.text, at.start) => " (a reaction that goes both ways takes `=`)",
                 "<" => " (expressions take `lt` and `le` for < and <=)",
                 sign if sign.starts_with('&') => " (expressions take `and` for &&)",
                 _ => "",
@@ -159,13 +160,19 @@ fn broken(context: &mut Context, trouble: Trouble) {
     }
 }
 
+/// Whether a position stands in the equation of a reaction.
+fn in_equation(text: &str, at: usize) -> bool {
+    let before = text[..at].rsplit_once(['"', '\'']).map_or("", |(before, _)| before);
+    before.trim_end().strip_suffix('=').is_some_and(|before| before.trim_end().ends_with("equation"))
+}
+
 fn element(context: &mut Context, node: Node, kind: &'static Kind) -> Element {
     let at = node.name_at();
     let attributes = attributes(context, node, kind, &at);
     let mut children = Vec::new();
     for child in node.elements() {
         let name = child.name();
-        match kind_of(name).filter(|child| kind.children.contains(&child.name)) {
+        match child_of(kind, name) {
             Some(child_kind) => children.push(element(context, child, child_kind)),
             None => unknown_child(context, kind, name, child.name_at()),
         }

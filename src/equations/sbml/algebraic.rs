@@ -7,9 +7,9 @@
 
 use super::document::RuleKind;
 use super::linear::root;
-use super::pieces::{extent, replaced};
 use super::plan::{Kind, Plan};
 use super::xml::Node;
+use crate::equations::pieces::{extent, replaced};
 use crate::equations::tree::{Expr, QuantityId};
 use std::cell::Cell;
 use std::collections::{BTreeSet, HashMap, HashSet};

@@ -5,9 +5,9 @@
 
 use super::fast::DEPTH;
 use super::linear::line;
-use super::pieces::{negative, quantity, quotient, replaced};
 use super::plan::Plan;
 use super::species::SpeciesIds;
+use crate::equations::pieces::{negative, quantity, quotient, replaced};
 use crate::equations::tree::{Binary, Expr, QuantityId, Unary};
 
 /// A quantity and the sign that it has where a condition holds.

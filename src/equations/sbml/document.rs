@@ -58,6 +58,8 @@ pub struct Reaction<'a> {
     pub id: &'a str,
     /// Its equilibrium holds at all times.
     pub fast: bool,
+    /// Whether it is meant to go both ways.
+    pub reversible: bool,
     pub participants: Vec<Participant<'a>>,
     pub law: Option<Law<'a>>,
 }
@@ -300,7 +302,8 @@ fn rule<'a>(page: &Page<'a>, node: Node<'a>, document: &mut Document<'a>) {
 
 fn reaction<'a>(page: &Page<'a>, node: Node<'a>) -> Reaction<'a> {
     let (id, fast) = (id(page, node), page.flag(node, "fast", false));
-    let mut read = Reaction { node, id, fast, participants: Vec::new(), law: None };
+    let reversible = page.flag(node, "reversible", true);
+    let mut read = Reaction { node, id, fast, reversible, participants: Vec::new(), law: None };
     for child in page.children(node) {
         match child.name() {
             "listOfReactants" => {

@@ -1,9 +1,9 @@
 //! Events: what they set, in amounts.
 
 use super::document;
-use super::pieces::{binary, extent, number, product, quantity, quotient, replaced};
 use super::plan::{Change, Kind, Plan};
 use super::xml::Node;
+use crate::equations::pieces::{binary, extent, number, product, quantity, quotient, replaced};
 use crate::equations::tree::{Binary, Event, Expr, QuantityId, Role};
 use std::collections::{HashMap, HashSet};
 

@@ -7,8 +7,8 @@
 
 use super::document::Reaction;
 use super::linear::line;
-use super::pieces::{difference, negative, number, product, quantity, quotient, replaced, sum};
 use super::plan::{Equilibrium, Kind, Plan};
+use crate::equations::pieces::{difference, negative, number, product, quantity, quotient, replaced, sum};
 use crate::equations::tree::{Expr, QuantityId, Role};
 use std::cell::Cell;
 

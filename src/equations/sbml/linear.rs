@@ -1,6 +1,6 @@
 //! Expressions that are linear in a quantity, solved for it.
 
-use super::pieces::{difference, negative, product, quotient, sum};
+use crate::equations::pieces::{difference, negative, product, quotient, sum};
 use crate::equations::tree::{Binary, Expr, QuantityId, Unary};
 
 /// What a quantity is equal to where an expression is zero; none when the expression is not linear in it, or does not depend on it.

@@ -2,8 +2,8 @@
 
 use super::notes::Notes;
 use super::operators;
-use super::pieces::{extent, number, quantity};
 use super::xml::{self, MATHML, Node, Page};
+use crate::equations::pieces::{extent, number, quantity};
 use crate::equations::tree::{Expr, QuantityId};
 use std::cell::RefCell;
 use std::collections::HashMap;

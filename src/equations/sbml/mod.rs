@@ -15,7 +15,6 @@ mod linear;
 mod math;
 mod notes;
 mod operators;
-mod pieces;
 mod plan;
 mod quantities;
 mod species;
@@ -26,6 +25,7 @@ mod xml;
 pub use write::write;
 pub use xml::LARGEST_DOCUMENT;
 
+use crate::equations::reactions;
 use crate::equations::tree::{QuantityId, System};
 use crate::error::{Result, Source};
 use std::sync::Arc;
@@ -113,12 +113,14 @@ pub fn read(source: &Arc<Source>) -> Result<Model> {
         concentration: plan.amounts[number] + 1,
         compartment: quantity_id(species.compartment),
     });
+    let reactions = plan.reactions_by_number();
     let mut system =
-        System { name: document.name.to_owned(), quantities: plan.quantities, events, ..System::default() };
+        System { name: document.name.to_owned(), quantities: plan.quantities, events, reactions, ..System::default() };
     if system.has_delays() {
         system.history = plan.history;
         history::of_starts(&mut system);
     }
+    reactions::keep_whole(&mut system);
     Ok(Model {
         species: species.collect(),
         compartments: document.compartments.iter().map(|compartment| quantity_id(compartment.id)).collect(),

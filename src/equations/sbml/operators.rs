@@ -1,8 +1,8 @@
 //! The operators and elementary functions of MathML that SBML takes.
 
 use super::notes::Notes;
-use super::pieces::{binary, extent, join, negative, number, quotient, unary};
 use super::xml::Node;
+use crate::equations::pieces::{binary, extent, join, negative, number, quotient, unary};
 use crate::equations::tree::{Binary, Expr, Unary};
 
 /// The value of an operator for its operands; `qualifier` is the base of a logarithm or the degree of a root.

@@ -2,9 +2,9 @@
 
 use super::document::{Parameter, RuleKind};
 use super::math::Scope;
-use super::pieces::{number, quantity, replaced};
 use super::plan::Plan;
 use super::xml::Node;
+use crate::equations::pieces::{number, quantity, replaced};
 use crate::equations::tree::{Expr, QuantityId, Role};
 
 impl<'a> Plan<'_, 'a> {

@@ -5,10 +5,10 @@
 //! rule, its rate is not at hand and the state is c instead, n = c V.
 
 use super::document::{RuleKind, Species};
-use super::pieces::{difference, negative, number, product, quantity, quotient, sum, total};
 use super::plan::{Change, Kind, Plan};
 use super::xml::Node;
-use crate::equations::tree::{Expr, QuantityId, Role};
+use crate::equations::pieces::{difference, negative, number, product, quantity, quotient, sum, total};
+use crate::equations::tree::{Expr, Participant, QuantityId, Reaction, Role};
 
 /// The quantities of a species and of its compartment.
 #[derive(Clone, Copy)]
@@ -149,6 +149,42 @@ impl<'a> Plan<'_, 'a> {
             }
         }
         terms
+    }
+
+    /// The reactions whose stoichiometries are numbers. What they make of rates is looked at where all rates are known.
+    pub fn reactions_by_number(&self) -> Vec<Reaction> {
+        let document = self.document;
+        let mut found = Vec::new();
+        for (index, reaction) in document.reactions.iter().enumerate() {
+            let rate = self.reader.symbols.get(reaction.id).copied();
+            let Some(rate) =
+                rate.filter(|_| !reaction.fast && reaction.law.as_ref().is_some_and(|law| law.math.is_some()))
+            else {
+                continue;
+            };
+            let participant = |position: usize| {
+                let Some(Kind::Species(species)) = self.kinds.get(reaction.participants[position].species).copied()
+                else {
+                    return None;
+                };
+                let is_held = document.species[species].boundary || document.species[species].constant;
+                match self.stoichiometry(index, position) {
+                    Expr::Number(stoichiometry) if stoichiometry > 0.0 && stoichiometry.is_finite() => {
+                        Some(Participant { quantity: self.amounts[species], stoichiometry, is_held })
+                    }
+                    _ => None,
+                }
+            };
+            let side = |sign: f64| {
+                let positions = (0..reaction.participants.len())
+                    .filter(|&position| reaction.participants[position].sign * sign > 0.0);
+                positions.map(participant).collect::<Option<Vec<_>>>()
+            };
+            if let (Some(reactants), Some(products)) = (side(-1.0), side(1.0)) {
+                found.push(Reaction { rate, reversible: reaction.reversible, reactants, products });
+            }
+        }
+        found
     }
 
     /// What turns the extent of reactions into the amount of a species.

@@ -90,6 +90,43 @@ pub struct Event {
     pub assignments: Vec<(QuantityId, Expr)>,
 }
 
+/// What turns some variables into others at one rate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Reaction {
+    /// The defined quantity that has its rate: how often it happens in the unit of time; below 0 it goes backwards.
+    pub rate: QuantityId,
+    /// Whether it is meant to go both ways.
+    pub reversible: bool,
+    /// What is used up.
+    pub reactants: Vec<Participant>,
+    /// What is made.
+    pub products: Vec<Participant>,
+}
+
+/// What takes part in a reaction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Participant {
+    /// Which quantity: a variable, or anything that is held.
+    pub quantity: QuantityId,
+    /// How much of it is used up or made each time, above 0.
+    pub stoichiometry: f64,
+    /// Whether the reaction leaves it as it is.
+    pub is_held: bool,
+}
+
+impl Reaction {
+    /// All that takes part, with the sign of its change.
+    pub fn participants(&self) -> impl Iterator<Item = (f64, &Participant)> {
+        let signed = |sign: f64| move |participant| (sign, participant);
+        self.reactants.iter().map(signed(-1.0)).chain(self.products.iter().map(signed(1.0)))
+    }
+
+    /// The variables that it changes, one that stands on both sides twice.
+    pub fn changed(&self) -> impl Iterator<Item = QuantityId> {
+        self.participants().filter(|(_, participant)| !participant.is_held).map(|(_, participant)| participant.quantity)
+    }
+}
+
 /// A system of differential equations, free of any document format. Functions are expanded, local parameters renamed;
 /// the rules of defined quantities form no circle.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -103,6 +140,9 @@ pub struct System {
     /// What some quantities were before the start: expressions of parameters and the time. All others had their values of the
     /// start, and defined ones followed from these by their rules.
     pub history: Vec<(QuantityId, Expr)>,
+    /// Reactions. The rate of a variable that one of them changes is the sum of its parts in all of them and nothing else, and
+    /// stands in the variable as well: who solves the system need not look at them.
+    pub reactions: Vec<Reaction>,
 }
 
 impl System {

@@ -8,7 +8,7 @@ use super::document::{Document, FieldDescription, Level, LinkDescription, Profil
 use super::solver::SCHEMES;
 use crate::equations::expression;
 use crate::equations::program::initial_values;
-use crate::equations::tree::{Event, Expr, Quantity, QuantityId, Role};
+use crate::equations::tree::{Event, Expr, Participant, Quantity, QuantityId, Reaction, Role};
 use crate::error::Source;
 use fixed::{fixed, uses};
 use names::Names;
@@ -132,6 +132,9 @@ impl<'a> Writer<'a> {
         if !quantity.name.is_empty() {
             tail.push_str(&attribute("name", &quantity.name));
         }
+        if let Some(reaction) = document.system.reactions.iter().find(|reaction| reaction.rate == number) {
+            return self.reaction(reaction, quantity, &head);
+        }
         if let Some(field) = document.fields.iter().find(|field| field.quantity == number) {
             return self.field(field, quantity, &head, &tail);
         }
@@ -159,6 +162,7 @@ impl<'a> Writer<'a> {
         let initial = self.initial(number);
         let zero = Expr::Number(0.0);
         let (element, value, rate) = match &quantity.role {
+            Role::Variable { .. } if self.is_changed(number) => ("variable", "initial", None),
             Role::Variable { rate } => ("variable", "initial", Some(rate)),
             Role::Input => ("input", "default", None),
             // What events change, or what needs the start of what changes, is a variable in EML.
@@ -175,6 +179,30 @@ impl<'a> Writer<'a> {
             Some(rate) => self.line(format_args!("  <{element}{head}{}{tail}/>", attribute("rate", &rate))),
             None => self.line(format_args!("  <{element}{head}{tail}/>")),
         }
+    }
+
+    /// Whether reactions say all of the rate of a variable.
+    fn is_changed(&self, number: QuantityId) -> bool {
+        self.document.system.reactions.iter().any(|reaction| reaction.changed().any(|changed| changed == number))
+    }
+
+    fn reaction(&mut self, reaction: &Reaction, quantity: &Quantity, head: &str) {
+        let Role::Defined { rule } = &quantity.role else { return };
+        let side = |participants: &[Participant]| {
+            let term = |participant: &Participant| {
+                let count = participant.stoichiometry;
+                let count = if count == 1.0 { String::new() } else { format!("{count} ") };
+                let held = if participant.is_held { "$" } else { "" };
+                format!("{count}{held}{}", self.names.quantities[participant.quantity as usize])
+            };
+            participants.iter().map(term).collect::<Vec<_>>().join(" + ")
+        };
+        let arrow = if reaction.reversible { "=" } else { "->" };
+        let equation = format!("{} {arrow} {}", side(&reaction.reactants), side(&reaction.products));
+        let name = if quantity.name.is_empty() { String::new() } else { attribute("name", &quantity.name) };
+        let equation = attribute("equation", equation.trim());
+        let rate = attribute("rate", &self.expression(rule));
+        self.line(format_args!("  <reaction{head}{equation}{rate}{name}/>"));
     }
 
     /// The attribute of the noise of a variable; empty without.
@@ -288,6 +316,7 @@ impl<'a> Writer<'a> {
         }
         if let Role::Variable { rate } = &quantity.role
             && *rate != Expr::Number(0.0)
+            && !self.is_changed(field.quantity)
         {
             let rate = self.expression(rate);
             self.line(format_args!("    <reaction>{rate}</reaction>"));
