@@ -2,6 +2,8 @@
 
 use super::element::Element;
 use super::functions::{Helper, apply, ci, piecewise};
+use super::kinds::Kind;
+use super::names::Names;
 use crate::equations::tree::{Binary, Expr, QuantityId, Unary};
 use std::cell::Cell;
 
@@ -12,6 +14,10 @@ const LARGEST_WHOLE: f64 = 1e9;
 pub struct Formulas {
     /// What each quantity is called.
     quantities: Vec<String>,
+    /// Whether each is the rate of a reaction of concentrations, which SBML has for the whole compartment.
+    dense: Vec<bool>,
+    /// What the compartment is called.
+    compartment: String,
     /// What the functions are called that MathML does not have, and which of them were used.
     helpers: [String; 3],
     used: Cell<[bool; 3]>,
@@ -22,8 +28,10 @@ pub struct Formulas {
 impl Formulas {
     /// Formulas of quantities with these names. `time` is the unit of time, for a model whose numbers have units: numbers in its
     /// formulas are plain ones then.
-    pub fn new(quantities: Vec<String>, helpers: [String; 3], time: Option<String>) -> Self {
-        Self { quantities, helpers, used: Cell::default(), time }
+    pub fn new(names: &mut Names, kinds: &[Kind], compartment: &str, time: Option<String>) -> Self {
+        let dense = kinds.iter().map(|kind| *kind == Kind::Reaction { is_dense: true }).collect();
+        let (helpers, quantities) = (Helper::ids(names), names.quantities.clone());
+        Self { quantities, dense, compartment: compartment.to_owned(), helpers, used: Cell::default(), time }
     }
 
     /// The formula of a number. `unit`: that of a number that stands alone, or of several, where nothing else says it.
@@ -37,9 +45,9 @@ impl Formulas {
         self.math(self.plain_writer().truth(expr))
     }
 
-    /// The product of a quantity of the model that no expression has, by its name, and an expression.
-    pub fn times(&self, name: &str, expr: &Expr) -> Element {
-        self.math(apply("times", vec![ci(name), self.plain_writer().value(expr)]))
+    /// The formula of what happens in the whole compartment, where an expression says it for a litre.
+    pub fn in_compartment(&self, expr: &Expr) -> Element {
+        self.math(apply("times", vec![ci(&self.compartment), self.plain_writer().value(expr)]))
     }
 
     /// The definitions of the functions that formulas have used.
@@ -125,7 +133,11 @@ impl Writer<'_> {
     }
 
     fn quantity(&self, number: QuantityId) -> Element {
-        ci(&self.formulas.quantities[number as usize])
+        let name = ci(&self.formulas.quantities[number as usize]);
+        match self.formulas.dense[number as usize] {
+            true => apply("divide", vec![name, ci(&self.formulas.compartment)]),
+            false => name,
+        }
     }
 
     /// A call of a function that the model defines.

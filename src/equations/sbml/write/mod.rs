@@ -3,17 +3,19 @@
 mod element;
 mod events;
 mod functions;
+mod kinds;
 mod left_out;
 mod math;
 mod names;
 mod quantities;
+mod reactions;
 mod units;
 
 use super::LARGEST_DOCUMENT;
 use crate::equations::eml::{Document, Written, numbers_are_plain};
 use crate::error::{Error, Fault, Result, Source};
 use element::Element;
-use functions::Helper;
+use kinds::Kinds;
 use math::Formulas;
 use names::{Names, identifier, is_identifier};
 use std::sync::Arc;
@@ -50,12 +52,15 @@ pub fn write(document: &Document) -> Result<Written> {
 struct Writer<'a> {
     document: &'a Document,
     names: Names,
+    kinds: Kinds,
     formulas: Formulas,
     units: Units,
     /// Whether quantities have units.
     measured: bool,
     /// The compartment of all species.
     compartment: String,
+    /// The unit of the extents of reactions.
+    extent: Option<String>,
     initial: Vec<Element>,
 }
 
@@ -63,18 +68,19 @@ impl<'a> Writer<'a> {
     fn new(document: &'a Document) -> Self {
         let measured = document.system.quantities.iter().any(|quantity| !quantity.unit.is_empty());
         let mut names = Names::of(&document.system);
-        let helpers = Helper::ids(&mut names);
+        let kinds = Kinds::new(&document.system);
         let compartment = names.new_id("compartment");
         let mut units = Units::default();
         let time = units.reference(&document.time_unit).filter(|_| measured && numbers_are_plain(document));
-        let formulas = Formulas::new(names.quantities.clone(), helpers, time);
-        Self { document, names, formulas, units, measured, compartment, initial: Vec::new() }
+        let formulas = Formulas::new(&mut names, &kinds.of, &compartment, time);
+        Self { document, names, kinds, formulas, units, measured, compartment, extent: None, initial: Vec::new() }
     }
 
     fn model(mut self) -> Written {
         let document = self.document;
         let (compartments, species, parameters) = self.quantities();
         let rules = self.rules();
+        let reactions = self.reactions();
         let events = self.events();
         let mut notices = std::mem::take(&mut self.names.notices);
         notices.extend(left_out::notices(document, &self.names.quantities));
@@ -83,6 +89,7 @@ impl<'a> Writer<'a> {
             .with("id", id)
             .with("name", &document.name)
             .with_some("timeUnits", self.units.reference(&document.time_unit))
+            .with_some("extentUnits", self.extent.take())
             .child(notes(&document.name, &notices))
             .list("listOfFunctionDefinitions", self.formulas.functions())
             .list("listOfUnitDefinitions", self.units.elements())
@@ -91,6 +98,7 @@ impl<'a> Writer<'a> {
             .list("listOfParameters", parameters)
             .list("listOfInitialAssignments", self.initial)
             .list("listOfRules", rules)
+            .list("listOfReactions", reactions)
             .list("listOfEvents", events);
         let root = Element::new("sbml").with("xmlns", NAMESPACE).with("level", "3").with("version", "2").child(model);
         Written { text: root.document(), notices }

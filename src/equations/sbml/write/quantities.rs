@@ -2,41 +2,18 @@
 
 use super::Writer;
 use super::element::Element;
+use super::kinds::{Kind, is_substance};
 use super::left_out::is_said;
-use crate::equations::tree::{Expr, Quantity, Role};
-use crate::units::{Dimension, parse_unit};
-
-/// What a quantity is in SBML.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// A species that formulas take as its amount.
-    Amount,
-    /// A species that formulas take as its concentration, in a compartment of 1 l.
-    Concentration,
-    /// A parameter.
-    Parameter,
-}
-
-/// What a quantity is in SBML: simulators show species, so what may be one by its unit is, and what changes without a unit. What only
-/// events change is a switch and no species where its unit does not say otherwise.
-pub fn kind(quantity: &Quantity) -> Kind {
-    let Role::Variable { rate } = &quantity.role else { return Kind::Parameter };
-    let dimension = parse_unit(&quantity.unit).map_or(Dimension::NUMBER, |unit| unit.dimension);
-    match dimension {
-        Dimension::AMOUNT => Kind::Amount,
-        Dimension::CONCENTRATION => Kind::Concentration,
-        Dimension::NUMBER if *rate != Expr::Number(0.0) => Kind::Amount,
-        _ => Kind::Parameter,
-    }
-}
+use crate::equations::tree::{Expr, Role};
 
 impl Writer<'_> {
     /// The compartments, the species and the parameters; what starts by a formula is noted.
     pub(super) fn quantities(&mut self) -> (Vec<Element>, Vec<Element>, Vec<Element>) {
         let (mut species, mut parameters) = (Vec::new(), Vec::new());
         for number in 0..self.document.system.quantities.len() {
-            match kind(&self.document.system.quantities[number]) {
+            match self.kinds.of[number] {
                 Kind::Parameter => parameters.push(self.parameter(number)),
+                Kind::Reaction { .. } => {}
                 kind => species.push(self.species(number, kind)),
             }
         }
@@ -51,7 +28,7 @@ impl Writer<'_> {
     }
 
     /// The beginning of an element with the identifier and the name of a quantity.
-    fn head(&self, element: &'static str, number: usize) -> Element {
+    pub(super) fn head(&self, element: &'static str, number: usize) -> Element {
         let (quantity, id) = (&self.document.system.quantities[number], &self.names.quantities[number]);
         let name = match quantity.name.as_str() {
             "" if *id != quantity.id => Some(&quantity.id),
@@ -65,32 +42,40 @@ impl Writer<'_> {
         let quantity = &self.document.system.quantities[number];
         let (start, unit) = match kind {
             Kind::Concentration => ("initialConcentration", self.units.amount_in_litre(&quantity.unit)),
-            _ => ("initialAmount", self.units.reference(&quantity.unit)),
+            _ if is_substance(&quantity.unit) => ("initialAmount", self.units.reference(&quantity.unit)),
+            _ => ("initialAmount", None),
         };
         let value = self.start(number);
+        // All reactions measure their extents in the unit of what they change.
+        if self.kinds.changed[number] && self.extent.is_none() {
+            self.extent = unit.clone();
+        }
         self.head("species", number)
             .with("compartment", &self.compartment)
             .with_some(start, value)
             .with_some("substanceUnits", unit)
             .with_flag("hasOnlySubstanceUnits", kind != Kind::Concentration)
-            .with_flag("boundaryCondition", false)
-            .with_flag("constant", false)
+            .with_flag("boundaryCondition", self.kinds.held[number])
+            .with_flag("constant", matches!(quantity.role, Role::Parameter | Role::Input))
     }
 
     fn parameter(&mut self, number: usize) -> Element {
         let quantity = &self.document.system.quantities[number];
         let unit = self.units.reference(&quantity.unit);
-        let value = if matches!(quantity.role, Role::Defined { .. }) { None } else { self.start(number) };
+        let value = self.start(number);
         self.head("parameter", number)
             .with_some("value", value)
             .with_some("units", unit)
             .with_flag("constant", matches!(quantity.role, Role::Parameter | Role::Input))
     }
 
-    /// The number at which a quantity starts; none where an initial assignment says it, which is noted.
+    /// The number at which a quantity starts; none where a rule says it, or an initial assignment, which is noted.
     fn start(&mut self, number: usize) -> Option<String> {
         let document = self.document;
         let quantity = &document.system.quantities[number];
+        if matches!(quantity.role, Role::Defined { .. }) {
+            return None;
+        }
         let history = document.system.before_start(number as u32).filter(|_| is_said(document, number));
         match history.unwrap_or(&quantity.initial) {
             Expr::Number(value) if value.is_nan() => None,
@@ -110,7 +95,10 @@ impl Writer<'_> {
     pub(super) fn rules(&mut self) -> Vec<Element> {
         let system = &self.document.system;
         let mut rules = Vec::new();
-        for (quantity, id) in system.quantities.iter().zip(&self.names.quantities) {
+        for (number, (quantity, id)) in system.quantities.iter().zip(&self.names.quantities).enumerate() {
+            if self.kinds.changed[number] || matches!(self.kinds.of[number], Kind::Reaction { .. }) {
+                continue;
+            }
             let (name, formula, unit) = match &quantity.role {
                 Role::Defined { rule } => ("assignmentRule", rule, self.units.reference(&quantity.unit)),
                 Role::Variable { rate } if *rate != Expr::Number(0.0) => ("rateRule", rate, None),
