@@ -55,7 +55,7 @@ fn histories(document: &Document, names: &[String]) -> Vec<String> {
     let lost = document.system.history.iter().filter(|(number, _)| !is_said(document, *number as usize));
     lost.map(|(number, _)| {
         format!(
-            "the history of `{}` is left out: SBML has none that the start does not continue",
+            "the history of `{}` is left out: SBML has only one that is the value of the start at the start",
             names[*number as usize]
         )
     })
