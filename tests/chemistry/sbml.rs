@@ -6,7 +6,7 @@ use pseudopod::ode::{SolveOptions, solve};
 use std::path::Path;
 
 /// A case of the suite, solved by itself.
-pub fn alone(case: &Case) -> Solved {
+fn alone(case: &Case) -> Solved {
     let (times, last) = (&case.times, case.times.len() - 1);
     let options = SolveOptions { relative: 1e-8, absolute: 1e-6 * case.absolute.min(1e-6), ..SolveOptions::default() };
     let solution = solve(&case.model.system, times[0], times[last], times, &options);

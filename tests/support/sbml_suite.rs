@@ -117,12 +117,17 @@ pub fn all_cases(
         let Some(file) = files.iter().find(|file| file.exists()) else { continue };
         // Cases without times are not of this kind.
         let settings = std::fs::read_to_string(case_folder.join(format!("{name}-settings.txt"))).expect("settings");
-        if setting(&settings, "duration").is_empty() || case(&case_folder, file, first).is_err() {
+        if setting(&settings, "duration").is_empty() {
+            continue;
+        }
+        if let Err(why) = case(&case_folder, file, first) {
+            println!("{name} in the first of two: {}", why.lines().next().unwrap_or_default());
             continue;
         }
         agree += 1;
         if let Err(why) = case(&case_folder, file, second) {
-            bad.push(format!("{}: {why}", file.file_name().expect("a name").to_string_lossy()));
+            println!("{name}: {why}");
+            bad.push(format!("{name}: {why}"));
         }
     }
     (agree, bad)

@@ -33,9 +33,9 @@ impl Helper {
         }
     }
 
-    fn formula(self, number: &impl Fn(f64) -> Element) -> Element {
+    fn formula(self, number: &impl Fn(f64) -> Element, zero: Element) -> Element {
         let power = |base: &str| apply("power", vec![ci(base), ci("n")]);
-        let compared = |operator| apply(operator, vec![ci("x"), number(0.0)]);
+        let compared = |operator| apply(operator, vec![ci("x"), zero.clone()]);
         match self {
             Self::Hill => apply("divide", vec![power("x"), apply("plus", vec![power("K"), power("x")])]),
             Self::Heaviside => piecewise(vec![(number(1.0), compared("geq"))], number(0.0)),
@@ -51,10 +51,10 @@ impl Helper {
         Self::ALL.map(|helper| names.new_id(helper.name()))
     }
 
-    /// The formula of its definition; `number` makes the element of a number.
-    pub fn lambda(self, number: &impl Fn(f64) -> Element) -> Element {
+    /// The formula of its definition; `number` makes the element of a plain number, and `zero` is one that has every unit.
+    pub fn lambda(self, number: &impl Fn(f64) -> Element, zero: Element) -> Element {
         let arguments = self.arguments().iter().map(|name| Element::compact("bvar").child(ci(name)));
-        Element::compact("lambda").children(arguments).child(self.formula(number))
+        Element::compact("lambda").children(arguments).child(self.formula(number, zero))
     }
 }
 

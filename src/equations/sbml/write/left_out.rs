@@ -50,7 +50,8 @@ pub fn notices(document: &Document, names: &[String]) -> Vec<String> {
     notices
 }
 
-/// Before the start SBML has what an initial assignment says for that time, which holds at the start, too.
+/// Before the start SBML has what an initial assignment says for that time, which holds at the start, too. Rules hold at all times,
+/// so that those of definitions can tell the times apart.
 fn histories(document: &Document, names: &[String]) -> Vec<String> {
     let lost = document.system.history.iter().filter(|(number, _)| !is_said(document, *number as usize));
     lost.map(|(number, _)| {
@@ -62,12 +63,14 @@ fn histories(document: &Document, names: &[String]) -> Vec<String> {
     .collect()
 }
 
-/// Whether the history of a quantity can be an initial assignment: it is the value of the start at the start.
+/// Whether the model says the history of a quantity: that of a definition, and one of a variable that is its value at the start there.
 pub fn is_said(document: &Document, number: usize) -> bool {
     let system = &document.system;
     let Some(before) = system.before_start(number as u32) else { return true };
+    if matches!(system.quantities[number].role, Role::Defined { .. }) {
+        return true;
+    }
     let Ok(values) = initial_values(system, 0.0) else { return false };
     let at_start = before.evaluate(0.0, &|other| values[other as usize]);
-    !matches!(system.quantities[number].role, Role::Defined { .. })
-        && (at_start - values[number]).abs() <= 1e-12 * values[number].abs()
+    (at_start - values[number]).abs() <= 1e-12 * values[number].abs()
 }

@@ -55,7 +55,7 @@ impl Formulas {
         let writer = self.plain_writer();
         let used = Helper::ALL.into_iter().zip(self.used.get()).zip(&self.helpers).filter(|((_, used), _)| *used);
         let definition = |((helper, _), id): ((Helper, bool), &String)| {
-            let lambda = helper.lambda(&|value| writer.cn(value));
+            let lambda = helper.lambda(&|value| writer.plain(value), writer.cn(0.0));
             Element::new("functionDefinition").with("id", id).child(self.math(lambda))
         };
         used.map(definition).collect()
@@ -92,7 +92,7 @@ impl Writer<'_> {
             Expr::Number(value) => self.cn(*value),
             Expr::Time => csymbol("time"),
             Expr::Quantity(number) => self.quantity(*number),
-            _ if is_truth(expr) => piecewise(vec![(self.cn(1.0), self.truth(expr))], self.cn(0.0)),
+            _ if is_truth(expr) => piecewise(vec![(self.plain(1.0), self.truth(expr))], self.plain(0.0)),
             Expr::Unary(function, a) => self.function(*function, a),
             Expr::Binary(function, a, b) => self.operator(*function, a, b),
             Expr::Piecewise { branches, otherwise } if branches.is_empty() => self.value(otherwise),
@@ -238,6 +238,11 @@ impl Writer<'_> {
 
     /// A number. What is 0 or infinite fits every unit and says none.
     fn cn(&self, value: f64) -> Element {
+        if value == 0.0 { whole(value) } else { self.plain(value) }
+    }
+
+    /// A number in the unit of numbers.
+    fn plain(&self, value: f64) -> Element {
         let element = match value {
             value if value.is_nan() => return Element::compact("notanumber"),
             f64::INFINITY => return Element::compact("infinity"),
@@ -253,7 +258,7 @@ impl Writer<'_> {
                 digits.child(Element::compact("sep")).tail(format!(" {power} "))
             }
         };
-        element.with_some("sbml:units", self.unit.filter(|_| value != 0.0))
+        element.with_some("sbml:units", self.unit)
     }
 }
 

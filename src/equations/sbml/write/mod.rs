@@ -17,7 +17,7 @@ use crate::error::{Error, Fault, Result, Source};
 use element::Element;
 use kinds::Kinds;
 use math::Formulas;
-use names::{Names, identifier, is_identifier};
+use names::{Names, identifier};
 use std::sync::Arc;
 use units::Units;
 
@@ -57,7 +57,7 @@ struct Writer<'a> {
     units: Units,
     /// Whether quantities have units.
     measured: bool,
-    /// The compartment of all species.
+    /// The compartment of all species: a word that no other language of models keeps for itself.
     compartment: String,
     /// The unit of the extents of reactions.
     extent: Option<String>,
@@ -69,7 +69,7 @@ impl<'a> Writer<'a> {
         let measured = document.system.quantities.iter().any(|quantity| !quantity.unit.is_empty());
         let mut names = Names::of(&document.system);
         let kinds = Kinds::new(&document.system);
-        let compartment = names.new_id("compartment");
+        let compartment = names.new_id("vessel");
         let mut units = Units::default();
         let time = units.reference(&document.time_unit).filter(|_| measured && numbers_are_plain(document));
         let formulas = Formulas::new(&mut names, &kinds.of, &compartment, time);
@@ -84,7 +84,7 @@ impl<'a> Writer<'a> {
         let events = self.events();
         let mut notices = std::mem::take(&mut self.names.notices);
         notices.extend(left_out::notices(document, &self.names.quantities));
-        let id = if is_identifier(&document.name) { document.name.clone() } else { identifier(&document.name) };
+        let id = self.names.new_id(&identifier(&document.name));
         let model = Element::new("model")
             .with("id", id)
             .with("name", &document.name)

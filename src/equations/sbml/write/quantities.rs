@@ -4,7 +4,7 @@ use super::Writer;
 use super::element::Element;
 use super::kinds::{Kind, is_substance};
 use super::left_out::is_said;
-use crate::equations::tree::{Expr, Role};
+use crate::equations::tree::{Binary, Expr, Role};
 
 impl Writer<'_> {
     /// The compartments, the species and the parameters; what starts by a formula is noted.
@@ -99,16 +99,26 @@ impl Writer<'_> {
             if self.kinds.changed[number] || matches!(self.kinds.of[number], Kind::Reaction { .. }) {
                 continue;
             }
+            let before = system.before_start(number as u32);
             let (name, formula, unit) = match &quantity.role {
-                Role::Defined { rule } => ("assignmentRule", rule, self.units.reference(&quantity.unit)),
-                Role::Variable { rate } if *rate != Expr::Number(0.0) => ("rateRule", rate, None),
+                Role::Defined { rule } => {
+                    ("assignmentRule", with_history(rule, before), self.units.reference(&quantity.unit))
+                }
+                Role::Variable { rate } if *rate != Expr::Number(0.0) => ("rateRule", rate.clone(), None),
                 _ => continue,
             };
-            let formula = self.formulas.number(formula, unit.as_deref());
+            let formula = self.formulas.number(&formula, unit.as_deref());
             rules.push(Element::new(name).with("variable", id).child(formula));
         }
         rules
     }
+}
+
+/// What a definition is at all times, and what it was before the start.
+fn with_history(rule: &Expr, before: Option<&Expr>) -> Expr {
+    let Some(before) = before else { return rule.clone() };
+    let is_before = Expr::Time.binary(Binary::Lt, Expr::Number(0.0));
+    Expr::Piecewise { branches: vec![(is_before, before.clone())], otherwise: Box::new(rule.clone()) }
 }
 
 /// A number as an attribute holds it, with all its digits.
