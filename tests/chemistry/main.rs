@@ -29,6 +29,7 @@ mod sbml_algebraic;
 mod sbml_events;
 mod sbml_fast;
 mod sbml_features;
+mod sbml_write;
 mod xml;
 
 #[path = "../support/every_function.rs"]

@@ -9,6 +9,7 @@ mod kill;
 mod killed_runs;
 mod python;
 mod running;
+mod sbml_elsewhere;
 #[cfg(target_os = "linux")]
 mod shim;
 #[cfg(target_os = "linux")]
@@ -23,5 +24,7 @@ mod fields_example;
 #[path = "../result_file/example.rs"]
 #[allow(dead_code)]
 mod result_example;
+#[path = "../support/shared.rs"]
+mod shared;
 #[path = "../support/turns.rs"]
 mod turns;

@@ -101,3 +101,34 @@ pub fn suite(part: &str, count: usize, solve: &dyn Fn(&Case) -> Solved) {
     }
     assert!(bad.is_empty(), "{} cases differ:\n{}", bad.len(), bad.join("\n"));
 }
+
+/// How many files of a folder of cases agree with their results when they are solved in one way, and which of these do not in another,
+/// with the reasons. Of each case the file of the newest level is taken.
+pub fn all_cases(
+    folder: &Path,
+    first: &dyn Fn(&Case) -> Solved,
+    second: &dyn Fn(&Case) -> Solved,
+) -> (usize, Vec<String>) {
+    let (mut agree, mut bad) = (0, Vec::new());
+    for case_folder in folders(folder) {
+        let name = case_folder.file_name().expect("a number").to_string_lossy().into_owned();
+        let levels = ["l3v2", "l3v1", "l2v5", "l2v4", "l2v3", "l2v2", "l2v1"];
+        let files = levels.map(|level| case_folder.join(format!("{name}-sbml-{level}.xml")));
+        let Some(file) = files.iter().find(|file| file.exists()) else { continue };
+        // Cases without times are not of this kind.
+        let settings = std::fs::read_to_string(case_folder.join(format!("{name}-settings.txt"))).expect("settings");
+        if setting(&settings, "duration").is_empty() {
+            continue;
+        }
+        if let Err(why) = case(&case_folder, file, first) {
+            println!("{name} in the first of two: {}", why.lines().next().unwrap_or_default());
+            continue;
+        }
+        agree += 1;
+        if let Err(why) = case(&case_folder, file, second) {
+            println!("{name}: {why}");
+            bad.push(format!("{name}: {why}"));
+        }
+    }
+    (agree, bad)
+}

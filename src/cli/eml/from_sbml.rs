@@ -1,8 +1,8 @@
 //! `pseudopod eml from-sbml`: writes an SBML model as an EML document.
 
 use super::read::read;
-use crate::cli::files::{Named, refuse_existing, refuse_same};
-use crate::cli::report::{Report, path_text, paths};
+use super::written::Target;
+use crate::cli::report::Report;
 use crate::equations::eml::{self, Written};
 use crate::error::{Error, Fault, Result, Source};
 use std::path::{Path, PathBuf};
@@ -30,22 +30,8 @@ pub struct FromSbmlArgs {
 /// # Errors
 /// A model that cannot be read, or says what EML cannot; a file that exists or cannot be written.
 pub fn run(args: &FromSbmlArgs) -> Result<Report> {
-    if let Some(path) = &args.output {
-        refuse_same(&[&args.model, path])?;
-        refuse_existing(path, args.force, Named::ByUser)?;
-    }
-    let (text, notices) = convert(&args.model)?;
-    if !args.json {
-        super::solve::tell(&notices);
-    }
-    let Some(path) = &args.output else { return Ok(Report { words: text, ..Report::default() }) };
-    std::fs::write(path, text).map_err(|error| Error::Machine {
-        message: format!("{} cannot be written: {error}", path.display()),
-        help: "name a file in a folder that exists and that you may write to with -o".into(),
-    })?;
-    let words = format!("{}\n", path.display());
-    let report = Report { words, ..Report::default() }.fact("result", path_text(&args.model));
-    Ok(report.fact("files", paths(std::slice::from_ref(path))).fact("notices", notices))
+    let target = Target { read: &args.model, output: args.output.as_deref(), force: args.force, json: args.json };
+    target.write(convert)
 }
 
 /// The model as EML, and what the reader should know.

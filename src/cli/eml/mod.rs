@@ -9,6 +9,8 @@ mod options;
 mod read;
 pub mod solve;
 mod solve_fields;
+pub mod to_sbml;
+mod written;
 
 use super::report::Report;
 use crate::error::Result;
@@ -31,6 +33,8 @@ pub enum EmlCommand {
     Solve(options::SolveArgs),
     /// Writes an SBML model as an EML document.
     FromSbml(from_sbml::FromSbmlArgs),
+    /// Writes an EML document as an SBML model.
+    ToSbml(to_sbml::ToSbmlArgs),
 }
 
 impl EmlCommand {
@@ -40,6 +44,7 @@ impl EmlCommand {
             Self::Check(args) => ("eml check", args.json),
             Self::Solve(args) => ("eml solve", args.json),
             Self::FromSbml(args) => ("eml from-sbml", args.json),
+            Self::ToSbml(args) => ("eml to-sbml", args.json),
         }
     }
 }
@@ -53,5 +58,6 @@ pub fn run(args: &EmlArgs) -> Result<Report> {
         EmlCommand::Check(args) => check::run(args),
         EmlCommand::Solve(args) => solve::run(args),
         EmlCommand::FromSbml(args) => from_sbml::run(args),
+        EmlCommand::ToSbml(args) => to_sbml::run(args),
     }
 }

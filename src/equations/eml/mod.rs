@@ -37,7 +37,7 @@ pub use links::{read_end, read_transfer};
 pub use reads::{Reads, reads};
 pub use solver::SCHEMES;
 pub use vocabulary::{ELEMENTS, Kind};
-pub use write::{Written, write};
+pub use write::{Written, numbers_are_plain, write};
 pub use xml::{DEEPEST_ELEMENT, LARGEST_DOCUMENT, MOST_ATTRIBUTES, MOST_NODES};
 
 use super::tree::System;

@@ -19,8 +19,10 @@ mod plan;
 mod quantities;
 mod species;
 mod statements;
+mod write;
 mod xml;
 
+pub use write::write;
 pub use xml::LARGEST_DOCUMENT;
 
 use crate::equations::reactions;

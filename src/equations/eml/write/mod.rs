@@ -33,15 +33,25 @@ const SHORT: usize = 60;
 /// keep: then all units of quantities are left out.
 pub fn write(document: &Document, comment: &str) -> Written {
     let measured = document.system.quantities.iter().any(|quantity| !quantity.unit.is_empty());
-    let mut written = Writer::new(document, measured).document(comment);
-    if measured {
-        let source = Source { name: document.name.clone(), text: written.text.clone() };
-        if super::read(Arc::new(source)).is_err() {
-            written = Writer::new(document, false).document(comment);
-            written.notices.push("units are left out: numbers had units of their own, which are not kept".into());
-        }
+    let written = Writer::new(document, measured).document(comment);
+    if !measured || stands(document, &written) {
+        return written;
     }
+    let mut written = Writer::new(document, false).document(comment);
+    written.notices.push("units are left out: numbers had units of their own, which are not kept".into());
     written
+}
+
+/// Whether the units of a document's quantities fit its expressions when all numbers in these are plain ones; not where numbers had
+/// units of their own, which a [`Document`] does not keep.
+pub fn numbers_are_plain(document: &Document) -> bool {
+    stands(document, &Writer::new(document, true).document(""))
+}
+
+/// Whether what was written of a document can be read.
+fn stands(document: &Document, written: &Written) -> bool {
+    let source = Source { name: document.name.clone(), text: written.text.clone() };
+    super::read(Arc::new(source)).is_ok()
 }
 
 struct Writer<'a> {
