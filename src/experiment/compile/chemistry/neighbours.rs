@@ -72,9 +72,10 @@ impl Ends<'_, '_> {
             None => !part.kinds.is_empty(),
         };
         if !has {
-            let whose =
-                of_kind.map_or("no type of cells".to_owned(), |kind| format!("not type `{}`", self.kinds[kind].name));
-            let message = format!("{whose} has the system `{name}`, so that neighbours have no `{id}`");
+            let message = match of_kind {
+                Some(kind) => format!("type `{}` does not have the system `{name}`", self.kinds[kind].name),
+                None => format!("no type of cells has the system `{name}`"),
+            };
             let help = format!("add \"{name}\" to the `chemistry` of their type");
             return Err(within(&end.location, "no such system there", message, help));
         }
