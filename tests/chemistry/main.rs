@@ -5,6 +5,7 @@ mod documents;
 mod eml;
 mod eml_models;
 mod eml_reactions;
+mod eml_repeat;
 mod eml_schedules;
 mod eml_tables;
 mod eml_write;
