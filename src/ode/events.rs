@@ -26,6 +26,8 @@ pub struct EventPlan {
     events: Vec<Event>,
     /// Slot of each assigned quantity, event by event.
     slots: Vec<Vec<usize>>,
+    /// Values of all quantities at the start, which schedules are made of.
+    initial: Vec<f64>,
 }
 
 impl EventPlan {
@@ -41,7 +43,8 @@ impl EventPlan {
             variable.or_else(|| program.open_index(quantity).map(|index| program.size() + index)).unwrap_or(usize::MAX)
         };
         let slots = |event: &Event| event.assignments.iter().map(|&(quantity, _)| slot(quantity)).collect();
-        let plan = Self { events: system.events.clone(), slots: system.events.iter().map(slots).collect() };
+        let slots = system.events.iter().map(slots).collect();
+        let plan = Self { events: system.events.clone(), slots, initial: program.initial.clone() };
         Ok((program, plan))
     }
 
@@ -50,9 +53,15 @@ impl EventPlan {
         self.events.is_empty()
     }
 
-    /// What is known of the events before the start.
-    pub fn before_start(&self) -> EventMemory {
-        EventMemory::new(self.events.iter().map(|event| event.true_before_start).collect())
+    /// What is known of the events before a start at a time. One with a schedule fires then if that is one of its times, and is else
+    /// within what follows one.
+    pub fn before_start(&self, time: f64) -> EventMemory {
+        let value = |quantity: QuantityId| self.initial[quantity as usize];
+        let held = |event: &Event| match &event.schedule {
+            Some(schedule) => event.true_before_start || !schedule.has(time, &value),
+            None => event.true_before_start,
+        };
+        EventMemory::new(self.events.iter().map(held).collect())
     }
 
     /// Makes sure that every event can wait once before a memory allocates.

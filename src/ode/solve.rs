@@ -172,7 +172,7 @@ impl Solver<'_> {
         each: &mut dyn FnMut(f64, &[f64]),
     ) -> Result<(Ended, Work), OdeTrouble> {
         let mut stepper = Stepper::new(self.program, self.method, self.tolerances, from);
-        let (mut memory, mut buffers) = (self.plan.before_start(), EventBuffers::default());
+        let (mut memory, mut buffers) = (self.plan.before_start(from), EventBuffers::default());
         let choices = Numbers { seed: self.seed, system: &self.program.name }.choices();
         let mut events = Events::new(self.plan, &mut memory, &mut buffers, Chooser { choices, cell: 0 });
         stepper.longest = self.longest;

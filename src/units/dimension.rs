@@ -1,6 +1,6 @@
 //! What kind of quantity a number is: a length, a speed, a stiffness.
 
-/// The powers of length, time, force, angle and amount of substance in a quantity. An angle counts as a dimension of its
+/// The powers of length, time, force, angle, amount of substance, electric current and temperature in a quantity. An angle counts as a dimension of its
 /// own, so that "15 deg" is not taken for a plain number. The base unit of amount is the zeptomole (602.2 molecules),
 /// because then 1 µM, the usual concentration in a cell, is exactly 1 zmol/µm³.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -15,6 +15,10 @@ pub struct Dimension {
     pub angle: i8,
     /// Power of amount of substance (base unit zmol, so that µM = zmol/µm³ is 1).
     pub amount: i8,
+    /// Power of electric current (base unit pA, the current of one channel).
+    pub current: i8,
+    /// Power of temperature (base unit K).
+    pub temperature: i8,
 }
 
 /// A dimension that has a name: how messages, documents and legends speak of it.
@@ -33,7 +37,7 @@ struct Named {
 }
 
 #[rustfmt::skip] // a table
-const NAMED: [Named; 18] = [
+const NAMED: [Named; 26] = [
     Named { dimension: Dimension::LENGTH, name: "length", unit: "um", label: "µm", example: "5 um",
         ladder: &[("nm", 1e-3), ("µm", 1.0), ("mm", 1e3), ("m", 1e6)] },
     Named { dimension: Dimension::TIME, name: "time", unit: "s", label: "s", example: "10 s",
@@ -70,6 +74,22 @@ const NAMED: [Named; 18] = [
         ladder: &[("zmol", 1.0), ("amol", 1e3), ("fmol", 1e6), ("pmol", 1e9), ("nmol", 1e12), ("mol", 1e21)] },
     Named { dimension: Dimension::CONCENTRATION, name: "concentration", unit: "uM", label: "µM", example: "5 uM",
         ladder: &[("nM", 1e-3), ("µM", 1.0), ("mM", 1e3), ("M", 1e6)] },
+    Named { dimension: Dimension::CURRENT, name: "current", unit: "pA", label: "pA", example: "20 pA",
+        ladder: &[("fA", 1e-3), ("pA", 1.0), ("nA", 1e3), ("µA", 1e6), ("mA", 1e9), ("A", 1e12)] },
+    Named { dimension: Dimension::CHARGE, name: "charge", unit: "pC", label: "pC", example: "2 pC",
+        ladder: &[("fC", 1e-3), ("pC", 1.0), ("nC", 1e3), ("µC", 1e6), ("C", 1e12)] },
+    Named { dimension: Dimension::VOLTAGE, name: "voltage", unit: "uV", label: "µV", example: "-70 mV",
+        ladder: &[("µV", 1.0), ("mV", 1e3), ("V", 1e6)] },
+    Named { dimension: Dimension::CAPACITANCE, name: "capacitance", unit: "uF", label: "µF", example: "10 pF",
+        ladder: &[("pF", 1e-6), ("nF", 1e-3), ("µF", 1.0), ("mF", 1e3)] },
+    Named { dimension: Dimension::CONDUCTANCE, name: "conductance", unit: "uS", label: "µS", example: "20 pS",
+        ladder: &[("pS", 1e-6), ("nS", 1e-3), ("µS", 1.0), ("mS", 1e3), ("S", 1e6)] },
+    Named { dimension: Dimension::RESISTANCE, name: "resistance", unit: "Mohm", label: "MΩ", example: "100 Mohm",
+        ladder: &[("ohm", 1e-6), ("kohm", 1e-3), ("Mohm", 1.0), ("Gohm", 1e3)] },
+    Named { dimension: Dimension::POWER, name: "power", unit: "aW", label: "aW", example: "3 fW",
+        ladder: &[("aW", 1.0), ("fW", 1e3), ("pW", 1e6), ("nW", 1e9), ("W", 1e18)] },
+    Named { dimension: Dimension::TEMPERATURE, name: "temperature", unit: "K", label: "K", example: "310 K",
+        ladder: &[("K", 1.0)] },
 ];
 
 impl Dimension {
@@ -82,7 +102,7 @@ impl Dimension {
     /// A force, pN.
     pub const FORCE: Self = Self::of(0, 0, 1);
     /// An angle, rad.
-    pub const ANGLE: Self = Self { length: 0, time: 0, force: 0, angle: 1, amount: 0 };
+    pub const ANGLE: Self = Self { angle: 1, ..Self::of(0, 0, 0) };
     /// A speed, µm/s.
     pub const SPEED: Self = Self::of(1, -1, 0);
     /// An acceleration, µm/s².
@@ -108,13 +128,29 @@ impl Dimension {
     /// A rate, 1/s.
     pub const FREQUENCY: Self = Self::of(0, -1, 0);
     /// An amount of substance, zmol.
-    pub const AMOUNT: Self = Self { length: 0, time: 0, force: 0, angle: 0, amount: 1 };
+    pub const AMOUNT: Self = Self { amount: 1, ..Self::of(0, 0, 0) };
     /// A concentration, µM = zmol/µm³.
-    pub const CONCENTRATION: Self = Self { length: -3, time: 0, force: 0, angle: 0, amount: 1 };
+    pub const CONCENTRATION: Self = Self { amount: 1, ..Self::of(-3, 0, 0) };
+    /// An electric current, pA.
+    pub const CURRENT: Self = Self { current: 1, ..Self::of(0, 0, 0) };
+    /// A charge, pA·s = pC.
+    pub const CHARGE: Self = Self { current: 1, ..Self::of(0, 1, 0) };
+    /// A voltage, pN·µm/pC = µV.
+    pub const VOLTAGE: Self = Self { current: -1, ..Self::of(1, -1, 1) };
+    /// A capacitance, pC/µV = µF.
+    pub const CAPACITANCE: Self = Self { current: 2, ..Self::of(-1, 2, -1) };
+    /// A conductance, pA/µV = µS.
+    pub const CONDUCTANCE: Self = Self { current: 2, ..Self::of(-1, 1, -1) };
+    /// A resistance, µV/pA = MΩ.
+    pub const RESISTANCE: Self = Self { current: -2, ..Self::of(1, -1, 1) };
+    /// A power, pN·µm/s = aW.
+    pub const POWER: Self = Self::of(1, -1, 1);
+    /// A temperature, K.
+    pub const TEMPERATURE: Self = Self { temperature: 1, ..Self::of(0, 0, 0) };
 
-    /// The dimension with these powers of length, time and force, and neither angle nor amount.
+    /// The dimension with these powers of length, time and force, and nothing else.
     pub const fn of(length: i8, time: i8, force: i8) -> Self {
-        Self { length, time, force, angle: 0, amount: 0 }
+        Self { length, time, force, angle: 0, amount: 0, current: 0, temperature: 0 }
     }
 
     /// The dimension named `name` ("length", "speed" …), if there is one.
@@ -154,13 +190,14 @@ impl Dimension {
     pub fn base_unit(self) -> String {
         match self.named() {
             Some(named) => named.unit.to_owned(),
-            None => self.powers(&["pN", "um", "s", "rad", "zmol"], " ", |power| format!("^{power}")),
+            None => self.powers(&["pN", "um", "s", "rad", "zmol", "pA", "K"], " ", |power| format!("^{power}")),
         }
     }
 
     /// The product of the base units with their powers.
-    fn powers(self, symbols: &[&str; 5], times: &str, power_text: impl Fn(i8) -> String) -> String {
-        let factors = symbols.iter().zip([self.force, self.length, self.time, self.angle, self.amount]);
+    fn powers(self, symbols: &[&str; 7], times: &str, power_text: impl Fn(i8) -> String) -> String {
+        let powers = [self.force, self.length, self.time, self.angle, self.amount, self.current, self.temperature];
+        let factors = symbols.iter().zip(powers);
         let written = factors.filter(|(_, power)| *power != 0).map(|(symbol, power)| match power {
             1 => (*symbol).to_owned(),
             _ => format!("{symbol}{}", power_text(power)),
@@ -173,7 +210,7 @@ impl Dimension {
 pub fn label(dimension: Dimension) -> String {
     match dimension.named() {
         Some(named) => named.label.to_owned(),
-        None => dimension.powers(&["pN", "µm", "s", "rad", "zmol"], "·", superscript),
+        None => dimension.powers(&["pN", "µm", "s", "rad", "zmol", "pA", "K"], "·", superscript),
     }
 }
 

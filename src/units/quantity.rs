@@ -46,7 +46,7 @@ pub type Frequency = Quantity<0, -1, 0, 0>;
 
 impl<const L: i8, const T: i8, const F: i8, const A: i8> Quantity<L, T, F, A> {
     /// What the quantity is.
-    pub const DIMENSION: Dimension = Dimension { length: L, time: T, force: F, angle: A, amount: 0 };
+    pub const DIMENSION: Dimension = Dimension { angle: A, ..Dimension::of(L, T, F) };
     /// None of it.
     pub const ZERO: Self = Self(0.0);
 

@@ -17,11 +17,14 @@ pub(super) const ONE: Scale = Scale { numerator: 1.0, divisor: 1.0, ten: 0, dime
 
 /// Units that take prefixes: symbol, power of ten in base units, dimension.
 #[rustfmt::skip] // a table
-const PREFIXED: [(&str, i32, Dimension); 12] = [
+const PREFIXED: [(&str, i32, Dimension); 21] = [
     ("m", 6, Dimension::LENGTH), ("s", 0, Dimension::TIME), ("N", 12, Dimension::FORCE),
     ("g", 3, Dimension::MASS), ("J", 18, Dimension::ENERGY), ("Pa", 0, Dimension::STRESS),
     ("l", 15, Dimension::VOLUME), ("L", 15, Dimension::VOLUME), ("Hz", 0, Dimension::FREQUENCY),
     ("rad", 0, Dimension::ANGLE), ("mol", 21, Dimension::AMOUNT), ("M", 6, Dimension::CONCENTRATION),
+    ("A", 12, Dimension::CURRENT), ("C", 12, Dimension::CHARGE), ("V", 6, Dimension::VOLTAGE), ("F", 6, Dimension::CAPACITANCE),
+    ("S", 6, Dimension::CONDUCTANCE), ("ohm", -6, Dimension::RESISTANCE), ("Ω", -6, Dimension::RESISTANCE),
+    ("W", 18, Dimension::POWER), ("K", 0, Dimension::TEMPERATURE),
 ];
 /// Prefixes; µ is both the micro sign and the Greek letter.
 #[rustfmt::skip] // a table
@@ -39,12 +42,13 @@ const PLAIN: [(&str, f64, i32, Dimension); 10] = [
 ];
 /// Words that people write for units.
 #[rustfmt::skip] // a table
-const SPELT: [(&str, &str); 27] = [
+const SPELT: [(&str, &str); 33] = [
     ("sec", "s"), ("secs", "s"), ("second", "s"), ("seconds", "s"), ("mins", "min"), ("minute", "min"),
     ("minutes", "min"), ("hr", "h"), ("hrs", "h"), ("hour", "h"), ("hours", "h"), ("day", "d"), ("days", "d"),
     ("micron", "um"), ("microns", "um"), ("micrometer", "um"), ("micrometre", "um"), ("degree", "deg"),
     ("degrees", "deg"), ("radian", "rad"), ("radians", "rad"), ("percent", "%"), ("newton", "N"), ("cc", "ml"),
-    ("mole", "mol"), ("moles", "mol"), ("molar", "M"),
+    ("mole", "mol"), ("moles", "mol"), ("molar", "M"), ("volt", "V"), ("volts", "V"), ("ampere", "A"),
+    ("amp", "A"), ("kelvin", "K"), ("siemens", "S"),
 ];
 
 impl Scale {
@@ -56,6 +60,8 @@ impl Scale {
             force: a.force.saturating_add(b.force),
             angle: a.angle.saturating_add(b.angle),
             amount: a.amount.saturating_add(b.amount),
+            current: a.current.saturating_add(b.current),
+            temperature: a.temperature.saturating_add(b.temperature),
         };
         Self {
             numerator: self.numerator * other.numerator,
@@ -78,6 +84,8 @@ impl Scale {
             force: d.force.saturating_neg(),
             angle: d.angle.saturating_neg(),
             amount: d.amount.saturating_neg(),
+            current: d.current.saturating_neg(),
+            temperature: d.temperature.saturating_neg(),
         };
         Self { numerator: self.divisor, divisor: self.numerator, ten: -self.ten, dimension }
     }

@@ -23,6 +23,7 @@ fn event(trigger: Expr, assignments: Vec<(u32, Expr)>) -> Event {
         values_from_firing: true,
         persistent: true,
         assignments,
+        schedule: None,
     }
 }
 
@@ -197,7 +198,7 @@ fn a_parameter_that_an_event_sets_stays_set_from_window_to_window() {
     let (program, plan) = EventPlan::compile(&switched, 0.0).expect("a program");
     for method in [Method::Rosenbrock, Method::Rk45, Method::Rk65, Method::Rk4 { step: 0.01 }] {
         let mut cells = Population::new(&program, 2, method);
-        let (mut memories, mut scratch) = (vec![plan.before_start(); 2], PopulationScratch::default());
+        let (mut memories, mut scratch) = (vec![plan.before_start(0.0); 2], PopulationScratch::default());
         cells.set_open(1, 0, 0.5);
         let numbers = Numbers { seed: 1, system: "switched" };
         let one = Eventful { program: &program, plan: &plan, tolerances: Tolerances::default(), span: 4.0, numbers };
@@ -253,7 +254,7 @@ fn cells_choose_by_their_numbers_and_not_by_their_neighbours() {
     // How often the first event won, in windows of a length.
     let wins = |ids: &[u64], windows: u32| -> Vec<f64> {
         let mut cells = Population::new(&program, ids.len(), Method::Rk45);
-        let (mut memories, mut scratch) = (vec![plan.before_start(); ids.len()], PopulationScratch::default());
+        let (mut memories, mut scratch) = (vec![plan.before_start(0.0); ids.len()], PopulationScratch::default());
         for window in 0..windows {
             let [from, until] = [window, window + 1].map(|end| 64.0 * f64::from(end) / f64::from(windows));
             let moved = one.advance(&mut cells, &mut memories, ids.iter().copied(), (from, until), &mut scratch);

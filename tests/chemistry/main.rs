@@ -3,6 +3,7 @@
 mod delays;
 mod eml;
 mod eml_reactions;
+mod eml_schedules;
 mod eml_write;
 mod engine_events;
 mod engine_members;

@@ -4,7 +4,7 @@ use super::circles::circles;
 use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
 use super::xml::{Element, Text};
-use crate::equations::expression::{Node, NodeKind, Scope, Unit, UnitScope, parse};
+use crate::equations::expression::{Node, Scope, Unit, UnitScope, is_constant, parse};
 use crate::equations::reactions;
 use crate::equations::tree::{Binary, Expr, Quantity, QuantityId, Role, System};
 use crate::error::Location;
@@ -36,6 +36,8 @@ pub(super) struct Builder<'a, 'd> {
     fixed: Scope,
     pub(super) now: Scope,
     before: Scope,
+    /// Intervals of schedules, which must be above 0, and where they are written.
+    pub(super) schedules: Vec<(Expr, Location)>,
 }
 
 impl<'a, 'd> Builder<'a, 'd> {
@@ -51,7 +53,7 @@ impl<'a, 'd> Builder<'a, 'd> {
             fixed.absent.insert(id.clone(), "this must keep one value: use numbers and parameters".to_owned());
         }
         let before = Scope { no_time: String::new(), ..fixed.clone() };
-        Self { context, known, start, fixed, now, before }
+        Self { context, known, start, fixed, now, before, schedules: Vec::new() }
     }
 
     fn scope(&self, allowed: Use) -> &Scope {
@@ -345,6 +347,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                 let values = super::start::values(system);
                 self.check_finite(&values);
                 self.check_delays(system, &values);
+                self.check_schedules(&values);
             }
         }
     }
@@ -369,13 +372,5 @@ impl<'a, 'd> Builder<'a, 'd> {
     /// The number of a quantity.
     pub(super) fn find(&self, id: &str) -> Option<QuantityId> {
         self.known.scope.quantities.get(id).copied()
-    }
-}
-
-/// Whether an expression is made of bare numbers alone.
-fn is_constant(node: &Node) -> bool {
-    match &node.kind {
-        NodeKind::Name(_) | NodeKind::Number(_, Some(_)) => false,
-        _ => node.children().iter().all(|child| is_constant(child)),
     }
 }

@@ -3,7 +3,7 @@
 use super::build::{Builder, Use};
 use super::xml::Element;
 use crate::equations::expression::Unit;
-use crate::equations::tree::{Event, Expr, QuantityId};
+use crate::equations::tree::{Event, Expr, QuantityId, Schedule};
 use std::collections::HashSet;
 
 impl Builder<'_, '_> {
@@ -15,7 +15,11 @@ impl Builder<'_, '_> {
 
     fn event(&mut self, element: &Element, index: usize) -> Option<Event> {
         let time = self.known.time.clone();
-        let trigger = self.attribute(element, "when", Use::All, None);
+        let schedule = self.schedule(element);
+        let trigger = match &schedule {
+            Some(schedule) => Some(schedule.trigger()),
+            None => self.attribute(element, "when", Use::All, None),
+        };
         let delay = self.attribute(element, "delay", Use::All, Some((&time, "the delay")));
         let priority = self.attribute(element, "priority", Use::All, Some((&Unit::plain(), "the priority")));
         // An event that holds at the start fires then, unless the document says that it has been true before.
@@ -40,13 +44,70 @@ impl Builder<'_, '_> {
         let id = if element.attribute("id").is_some() { element.word("id") } else { format!("event_{}", index + 1) };
         let true_before_start = !fires_at_start;
         let trigger = trigger?;
-        Some(Event { id, trigger, true_before_start, delay, priority, values_from_firing, persistent, assignments })
+        Some(Event {
+            id,
+            trigger,
+            true_before_start,
+            delay,
+            priority,
+            values_from_firing,
+            persistent,
+            assignments,
+            schedule,
+        })
+    }
+
+    /// The schedule of an event that has one, and not a condition.
+    fn schedule(&mut self, element: &Element) -> Option<Schedule> {
+        let has = |name: &str| element.attribute(name).is_some();
+        let fault = match (has("when"), has("every")) {
+            (true, true) => Some(("every", "an event has a condition and a schedule", "remove `when` or `every`")),
+            (false, false) => {
+                Some(("id", "the event never fires", "write when=\"…\", or every=\"…\" for equal intervals"))
+            }
+            (true, false) if has("first") => {
+                Some(("first", "an event with a condition has no first time", "remove it"))
+            }
+            (true, false) if has("until") => Some((
+                "until",
+                "an event with a condition has no last time",
+                "write it into the condition: `and time le …`",
+            )),
+            (false, true) if has("persistent") => {
+                Some(("persistent", "an event with a schedule has no condition that may turn false", "remove it"))
+            }
+            _ => None,
+        };
+        if let Some((attribute, message, help)) = fault {
+            self.context.fault(element.location(attribute), message, "when?", help);
+        }
+        if !has("every") {
+            return None;
+        }
+        let time = self.known.time.clone();
+        let mut of = |name: &str| self.attribute(element, name, Use::Fixed, Some((&time, "a time of the schedule")));
+        let (every, first, until) = (of("every"), of("first"), of("until"));
+        let schedule = Schedule { first: first.unwrap_or(Expr::Number(0.0)), every: every?, until };
+        self.schedules.push((schedule.every.clone(), self.context.location(element.location("every"), "not above 0")));
+        Some(schedule)
+    }
+
+    /// Tells schedules that do not go on.
+    pub(super) fn check_schedules(&mut self, values: &[f64]) {
+        for (every, location) in std::mem::take(&mut self.schedules) {
+            let value = every.evaluate(0.0, &|quantity| values[quantity as usize]);
+            if !(value > 0.0 && value.is_finite()) {
+                let message = format!("`every` is {value}; a time above 0 was expected");
+                let at = location.start..location.start + location.length;
+                self.context.fault(at, &message, "not above 0", "write the time from one to the next, such as 24");
+            }
+        }
     }
 
     fn set(&mut self, set: &Element) -> Option<(QuantityId, Expr)> {
         let id = set.word("id");
         let sort = self.known.sort(&id);
-        if sort != Some("variable") {
+        if !matches!(sort, Some("variable" | "parameter")) {
             let (message, help) = match sort {
                 Some(other) => (
                     format!("an event cannot set `{id}`, which is a <{other}>"),
@@ -64,7 +125,7 @@ impl Builder<'_, '_> {
         let unit = self.unit_of(&id);
         let what = format!("the new value of `{id}`");
         let value = self.expression(&set.text, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())));
-        let target = self.find(&id).filter(|_| sort == Some("variable"));
+        let target = self.find(&id).filter(|_| matches!(sort, Some("variable" | "parameter")));
         Some((target?, value?))
     }
 

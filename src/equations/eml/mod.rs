@@ -14,6 +14,7 @@ mod document;
 mod events;
 mod fields;
 mod links;
+mod measured;
 mod membrane;
 mod noise;
 mod reactions;
@@ -48,7 +49,8 @@ use std::sync::Arc;
 pub fn read(source: Arc<Source>) -> Result<Document> {
     let mut context = Context::new(source);
     let Some(root) = xml::tree(&mut context) else { return Err(context.error()) };
-    let known = declare::declare(&mut context, &root);
+    let mut known = declare::declare(&mut context, &root);
+    measured::complete(&mut context, &mut known);
     if known.quantities.is_empty() && context.is_clean() {
         let help = "declare <variable id=\"U\" initial=\"1\" rate=\"-0.1*U\"/>";
         context.fault(root.at.clone(), "the document declares nothing", "empty", help);

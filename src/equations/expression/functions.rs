@@ -15,6 +15,8 @@ pub(super) enum Meaning {
     Hill,
     /// What the first was a time ago that the second tells.
     Delay,
+    /// 1 from a time on for another, each time that a third has passed.
+    Pulse,
 }
 
 /// What a function asks of the units of its arguments, and the unit of its value.
@@ -36,6 +38,8 @@ pub(super) enum UnitRule {
     Piecewise,
     /// Anything and a time in, the unit of the first out.
     Delay,
+    /// Times in, a plain number out.
+    Times,
 }
 
 /// A function.
@@ -58,7 +62,7 @@ const fn two(name: &'static str, function: Binary, units: UnitRule, example: &'s
 
 /// All functions.
 #[rustfmt::skip] // a table
-pub(super) const FUNCTIONS: [Known; 35] = [
+pub(super) const FUNCTIONS: [Known; 36] = [
     one("exp", Unary::Exp, UnitRule::Plain, "exp(x)"),
     one("ln", Unary::Ln, UnitRule::Plain, "ln(x)"),
     Known { name: "log", meaning: Meaning::Log, units: UnitRule::Plain, example: "log(x) or log(base, x)" },
@@ -91,12 +95,16 @@ pub(super) const FUNCTIONS: [Known; 35] = [
         example: "piecewise(value, condition, …, otherwise)" },
     Known { name: "hill", meaning: Meaning::Hill, units: UnitRule::Hill, example: "hill(x, K, n)" },
     Known { name: "delay", meaning: Meaning::Delay, units: UnitRule::Delay, example: "delay(x, tau)" },
+    Known { name: "pulse", meaning: Meaning::Pulse, units: UnitRule::Times, example: "pulse(start, duration, period)" },
     // Other spellings of the same.
     one("ceiling", Unary::Ceil, UnitRule::Same, "ceiling(x)"),
     one("arcsin", Unary::Asin, UnitRule::Plain, "arcsin(x)"),
     one("arccos", Unary::Acos, UnitRule::Plain, "arccos(x)"),
     one("arctan", Unary::Atan, UnitRule::Plain, "arctan(x)"),
 ];
+
+/// Functions whose names identifiers may have as well, since documents had them before there was the function.
+const YOUNG: [&str; 1] = ["pulse"];
 
 /// Constants.
 pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("infinity", f64::INFINITY)];
@@ -110,9 +118,10 @@ pub(super) fn known(name: &str) -> Option<&'static Known> {
 
 /// Whether a document may not use the word as an identifier: a function, a constant, `time` or an operator.
 pub fn is_reserved(word: &str) -> bool {
+    let function = known(word).is_some() && !YOUNG.contains(&word);
     let constant = CONSTANTS.iter().any(|(name, _)| *name == word);
     let operator = super::token::WORDS.iter().any(|(name, _)| *name == word);
-    known(word).is_some() || constant || operator || word == TIME
+    function || constant || operator || word == TIME
 }
 
 /// Whether a word can be an identifier: letters, digits and `_`, not beginning with a digit.
@@ -136,6 +145,7 @@ impl Meaning {
             Self::Many(_) => (1..=100).contains(&count),
             Self::Piecewise => count >= 3 && count % 2 == 1,
             Self::Hill => count == 3,
+            Self::Pulse => count == 2 || count == 3,
         }
     }
 
@@ -164,6 +174,10 @@ impl Meaning {
                 let pairs = rest.chunks(2).map(|pair| (pair[1].clone(), pair[0].clone()));
                 Expr::Piecewise { branches: pairs.collect(), otherwise }
             }
+            Self::Pulse => {
+                let (start, duration) = (take(), take());
+                pulse(&start, duration, next.next())
+            }
             Self::Hill => {
                 let (x, half, exponent) = (take(), take(), take());
                 hill(x, half, exponent)
@@ -177,6 +191,18 @@ fn hill(x: Expr, half: Expr, exponent: Expr) -> Expr {
     let bound = x.binary(Binary::Pow, exponent.clone());
     let free = half.binary(Binary::Pow, exponent);
     bound.clone().binary(Binary::Div, free.binary(Binary::Add, bound))
+}
+
+/// Whether the time is within one of the pulses that begin with the first. What switches is made of the time and the arguments alone, so
+/// that the clock meets it.
+fn pulse(start: &Expr, duration: Expr, period: Option<Expr>) -> Expr {
+    let begun = Expr::Time.binary(Binary::Ge, start.clone());
+    let since = Expr::Time.binary(Binary::Sub, start.clone());
+    let since = match period {
+        Some(period) => since.binary(Binary::Rem, period),
+        None => since,
+    };
+    begun.binary(Binary::And, since.binary(Binary::Lt, duration))
 }
 
 impl Expr {

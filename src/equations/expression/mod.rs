@@ -9,14 +9,16 @@ mod parse;
 mod resolve;
 mod syntax;
 mod token;
+mod unit;
 mod units;
 mod write;
 
 pub use functions::{function_names, is_identifier, is_reserved};
 pub use parse::parse;
 pub use resolve::{Function, LARGEST, Scope, Spent};
-pub use syntax::{DEEPEST, LONGEST, Node, NodeKind};
-pub use units::{Measure, Unit, UnitScope};
+pub use syntax::{DEEPEST, LONGEST, Node, NodeKind, is_constant};
+pub use unit::Unit;
+pub use units::{Measure, UnitScope};
 pub use write::write;
 
 use std::ops::Range;

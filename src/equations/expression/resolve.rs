@@ -216,6 +216,11 @@ impl Walk<'_> {
             self.miscounted(name, at, function.example, given.len());
             return None;
         }
+        if function.meaning == Meaning::Pulse && !self.scope.no_time.is_empty() {
+            let trouble = Trouble::new(format!("`{name}` cannot be used here"), at.clone()).label("uses the time");
+            self.troubles.push(trouble.help(self.scope.no_time.clone()));
+            return None;
+        }
         if function.meaning == Meaning::Delay && !self.scope.no_delay.is_empty() {
             let trouble = Trouble::new(format!("`{name}` cannot be used here"), at.clone()).label("looks back");
             self.troubles.push(trouble.help(self.scope.no_delay.clone()));

@@ -77,6 +77,14 @@ impl Node {
     }
 }
 
+/// Whether an expression is made of bare numbers alone.
+pub fn is_constant(node: &Node) -> bool {
+    match &node.kind {
+        NodeKind::Name(_) | NodeKind::Number(_, Some(_)) => false,
+        _ => node.children().iter().all(|child| is_constant(child)),
+    }
+}
+
 /// The most levels an expression may have: brackets in brackets, or terms in a row.
 pub const DEEPEST: usize = 400;
 /// The most bytes an expression may have.

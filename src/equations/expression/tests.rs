@@ -9,6 +9,8 @@ fn scope() -> Scope {
     let names = [("x", 0), ("y", 1), ("K", 2)].map(|(name, number)| (name.to_owned(), number));
     let mut scope = Scope { quantities: names.into(), ..Scope::default() };
     let arguments = vec!["a".to_owned(), "b".to_owned()];
+    let raised = Function { arguments: vec!["a".to_owned(), "n".to_owned()], body: parse("a^n").0 };
+    scope.functions.insert("raised".to_owned(), raised);
     scope.functions.insert("mix".to_owned(), Function { arguments, body: parse("a + 2*b").0 });
     scope
 }
@@ -204,6 +206,12 @@ fn right_units_pass() {
         ("sin(90 [rad]) + cos(1)", "1"),
         ("0", "uM"),
         ("x*60 [1/min]", "zmol/(um^3 min)"),
+        ("x^(K/1 [s])/((2 [uM])^(K/1 [s]) + x^(K/1 [s]))", "1"),
+        ("y*x^-(K/1 [s])*x^(K/1 [s])", "uM/s"),
+        ("(x^(2*exp(1)) - (x^exp(1))^2)^0.5/x^exp(1)", "1"),
+        ("raised(x, exp(1))/x^exp(1)", "1"),
+        ("20 [pS]*-70 [mV]/10 [pF]", "fA/pF"),
+        ("1 [kg m^2/s^3]/1 [A]", "V"),
     ] {
         assert_eq!(unit_troubles(text, unit), [], "{text}");
     }
@@ -221,6 +229,9 @@ fn wrong_units_are_told_at_the_part_that_has_them() {
         ("y", "uM/min", 0..1, "the value is in uM/s; uM/min was expected"),
         ("mix(x, y)", "uM", 0..9, "in `mix`, called here, this part is in uM/s; uM was expected"),
         ("3 [uMM]", "uM", 0..7, "unknown unit"),
+        ("x^exp(1) + x^exp(2)", "1", 11..19, "this part is in uM^(exp(2)); uM^(exp(1)) was expected"),
+        ("x + x^(2*exp(2))", "uM", 4..16, "this part is in uM^(2*exp(2)); uM was expected"),
+        ("raised(x, exp(1)) - raised(x, exp(2))", "1", 20..37, "this part is in uM^(exp(2)); uM^(exp(1)) was expected"),
     ] {
         let troubles = unit_troubles(text, unit);
         assert!(troubles.len() == 1 && troubles[0].at == at, "{text}: {troubles:?}");

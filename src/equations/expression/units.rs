@@ -5,20 +5,10 @@ use super::Trouble;
 use super::functions::{CONSTANTS, TIME, UnitRule, known};
 use super::resolve::Scope;
 use super::syntax::{Node, NodeKind};
+use super::unit::Unit;
 use crate::equations::tree::Binary;
-use crate::units::{Dimension, UnitError, parse_unit};
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
-
-/// A unit: how many base units, the powers of these, and how it is written.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Unit {
-    size: f64,
-    /// Powers of length, time, force, angle and amount; roots make them fractions.
-    powers: [f64; 5],
-    /// What it was put together from, with powers.
-    written: Vec<(String, f64)>,
-}
 
 /// What is known of an expression's unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,136 +19,6 @@ pub enum Measure {
     Fitting,
     /// This unit.
     Known(Unit),
-}
-
-impl Unit {
-    /// A plain number.
-    pub fn plain() -> Self {
-        Self { size: 1.0, powers: [0.0; 5], written: Vec::new() }
-    }
-
-    /// Reads a unit, "uM/min"; "1" is a plain number.
-    ///
-    /// # Errors
-    /// Says what is wrong with the text.
-    pub fn read(text: &str) -> Result<Self, UnitError> {
-        let found = parse_unit(text)?;
-        let d = found.dimension;
-        let powers = [d.length, d.time, d.force, d.angle, d.amount].map(f64::from);
-        let mut unit = Self { size: found.value, powers, written: Vec::new() };
-        unit.written = factors(text.trim());
-        Ok(unit)
-    }
-
-    /// The dimension, where its powers are whole.
-    pub fn dimension(&self) -> Option<Dimension> {
-        let whole = self.powers.iter().all(|power| power.fract() == 0.0 && power.abs() <= 100.0);
-        let [length, time, force, angle, amount] = self.powers.map(|power| power as i8);
-        whole.then_some(Dimension { length, time, force, angle, amount })
-    }
-
-    /// How many base units (µm, s, pN, rad, zmol and their products) the unit holds.
-    pub fn size(&self) -> f64 {
-        self.size
-    }
-
-    /// The unit to a power.
-    pub fn to_the(&self, power: f64) -> Self {
-        let written = self.written.iter().map(|(name, own)| (name.clone(), own * power));
-        Self { size: self.size.powf(power), powers: self.powers.map(|own| own * power), written: written.collect() }
-    }
-
-    /// The product of two units.
-    pub fn times(&self, other: &Self) -> Self {
-        let mut powers = self.powers;
-        for (power, other) in powers.iter_mut().zip(other.powers) {
-            *power += other;
-        }
-        let mut written = self.written.clone();
-        for (name, power) in &other.written {
-            match written.iter_mut().find(|(known, _)| known == name) {
-                Some((_, own)) => *own += power,
-                None => written.push((name.clone(), *power)),
-            }
-        }
-        written.retain(|(_, power)| *power != 0.0);
-        Self { size: self.size * other.size, powers, written }
-    }
-
-    /// Whether two units are of the same kind, whatever their sizes.
-    fn alike(&self, other: &Self) -> bool {
-        self.powers.iter().zip(other.powers).all(|(a, b)| (a - b).abs() < 1e-9)
-    }
-
-    /// Whether two units are the same; sizes may differ by round-off.
-    pub fn is_same(&self, other: &Self) -> bool {
-        self.alike(other) && (self.size / other.size - 1.0).abs() < 1e-9
-    }
-
-    /// The unit for people: "uM/min"; "1" for a plain number.
-    pub fn text(&self) -> String {
-        let power = |power: f64| if power == 1.0 { String::new() } else { format!("^{power}") };
-        let part = |wanted: bool| -> Vec<String> {
-            let chosen = self.written.iter().filter(|(_, own)| (*own > 0.0) == wanted);
-            chosen.map(|(name, own)| format!("{name}{}", power(own.abs()))).collect()
-        };
-        let (above, below) = (part(true), part(false));
-        let above = if above.is_empty() { "1".to_owned() } else { above.join(" ") };
-        match below.len() {
-            0 => above,
-            1 => format!("{above}/{}", below[0]),
-            _ => format!("{above}/({})", below.join(" ")),
-        }
-    }
-
-    /// "in uM" or "a plain number".
-    fn told(&self) -> String {
-        if self.written.is_empty() { "a plain number".to_owned() } else { format!("in {}", self.text()) }
-    }
-
-    /// "uM" or "a plain number".
-    fn wanted(&self) -> String {
-        if self.written.is_empty() { "a plain number".to_owned() } else { self.text() }
-    }
-
-    /// What another unit would have to be multiplied by to be this one.
-    fn advice(&self, found: &Self) -> String {
-        if self.alike(found) {
-            let factor = found.size / self.size;
-            return format!(
-                "both measure the same; multiply by `{factor} [{}]`",
-                self.times(&found.to_the(-1.0)).text()
-            );
-        }
-        // A unit has whole powers where it is written.
-        if self.written.iter().any(|(_, power)| power.fract() != 0.0) {
-            let square = self.to_the(2.0).text();
-            return format!(
-                "make it the root of a quantity, `sqrt(q)` with q in {square}, or correct the units of its parts"
-            );
-        }
-        format!("make it a quantity in {}, or correct the units of its parts", self.text())
-    }
-}
-
-/// The factors of a unit's text, with their powers; a text with brackets counts as one.
-fn factors(text: &str) -> Vec<(String, f64)> {
-    if text.contains('(') || text.is_empty() {
-        return vec![(format!("({text})"), 1.0)];
-    }
-    let mut unit = Unit::plain();
-    for (index, part) in text.split('/').enumerate() {
-        for word in part.split([' ', '*', '·', '×']).filter(|word| !word.is_empty() && *word != "1") {
-            let (name, power) = match word.split_once('^') {
-                Some((name, power)) => (name.to_owned(), power.parse().unwrap_or(1.0)),
-                None => (word.to_owned(), 1.0),
-            };
-            let sign = if index == 0 { 1.0 } else { -1.0 };
-            let factor = Unit { written: vec![(name, sign * power)], ..Unit::plain() };
-            unit = unit.times(&factor);
-        }
-    }
-    unit.written
 }
 
 /// What is needed to check units.
@@ -175,12 +35,12 @@ pub struct UnitScope<'a> {
 impl UnitScope<'_> {
     /// Checks an expression and tells its unit. The names must have been resolved without fault.
     pub fn measure(&self, node: &Node, troubles: &mut Vec<Trouble>) -> Measure {
-        Check { scope: self, troubles }.measure(node, &BTreeMap::new())
+        self.measure_with(node, &BTreeMap::new(), troubles)
     }
 
     /// As [`UnitScope::measure`], with names of known units besides.
     pub fn measure_with(&self, node: &Node, names: &BTreeMap<String, Measure>, troubles: &mut Vec<Trouble>) -> Measure {
-        Check { scope: self, troubles }.measure(node, names)
+        Check { scope: self, troubles, arguments: BTreeMap::new() }.measure(node, names)
     }
 
     /// Checks an expression that must have a unit; `what` it is for stands in the message.
@@ -208,6 +68,8 @@ fn is_number(node: &Node) -> bool {
 struct Check<'a, 'b> {
     scope: &'a UnitScope<'a>,
     troubles: &'b mut Vec<Trouble>,
+    /// Of the arguments of the function that is looked into, what was written where it is called.
+    arguments: BTreeMap<String, String>,
 }
 
 type Names = BTreeMap<String, Measure>;
@@ -315,7 +177,22 @@ impl Check<'_, '_> {
             && angle.is_none_or(|angle| !unit.is_same(angle))
         {
             let trouble = mismatch(&unit, &Unit::plain(), what, node.at.clone());
-            self.troubles.push(trouble.help("divide it by a quantity in the same unit"));
+            let is_raised = unit.is_raised();
+            self.troubles.push(if is_raised {
+                trouble
+            } else {
+                trouble.help("divide it by a quantity in the same unit")
+            });
+        }
+    }
+
+    /// A part that must be a time; a number alone is one.
+    fn time(&mut self, node: &Node, names: &Names, what: &str) {
+        if let (Measure::Known(unit), Some(time)) = (self.measure(node, names), self.scope.time)
+            && !unit.is_same(time)
+            && !is_number(node)
+        {
+            self.troubles.push(mismatch(&unit, time, what, node.at.clone()));
         }
     }
 
@@ -329,17 +206,44 @@ impl Check<'_, '_> {
         match (unit, &exponent.kind) {
             (Measure::Known(unit), NodeKind::Number(power, None)) => Measure::Known(unit.to_the(*power)),
             (Measure::Known(unit), _) if !unit.is_same(&Unit::plain()) => {
-                self.troubles.push(
-                    Trouble::new(
-                        format!("what is {} is raised to a power that is not a number", unit.told()),
-                        base.at.clone(),
-                    )
-                    .label(unit.told())
-                    .help("divide it by a quantity in the same unit first, as in `(x/K)^n`, or use `hill(x, K, n)`"),
-                );
-                Measure::Unknown
+                let (multiple, written) = self.exponent(exponent);
+                unit.to_the_expression(written, multiple).map_or(Measure::Unknown, Measure::Known)
             }
             (unit, _) => unit,
+        }
+    }
+
+    /// An exponent that is not a number: its number, and the rest as it is written.
+    fn exponent(&self, node: &Node) -> (f64, String) {
+        match &node.kind {
+            NodeKind::Minus(a) => {
+                let (multiple, rest) = self.exponent(a);
+                (-multiple, rest)
+            }
+            NodeKind::Binary(Binary::Mul, a, b) => match (&a.kind, &b.kind) {
+                (NodeKind::Number(multiple, _), _) => (*multiple, self.written(b)),
+                (_, NodeKind::Number(multiple, _)) => (*multiple, self.written(a)),
+                _ => (1.0, self.written(node)),
+            },
+            _ => (1.0, self.written(node)),
+        }
+    }
+
+    /// A part as it is written, with what arguments stand for: the same text means the same value.
+    fn written(&self, node: &Node) -> String {
+        match &node.kind {
+            NodeKind::Unread => String::new(),
+            NodeKind::Number(value, unit) => format!("{value}{}", unit.as_deref().unwrap_or_default()),
+            NodeKind::Name(name) => self.arguments.get(name).unwrap_or(name).clone(),
+            NodeKind::Minus(a) => format!("-({})", self.written(a)),
+            NodeKind::Not(a) => format!("not ({})", self.written(a)),
+            NodeKind::Binary(operator, a, b) => {
+                format!("({}) {operator:?} ({})", self.written(a), self.written(b))
+            }
+            NodeKind::Call(name, _, parts) => {
+                let parts: Vec<String> = parts.iter().map(|part| self.written(part)).collect();
+                format!("{name}({})", parts.join(", "))
+            }
         }
     }
 
@@ -349,8 +253,11 @@ impl Check<'_, '_> {
             let inner: Names =
                 inner.zip(given.iter().map(|node| self.measure(node, names)).collect::<Vec<_>>()).collect();
             // A trouble inside the function is told where it is called, since it depends on the arguments.
+            let written = function.arguments.iter().cloned().zip(given.iter().map(|node| self.written(node))).collect();
+            let outer = std::mem::replace(&mut self.arguments, written);
             let told = self.troubles.len();
             let value = self.measure(&function.body, &inner);
+            self.arguments = outer;
             let inside = self.troubles.split_off(told);
             if let Some(trouble) = inside.into_iter().next() {
                 let message = format!("in `{name}`, called here, {}", trouble.message);
@@ -393,13 +300,12 @@ impl Check<'_, '_> {
             }
             UnitRule::Delay => {
                 let value = self.measure(parts[0], names);
-                if let (Measure::Known(unit), Some(time)) = (self.measure(parts[1], names), self.scope.time)
-                    && !unit.is_same(time)
-                    && !is_number(parts[1])
-                {
-                    self.troubles.push(mismatch(&unit, time, "the time of `delay`", parts[1].at.clone()));
-                }
+                self.time(parts[1], names, "the time of `delay`");
                 value
+            }
+            UnitRule::Times => {
+                parts.iter().for_each(|part| self.time(part, names, &what));
+                plain()
             }
             UnitRule::Piecewise => {
                 let values: Vec<&Node> = parts.iter().step_by(2).copied().collect();

@@ -45,6 +45,7 @@ impl<'a> Plan<'_, 'a> {
                 values_from_firing: event.values_from_trigger,
                 persistent: event.persistent,
                 assignments,
+                schedule: None,
             });
             made.extend(follower);
         }
@@ -247,5 +248,6 @@ fn follower(id: &str, due: QuantityId, assignments: Vec<(QuantityId, Expr)>) -> 
         values_from_firing: true,
         persistent: true,
         assignments,
+        schedule: None,
     }
 }

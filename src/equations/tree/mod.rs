@@ -88,6 +88,46 @@ pub struct Event {
     pub persistent: bool,
     /// Quantities and their new values, all computed before any is set.
     pub assignments: Vec<(QuantityId, Expr)>,
+    /// The schedule that its trigger stands for, if it has one.
+    pub schedule: Option<Schedule>,
+}
+
+/// Times at equal intervals, made of numbers and parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Schedule {
+    /// The first time.
+    pub first: Expr,
+    /// From one time to the next, above 0.
+    pub every: Expr,
+    /// No time is after this; none: without end.
+    pub until: Option<Expr>,
+}
+
+impl Schedule {
+    /// A condition that turns true at each of the times and at no other, and holds for half of the interval.
+    pub fn trigger(&self) -> Expr {
+        let two = |function, a: Expr, b: Expr| Expr::Binary(function, Box::new(a), Box::new(b));
+        let half = || Expr::Number(0.5);
+        let since = || two(Binary::Sub, Expr::Time, self.first.clone());
+        let number = |since: Expr| two(Binary::Div, since, self.every.clone());
+        let phase = two(Binary::Rem, number(since()), Expr::Number(1.0));
+        let begun = two(Binary::Ge, Expr::Time, self.first.clone());
+        let holds = two(Binary::And, begun, two(Binary::Lt, phase, half()));
+        let Some(until) = &self.until else { return holds };
+        // Half an interval after the last time, so that it counts though round-off puts it a little late.
+        let span = number(two(Binary::Sub, until.clone(), self.first.clone()));
+        let last = Expr::Unary(Unary::Floor, Box::new(two(Binary::Add, span, Expr::Number(1e-9))));
+        two(Binary::And, holds, two(Binary::Lt, number(since()), two(Binary::Add, last, half())))
+    }
+
+    /// Whether a time is one of them, but for round-off.
+    pub fn has(&self, time: f64, value: &impl Fn(QuantityId) -> f64) -> bool {
+        let of = |expr: &Expr| expr.evaluate(time, value);
+        let (first, every) = (of(&self.first), of(&self.every));
+        let number = (time - first) / every;
+        let last = self.until.as_ref().map_or(f64::INFINITY, |until| (of(until) - first) / every + 1e-9);
+        number > -1e-9 && number < last && (number - number.round()).abs() < 1e-9
+    }
 }
 
 /// What turns some variables into others at one rate.

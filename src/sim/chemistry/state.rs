@@ -55,7 +55,7 @@ impl ChemistryState {
         let populations = reactors.iter().map(|r| Population::new(&r.program, members(r), r.method));
         let events = |reactor: &Reactor| match reactor.events.is_empty() {
             true => Vec::new(),
-            false => vec![reactor.events.before_start(); members(reactor)],
+            false => vec![reactor.events.before_start(0.0); members(reactor)],
         };
         let membrane = |reactor: &Reactor| match (&reactor.membrane, &reactor.members) {
             (Some(membrane), Members::Kinds(own)) => membrane.state(own, &model.kinds, cells),

@@ -27,7 +27,7 @@ impl ChemistryState {
                 self.membranes[number].kinds[at].insert(local);
             }
             if !reactor.events.is_empty() {
-                self.events[number].insert(member, reactor.events.before_start());
+                self.events[number].insert(member, reactor.events.before_start(self.times[number] / reactor.seconds));
             }
         }
         self.controls.insert_cell(cells[..kind].iter().sum::<usize>() + local);

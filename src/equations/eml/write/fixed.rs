@@ -3,13 +3,10 @@
 use super::super::Document;
 use crate::equations::tree::{Expr, Role};
 
-/// Which quantities EML can have as parameters: not set by events, and given by numbers and other such parameters.
+/// Which quantities EML can have as parameters: given by numbers and other such parameters.
 pub(super) fn fixed(document: &Document) -> Vec<bool> {
     let system = &document.system;
     let mut fixed: Vec<bool> = system.quantities.iter().map(|q| matches!(q.role, Role::Parameter)).collect();
-    for (target, _) in system.events.iter().flat_map(|event| &event.assignments) {
-        fixed[*target as usize] = false;
-    }
     for (number, quantity) in system.quantities.iter().enumerate() {
         fixed[number] &= !quantity.initial.uses_time();
     }

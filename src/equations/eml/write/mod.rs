@@ -250,7 +250,16 @@ impl<'a> Writer<'a> {
         if !self.names.events[index].is_empty() {
             head.push_str(&attribute("id", &self.names.events[index]));
         }
-        head.push_str(&attribute("when", &self.expression(&event.trigger)));
+        match &event.schedule {
+            Some(schedule) => {
+                let until = schedule.until.as_ref();
+                let times = [("every", Some(&schedule.every)), ("first", Some(&schedule.first)), ("until", until)];
+                for (name, time) in times {
+                    head.push_str(&time.map_or(String::new(), |time| attribute(name, &self.expression(time))));
+                }
+            }
+            None => head.push_str(&attribute("when", &self.expression(&event.trigger))),
+        }
         for (name, value) in [("delay", &event.delay), ("priority", &event.priority)] {
             if let Some(value) = value {
                 head.push_str(&attribute(name, &self.expression(value)));

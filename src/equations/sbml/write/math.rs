@@ -1,6 +1,6 @@
 //! Expressions as MathML, in the subset that SBML takes.
 
-use super::element::Element;
+use super::element::{Element, NAMESPACE};
 use super::functions::{Helper, apply, ci, piecewise};
 use super::kinds::Kind;
 use super::names::Names;
@@ -64,7 +64,7 @@ impl Formulas {
     /// A formula as SBML holds it.
     fn math(&self, formula: Element) -> Element {
         let math = Element::new("math").with("xmlns", "http://www.w3.org/1998/Math/MathML");
-        math.with_some("xmlns:sbml", self.time.as_ref().map(|_| super::NAMESPACE)).child(formula)
+        math.with_some("xmlns:sbml", self.time.as_ref().map(|_| NAMESPACE)).child(formula)
     }
 
     fn plain_writer(&self) -> Writer<'_> {

@@ -14,15 +14,12 @@ mod units;
 use super::LARGEST_DOCUMENT;
 use crate::equations::eml::{Document, Written, numbers_are_plain};
 use crate::error::{Error, Fault, Result, Source};
-use element::Element;
+use element::{Element, NAMESPACE};
 use kinds::Kinds;
 use math::Formulas;
 use names::{Names, identifier};
 use std::sync::Arc;
 use units::Units;
-
-/// The namespace of the core.
-const NAMESPACE: &str = "http://www.sbml.org/sbml/level3/version2/core";
 
 /// Writes a system as an SBML model. Functions are written out where they were called. What SBML has nothing for (links, how it is
 /// solved) is left out and told in the notices and in the notes of the model; inputs are constants.
