@@ -9,6 +9,7 @@ mod math;
 mod names;
 mod quantities;
 mod reactions;
+mod shape;
 mod units;
 
 use super::LARGEST_DOCUMENT;
@@ -81,6 +82,9 @@ impl<'a> Writer<'a> {
         let events = self.events();
         let mut notices = std::mem::take(&mut self.names.notices);
         notices.extend(left_out::notices(document, &self.names.quantities));
+        if self.measured && !self.formulas.has_units() {
+            notices.push("numbers with units of their own stand without them".to_owned());
+        }
         let id = self.names.new_id(&identifier(&document.name));
         let model = Element::new("model")
             .with("id", id)
