@@ -14,4 +14,4 @@ mod read;
 pub mod sbml;
 pub mod tree;
 pub use range::Range;
-pub use read::{Read, read};
+pub use read::{Read, read, read_in};

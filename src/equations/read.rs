@@ -2,6 +2,7 @@
 
 use super::{eml, sbml};
 use crate::error::{Location, Result, Source};
+use std::path::Path;
 use std::sync::Arc;
 
 /// A document of equations as it was read.
@@ -15,13 +16,21 @@ pub struct Read {
     pub sbml: Option<sbml::Model>,
 }
 
-/// Reads an EML document or an SBML model.
+/// As [`read_in`], of a text that stands in no folder.
 ///
 /// # Errors
-/// As [`eml::read`] and [`sbml::read`].
+/// As [`read_in`].
 pub fn read(source: Arc<Source>) -> Result<Read> {
+    read_in(source, None)
+}
+
+/// Reads an EML document or an SBML model that stands in a folder, from which the files are found that it names.
+///
+/// # Errors
+/// As [`eml::read_in`] and [`sbml::read`].
+pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Read> {
     if !sbml::is_sbml(&source.text) {
-        return Ok(Read { document: eml::read(source)?, notices: Vec::new(), sbml: None });
+        return Ok(Read { document: eml::read_in(source, folder)?, notices: Vec::new(), sbml: None });
     }
     let model = sbml::read(&source)?;
     let whole = Location { source, start: 0, length: 0, label: String::new() };

@@ -2,8 +2,10 @@
 
 mod delays;
 mod eml;
+mod eml_models;
 mod eml_reactions;
 mod eml_schedules;
+mod eml_tables;
 mod eml_write;
 mod engine_events;
 mod engine_members;

@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub fn read(path: &Path) -> Result<Read> {
     let name = path.display().to_string();
     let source = Source { text: text(path, &name)?, name };
-    equations::read(Arc::new(source))
+    equations::read_in(Arc::new(source), path.parent())
 }
 
 /// The text of a file; a file larger than every document is not read.

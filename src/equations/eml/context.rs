@@ -4,11 +4,14 @@ use crate::equations::fault::at_location;
 use crate::error::words::meant;
 use crate::error::{Error, Fault, Location, Source};
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The source and the faults found so far.
 pub(super) struct Context {
     pub(super) source: Arc<Source>,
+    /// The folder from which files that the document names are found, if it has one.
+    pub(super) folder: Option<PathBuf>,
     faults: Vec<Fault>,
     /// Where each line begins.
     lines: Vec<usize>,
@@ -22,10 +25,10 @@ const MOST_FAULTS: usize = 100;
 const MOST_KNOWN: usize = 5000;
 
 impl Context {
-    pub(super) fn new(source: Arc<Source>) -> Self {
+    pub(super) fn new(source: Arc<Source>, folder: Option<&Path>) -> Self {
         let ends = source.text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         let lines = std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect();
-        Self { source, faults: Vec::new(), lines, untold: 0 }
+        Self { source, folder: folder.map(Path::to_owned), faults: Vec::new(), lines, untold: 0 }
     }
 
     /// A location in the source.
@@ -40,6 +43,11 @@ impl Context {
             return;
         }
         self.faults.push(at_location(&self.source, at, message.to_owned(), label, help));
+    }
+
+    /// A fault in another text.
+    pub(super) fn fault_elsewhere(&mut self, fault: Fault) {
+        self.faults.push(fault);
     }
 
     /// A fault without a location.

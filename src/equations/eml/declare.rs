@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::document::Level;
 use super::reactions::{changes, equation, shared_unit};
+use super::tables::table;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Function, Scope, Trouble, Unit, is_identifier, is_reserved, parse};
 use crate::equations::tree::{Expr, QuantityId, Reaction};
@@ -138,8 +139,29 @@ pub(super) fn declare<'a>(context: &mut Context, root: &'a Element) -> Declarati
             format!("documents of level {} keep no history: let a chain of substances take the time", level.name());
     }
     reactions(context, root, &mut found);
+    tables(context, root, &mut found);
     functions(context, root, &mut found.scope);
     found
+}
+
+/// Reads the tables, each of which is a function.
+fn tables(context: &mut Context, root: &Element, found: &mut Declarations) {
+    for element in root.all("table").filter(|element| element.attribute("id").is_some()) {
+        let id = element.word("id");
+        for attribute in ["unit", "argument_unit"] {
+            unit(context, element, attribute);
+        }
+        let argument = element.attribute("argument_unit").map_or(found.time_text.clone(), |text| text.text.clone());
+        let value = element.attribute("unit").map_or("1".to_owned(), |text| text.text.clone());
+        let units = found.measured.then_some([argument.as_str(), value.as_str()]);
+        let Some(function) = table(context, element, units) else {
+            // Calls of it are known all the same.
+            let body = parse("0").0;
+            found.scope.functions.insert(id, Function { arguments: vec!["x".to_owned()], body });
+            continue;
+        };
+        found.scope.functions.insert(id, function);
+    }
 }
 
 /// Reads the equations of the reactions, which tell the units of their rates.

@@ -20,6 +20,7 @@ mod noise;
 mod reactions;
 mod solver;
 mod start;
+mod tables;
 mod vocabulary;
 mod write;
 mod xml;
@@ -39,6 +40,7 @@ use super::tree::System;
 use crate::error::{Result, Source};
 use build::Builder;
 use context::Context;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Reads a document. A caller that reads files refuses those above [`LARGEST_DOCUMENT`] bytes unread.
@@ -47,7 +49,15 @@ use std::sync::Arc;
 /// [`crate::error::Error::Input`] with every fault: what is no XML, unknown elements, attributes and identifiers, faults
 /// of expressions, units that do not fit, circles, values that are missing or not finite.
 pub fn read(source: Arc<Source>) -> Result<Document> {
-    let mut context = Context::new(source);
+    read_in(source, None)
+}
+
+/// As [`read`], of a document in a folder, from which the files are found that it names.
+///
+/// # Errors
+/// As [`read`], and what is wrong with these files.
+pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Document> {
+    let mut context = Context::new(source, folder);
     let Some(root) = xml::tree(&mut context) else { return Err(context.error()) };
     let mut known = declare::declare(&mut context, &root);
     measured::complete(&mut context, &mut known);

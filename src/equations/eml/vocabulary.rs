@@ -28,13 +28,14 @@ const fn kind(
 }
 
 /// What stands at the top of a document.
-const PARTS: [&str; 14] = [
+const PARTS: [&str; 15] = [
     "parameter",
     "variable",
     "equation",
     "reaction",
     "define",
     "function",
+    "table",
     "input",
     "mean",
     "integral",
@@ -47,7 +48,7 @@ const PARTS: [&str; 14] = [
 
 /// All elements.
 #[rustfmt::skip] // a table
-pub const ELEMENTS: [Kind; 18] = [
+pub const ELEMENTS: [Kind; 19] = [
     kind("eml", &["name"], &["level", "time_unit"], &PARTS, false),
     kind("parameter", &["id", "value"], &["name", "unit"], &[], false),
     kind("variable", &["id", "initial"], &["diffusion", "history", "level", "name", "noise", "rate", "unit"], &[], false),
@@ -55,6 +56,7 @@ pub const ELEMENTS: [Kind; 18] = [
     kind("reaction", &["equation", "id", "rate"], &["name", "reverse"], &[], false),
     kind("define", &["id"], &["history", "name", "unit"], &[], true),
     kind("function", &["args", "id"], &[], &[], true),
+    kind("table", &["id"], &["argument", "argument_unit", "file", "interpolation", "unit", "value"], &[], true),
     kind("input", &["default", "id"], &["level", "name", "unit"], &[], false),
     kind("mean", &["id"], &["name", "unit"], &[], true),
     kind("integral", &["id"], &["name", "unit"], &[], true),
