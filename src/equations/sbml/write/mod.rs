@@ -85,11 +85,13 @@ impl<'a> Writer<'a> {
         if self.measured && !self.formulas.has_units() {
             notices.push("numbers with units of their own stand without them".to_owned());
         }
+        // Without other units that of time would only be found amiss.
+        let has_time = self.measured || document.time_unit != "s";
         let id = self.names.new_id(&identifier(&document.name));
         let model = Element::new("model")
             .with("id", id)
             .with("name", &document.name)
-            .with_some("timeUnits", self.units.reference(&document.time_unit))
+            .with_some("timeUnits", self.units.reference(&document.time_unit).filter(|_| has_time))
             .with_some("extentUnits", self.extent.take())
             .child(notes(&document.name, &notices))
             .list("listOfFunctionDefinitions", self.formulas.functions())
