@@ -149,6 +149,10 @@ fn hostile_xml_is_refused_before_a_tree_is_built() {
     refused(format!("<eml name=\"m\">{}</eml>", "<set/>".repeat(200_000)), "");
     refused(format!("<eml name=\"m\"><define id=\"a\">{}</define></eml>", "(".repeat(50_000)), "levels");
     refused(format!("<eml name=\"m\"><define id=\"a\">{}</define></eml>", "1+".repeat(500_000)), "bytes; at most");
+    let wide = "x + ".repeat(20_000);
+    refused(format!("<eml name=\"m\"><define id=\"d\">sum(j, 1, 19999, {wide} 1)</define></eml>"), "`sum` cannot go");
+    let text = format!("<parameter id=\"p[i]\" value=\"{wide}\"/>");
+    refused(format!("<eml name=\"m\"><repeat index=\"i\" count=\"19999\">{text}</repeat></eml>"), "are repeated");
     let chain: String = (1..20_000).map(|i| format!("<define id=\"d{i}\">d{}</define>", i - 1)).collect();
     refused(format!("<eml name=\"m\"><define id=\"d0\">time</define>{chain}</eml>"), "in a row");
 }
@@ -241,4 +245,15 @@ fn the_book_has_every_element_attribute_and_function() {
     }
     let summary = std::fs::read_to_string(Path::new(&root()).join("docs/src/SUMMARY.md")).expect("the contents");
     assert!(summary.contains("(eml.md)"));
+}
+
+#[test]
+fn the_documents_in_the_chapter_are_good() {
+    let book = std::fs::read_to_string(root().join("docs/src/eml.md")).expect("the chapter");
+    let blocks = book.split("```xml\n").skip(1).map(|block| block.split("```").next().unwrap_or_default());
+    let documents: Vec<&str> = blocks.filter(|block| block.starts_with("<eml")).collect();
+    assert!(documents.len() >= 5, "documents are missing: {}", documents.len());
+    for document in documents {
+        read_text(document).unwrap_or_else(|error| panic!("{}", render(&error, Paint::Plain)));
+    }
 }

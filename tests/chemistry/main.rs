@@ -4,6 +4,7 @@ mod delays;
 mod eml;
 mod eml_models;
 mod eml_reactions;
+mod eml_repeat;
 mod eml_schedules;
 mod eml_tables;
 mod eml_write;

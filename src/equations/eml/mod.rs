@@ -18,6 +18,7 @@ mod measured;
 mod membrane;
 mod noise;
 mod reactions;
+mod repeat;
 mod solver;
 mod start;
 mod tables;
@@ -58,7 +59,8 @@ pub fn read(source: Arc<Source>) -> Result<Document> {
 /// As [`read`], and what is wrong with these files.
 pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Document> {
     let mut context = Context::new(source, folder);
-    let Some(root) = xml::tree(&mut context) else { return Err(context.error()) };
+    let Some(mut root) = xml::tree(&mut context) else { return Err(context.error()) };
+    repeat::expand(&mut context, &mut root);
     let mut known = declare::declare(&mut context, &root);
     measured::complete(&mut context, &mut known);
     if known.quantities.is_empty() && context.is_clean() {

@@ -27,8 +27,11 @@ const fn kind(
     Kind { name, required, optional, children, text, inside: None }
 }
 
+/// The most elements that are made by repetition, and terms of sums.
+pub(super) const MOST_REPEATED: usize = 20_000;
+
 /// What stands at the top of a document.
-const PARTS: [&str; 15] = [
+const PARTS: [&str; 16] = [
     "parameter",
     "variable",
     "equation",
@@ -44,11 +47,29 @@ const PARTS: [&str; 15] = [
     "grid",
     "field",
     "link",
+    "repeat",
+];
+
+/// What can be repeated.
+const REPEATED: [&str; 13] = [
+    "parameter",
+    "variable",
+    "equation",
+    "reaction",
+    "define",
+    "function",
+    "input",
+    "mean",
+    "integral",
+    "event",
+    "field",
+    "link",
+    "repeat",
 ];
 
 /// All elements.
 #[rustfmt::skip] // a table
-pub const ELEMENTS: [Kind; 19] = [
+pub const ELEMENTS: [Kind; 20] = [
     kind("eml", &["name"], &["level", "time_unit"], &PARTS, false),
     kind("parameter", &["id", "value"], &["name", "unit"], &[], false),
     kind("variable", &["id", "initial"], &["diffusion", "history", "level", "name", "noise", "rate", "unit"], &[], false),
@@ -69,6 +90,7 @@ pub const ELEMENTS: [Kind; 19] = [
         &["reaction", "wall"], false),
     Kind { inside: Some("field"), ..kind("reaction", &[], &[], &[], true) },
     kind("wall", &["kind", "side"], &["value"], &[], false),
+    kind("repeat", &["count", "index"], &["from", "periodic"], &REPEATED, false),
     kind("link", &["from", "to"], &["gain", "id", "transfer"], &[], false),
 ];
 

@@ -42,6 +42,24 @@ impl Text {
         self.location(&(start..start + trimmed.len()))
     }
 
+    /// A part of the text.
+    pub(super) fn part(&self, range: &Range<usize>) -> Self {
+        let start = self.origin.get(range.start).map_or(self.start, |first| first.0);
+        Self { text: self.text[range.clone()].to_owned(), origin: self.origin[range.clone()].to_vec(), start }
+    }
+
+    /// Another text behind this one.
+    pub(super) fn append(&mut self, other: &Self) {
+        self.text.push_str(&other.text);
+        self.origin.extend(&other.origin);
+    }
+
+    /// What stands for some bytes of the source.
+    pub(super) fn write(&mut self, text: &str, at: &Range<usize>) {
+        self.text.push_str(text);
+        self.origin.extend(std::iter::repeat_n((at.start, at.end), text.len()));
+    }
+
     fn push(&mut self, c: char, at: Range<usize>) {
         self.text.push(c);
         self.origin.extend(std::iter::repeat_n((at.start, at.end), c.len_utf8()));
@@ -58,7 +76,7 @@ impl Text {
 }
 
 /// An element that the vocabulary knows.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Element {
     pub(super) kind: &'static Kind,
     /// Bytes of the name in its first tag.
@@ -82,6 +100,19 @@ impl Element {
     /// Where an attribute's value stands, or else the element's name.
     pub(super) fn location(&self, name: &str) -> Range<usize> {
         self.attribute(name).map_or(self.at.clone(), Text::whole)
+    }
+
+    /// Bytes of all its texts and of those in it.
+    pub(super) fn length(&self) -> usize {
+        let own = self.attributes.iter().map(|(_, text)| text.text.len()).sum::<usize>() + self.text.text.len();
+        own + self.children.iter().map(Self::length).sum::<usize>()
+    }
+
+    /// Visits all texts of the element and of those in it, with the names of element and attribute (none: what stands inside).
+    pub(super) fn each_text(&mut self, visit: &mut impl FnMut(&str, &str, &mut Text)) {
+        self.attributes.iter_mut().for_each(|(name, text)| visit(self.kind.name, name, text));
+        visit(self.kind.name, "", &mut self.text);
+        self.children.iter_mut().for_each(|child| child.each_text(visit));
     }
 
     pub(super) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
