@@ -1,6 +1,9 @@
-//! XML elements to be written, with what XML wants escaped.
+//! Elements of SBML to be written, with what XML wants escaped.
 
 use std::fmt::Write as _;
+
+/// The namespace of the core of SBML Level 3 Version 2.
+pub const NAMESPACE: &str = "http://www.sbml.org/sbml/level3/version2/core";
 
 /// Longest element of a formula that stands on one line, bytes.
 const LONGEST_LINE: usize = 100;

@@ -27,6 +27,8 @@ pub struct Kinds {
     pub held: Vec<bool>,
     /// Whether reactions change each quantity.
     pub changed: Vec<bool>,
+    /// Whether each quantity stays as it is, events included.
+    pub constant: Vec<bool>,
 }
 
 impl Kinds {
@@ -47,7 +49,11 @@ impl Kinds {
         for reaction in &system.reactions {
             of[reaction.rate as usize] = Kind::Reaction { is_dense: is_dense(reaction, &of) };
         }
-        Self { of, held, changed }
+        let is_constant = |quantity: &Quantity| matches!(quantity.role, Role::Parameter | Role::Input);
+        let mut constant: Vec<bool> = system.quantities.iter().map(is_constant).collect();
+        let set = system.events.iter().flat_map(|event| &event.assignments);
+        set.for_each(|(target, _)| constant[*target as usize] = false);
+        Self { of, held, changed, constant }
     }
 }
 

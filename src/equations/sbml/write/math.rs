@@ -1,9 +1,10 @@
 //! Expressions as MathML, in the subset that SBML takes.
 
-use super::element::Element;
+use super::element::{Element, NAMESPACE};
 use super::functions::{Helper, apply, ci, piecewise};
 use super::kinds::Kind;
 use super::names::Names;
+use super::shape::{hill, is_bare, is_comparison, is_truth, operator_name, spine};
 use crate::equations::tree::{Binary, Expr, QuantityId, Unary};
 use std::cell::Cell;
 
@@ -32,6 +33,11 @@ impl Formulas {
         let dense = kinds.iter().map(|kind| *kind == Kind::Reaction { is_dense: true }).collect();
         let (helpers, quantities) = (Helper::ids(names), names.quantities.clone());
         Self { quantities, dense, compartment: compartment.to_owned(), helpers, used: Cell::default(), time }
+    }
+
+    /// Whether numbers in formulas have units.
+    pub fn has_units(&self) -> bool {
+        self.time.is_some()
     }
 
     /// The formula of a number. `unit`: that of a number that stands alone, or of several, where nothing else says it.
@@ -64,19 +70,12 @@ impl Formulas {
     /// A formula as SBML holds it.
     fn math(&self, formula: Element) -> Element {
         let math = Element::new("math").with("xmlns", "http://www.w3.org/1998/Math/MathML");
-        math.with_some("xmlns:sbml", self.time.as_ref().map(|_| super::NAMESPACE)).child(formula)
+        math.with_some("xmlns:sbml", self.time.as_ref().map(|_| NAMESPACE)).child(formula)
     }
 
     fn plain_writer(&self) -> Writer<'_> {
         Writer { formulas: self, unit: Some("dimensionless").filter(|_| self.time.is_some()) }
     }
-}
-
-/// Whether an expression is made of numbers alone.
-fn is_bare(expr: &Expr) -> bool {
-    let mut bare = !expr.uses_time();
-    expr.each_quantity(&mut |_| bare = false);
-    bare
 }
 
 struct Writer<'a> {
@@ -120,11 +119,19 @@ impl Writer<'_> {
                     apply(operator_name(*function), parts.collect())
                 }
                 function if is_comparison(*function) => {
-                    apply(operator_name(*function), vec![self.value(a), self.value(b)])
+                    apply(operator_name(*function), vec![self.value(a), self.compared(b, a)])
                 }
                 _ => self.not_zero(expr),
             },
             _ => self.not_zero(expr),
+        }
+    }
+
+    /// The element of what is compared with another value: a number that is compared with the time is one.
+    fn compared(&self, expr: &Expr, with: &Expr) -> Element {
+        match (expr, with) {
+            (Expr::Number(value), Expr::Time) => Writer { unit: self.formulas.time.as_deref(), ..*self }.plain(*value),
+            _ => self.value(expr),
         }
     }
 
@@ -224,6 +231,11 @@ impl Writer<'_> {
             terms.push((right, *function == Binary::Sub));
             first = left;
         }
+        // A plain 0 says nothing, and is in no unit.
+        terms.retain(|(term, _)| **term != Expr::Number(0.0));
+        if terms.is_empty() {
+            return self.value(first);
+        }
         if let [(last, negative)] = terms[..] {
             let name = if negative { "minus" } else { "plus" };
             return apply(name, vec![self.value(first), self.value(last)]);
@@ -271,65 +283,4 @@ fn csymbol(name: &'static str) -> Element {
         .with("encoding", "text")
         .with("definitionURL", format!("http://www.sbml.org/sbml/symbols/{name}"))
         .text(format!(" {name} "))
-}
-
-/// The operands of operators of one kind that follow each other from the left.
-fn spine(function: Binary, expr: &Expr) -> Vec<&Expr> {
-    let (mut parts, mut first) = (Vec::new(), expr);
-    while let Expr::Binary(other, left, right) = first
-        && *other == function
-    {
-        parts.push(&**right);
-        first = left;
-    }
-    parts.push(first);
-    parts.reverse();
-    parts
-}
-
-/// x, K and n of xⁿ/(Kⁿ + xⁿ).
-fn hill<'e>(above: &'e Expr, below: &'e Expr) -> Option<(&'e Expr, &'e Expr, &'e Expr)> {
-    let Expr::Binary(Binary::Pow, x, exponent) = above else { return None };
-    let Expr::Binary(Binary::Add, free, bound) = below else { return None };
-    let Expr::Binary(Binary::Pow, half, other) = &**free else { return None };
-    (**bound == *above && other == exponent).then_some((&**x, &**half, &**exponent))
-}
-
-fn is_comparison(function: Binary) -> bool {
-    use Binary::{Eq, Ge, Gt, Le, Lt, Ne};
-    matches!(function, Lt | Le | Gt | Ge | Eq | Ne)
-}
-
-/// Whether the value of an expression is a truth.
-fn is_truth(expr: &Expr) -> bool {
-    match expr {
-        Expr::Unary(function, _) => *function == Unary::Not,
-        Expr::Binary(function, ..) => {
-            is_comparison(*function) || matches!(function, Binary::And | Binary::Or | Binary::Xor)
-        }
-        _ => false,
-    }
-}
-
-fn operator_name(function: Binary) -> &'static str {
-    match function {
-        Binary::Add => "plus",
-        Binary::Sub => "minus",
-        Binary::Mul => "times",
-        Binary::Div => "divide",
-        Binary::Pow => "power",
-        Binary::Min => "min",
-        Binary::Max => "max",
-        Binary::Rem => "rem",
-        Binary::Quotient => "quotient",
-        Binary::Lt => "lt",
-        Binary::Le => "leq",
-        Binary::Gt => "gt",
-        Binary::Ge => "geq",
-        Binary::Eq => "eq",
-        Binary::Ne => "neq",
-        Binary::And => "and",
-        Binary::Or => "or",
-        Binary::Xor => "xor",
-    }
 }

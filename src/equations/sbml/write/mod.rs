@@ -9,20 +9,18 @@ mod math;
 mod names;
 mod quantities;
 mod reactions;
+mod shape;
 mod units;
 
 use super::LARGEST_DOCUMENT;
 use crate::equations::eml::{Document, Written, numbers_are_plain};
 use crate::error::{Error, Fault, Result, Source};
-use element::Element;
+use element::{Element, NAMESPACE};
 use kinds::Kinds;
 use math::Formulas;
 use names::{Names, identifier};
 use std::sync::Arc;
 use units::Units;
-
-/// The namespace of the core.
-const NAMESPACE: &str = "http://www.sbml.org/sbml/level3/version2/core";
 
 /// Writes a system as an SBML model. Functions are written out where they were called. What SBML has nothing for (links, how it is
 /// solved) is left out and told in the notices and in the notes of the model; inputs are constants.
@@ -84,11 +82,16 @@ impl<'a> Writer<'a> {
         let events = self.events();
         let mut notices = std::mem::take(&mut self.names.notices);
         notices.extend(left_out::notices(document, &self.names.quantities));
+        if self.measured && !self.formulas.has_units() {
+            notices.push("numbers with units of their own stand without them".to_owned());
+        }
+        // Without other units that of time would only be found amiss.
+        let has_time = self.measured || document.time_unit != "s";
         let id = self.names.new_id(&identifier(&document.name));
         let model = Element::new("model")
             .with("id", id)
             .with("name", &document.name)
-            .with_some("timeUnits", self.units.reference(&document.time_unit))
+            .with_some("timeUnits", self.units.reference(&document.time_unit).filter(|_| has_time))
             .with_some("extentUnits", self.extent.take())
             .child(notes(&document.name, &notices))
             .list("listOfFunctionDefinitions", self.formulas.functions())

@@ -56,7 +56,7 @@ impl Writer<'_> {
             .with_some("substanceUnits", unit)
             .with_flag("hasOnlySubstanceUnits", kind != Kind::Concentration)
             .with_flag("boundaryCondition", self.kinds.held[number])
-            .with_flag("constant", matches!(quantity.role, Role::Parameter | Role::Input))
+            .with_flag("constant", self.kinds.constant[number])
     }
 
     fn parameter(&mut self, number: usize) -> Element {
@@ -66,7 +66,7 @@ impl Writer<'_> {
         self.head("parameter", number)
             .with_some("value", value)
             .with_some("units", unit)
-            .with_flag("constant", matches!(quantity.role, Role::Parameter | Role::Input))
+            .with_flag("constant", self.kinds.constant[number])
     }
 
     /// The number at which a quantity starts; none where a rule says it, or an initial assignment, which is noted.

@@ -5,7 +5,7 @@ use super::names::identifier;
 use crate::units::{Dimension, parse_unit};
 
 /// Units that need no definition, and their names in SBML.
-const KNOWN: [(&str, &str); 12] = [
+const KNOWN: [(&str, &str); 21] = [
     ("s", "second"),
     ("m", "metre"),
     ("mol", "mole"),
@@ -17,6 +17,15 @@ const KNOWN: [(&str, &str); 12] = [
     ("Pa", "pascal"),
     ("Hz", "hertz"),
     ("rad", "radian"),
+    ("A", "ampere"),
+    ("C", "coulomb"),
+    ("V", "volt"),
+    ("F", "farad"),
+    ("S", "siemens"),
+    ("ohm", "ohm"),
+    ("Ω", "ohm"),
+    ("W", "watt"),
+    ("K", "kelvin"),
     ("1", "dimensionless"),
 ];
 
@@ -37,11 +46,11 @@ pub struct Units {
 }
 
 impl Units {
-    /// The identifier of a unit of EML; none for an empty text.
+    /// The identifier of a unit of EML; none for an empty text, and for what SBML has no unit for.
     pub fn reference(&mut self, text: &str) -> Option<String> {
+        parse_unit(text).ok()?;
         let factors = factors(text);
         match factors.as_slice() {
-            [] if text.trim().is_empty() => return None,
             [] => return Some("dimensionless".to_owned()),
             [(name, 1)] => {
                 if let Some((_, known)) = KNOWN.iter().find(|(symbol, _)| symbol == name) {
@@ -50,8 +59,8 @@ impl Units {
             }
             _ => {}
         }
-        let bases = factors.iter().flat_map(|(name, power)| bases(name, *power)).collect();
-        Some(self.define(&label(&factors), text.trim(), bases))
+        let bases: Option<Vec<Vec<Base>>> = factors.iter().map(|(name, power)| bases(name, *power)).collect();
+        Some(self.define(&label(&factors), text.trim(), bases?.concat()))
     }
 
     /// The unit of the amount that makes a concentration of 1 unit in 1 l.
@@ -95,30 +104,22 @@ impl Units {
 
 /// Whether SBML keeps a word for a unit of its own.
 fn is_kind(id: &str) -> bool {
-    const OTHERS: [&str; 24] = [
-        "ampere",
+    const OTHERS: [&str; 16] = [
         "avogadro",
         "becquerel",
         "candela",
         "celsius",
-        "coulomb",
-        "farad",
         "gray",
         "henry",
         "item",
         "katal",
-        "kelvin",
         "kilogram",
         "lumen",
         "lux",
         "meter",
-        "ohm",
-        "siemens",
         "sievert",
         "steradian",
         "tesla",
-        "volt",
-        "watt",
         "weber",
     ];
     OTHERS.contains(&id) || KNOWN.iter().any(|(_, known)| *known == id)
@@ -180,10 +181,10 @@ fn power(text: &str) -> (i32, usize) {
     (digits.parse().unwrap_or(1), length)
 }
 
-/// A symbol to a power in the units of SBML.
-fn bases(symbol: &str, exponent: i32) -> Vec<Base> {
-    let Ok(unit) = parse_unit(symbol) else { return Vec::new() };
-    // What the base unit (µm, s, pN, zmol and their products) is in that of SBML, as a power of ten.
+/// A symbol to a power in the units of SBML, if it has such.
+fn bases(symbol: &str, exponent: i32) -> Option<Vec<Base>> {
+    let unit = parse_unit(symbol).ok()?;
+    // What the base unit (µm, s, pN, zmol, pA, K and their products) is in that of SBML, as a power of ten.
     let (kind, ten) = match unit.dimension {
         Dimension::LENGTH => ("metre", -6),
         Dimension::TIME => ("second", 0),
@@ -196,14 +197,23 @@ fn bases(symbol: &str, exponent: i32) -> Vec<Base> {
         Dimension::ENERGY => ("joule", -18),
         Dimension::MASS => ("gram", -3),
         Dimension::FREQUENCY => ("hertz", 0),
-        _ => ("dimensionless", 0),
+        Dimension::CURRENT => ("ampere", -12),
+        Dimension::CHARGE => ("coulomb", -12),
+        Dimension::VOLTAGE => ("volt", -6),
+        Dimension::CAPACITANCE => ("farad", -6),
+        Dimension::CONDUCTANCE => ("siemens", -6),
+        Dimension::RESISTANCE => ("ohm", 6),
+        Dimension::POWER => ("watt", -18),
+        Dimension::TEMPERATURE => ("kelvin", 0),
+        Dimension::NUMBER => ("dimensionless", 0),
+        _ => return None,
     };
     let (multiplier, scale) = decimal(unit.value);
     let mut bases = vec![Base { kind, exponent, scale: scale + ten, multiplier }];
     if unit.dimension == Dimension::CONCENTRATION {
         bases.push(Base { kind: "litre", exponent: -exponent, scale: 0, multiplier: 1.0 });
     }
-    bases
+    Some(bases)
 }
 
 /// A number as a factor and a power of ten: the factor is 1 where that is exact.
@@ -270,6 +280,14 @@ mod tests {
             ("fl", 1e-15),
             ("zmol", 1e-21),
             ("d", 86400.0),
+            ("mV", 1e-3),
+            ("nA/mV", 1e-6),
+            ("kohm", 1e3),
+            ("pS/um^2", 1.0),
+            ("uF", 1e-6),
+            ("fW", 1e-15),
+            ("mC", 1e-3),
+            ("mK", 1e-3),
         ] {
             let mut units = Units::default();
             units.reference(text).expect("a unit");
@@ -282,6 +300,8 @@ mod tests {
         }
         let mut units = Units::default();
         assert_eq!(units.reference("s"), Some("second".into()));
+        assert_eq!((units.reference("V"), units.reference("K")), (Some("volt".into()), Some("kelvin".into())));
+        assert_eq!(units.reference("uM^n"), None);
         assert_eq!(units.reference("1"), Some("dimensionless".into()));
         assert_eq!((units.reference(""), units.defined.len()), (None, 0));
         units.amount_in_litre("nM").expect("an amount");
