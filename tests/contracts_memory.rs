@@ -8,6 +8,9 @@ use everything::{after, everything};
 use pseudopod::Vec3;
 use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
+use pseudopod::equations::eml;
+use pseudopod::error::Source;
+use pseudopod::field::{FieldSystem, Grid, Stepping};
 use pseudopod::geometry::{Topology, icosphere};
 use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
@@ -17,6 +20,7 @@ use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::{Kind, Model, Plane, State, Workspace, step};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The system's allocator, counted.
@@ -163,6 +167,31 @@ fn taking_of_everything() -> [Taking; 2] {
     })
 }
 
+/// Allocations of five windows of fields that are carried in all ways, after the first two.
+fn taking_of_transport() -> usize {
+    let text = "<eml name=\"all\"><grid dimension=\"2\" spacing=\"1\" origin=\"0 0\" size=\"20 16\"/>
+        <field id=\"c\" diffusion=\"0.5 + 0.1*c\" decay=\"0.01\" initial=\"piecewise(1, x lt 5, 0)\">
+        <advection x=\"1 + sin(time)\" y=\"0.1*x\"/><taxis towards=\"s\" sensitivity=\"1/(1 + s)^2\"/>
+        <source from=\"2 2\" to=\"9 4\" strength=\"3*time\"/><wall side=\"x-\" kind=\"flux\" value=\"0.5*(2 - c)\"/>
+        <wall side=\"x+\" kind=\"open\"/><wall side=\"y+\" kind=\"fixed\" value=\"1 + 0.1*x*time\"/></field>
+        <field id=\"s\" diffusion=\"2\" decay=\"0.5\" initial=\"0\"><reaction>c</reaction></field></eml>";
+    let source = Arc::new(Source { name: "all.eml".into(), text: text.into() });
+    let system = FieldSystem::new(&eml::read(source).unwrap(), None).unwrap();
+    let mut fields = system.start(&|_: &eml::Profile, _: &Grid| Ok(Vec::new())).unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).start_handler(|_| WORKS.set(true)).build().unwrap();
+    pool.install(|| {
+        let mut before = 0;
+        for window in 0..7 {
+            if window == 2 {
+                before = CALLS.load(Ordering::Relaxed);
+            }
+            let stepping = Stepping::Adaptive { relative: 3e-3, absolute: 0.0 };
+            system.advance(&mut fields, 0.3, &[], stepping).unwrap();
+        }
+        CALLS.load(Ordering::Relaxed) - before
+    })
+}
+
 #[test]
 fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
     let methods = [
@@ -174,6 +203,7 @@ fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
         Method::Verlet,
         Method::RungeKutta4,
     ];
+    assert_eq!(taking_of_transport(), 0, "fields that are carried");
     for method in methods {
         for acting in [Acting::Elastic, Acting::Loads, Acting::Planes, Acting::Motility, Acting::Forces] {
             assert_eq!(allocations(method, acting, 1), 0, "{method:?} with scene {}", acting as usize);

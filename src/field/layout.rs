@@ -24,6 +24,8 @@ const MOST: f64 = (1_u64 << 31) as f64;
 const ROUND_OFF: f64 = 1e-9;
 /// Arrays as large as the values that moving the fields needs, the values included.
 pub const ARRAYS: usize = 6;
+/// The same that transport needs beside them: stages, rates, and coefficients that vary.
+pub const CARRYING: usize = 8;
 
 /// The grid of a document in µm, if memory holds its fields.
 pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
@@ -86,7 +88,9 @@ pub fn layout(document: &Document, placing: Option<&Placing>) -> Result<Grid> {
     if !faults.is_empty() {
         return Err(Error::Input(faults));
     }
-    let numbers = count as usize * document.fields.len().max(1) * ARRAYS;
+    let carried = document.fields.iter().any(|field| field.is_carried(&document.system));
+    let arrays = if carried { ARRAYS + CARRYING } else { ARRAYS };
+    let numbers = count as usize * document.fields.len().max(1) * arrays;
     if Vec::<f64>::new().try_reserve_exact(numbers).is_err() {
         let gigabytes = (numbers as f64 * 8e-9).ceil();
         let message = format!("the fields need {gigabytes} GB of memory, more than there is");
@@ -113,8 +117,8 @@ fn boxes(wanted: &GridDescription, size: [f64; 3], spacing: f64) -> [f64; 3] {
 
 /// A field with its coefficients in µm and s.
 ///
-/// One that is carried has no coefficients here: all of its transport is that of [`super::transport`]. A wall whose value does not stay, or
-/// through which it passes otherwise, counts as closed where it is sensed.
+/// Of one that is carried a diffusion coefficient that is no number counts as 0 here. A wall whose value does not stay, or through which it
+/// passes otherwise, counts as closed where it is sensed.
 pub fn describe(field: &eml::FieldDescription, system: &System, constants: &[f64], scales: Scales) -> Species {
     let value = |expr: &Expr| expr.evaluate(0.0, &|number| constants[number as usize]);
     let wall = |number: usize| match &field.walls[number] {
@@ -124,13 +128,12 @@ pub fn describe(field: &eml::FieldDescription, system: &System, constants: &[f64
         eml::Wall::Periodic => Wall::Periodic,
     };
     let walls = [[wall(0), wall(1)], [wall(2), wall(3)], [wall(4), wall(5)]];
-    if field.is_carried(system) {
-        return Species::new(field.id.clone(), 0.0, 0.0).with_walls(walls).with_range(field.range);
-    }
-    let diffusion = value(&field.diffusion) * scales.micrometres * scales.micrometres / scales.seconds;
-    Species::new(field.id.clone(), diffusion, value(&field.decay) / scales.seconds)
+    let spreads = if reads(&field.diffusion, system).is_number() { value(&field.diffusion) } else { 0.0 };
+    let diffusion = spreads * scales.micrometres * scales.micrometres / scales.seconds;
+    let species = Species::new(field.id.clone(), diffusion, value(&field.decay) / scales.seconds)
         .with_walls(walls)
-        .with_range(field.range)
+        .with_range(field.range);
+    Species { carried: field.is_carried(system), ..species }
 }
 
 /// The unit of a field, as written.

@@ -44,7 +44,7 @@ mod turn;
 
 pub use crate::equations::Range;
 pub use grid::{Grid, Wall, Walls};
-pub use layout::{ARRAYS, Placing};
+pub use layout::{ARRAYS, CARRYING, Placing};
 pub use react::{Chunk, POINTS, React};
 pub use sensed::Sensed;
 pub use species::Species;

@@ -17,12 +17,21 @@ pub struct Species {
     pub walls: Walls,
     /// Which values it may take.
     pub range: Range,
+    /// Whether a document's transport carries it: then that spreads it and lets it decay, and the coefficients here are told alone.
+    pub carried: bool,
 }
 
 impl Species {
     /// A concentration that no wall lets pass.
     pub fn new(name: impl Into<String>, diffusion: f64, decay: f64) -> Self {
-        Self { name: name.into(), diffusion, decay, walls: [[Wall::NoFlux; 2]; 3], range: Range::NonNegative }
+        Self {
+            name: name.into(),
+            diffusion,
+            decay,
+            walls: [[Wall::NoFlux; 2]; 3],
+            range: Range::NonNegative,
+            carried: false,
+        }
     }
 
     /// The same with other walls.

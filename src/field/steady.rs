@@ -10,7 +10,7 @@ use super::species::Species;
 pub fn steady(grid: &Grid, species: &Species) -> Option<Vec<f64>> {
     let held = |axis: usize| species.walls[axis].iter().any(|wall| matches!(wall, Wall::Fixed(_)));
     let driven = species.walls.iter().flatten().any(|wall| matches!(wall, Wall::Fixed(value) if *value != 0.0));
-    if !driven || species.diffusion == 0.0 {
+    if !driven || species.diffusion == 0.0 || species.carried {
         return None;
     }
     let axes: Vec<usize> = (0..3).filter(|axis| held(*axis)).collect();

@@ -45,9 +45,10 @@ impl Factors {
     pub fn fill(&mut self, grid: &Grid, species: &[Species], dt: f64) {
         self.dt = dt;
         for (s, species) in species.iter().enumerate() {
-            self.decay[s] = (-species.decay * dt).exp();
+            let moved = if species.carried { 0.0 } else { 1.0 };
+            self.decay[s] = (-species.decay * moved * dt).exp();
             for axis in 0..3 {
-                self.lines[3 * s + axis].fill(dt * species.diffusion / grid.spacing[axis].powi(2));
+                self.lines[3 * s + axis].fill(dt * species.diffusion * moved / grid.spacing[axis].powi(2));
             }
         }
     }

@@ -184,7 +184,7 @@ fn diffusion_that_varies_in_time_spreads_by_its_integral() {
     let errors: Vec<f64> = [1e-2, 1e-4]
         .map(|relative| {
             let (_, fields) = solved(
-                "<eml name=\"course\"><grid dimension=\"1\" spacing=\"0.1\" origin=\"-20\" size=\"40\"/>
+                "<eml name=\"course\"><grid dimension=\"1\" spacing=\"0.2\" origin=\"-20\" size=\"40\"/>
                  <field id=\"c\" diffusion=\"2 + sin(time)\" initial=\"exp(-x^2/2)\"/></eml>",
                 5.0,
                 1,
@@ -251,6 +251,9 @@ fn what_is_written_of_transport_is_read_as_the_same() {
         system.advance(&mut fields, 0.05, &[0.8], Stepping::Fixed(1)).expect("a window");
         fields.values(0).to_vec()
     };
+    // What cells release is brought in by parts of the time in which it decays, which is told of carried fields, too.
+    let (system, _) = open(ALL);
+    assert!(system.species()[0].decay == 0.01 && system.species()[0].carried && !system.species()[1].carried);
     assert!(again.contains("<advection") && again.contains("<taxis") && again.contains("kind=\"open\""), "{again}");
     assert!(run(ALL) == run(&again), "{again}");
 }

@@ -3,6 +3,7 @@
 use super::super::{CellType, Document, Mesh};
 use super::schedule::schedule;
 use crate::error::{Error, Fault, Result};
+use crate::field::FieldSystem;
 
 /// Bytes of memory an atom of a cell: 120 measured where cells pass through each other, and 440 to 1 020 where they are packed and touch
 /// (`docs/benchmarks.md`), the step, what it begins from, and a frame that is recorded together.
@@ -85,9 +86,9 @@ impl Size {
     }
 
     /// With values of a field.
-    fn with_field(mut self, values: f64) -> Self {
+    fn with_field(mut self, values: f64, each: f64) -> Self {
         self.values += values;
-        self.memory += values * A_VALUE;
+        self.memory += values * each;
         self.result += self.frames * values * VALUE_RECORDED;
         self
     }
@@ -125,12 +126,15 @@ pub fn of_cells(document: &Document) -> Result<Size> {
 ///
 /// # Errors
 /// As [`of_cells`].
-pub fn with_field(document: &Document, name: &str, size: Size, [boxes, species]: [usize; 2]) -> Result<Size> {
+pub fn with_field(document: &Document, name: &str, size: Size, system: &FieldSystem) -> Result<Size> {
+    let (boxes, species) = (system.grid().len(), system.species().len());
+    let carrying = if system.transport().is_some() { 8.0 * crate::field::CARRYING as f64 } else { 0.0 };
+    let each = A_VALUE + carrying;
     let values = boxes as f64 * species as f64;
     let words = format!("{} boxes of the field `{name}` with {species} species each", count(boxes as f64));
     let key = format!("chemistry.{name}.document");
-    let size = size.with_field(values);
-    within(document, size, &Part { key, words, memory: values * A_VALUE })?;
+    let size = size.with_field(values, each);
+    within(document, size, &Part { key, words, memory: values * each })?;
     Ok(size)
 }
 

@@ -313,8 +313,7 @@ fn field(document: &Document, part: &Part, size: &mut Size, faults: &mut Vec<Fau
         }
     };
     let system = FieldSystem::new(eml, placing.as_ref()).map_err(|error| tell(error, faults)).ok()?;
-    let of_field = [system.grid().len(), eml.fields.len()];
-    *size = size::with_field(document, part.name, *size, of_field).map_err(|error| tell(error, faults)).ok()?;
+    *size = size::with_field(document, part.name, *size, &system).map_err(|error| tell(error, faults)).ok()?;
     let folder = document.resolve(&entry.document);
     let load = |profile: &eml::Profile, grid: &_| profile::load(&folder, profile, grid);
     let start = system.start(&load).map_err(|error| tell(error, faults)).ok()?;
