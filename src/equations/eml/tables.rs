@@ -42,11 +42,14 @@ pub(super) fn table(context: &mut Context, element: &Element, units: Option<[&st
     Some(Function { arguments: vec![ARGUMENT.to_owned()], body: body(&rows, interpolation, units) })
 }
 
+/// What is wrong with a table: its bytes, what was found, a few words beside them, what to do.
+type Misread = (Range<usize>, String, &'static str, &'static str);
+
 /// Rows of a text with where they stand in it: two numbers each.
 type Cells<'t> = Vec<[(&'t str, Range<usize>); 2]>;
 
-/// The numbers of rows; a fault has the bytes of the text, what was found, a few words and what to do.
-fn numbers(cells: &Cells) -> Result<Vec<[f64; 2]>, (Range<usize>, String, &'static str, &'static str)> {
+/// The numbers of rows.
+fn numbers(cells: &Cells) -> Result<Vec<[f64; 2]>, Misread> {
     let mut rows: Vec<[f64; 2]> = Vec::with_capacity(cells.len());
     for row in cells {
         let mut read = [0.0; 2];
@@ -147,10 +150,7 @@ fn from_file(context: &mut Context, element: &Element) -> Option<Vec<[f64; 2]>> 
 }
 
 /// The cells of the two columns that a table names, of its file.
-fn columns<'t>(
-    text: &'t str,
-    element: &Element,
-) -> Result<Cells<'t>, (Range<usize>, String, &'static str, &'static str)> {
+fn columns<'t>(text: &'t str, element: &Element) -> Result<Cells<'t>, Misread> {
     let mut lines = lines(text);
     let (start, head) = lines.next().unwrap_or((0, ""));
     let sign = [';', '\t'].into_iter().find(|sign| head.contains(*sign)).unwrap_or(',');
