@@ -298,3 +298,55 @@ fn halves_of_fixed_steps_err_a_quarter_with_all_that_acts_in_turn() {
     let order = order(&errors);
     assert!((1.7..2.6).contains(&order), "{errors:?}: {order}");
 }
+
+#[test]
+fn stages_of_a_long_step_see_the_time_where_they_are() {
+    // The second moment grows by 2 ∫ D dt whatever the grid, so that what is left is the step's error in time alone.
+    let error = |steps: u32| {
+        let (system, mut fields) = open(
+            "<eml name=\"course\"><grid dimension=\"1\" spacing=\"0.5\" origin=\"-20\" size=\"40\"/>
+             <field id=\"c\" diffusion=\"1 + time^3\" initial=\"exp(-x^2/2)\"/></eml>",
+        );
+        let moment = |fields: &Fields| {
+            let boxes = fields.values(0).iter().enumerate();
+            let sum: f64 = boxes.map(|(at, value)| value * fields.grid().centre(at).x.powi(2)).sum();
+            sum / fields.values(0).iter().sum::<f64>()
+        };
+        let before = moment(&fields);
+        system.advance(&mut fields, 2.0, &[], Stepping::Fixed(steps)).expect("a window");
+        (moment(&fields) - before - 2.0 * (2.0 + 4.0)).abs()
+    };
+    let errors = [error(4), error(8)];
+    // The trapezoidal rule errs 0.125 in steps of 0.25.
+    assert!(order(&errors) > 1.7 && errors[1] < 0.25, "{errors:?}: {}", order(&errors));
+}
+
+#[test]
+fn a_long_step_of_what_is_rough_leaves_nothing_below_zero() {
+    for steps in 1..=12 {
+        let (_, fields) = solved(
+            "<eml name=\"rough\"><grid dimension=\"1\" spacing=\"1\" origin=\"-20\" size=\"40\"/>
+             <field id=\"c\" diffusion=\"2 + 0.01*x\" initial=\"piecewise(1, x gt 0 and x lt 1, 0)\"><advection x=\"0.8\"/></field></eml>",
+            6.0,
+            1,
+            Stepping::Fixed(steps),
+        );
+        assert!(fields.values(0).iter().all(|value| *value >= 0.0));
+        assert!((fields.amount(0) - 1.0).abs() < 1e-12, "{}", fields.amount(0));
+    }
+}
+
+#[test]
+fn a_sink_takes_no_more_than_there_is() {
+    for steps in [1, 2, 5] {
+        let (_, fields) = solved(
+            "<eml name=\"sink\"><grid dimension=\"1\" spacing=\"1\" origin=\"-20\" size=\"40\"/>
+             <field id=\"c\" diffusion=\"2\" initial=\"0.1\"><source at=\"-5.5\" strength=\"-1\"/></field></eml>",
+            6.0,
+            1,
+            Stepping::Fixed(steps),
+        );
+        assert!(fields.values(0).iter().all(|value| *value >= 0.0));
+        assert!(fields.amount(0) < 4.0 && fields.values(0)[14] < 0.02, "{:?}", fields.values(0));
+    }
+}
