@@ -30,7 +30,7 @@ pub enum EmlCommand {
     /// Checks documents and says what is in them.
     Check(check::CheckArgs),
     /// Solves the equations of a document, without any cells.
-    Solve(options::SolveArgs),
+    Solve(Box<options::SolveArgs>),
     /// Writes an SBML model as an EML document.
     FromSbml(from_sbml::FromSbmlArgs),
     /// Writes an EML document as an SBML model.
