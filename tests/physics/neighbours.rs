@@ -93,14 +93,14 @@ fn who_touches_nobody_reads_nothing() {
     );
 }
 
-/// Cells at some points that have the document `delta_notch`, whose hours are seconds.
+/// Cells at some points, where they stay, that have the document `delta_notch`, whose hours are seconds.
 fn lateral(at: &[Vec3]) -> Scene {
     let points: Vec<String> = at.iter().map(|x| format!("[\"{} um\", \"{} um\", \"0 um\"]", x.x, x.y)).collect();
     let text = format!(
-        "seed = 2\n[run]\nuntil = \"60 s\"\nintegrator = {{ step = \"0.25 s\" }}\n[output]\nevery = \"60 s\"\n\
+        "seed = 2\n[run]\nuntil = \"200 s\"\nintegrator = {{ step = \"0.5 s\" }}\n[output]\nevery = \"200 s\"\n\
          [cells.cell]\nmesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 1 }}\nchemistry = [\"delta_notch\"]\n\
          placement = {{ at = [{}] }}\nmechanics = {{ drag = \"20 pN s/um\", shape_memory = {{ shape_modulus = \"10 pN/um\" }} }}\n\
-         [contact]\nstrength = \"1 Pa\"\nmodel = \"adhesives\"\nproximity = \"1 um\"\n\
+         [contact]\nstrength = \"1e-9 Pa\"\nmodel = \"adhesives\"\nproximity = \"1 um\"\n\
          [chemistry.delta_notch]\ndocument = \"delta_notch.eml\"\nset = {{ decay = 3600 }}\n",
         points.join(", ")
     );
