@@ -44,7 +44,7 @@ fn a_wall_that_lets_pass_by_a_transfer_coefficient_is_at_rest_with_second_order(
 fn a_wall_that_swings_sends_a_wave_that_dies_as_stokes_says() {
     // c = 2 + exp(−x q) cos(ω t − x q), q = √(ω/2D).
     let (omega, diffusion) = (2.0 * PI / 10.0, 2.0);
-    let rate = (omega / (2.0 * diffusion) as f64).sqrt();
+    let rate = (omega / (2.0 * diffusion)).sqrt();
     let exact = |x: f64, t: f64| 2.0 + (-x * rate).exp() * (omega * t - x * rate).cos();
     let errors: Vec<f64> = [0.5, 0.25]
         .map(|spacing| {
