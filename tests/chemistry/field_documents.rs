@@ -76,3 +76,57 @@ fn predators_invade_prey_at_the_speed_of_their_foremost() {
     println!("NOTE speed {found}, by theory {exact}, at last {}", speed(best));
     assert!((found / exact - 1.0).abs() < 0.01, "{found} {exact}");
 }
+
+/// How far the front of an Oregonator has come at two times, by Euler's rule in very small steps on boxes of some width.
+fn fronts_by_euler(h: f64, times: [f64; 2]) -> [f64; 2] {
+    let (epsilon, f, q) = (0.01, 3.0, 0.002);
+    let rest = 0.5 * (((f + q - 1.0_f64).powi(2) + 4.0 * q * (1.0 + f)).sqrt() - (f + q - 1.0));
+    let n = (8.0 / h).round() as usize;
+    let centre = |at: usize| (at as f64 + 0.5) * h;
+    let mut u: Vec<f64> = (0..n).map(|at| if centre(at) < 0.5 { 0.8 } else { rest }).collect();
+    let (mut w, dt) = (vec![rest; n], 0.2 * h * h);
+    let (mut next_u, mut next_w) = (u.clone(), w.clone());
+    let mut done = 0;
+    times.map(|time| {
+        while f64::from(done) * dt < time {
+            let spread =
+                |c: &[f64], at: usize| (c[at.saturating_sub(1)] + c[(at + 1).min(n - 1)] - 2.0 * c[at]) / (h * h);
+            for at in 0..n {
+                let (a, b) = (u[at], w[at]);
+                next_u[at] = a + dt * ((a * (1.0 - a) - f * b * (a - q) / (a + q)) / epsilon + spread(&u, at));
+                next_w[at] = b + dt * (a - b + 0.6 * spread(&w, at));
+            }
+            std::mem::swap(&mut u, &mut next_u);
+            std::mem::swap(&mut w, &mut next_w);
+            done += 1;
+        }
+        where_it_falls(&u, h)
+    })
+}
+
+/// Where the last box of much acid is, between it and the next.
+fn where_it_falls(u: &[f64], h: f64) -> f64 {
+    let at = u.iter().rposition(|value| *value > 0.3).expect("a front");
+    (at as f64 + 0.5 + (u[at] - 0.3) / (u[at] - u[at + 1])) * h
+}
+
+#[test]
+fn the_front_of_an_oregonator_runs_as_fast_as_on_finer_grids_in_tiny_steps() {
+    let times = [0.15, 0.3];
+    let [coarse, fine] = [0.02, 0.01].map(|h| {
+        let [first, last] = fronts_by_euler(h, times);
+        (last - first) / (times[1] - times[0])
+    });
+    // Of second order in the boxes, and so in steps that go with their square.
+    let exact = fine + (fine - coarse) / 3.0;
+    let (system, mut fields) = from_file("oregonator", &[]);
+    let mut fronts = [0.0; 2];
+    for front in &mut fronts {
+        system.advance(&mut fields, 0.15, &[], usual(&system)).expect("a window");
+        *front = where_it_falls(fields.values(0), 0.02);
+    }
+    let found = (fronts[1] - fronts[0]) / 0.15;
+    println!("NOTE speed {found}, on the same grid {coarse}, by extrapolation {exact}");
+    assert!((found / exact - 1.0).abs() < 0.01 && (found / coarse - 1.0).abs() < 0.01, "{found} {coarse} {exact}");
+    assert!((10.0..20.0).contains(&exact), "a front at all: {exact}");
+}
