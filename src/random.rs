@@ -6,9 +6,11 @@
 
 mod choices;
 mod normals;
+mod uniforms;
 
 pub use choices::Choices;
 pub use normals::Normals;
+pub use uniforms::Uniforms;
 
 use crate::elementary::{FNV_START, fnv1a};
 
@@ -40,6 +42,8 @@ pub enum Purpose {
     Design = 9,
     /// Seeds of the runs of a study; the number of the replicate stands for the cell, that of the point for the draw.
     Replicate = 10,
+    /// Values with which systems start; see [`Uniforms`].
+    Starts = 11,
     /// Which cells are drawn for an interval by the bootstrap; the number of the draw stands for the cell. Numbers of analysis begin with 100.
     Bootstrap = 100,
 }

@@ -34,6 +34,7 @@ mod rosenbrock;
 mod scheme;
 pub(crate) mod scratch;
 mod solve;
+mod starts;
 mod stepper;
 mod stops;
 mod substeps;
@@ -52,6 +53,7 @@ pub use pieces::Piece;
 pub use population::{BlockView, LANES, Population};
 pub use scheme::Scheme;
 pub use solve::{Solution, SolveOptions, solve, solve_each};
+pub use starts::{Starts, drawn};
 pub use substeps::{Kick, Pace, Substep, Substeps};
 
 use serde::{Deserialize, Serialize};

@@ -9,6 +9,7 @@ use super::events::{Chooser, EventBuffers, EventPlan, Events};
 #[cfg(feature = "diffsol")]
 use super::multistep;
 use super::scheme::Scheme;
+use super::starts::drawn;
 use super::stepper::Stepper;
 use super::switches::LOOKS_IN_SOLVE;
 use super::{Method, Numbers, OdeTrouble, Reason, Work};
@@ -102,6 +103,7 @@ pub fn solve_each(
         reason: Reason::Solver,
         detail,
     };
+    let system = &*drawn(system, Numbers { seed: options.seed, system: &system.name }, 0);
     let compiled = EventPlan::compile(system, from);
     let (program, plan) = compiled.map_err(|circle| trouble(format!("a circle of {}", circle.join(", "))))?;
     let tolerances =

@@ -34,7 +34,7 @@ pub fn add_cells(
     let mut counts = state.counts();
     for (cell, &id) in cells.iter().zip(&ids) {
         next.kinds[kind].push(model, &model.kinds[kind], id, cell);
-        next.chemistry.insert_cell(model, &counts, kind, counts[kind]);
+        next.chemistry.insert_cell(model, &counts, (kind, counts[kind]), id);
         counts[kind] += 1;
     }
     next.next_id += cells.len() as u64;

@@ -61,7 +61,7 @@ fn add_chemistry(hash: &mut Fnv, chemistry: &Chemistry) {
     for reactor in &chemistry.reactors {
         hash.value(&(&reactor.name, &reactor.program, &reactor.events, &reactor.members));
         hash.value(&(reactor.seconds, reactor.method, reactor.tolerances, reactor.exchange));
-        hash.value(&(&reactor.noise, reactor.pace));
+        hash.value(&(&reactor.noise, &reactor.starts, reactor.pace));
         if let Some(membrane) = &reactor.membrane {
             hash.value(&membrane.system);
         }

@@ -7,6 +7,7 @@ mod eml_models;
 mod eml_reactions;
 mod eml_repeat;
 mod eml_schedules;
+mod eml_starts;
 mod eml_tables;
 mod eml_write;
 mod engine_events;

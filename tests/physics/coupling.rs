@@ -369,7 +369,7 @@ fn what_chemistry_knows_of_a_cell_comes_and_goes_with_it() {
     let before = &scene.state().chemistry;
     for (kind, local, cell) in [(0, 0, 0), (0, 3, 3), (1, 1, 4), (1, 2, 5)] {
         let mut after = before.clone();
-        after.insert_cell(model, &[3, 2], kind, local);
+        after.insert_cell(model, &[3, 2], (kind, local), 5);
         assert_eq!((after.populations[0].cells(), after.events[0].len(), after.controls.bias.len()), (6, 6, 6));
         let new = (after.populations[0].state(cell, 0), after.controls.stiffness[cell], after.controls.bias[cell]);
         assert_eq!((new, after.controls.secretion[0][cell]), ((2.0, 1.0, [0.0; 3]), 0.0), "as at the start");
@@ -529,4 +529,34 @@ strength = "0.5 pN/um^2"
     let at = |time: f64| rows.iter().rfind(|(when, _)| *when <= time).unwrap().1;
     assert!(at(39.9) > 0, "they hold against the pull");
     assert_eq!(at(60.0), 0, "they are apart");
+}
+
+#[test]
+fn each_cell_begins_at_what_is_drawn_for_its_id_on_any_threads() {
+    let own = r#"<eml name="own" level="cell"><variable id="k" initial="lognormal(2, 0.3)" rate="0"/>
+        <variable id="u" initial="uniform(0, 1)" rate="-k*u"/><solver scheme="rk45" rtol="1e-10" atol="1e-12"/></eml>"#;
+    let document = pseudopod::equations::eml::read(std::sync::Arc::new(pseudopod::error::Source {
+        name: "own.eml".into(),
+        text: own.to_owned(),
+    }));
+    let starts = pseudopod::ode::Starts::new(&document.expect("no fault").system).expect("something is drawn");
+    // The seed of the crowd.
+    let numbers = pseudopod::ode::Numbers { seed: 4, system: "own" };
+    for threads in [1, 3] {
+        let scene = crowd(threads, &[("own", own)], 5, |_| ());
+        let time = scene.state().time;
+        for cell in 0..37 {
+            let wanted = starts.values(numbers, cell as u64);
+            assert_eq!(scene.value(0, "k", cell), wanted[0]);
+            let u = wanted[1] * (-wanted[0] * time).exp();
+            assert!((scene.value(0, "u", cell) - u).abs() < 1e-8, "{cell}");
+        }
+    }
+    let mut scene = crowd(1, &[("own", own)], 2, |_| ());
+    let Scene { compiled, ws } = &mut scene;
+    let id = compiled.state.next_id;
+    let positions = compiled.model.kinds[0].rest.positions.iter().map(|x| x + Vec3::new(0.0, 0.0, 60.0)).collect();
+    let new = pseudopod::sim::NewCell { positions, parent: None };
+    pseudopod::sim::add_cells(&compiled.model, &mut compiled.state, ws, 0, &[new]).expect("space for one");
+    assert_eq!(scene.value(0, "k", 37), starts.values(numbers, id)[0]);
 }

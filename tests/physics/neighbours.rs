@@ -128,8 +128,7 @@ fn of_two_cells_that_begin_nearly_alike_one_takes_the_delta() {
     for _ in 0..100 {
         wanted = [delta(notch(wanted[1])), delta(notch(wanted[0]))];
     }
-    // Their unrest is 0.001/sqrt(2 * 3600).
-    assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-4), "{found:?} for {wanted:?}");
+    assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{found:?} for {wanted:?}");
 }
 
 #[test]

@@ -138,6 +138,9 @@ fn kinds(read: &Read) -> Vec<(&'static str, Vec<&str>)> {
     };
     let position = |quantity: &Quantity| given.contains(&quantity.id.as_str()) || sums.contains(&quantity.id.as_str());
     let is_surface = |quantity: &Quantity| surface.contains(&quantity.id.as_str());
+    let drawn: Vec<&str> =
+        system.draws.iter().map(|draw| system.quantities[draw.quantity as usize].id.as_str()).collect();
+    let is_drawn = |quantity: &Quantity| drawn.contains(&quantity.id.as_str());
     let mut kinds = vec![
         ("fields", fields.iter().map(|field| field.id.as_str()).collect()),
         (
@@ -146,7 +149,7 @@ fn kinds(read: &Read) -> Vec<(&'static str, Vec<&str>)> {
                 matches!(quantity.role, Role::Variable { .. }) && !is_field(quantity) && !is_surface(quantity)
             }),
         ),
-        ("parameters", of(&|quantity| matches!(quantity.role, Role::Parameter))),
+        ("parameters", of(&|quantity| matches!(quantity.role, Role::Parameter) && !is_drawn(quantity))),
         ("definitions", of(&|quantity| matches!(quantity.role, Role::Defined { .. }))),
         ("inputs", of(&|quantity| matches!(quantity.role, Role::Input) && !position(quantity))),
         ("events", system.events.iter().map(|event| event.id.as_str()).collect()),

@@ -3,10 +3,11 @@
 use super::circles::circles;
 use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
+use super::random_words::misplaced;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Node, Scope, Unit, UnitScope, is_constant, parse};
 use crate::equations::reactions;
-use crate::equations::tree::{Binary, Expr, Quantity, QuantityId, Role, System};
+use crate::equations::tree::{Binary, Draw, Expr, Quantity, QuantityId, Role, System};
 use crate::error::Location;
 use std::collections::HashMap;
 
@@ -34,6 +35,8 @@ pub(super) struct Builder<'a, 'd> {
     pub(super) known: Declarations<'a>,
     start: Scope,
     fixed: Scope,
+    /// What is drawn where the system starts, with the names that stand for it.
+    pub(super) draws: Vec<(Draw, String)>,
     pub(super) now: Scope,
     before: Scope,
     /// Intervals of schedules, which must be above 0, and where they are written.
@@ -53,10 +56,10 @@ impl<'a, 'd> Builder<'a, 'd> {
             fixed.absent.insert(id.clone(), "this must keep one value: use numbers and parameters".to_owned());
         }
         let before = Scope { no_time: String::new(), ..fixed.clone() };
-        Self { context, known, start, fixed, now, before, schedules: Vec::new() }
+        Self { context, known, start, fixed, draws: Vec::new(), now, before, schedules: Vec::new() }
     }
 
-    fn scope(&self, allowed: Use) -> &Scope {
+    pub(super) fn scope(&self, allowed: Use) -> &Scope {
         match allowed {
             Use::All => &self.known.scope,
             Use::Start => &self.start,
@@ -70,6 +73,10 @@ impl<'a, 'd> Builder<'a, 'd> {
     pub(super) fn expression(&mut self, text: &Text, allowed: Use, expected: Option<(&Unit, &str)>) -> Option<Expr> {
         let (node, troubles) = parse(&text.text);
         troubles.iter().for_each(|trouble| tell(self.context, text, trouble));
+        if let Some(trouble) = misplaced(&node, &self.known.scope) {
+            tell(self.context, text, &trouble);
+            return None;
+        }
         let resolved = self.scope(allowed).resolve(&node);
         match resolved {
             Ok(expr) if troubles.is_empty() => {
@@ -86,7 +93,7 @@ impl<'a, 'd> Builder<'a, 'd> {
         }
     }
 
-    fn check_units(&mut self, text: &Text, node: &Node, expected: Option<(&Unit, &str)>) {
+    pub(super) fn check_units(&mut self, text: &Text, node: &Node, expected: Option<(&Unit, &str)>) {
         let mut troubles = Vec::new();
         let units = UnitScope { units: &self.known.units, scope: &self.known.scope, time: self.known.time_in_units() };
         match expected.filter(|_| units.time.is_some()) {
@@ -168,7 +175,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                 _ => {
                     let changed = by_reactions.remove(&(number as QuantityId));
                     let rate = self.rate(element, &id, equations.remove(id.as_str()), changed);
-                    (rate.map(|rate| Role::Variable { rate }), self.value(element, "initial", Use::Start, &id))
+                    (rate.map(|rate| Role::Variable { rate }), self.start_of(element, &id))
                 }
             };
             // After a fault something stands in its stead, so that all the rest can be read.
@@ -195,6 +202,8 @@ impl<'a, 'd> Builder<'a, 'd> {
             });
             locations.push(self.context.location(root.at.clone(), "given here"));
         }
+        quantities.extend(self.drawn_quantities());
+        locations.extend(self.draws.iter().map(|_| self.context.location(root.at.clone(), "drawn here")));
         (quantities, locations)
     }
 

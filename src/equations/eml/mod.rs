@@ -11,12 +11,14 @@ mod context;
 mod declare;
 mod delays;
 mod document;
+mod draws;
 mod events;
 mod fields;
 mod links;
 mod measured;
 mod membrane;
 mod noise;
+mod random_words;
 mod reactions;
 mod reads;
 mod repeat;
@@ -83,7 +85,8 @@ pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Document> {
     let links = builder.links(&root);
     let solver = builder.solver(&root);
     builder.check_noise(&root, &noise);
-    let system = System { name: root.word("name"), quantities, events, history, reactions };
+    let draws = builder.draws.iter().map(|(draw, _)| draw.clone()).collect();
+    let system = System { name: root.word("name"), quantities, events, history, reactions, draws };
     builder.check_values(&system);
     builder.finish_fields(&mut fields, &system);
     if let Some(membrane) = &mut membrane {

@@ -183,6 +183,21 @@ pub struct System {
     /// Reactions. The rate of a variable that one of them changes is the sum of its parts in all of them and nothing else, and
     /// stands in the variable as well: who solves the system need not look at them.
     pub reactions: Vec<Reaction>,
+    /// Numbers that are drawn for each cell where the system starts.
+    pub draws: Vec<Draw>,
+}
+
+/// A number that is drawn for each cell where a system starts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Draw {
+    /// The parameter that holds it; without a draw it is in its middle.
+    pub quantity: QuantityId,
+    /// The variable whose start uses it.
+    pub variable: String,
+    /// Which one of those of the variable it is.
+    pub element: u32,
+    /// Whether it is normal, with mean 0 and variance 1, or else uniform between 0 and 1.
+    pub is_normal: bool,
 }
 
 impl System {

@@ -6,7 +6,7 @@ use crate::cell::ends::AtomReading;
 use crate::equations::program::Program;
 use crate::equations::tree::QuantityId;
 use crate::field::{FieldSystem, Stepping};
-use crate::ode::{EventPlan, Method, Noise, Pace, Tolerances};
+use crate::ode::{EventPlan, Method, Noise, Pace, Starts, Tolerances};
 
 /// All chemistry of a model; empty lists where there is none.
 #[derive(Debug, Clone, Default)]
@@ -42,6 +42,8 @@ pub struct Reactor {
     pub events: EventPlan,
     /// Its noise, but for what of it lives on membranes; none where it has none.
     pub noise: Option<Noise>,
+    /// Starts that are drawn for each member; none where nothing is.
+    pub starts: Option<Starts>,
     /// How often noise kicks, in the system's unit of time.
     pub pace: Pace,
     /// What of it lives on the membranes of its cells; its own equations are those of their insides.

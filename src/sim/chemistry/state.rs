@@ -10,7 +10,7 @@ use super::links::{Control, Owner, Target, Whose};
 use super::model::{Members, Reactor};
 use crate::field::Fields;
 use crate::membrane::{MembraneCells, MembraneState};
-use crate::ode::{EventMemory, Population};
+use crate::ode::{EventMemory, Numbers, Population};
 
 /// Everything of chemistry that changes.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -52,7 +52,18 @@ impl ChemistryState {
         let chemistry = &model.chemistry;
         let reactors = &chemistry.reactors;
         let members = |reactor: &Reactor| reactor.members.count(|kind| cells[kind]);
-        let populations = reactors.iter().map(|r| Population::new(&r.program, members(r), r.method));
+        let populations = reactors.iter().map(|reactor| {
+            let mut population = Population::new(&reactor.program, members(reactor), reactor.method);
+            let first = |kind: usize| cells[..kind].iter().sum::<usize>() as u64;
+            let ids = |kind: &usize| first(*kind)..first(*kind) + cells[*kind] as u64;
+            match &reactor.members {
+                Members::Scene => draw_start(model.seed, reactor, &mut population, 0, 0),
+                Members::Kinds(kinds) => kinds.iter().flat_map(ids).enumerate().for_each(|(member, id)| {
+                    draw_start(model.seed, reactor, &mut population, member, id);
+                }),
+            }
+            population
+        });
         let events = |reactor: &Reactor| match reactor.events.is_empty() {
             true => Vec::new(),
             false => vec![reactor.events.before_start(0.0); members(reactor)],
@@ -145,6 +156,13 @@ impl ChemistryState {
             && self.events.iter().zip(&other.events).all(|(a, b)| events(a, b))
             && self.fields.iter().zip(&other.fields).all(|(a, b)| boxes(a, b))
     }
+}
+
+/// Gives a member of a system the start that is drawn for a cell with this id; nothing where none is.
+pub(super) fn draw_start(seed: u64, reactor: &Reactor, population: &mut Population, member: usize, id: u64) {
+    let Some(starts) = &reactor.starts else { return };
+    let values = starts.values(Numbers { seed, system: &reactor.name }, id);
+    values.iter().enumerate().for_each(|(variable, &value)| population.set_state(member, variable, value));
 }
 
 /// Makes a list the same as another, its first things without allocating, where `copy` does not.

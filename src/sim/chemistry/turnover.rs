@@ -4,18 +4,18 @@ use super::super::controls::Controls;
 use super::super::kind::Kind;
 use super::super::model::Model;
 use super::model::Members;
-use super::state::{ChemistryState, admit_atoms};
+use super::state::{ChemistryState, admit_atoms, draw_start};
 use crate::Vec3;
 use crate::cell::pseudopods::Told;
 use crate::mechanics::CONTROLLED;
 
 impl ChemistryState {
     /// A cell comes: every system of its kind gets a member at the system's start, and no link has set anything of it. It stands before
-    /// the cell with the number `local` among those of its kind; `cells` says how many each kind has without it.
+    /// the cell with the number `local` among those of its kind, and has an id, by which starts are drawn; `cells` says how many each kind has without it.
     ///
     /// # Panics
     /// When there is no such kind, or it has fewer cells.
-    pub fn insert_cell(&mut self, model: &Model, cells: &[usize], kind: usize, local: usize) {
+    pub fn insert_cell(&mut self, model: &Model, cells: &[usize], (kind, local): (usize, usize), id: u64) {
         let chemistry = &model.chemistry;
         assert!(local <= cells[kind], "before cell {local} of {}", cells[kind]);
         for (number, reactor) in chemistry.reactors.iter().enumerate() {
@@ -23,6 +23,7 @@ impl ChemistryState {
             let Some(at) = kinds.iter().position(|&other| other == kind) else { continue };
             let member = kinds[..at].iter().map(|&kind| cells[kind]).sum::<usize>() + local;
             self.populations[number].insert_default(&reactor.program, member);
+            draw_start(model.seed, reactor, &mut self.populations[number], member, id);
             if reactor.membrane.is_some() {
                 self.membranes[number].kinds[at].insert(local);
             }

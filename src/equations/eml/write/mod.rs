@@ -120,7 +120,7 @@ impl<'a> Writer<'a> {
             Level::Membrane => SURFACE.contains(&quantity.id.as_str()),
             Level::Scene | Level::Cell => false,
         };
-        if is_given {
+        if is_given || document.system.draws.iter().any(|draw| draw.quantity == number) {
             return;
         }
         let id = self.names.quantities[number as usize].clone();

@@ -34,7 +34,12 @@ impl Names {
             name
         };
         let mut quantities = Vec::with_capacity(system.quantities.len());
-        for quantity in &system.quantities {
+        for (number, quantity) in system.quantities.iter().enumerate() {
+            // What is drawn is written as the call that draws it.
+            if let Some(draw) = system.draws.iter().find(|draw| draw.quantity as usize == number) {
+                quantities.push(if draw.is_normal { "normal(0, 1)" } else { "uniform(0, 1)" }.to_owned());
+                continue;
+            }
             let keeps = stands(&quantity.id) || position(&quantity.id);
             quantities.push(if keeps { quantity.id.clone() } else { new_name(&quantity.id, &mut told) });
         }

@@ -40,6 +40,9 @@ pub fn notices(document: &Document, names: &[String]) -> Vec<String> {
             notices.push(format!("the input `{id}` is a constant with its default"));
         }
     }
+    for draw in document.system.draws.iter().filter(|draw| draw.element == 0) {
+        notices.push(format!("the start of `{}` is drawn at random: it is the middle one", draw.variable));
+    }
     for link in &document.links {
         notices.push(format!("the link from {} to {} is left out", link.from.text, link.to.text));
     }

@@ -94,6 +94,7 @@ pub(super) fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: 
         events: EventPlan::default(),
         // Surface and pools are kicked together, with the membrane.
         noise: None,
+        starts: None,
         pace,
         membrane: Some(Membrane::new(system, &part.kinds, kinds)),
         members: Members::Kinds(part.kinds.clone()),

@@ -18,7 +18,9 @@ use crate::equations::program::initial_values;
 use crate::equations::tree::{Quantity, QuantityId, Role};
 use crate::error::{Error, Fault, Location};
 use crate::field::{FieldSystem, Fields, Placing};
-use crate::ode::{EventPlan, MOST_IMPLICIT, Method, Noise, Pace, Tolerances, assigned_parameters, clocked, too_large};
+use crate::ode::{
+    EventPlan, MOST_IMPLICIT, Method, Noise, Pace, Starts, Tolerances, assigned_parameters, clocked, too_large,
+};
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
 
@@ -180,6 +182,7 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         program,
         events,
         noise,
+        starts: Starts::new(&eml.system),
         pace: pace(document, part, eml.seconds, faults),
         membrane: None,
         members,
