@@ -306,7 +306,9 @@ fn documents_that_ship_solve_to_the_same_numbers() {
         let document = good(&std::fs::read_to_string(&path).expect("a text")).document;
         if sbml::write(&document).is_err() {
             assert!(
-                document.level == eml::Level::Field || document.level == eml::Level::Membrane,
+                document.level == eml::Level::Field
+                    || document.level == eml::Level::Membrane
+                    || !document.noise.is_empty(),
                 "{}",
                 path.display()
             );
@@ -316,9 +318,13 @@ fn documents_that_ship_solve_to_the_same_numbers() {
         let again = written(&document).1;
         let times = [0.0, 1.0, 5.0, 20.0, 30.0];
         let options = SolveOptions { relative: 1e-9, absolute: 1e-12, ..SolveOptions::default() };
-        let [old, new] = [&document.system, &again]
-            .map(|system| solve(system, 0.0, 30.0, &times, &options).expect("a course").values);
-        for (number, quantity) in document.system.quantities.iter().enumerate() {
+        // What is drawn is in its middle there.
+        let undrawn = System { draws: Vec::new(), ..document.system.clone() };
+        let is_drawn = |number: usize| document.system.draws.iter().any(|draw| draw.quantity as usize == number);
+        let [old, new] =
+            [&undrawn, &again].map(|system| solve(system, 0.0, 30.0, &times, &options).expect("a course").values);
+        for (number, quantity) in document.system.quantities.iter().enumerate().filter(|(number, _)| !is_drawn(*number))
+        {
             let column = again.find(&quantity.id).expect("the same names") as usize;
             for (old, new) in old.iter().zip(&new) {
                 let (a, b) = (old[number], new[column]);

@@ -70,9 +70,12 @@ impl Builder<'_, '_> {
                         .label("2 arguments")
                         .help(format!("give {needs}")));
                 };
+                let is_bare = |node: &Node, value: f64| node.kind == NodeKind::Number(value, None);
+                let is_standard = *known != "lognormal" && is_bare(a, 0.0) && is_bare(b, 1.0);
                 let (a, b) = (a.clone(), b.clone());
                 let number = new(NodeKind::Name(self.draw(variable, *known != "uniform")));
                 *node = match *known {
+                    _ if is_standard => number,
                     "uniform" => {
                         of_both(Binary::Add, a.clone(), of_both(Binary::Mul, of_both(Binary::Sub, b, a), number))
                     }
