@@ -48,7 +48,7 @@ pub struct SolveArgs {
     /// The most steps that are taken.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_steps: Option<u32>,
-    /// The seed of the choices between events of one time and one priority.
+    /// The seed of what is drawn at random: starts, and the order of events of one time and one priority.
     #[arg(long, value_name = "NUMBER", default_value_t = 0)]
     pub seed: u64,
     /// The table to write, as CSV; the terminal when absent.
