@@ -97,8 +97,13 @@ fn libsbml_and_libroadrunner_agree_with_us() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut count = 0;
     for document in files(Path::new("eml"), ".eml") {
-        if pseudopod(&["eml", "to-sbml", &document.display().to_string()]).status.success() {
-            write(&document, folder.path(), 60.0);
+        let written = pseudopod(&["eml", "to-sbml", &document.display().to_string()]);
+        // What is drawn is in its middle there.
+        let is_drawn = String::from_utf8_lossy(&written.stderr).contains("drawn at random");
+        if written.status.success() && !is_drawn {
+            // Errors of this one grow by e in each unit of time.
+            let until = if document.ends_with("lorenz.eml") { 5.0 } else { 60.0 };
+            write(&document, folder.path(), until);
             count += 1;
         }
     }
