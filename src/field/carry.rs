@@ -15,6 +15,8 @@ const SLACK: f64 = 0.8;
 const SPECK: f64 = 1e-20;
 /// Most steps of transport within a step of the splitting: more say that something grows without bound.
 const MOST: u32 = 200_000;
+/// Most steps within a window, by the speed at its begin: more take hours on any grid.
+pub const MOST_IN_WINDOW: f64 = 1e8;
 /// Most stages of a step.
 const MOST_STAGES: f64 = 400.0;
 
@@ -29,6 +31,8 @@ pub struct CarryScratch {
     stage: Vec<f64>,
     first_rates: Vec<f64>,
     rates: Vec<f64>,
+    /// How many boxes a flow passes in a second, or shares of what boxes hold leave them, where that is too fast for the window.
+    pub too_fast: Option<f64>,
 }
 
 impl CarryScratch {
@@ -54,6 +58,8 @@ impl CarryScratch {
 pub struct Carrying<'a> {
     pub transport: &'a Transport,
     pub inputs: &'a [f64],
+    /// How long the window is, s.
+    pub window: f64,
 }
 
 impl Carrying<'_> {
@@ -67,6 +73,11 @@ impl Carrying<'_> {
             let speeds = course.first(time + done);
             let small = SLACK / speeds.losing.max(f64::MIN_POSITIVE);
             if !(small.is_finite() || speeds.losing == 0.0) || speeds.losing.is_nan() {
+                break;
+            }
+            let longest = small.max(COURANT / speeds.passing.max(f64::MIN_POSITIVE));
+            if self.window > MOST_IN_WINDOW * longest {
+                course.scratch.too_fast = Some(speeds.losing.min(speeds.passing));
                 break;
             }
             // In pieces of one length, so that a little is not left at the end.
@@ -120,7 +131,7 @@ struct Course<'a> {
 impl Course<'_> {
     /// Works out the rates at the values.
     fn first(&mut self, time: f64) -> Speeds {
-        let Self { carrying: Carrying { transport, inputs }, grid, scratch, values } = self;
+        let Self { carrying: Carrying { transport, inputs, .. }, grid, scratch, values } = self;
         let CarryScratch { tables, parts, start, first_rates, .. } = &mut **scratch;
         start.copy_from_slice(values);
         let now = Now { grid, scales: transport.scales, time, inputs, values: start, ranges: &transport.ranges };
@@ -129,7 +140,7 @@ impl Course<'_> {
 
     /// Works out the rates at the values within a step.
     fn again(&mut self, time: f64) {
-        let Self { carrying: Carrying { transport, inputs }, grid, scratch, values } = self;
+        let Self { carrying: Carrying { transport, inputs, .. }, grid, scratch, values } = self;
         let CarryScratch { tables, parts, rates: to, .. } = &mut **scratch;
         let now = Now { grid, scales: transport.scales, time, inputs, values, ranges: &transport.ranges };
         rates(transport, &now, tables, parts, to);

@@ -1,7 +1,7 @@
 //! Moves fields through a window of time: reactions for half a step, diffusion and decay for a step, reactions for
 //! half a step, eq. (field.1), with steps as small as the splitting asks.
 
-use super::carry::Carrying;
+use super::carry::{Carrying, MOST_IN_WINDOW};
 use super::error::{error_of_rates, error_of_size};
 use super::react::{React, react};
 use super::state::{FINEST, Fields};
@@ -95,7 +95,10 @@ impl Fields {
             }
             Stepping::Adaptive { relative, absolute } => self.adapt(window, [relative, absolute], acts),
         };
-        let report = report.and_then(|report| self.check_finite(UNBOUND).map(|()| report));
+        let report = match self.work.carrying.too_fast.take() {
+            Some(speed) => Err(too_fast(speed, (began, window))),
+            None => report.and_then(|report| self.check_finite(UNBOUND).map(|()| report)),
+        };
         if report.is_err() {
             self.values.copy_from_slice(&start);
             self.set_pace(pace);
@@ -145,7 +148,7 @@ impl Fields {
                 if too_large(error) {
                     report.rejected += 1;
                     self.level += 1;
-                    if self.level > FINEST {
+                    if self.level > FINEST || self.work.carrying.too_fast.is_some() {
                         return Err(self.unreachable_tolerance(dt));
                     }
                     continue;
@@ -290,5 +293,17 @@ impl Fields {
             help: help.into(),
             kept: None,
         })
+    }
+}
+
+/// The fault of a flow that passes so many boxes in a second, in a window that begins at a time and is so long, s.
+fn too_fast(speed: f64, (time, window): (f64, f64)) -> Error {
+    let (speed, time, window) = (short(speed), short(time), short(window));
+    Error::Numbers {
+        message: format!(
+            "a flow passes {speed} boxes in a second at t = {time} s; the next {window} s would take more than {MOST_IN_WINDOW:e} steps"
+        ),
+        help: "check the unit of the velocity or of the sensitivity, or take larger boxes".into(),
+        kept: None,
     }
 }

@@ -230,7 +230,7 @@ impl FieldSystem {
     pub fn advance(&self, fields: &mut Fields, window: f64, inputs: &[f64], stepping: Stepping) -> Result<Report> {
         assert_eq!(inputs.len(), self.inputs.len(), "one number for each input of '{}'", self.name);
         assert_eq!(fields.species().len(), self.species.len(), "the fields of '{}'", self.name);
-        let carrying = self.transport.as_ref().map(|transport| Carrying { transport, inputs });
+        let carrying = self.transport.as_ref().map(|transport| Carrying { transport, inputs, window });
         let Some(reactor) = &self.reactor else {
             let acts = Acts { reactions: None, carrying };
             return fields.advance_all(window, stepping, acts).map_err(|error| self.named(error));

@@ -41,6 +41,7 @@ fn lotka_and_volterra_keep_what_they_keep_and_their_means_are_those_of_rest() {
         let rows = rows(&system, &["prey", "predators"], &times, (method, 1e-9));
         let kept = |row: &[f64]| gamma * row[0].ln() - delta * row[0] + alpha * row[1].ln() - beta * row[1];
         let worst = rows.iter().map(|row| (kept(row) - kept(&rows[0])).abs()).fold(0.0, f64::max);
+        // A thousand times the tolerance for errors that add up over 40 days, in which what is kept has slopes of some 10 by the logarithms.
         assert!(worst < 1e-6, "{method:?}: {worst}");
         // A period ends where the prey passes its start again in the same direction.
         let turns: Vec<f64> = (1..rows.len())
@@ -60,6 +61,7 @@ fn lotka_and_volterra_keep_what_they_keep_and_their_means_are_those_of_rest() {
             let ends = 0.5 * (at(first) + rows[begin][species]) * (begin as f64 - first)
                 + 0.5 * (rows[end][species] + at(last)) * (last - end as f64);
             let mean = (inner + ends) / (last - first);
+            // Rows are 1e-3 apart; the ends of the period lie on lines between them.
             assert!((mean / rest - 1.0).abs() < 1e-5, "{method:?}, {species}: {mean} for {rest}");
         }
     }
@@ -87,13 +89,13 @@ fn by_series(until: f64) -> [f64; 3] {
 #[test]
 fn lorenz_goes_where_the_taylor_series_goes() {
     let system = document("lorenz").system;
-    for (until, error) in [(5.0, 1e-9), (15.0, 1e-5)] {
+    for until in [5.0, 15.0] {
         let found = &rows(&system, &["x", "y", "z"], &[until], (Method::Rk65, 1e-13))[0];
         let wanted = by_series(until);
         let worst = found.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        // Errors grow by exp(0.9 t), and more at first.
+        // What the tolerance allows of the largest value, some 30, grows with Lyapunov's exponent, 0.9.
         println!("{until}: {worst:.1e}");
-        assert!(worst < error, "{until}: {found:?} {wanted:?}");
+        assert!(worst < 30.0 * 1e-13 * (0.9 * until).exp(), "{until}: {found:?} {wanted:?}");
     }
 }
 
@@ -131,6 +133,35 @@ fn jacobian(system: &System, input: (&str, f64), state: [f64; 4]) -> Matrix4<f64
     })
 }
 
+/// The time between spikes at 10 uA/cm^2, ms, of equations that are written out here, by the classical method in steps of 0.005 ms.
+fn period_by_runge_and_kutta() -> f64 {
+    let ramp = |x: f64| if x.abs() < 1e-9 { 1.0 } else { x / (1.0 - (-x).exp()) };
+    let rates = |[v, m, h, n]: [f64; 4]| {
+        let sodium = 120.0 * m.powi(3) * h * (v - 50.0);
+        let rest = 36.0 * n.powi(4) * (v + 77.0) + 0.3 * (v + 54.387);
+        [
+            10.0 - sodium - rest,
+            ramp((v + 40.0) / 10.0) * (1.0 - m) - 4.0 * (-(v + 65.0) / 18.0).exp() * m,
+            0.07 * (-(v + 65.0) / 20.0).exp() * (1.0 - h) - h / (1.0 + (-(v + 35.0) / 10.0).exp()),
+            0.1 * ramp((v + 55.0) / 10.0) * (1.0 - n) - 0.125 * (-(v + 65.0) / 80.0).exp() * n,
+        ]
+    };
+    let (mut y, step, mut spikes) = ([-65.0, 0.0529, 0.5961, 0.3177], 0.005, Vec::new());
+    for number in 0..40_000 {
+        let moved = |by: f64, k: [f64; 4]| std::array::from_fn(|i| y[i] + by * step * k[i]);
+        let a = rates(y);
+        let b = rates(moved(0.5, a));
+        let c = rates(moved(0.5, b));
+        let d = rates(moved(1.0, c));
+        let next: [f64; 4] = std::array::from_fn(|i| y[i] + step / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+        if number >= 20_000 && y[0] < 0.0 && next[0] >= 0.0 {
+            spikes.push(step * (f64::from(number) - y[0] / (next[0] - y[0])));
+        }
+        y = next;
+    }
+    (spikes[spikes.len() - 1] - spikes[0]) / (spikes.len() - 1) as f64
+}
+
 #[test]
 fn hodgkin_and_huxley_fire_between_two_bifurcations() {
     let system = document("hodgkin_huxley").system;
@@ -161,7 +192,8 @@ fn hodgkin_and_huxley_fire_between_two_bifurcations() {
     // Rinzel and Miller (1980), at 6.3 degrees, the temperature of these rates.
     let (lower, upper) = (hopf(-65.0, -55.0), hopf(-50.0, -35.0));
     println!("{lower} {upper}");
-    assert!((lower - 9.78).abs() < 0.05 && (upper - 154.5).abs() < 0.5, "{lower} {upper}");
+    // To the digits that are published.
+    assert!((lower - 9.78).abs() < 0.01 && (upper - 154.5).abs() < 0.05, "{lower} {upper}");
     // A train of spikes, whose period the implicit and the explicit methods share, with peaks near the voltage of sodium.
     let times: Vec<f64> = (0..=20_000).map(|i| f64::from(i) * 0.01).collect();
     let periods = ADAPTIVE.map(|method| {
@@ -174,10 +206,10 @@ fn hodgkin_and_huxley_fire_between_two_bifurcations() {
             .collect();
         (turns[turns.len() - 1] - turns[0]) / (turns.len() - 1) as f64
     });
-    println!("{periods:?}");
-    assert!(periods.iter().all(|period| (period - periods[0]).abs() < 1e-4), "{periods:?}");
-    // Some 68 spikes a second at 10 uA/cm^2.
-    assert!((1000.0 / periods[0] - 68.3).abs() < 1.0, "{periods:?}");
+    let wanted = period_by_runge_and_kutta();
+    println!("{periods:?} for {wanted}: {} spikes a second", 1000.0 / wanted);
+    // Spikes are met between rows of 0.01 ms, which bends of the flank move by some 1e-4 ms.
+    assert!(periods.iter().all(|period| (period - wanted).abs() < 1e-3), "{periods:?} for {wanted}");
 }
 
 #[test]
@@ -222,8 +254,9 @@ fn the_noise_of_a_toggle_switch_is_that_of_its_linear_equations() {
     let (mean_u, mean_v) = (mean(&us), mean(&vs));
     let covariance = us.iter().zip(&vs).map(|(u, v)| (u - mean_u) * (v - mean_v)).sum::<f64>() / cells as f64;
     let variance = |values: &[f64], mean: f64| values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / cells as f64;
-    // Beside three standard errors, what the equations bend is some hundredth: D''/2 times a variance of 5e-3.
-    let error = 3.0 * (2.0 / cells as f64).sqrt() + 0.03;
+    // Beside three standard errors: what is not linear is of the order of the variance, 6e-3 where slopes bend over distances of 1, and kicks that
+    // come each hundredth of a lifetime are off by half of that.
+    let error = 3.0 * (2.0 / cells as f64).sqrt() + 0.02;
     for (what, found, wanted) in [("u", variance(&us, mean_u), wanted[0]), ("v", variance(&vs, mean_v), wanted[2])] {
         println!("{what}: {found:.3e} for {wanted:.3e}");
         assert!((found / wanted - 1.0).abs() < error, "{what}: {found} for {wanted}");
@@ -232,5 +265,6 @@ fn the_noise_of_a_toggle_switch_is_that_of_its_linear_equations() {
     let expected = wanted[1] / (wanted[0] * wanted[2]).sqrt();
     println!("correlation {correlation:.3} for {expected:.3}");
     assert!((correlation - expected).abs() < 3.0 / (cells as f64).sqrt() + 0.02, "{correlation} for {expected}");
-    assert!((mean_u / u - 1.0).abs() < 5e-3, "{mean_u} for {u}");
+    // Three standard errors, and what the variance of v, 2.5e-4, does to what is made: half of it times the bend, at most 10.
+    assert!((mean_u - u).abs() < 3.0 * (wanted[0] / cells as f64).sqrt() + 1.3e-3, "{mean_u} for {u}");
 }

@@ -27,7 +27,7 @@ impl Elimination {
         if size < FEWEST || size > u32::MAX as usize {
             return None;
         }
-        // A half of the third of n³ is what whole matrices take for the factors of one step.
+        // Whole matrices take a third of n³ products for the factors of one step.
         let most = (size as u128).pow(3) / 3 / DEARER as u128;
         let order = order_of_least_degree(size, pattern, most)?;
         let mut position = vec![0; size];

@@ -11,8 +11,9 @@ use super::released::{Cut, Released};
 use super::scratch::ChemistryScratch;
 
 /// By how much parabolas may bend away from lines: what lines in their stead would leave out of the amount that all cells release of a substance
-/// in a step, over that amount. Where rates are smooth parabolas then leave out less by far, and where they jump less than half of it.
-const BENT: f64 = 0.02;
+/// in a step, over that amount. Where rates are smooth parabolas leave out far less. Where a rate jumps at a share x of a piece, up to a half, they are
+/// off by x - 1/6 of what it jumps, and lines differ from them by 1/3: never by less.
+const BENT: f64 = 0.01;
 
 /// A step is cut into so many pieces at most; twice as many from one attempt to the next.
 const MOST: u32 = 32;
@@ -48,175 +49,172 @@ pub fn is_releasing(model: &Model, reactor: usize) -> bool {
 /// A system that fails, or a rate that cannot be.
 pub fn follow(
     model: &Model,
-    step: (f64, f64),
+    (start, dt): (f64, f64),
     from: &State,
     to: &mut State,
     ws: &mut Workspace,
 ) -> Result<(), Trouble> {
-    let mut released = std::mem::take(&mut ws.chemistry.released);
-    let done = released.find(model, step, from, to, &mut ws.chemistry);
+    let scratch = &mut ws.chemistry;
+    let released = std::mem::take(&mut scratch.released);
+    let mut step = Followed { model, start, dt, from, to, scratch, released };
+    let done = step.find();
+    let released = step.released;
     ws.chemistry.released = released;
     done
 }
 
-impl Released {
-    fn find(
-        &mut self,
-        model: &Model,
-        (start, dt): (f64, f64),
-        from: &State,
-        to: &mut State,
-        scratch: &mut ChemistryScratch,
-    ) -> Result<(), Trouble> {
-        carry_releases(model, start + dt, to, scratch, |link| !is_followed(model, link))?;
-        self.at_end.clear();
-        self.at_end.extend(to.chemistry.controls.secretion.iter().flatten());
-        self.width = self.at_end.len();
-        if !(0..model.chemistry.reactors.len()).any(|reactor| is_releasing(model, reactor)) {
-            self.pieces.clear();
-            self.pieces.push([0.0, 1.0]);
-            self.rates.clear();
-            let before = || from.chemistry.controls.secretion.iter().flatten();
-            self.rates.extend(before());
-            self.rates.extend(before().zip(&self.at_end).map(|(begin, end)| 0.5 * (begin + end)));
-            self.rates.extend_from_slice(&self.at_end);
+/// A step whose systems are followed.
+struct Followed<'a> {
+    model: &'a Model,
+    start: f64,
+    dt: f64,
+    from: &'a State,
+    to: &'a mut State,
+    scratch: &'a mut ChemistryScratch,
+    released: Released,
+}
+
+impl<'a> Followed<'a> {
+    /// The numbers of the systems that are followed.
+    fn systems(&self) -> impl Iterator<Item = usize> + use<'a> {
+        let model = self.model;
+        (0..model.chemistry.reactors.len()).filter(move |reactor| is_releasing(model, *reactor))
+    }
+
+    /// The rates of all cells where the step begins.
+    fn at_begin(&self) -> impl Iterator<Item = &'a f64> + Clone + use<'a> {
+        self.from.chemistry.controls.secretion.iter().flatten()
+    }
+
+    /// How many lists of rates there are.
+    fn channels(&self) -> usize {
+        self.from.chemistry.controls.secretion.len()
+    }
+
+    fn find(&mut self) -> Result<(), Trouble> {
+        let model = self.model;
+        carry_releases(model, self.start + self.dt, self.to, self.scratch, |link| !is_followed(model, link))?;
+        let released = &mut self.released;
+        released.at_end.clear();
+        released.at_end.extend(self.to.chemistry.controls.secretion.iter().flatten());
+        released.width = released.at_end.len();
+        if self.systems().next().is_none() {
+            let begin = self.at_begin();
+            self.released.set_line(begin);
             return Ok(());
         }
-        self.find_switches(model, (start, dt), scratch);
+        self.find_switches();
         let mut pieces = 1;
         loop {
-            self.cut((start, dt), pieces);
-            let own_steps = self.go(model, (start, dt), from, to, scratch)?;
+            self.released.cut((self.start, self.dt), pieces);
+            let own_steps = self.go()?;
             let wanted = (0.5 * own_steps / OWN_STEPS).ceil().min(f64::from(MOST)) as u32;
-            if pieces >= MOST || (pieces >= wanted && self.bent(to.chemistry.controls.secretion.len()) <= BENT) {
+            if pieces >= MOST || (pieces >= wanted && self.released.bent(self.channels()) <= BENT) {
                 break;
             }
             pieces = wanted.max(2 * pieces).min(MOST);
         }
-        if pieces > 1 && self.misses_as_one(to.chemistry.controls.secretion.len()) <= COARSER {
-            self.join();
+        if pieces > 1 && self.released.misses_as_one(self.channels()) <= COARSER {
+            self.released.join();
         }
-        let lists = to.chemistry.controls.secretion.iter_mut().flatten();
-        lists.zip(&self.at_end).for_each(|(now, end)| *now = if now.is_nan() { *end } else { *now });
+        let lists = self.to.chemistry.controls.secretion.iter_mut().flatten();
+        lists.zip(&self.released.at_end).for_each(|(now, end)| *now = if now.is_nan() { *end } else { *now });
         Ok(())
     }
 
-    /// When the clock switches something in the systems that release; nothing where that is too often.
-    fn find_switches(&mut self, model: &Model, (start, dt): (f64, f64), scratch: &mut ChemistryScratch) {
-        self.switches.clear();
-        let end = start + dt;
-        self.last_look = end;
-        for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
-            if !is_releasing(model, number) {
-                continue;
-            }
+    /// When the clock switches something in the systems; nothing where that is too often.
+    fn find_switches(&mut self) {
+        let (start, end) = (self.start, self.start + self.dt);
+        let systems = self.systems();
+        let Released { switches, last_look, .. } = &mut self.released;
+        switches.clear();
+        *last_look = end;
+        for number in systems {
+            let reactor = &self.model.chemistry.reactors[number];
             let (seconds, mut before) = (reactor.seconds, [start; 2]);
             let window = (start / seconds, end / seconds);
-            scratch.populations[number].each_piece(&reactor.program, window, |piece| {
-                if piece.begin > window.0 && piece.begin * seconds < end && self.switches.len() <= MOST as usize {
-                    self.switches.push([before[0], before[1], piece.begin * seconds]);
+            self.scratch.populations[number].each_piece(&reactor.program, window, |piece| {
+                if piece.begin > window.0 && piece.begin * seconds < end && switches.len() <= MOST as usize {
+                    switches.push([before[0], before[1], piece.begin * seconds]);
                 }
                 before = [piece.end * seconds, piece.until * seconds];
             });
-            self.last_look = self.last_look.min(before[0]);
+            *last_look = last_look.min(before[0]);
         }
-        if self.switches.len() > MOST as usize {
-            self.switches.clear();
+        if switches.len() > MOST as usize {
+            switches.clear();
         }
-        self.switches.sort_by(|a, b| a[1].total_cmp(&b[1]));
+        switches.sort_by(|a, b| a[1].total_cmp(&b[1]));
         // The same one of two systems, but for its last bits.
-        self.switches.dedup_by(|b, a| b[0] <= a[2]);
+        switches.dedup_by(|b, a| b[0] <= a[2]);
     }
 
-    /// Moves the systems through the step and notes the rates. Returns how many steps of its own a system made, in the mean over its cells: that of
-    /// which it is most.
-    fn go(
-        &mut self,
-        model: &Model,
-        (start, dt): (f64, f64),
-        from: &State,
-        to: &mut State,
-        scratch: &mut ChemistryScratch,
-    ) -> Result<f64, Trouble> {
-        let releasing = || (0..model.chemistry.reactors.len()).filter(|reactor| is_releasing(model, *reactor));
-        for number in releasing() {
-            to.chemistry.take_system(&from.chemistry, number);
-            scratch.own_steps[number] = 0;
+    /// Moves the systems from where they were through the step and notes the rates. Returns how many steps of its own a system made, in the mean
+    /// over its cells: that of which it is most.
+    fn go(&mut self) -> Result<f64, Trouble> {
+        for number in self.systems() {
+            self.to.chemistry.take_system(&self.from.chemistry, number);
+            self.scratch.own_steps[number] = 0;
         }
-        self.pieces.clear();
-        self.rates.clear();
-        let cuts = std::mem::take(&mut self.cuts);
-        let (mut done, mut begin) = (Ok(()), 0.0);
-        for halves in cuts.chunks_exact(2) {
-            done = self.go_through(model, (start, dt), [&halves[0], &halves[1]], &mut begin, from, to, scratch);
-            if done.is_err() {
-                break;
+        self.released.pieces.clear();
+        self.released.rates.clear();
+        let mut share = 0.0;
+        for piece in 0..self.released.cuts.len() / 2 {
+            let begin = share;
+            self.look_at_begin(self.released.cuts[2 * piece], begin)?;
+            for half in [self.released.cuts[2 * piece], self.released.cuts[2 * piece + 1]] {
+                for number in self.systems() {
+                    let work = advance_system(self.model, number, half.until, self.from, self.to, self.scratch)?;
+                    self.scratch.own_steps[number] += work.steps;
+                }
+                let is_last = half.until >= self.start + self.dt;
+                share = if is_last { 1.0 } else { (half.until - self.start) / self.dt };
+                self.look(half.looks[1], share)?;
             }
+            self.released.pieces.push([begin, share]);
         }
-        self.cuts = cuts;
-        done?;
-        let steps = releasing().map(|number| {
-            let cells = to.chemistry.populations[number].cells();
-            scratch.own_steps[number] as f64 / cells.max(1) as f64
-        });
-        Ok(steps.fold(0.0, f64::max))
+        let of_system = |number: usize| {
+            let cells = self.to.chemistry.populations[number].cells();
+            self.scratch.own_steps[number] as f64 / cells.max(1) as f64
+        };
+        Ok(self.systems().map(of_system).fold(0.0, f64::max))
     }
 
-    /// Moves them through the halves of a piece that begins at a share of the step, which becomes that of its end.
-    fn go_through(
-        &mut self,
-        model: &Model,
-        (start, dt): (f64, f64),
-        halves: [&Cut; 2],
-        share: &mut f64,
-        from: &State,
-        to: &mut State,
-        scratch: &mut ChemistryScratch,
-    ) -> Result<(), Trouble> {
-        let begin = *share;
-        match (halves[0].is_switched, self.rates.is_empty()) {
-            (true, _) => self.look(model, (halves[0].looks[0], begin), from, to, scratch)?,
-            (false, true) => self.rates.extend(from.chemistry.controls.secretion.iter().flatten()),
-            (false, false) => self.rates.extend_from_within(self.rates.len() - self.width..),
+    /// Notes the rates where a piece begins: those where the one before ended, unless something is switched between the two.
+    fn look_at_begin(&mut self, first: Cut, share: f64) -> Result<(), Trouble> {
+        if first.is_switched {
+            return self.look(first.looks[0], share);
         }
-        for half in halves {
-            for number in (0..model.chemistry.reactors.len()).filter(|reactor| is_releasing(model, *reactor)) {
-                let work = advance_system(model, number, half.until, from, to, scratch)?;
-                scratch.own_steps[number] += work.steps;
-            }
-            *share = if half.until >= start + dt { 1.0 } else { (half.until - start) / dt };
-            self.look(model, (half.looks[1], *share), from, to, scratch)?;
+        let begin = self.at_begin();
+        let Released { rates, width, .. } = &mut self.released;
+        match rates.len().checked_sub(*width) {
+            Some(last) if !rates.is_empty() => rates.extend_from_within(last..),
+            _ => rates.extend(begin),
         }
-        self.pieces.push([begin, *share]);
         Ok(())
     }
 
     /// Notes the rates as the systems are now, at a share of the step, by the clock at a time that may be a little before or after; those that are not
     /// followed go on a line through the step.
-    fn look(
-        &mut self,
-        model: &Model,
-        (time, share): (f64, f64),
-        from: &State,
-        to: &mut State,
-        scratch: &mut ChemistryScratch,
-    ) -> Result<(), Trouble> {
-        to.chemistry.controls.secretion.iter_mut().for_each(|list| list.fill(f64::NAN));
+    fn look(&mut self, time: f64, share: f64) -> Result<(), Trouble> {
+        let model = self.model;
+        self.to.chemistry.controls.secretion.iter_mut().for_each(|list| list.fill(f64::NAN));
         // What is observed is what the clock of its system shows; those of all that are followed have come as far.
-        let set_clocks = |to: &mut State, time: f64| {
-            let followed = (0..model.chemistry.reactors.len()).filter(|reactor| is_releasing(model, *reactor));
-            followed.fold(time, |_, number| std::mem::replace(&mut to.chemistry.times[number], time))
-        };
-        let reached = set_clocks(to, time);
-        let carried = carry_releases(model, time, to, scratch, |link| is_followed(model, link));
-        set_clocks(to, reached);
+        let reached = self.set_clocks(time);
+        let carried = carry_releases(model, time, self.to, self.scratch, |link| is_followed(model, link));
+        self.set_clocks(reached);
         carried?;
-        let now = to.chemistry.controls.secretion.iter().flatten();
-        let before = from.chemistry.controls.secretion.iter().flatten();
-        let rates = now.zip(before.zip(&self.at_end));
-        let rate =
-            |(now, (begin, end)): (&f64, (&f64, &f64))| if now.is_nan() { begin + share * (end - begin) } else { *now };
-        self.rates.extend(rates.map(rate));
+        let begin = self.at_begin();
+        let Released { rates, at_end, .. } = &mut self.released;
+        let now = self.to.chemistry.controls.secretion.iter().flatten().zip(begin.zip(at_end));
+        rates.extend(now.map(|(now, (begin, end))| if now.is_nan() { begin + share * (*end - begin) } else { *now }));
         Ok(())
+    }
+
+    /// Sets the clocks of all systems that are followed, and returns what they showed.
+    fn set_clocks(&mut self, time: f64) -> f64 {
+        let times = &mut self.to.chemistry.times;
+        let systems = (0..times.len()).filter(|reactor| is_releasing(self.model, *reactor));
+        systems.fold(time, |_, number| std::mem::replace(&mut times[number], time))
     }
 }

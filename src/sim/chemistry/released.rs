@@ -38,6 +38,16 @@ impl Released {
         [0, 1, 2].map(|side| &self.rates[(3 * piece + side) * self.width..][channel * cells..][..cells])
     }
 
+    /// One piece, on a line from these rates to those at the end.
+    pub(super) fn set_line<'r>(&mut self, begin: impl Iterator<Item = &'r f64> + Clone) {
+        self.pieces.clear();
+        self.pieces.push([0.0, 1.0]);
+        self.rates.clear();
+        self.rates.extend(begin.clone());
+        self.rates.extend(begin.zip(&self.at_end).map(|(begin, end)| 0.5 * (begin + end)));
+        self.rates.extend_from_slice(&self.at_end);
+    }
+
     /// Cuts the step into halves of so many pieces, or more: whole ones between two switches, of equal lengths.
     pub(super) fn cut(&mut self, (start, dt): (f64, f64), pieces: u32) {
         self.cuts.clear();
