@@ -2,6 +2,7 @@
 
 use super::context::Context;
 use super::document::Level;
+use super::random_words::misplaced;
 use super::reactions::{changes, equation, shared_unit};
 pub(super) use super::reads::POSITION;
 use super::tables::table;
@@ -326,6 +327,10 @@ fn functions(context: &mut Context, root: &Element, scope: &mut Scope) {
     }
     for (id, element) in elements {
         let function = scope.functions[&id].clone();
+        if let Some(trouble) = misplaced(&function.body, scope) {
+            tell(context, &element.text, &trouble);
+            continue;
+        }
         let arguments: BTreeMap<String, Expr> =
             function.arguments.iter().map(|name| (name.clone(), Expr::Number(1.0))).collect();
         for trouble in scope.resolve_with(&function.body, &arguments).err().unwrap_or_default() {

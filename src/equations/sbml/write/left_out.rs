@@ -41,7 +41,10 @@ pub fn notices(document: &Document, names: &[String]) -> Vec<String> {
         }
     }
     for draw in document.system.draws.iter().filter(|draw| draw.element == 0) {
-        notices.push(format!("the start of `{}` is drawn at random: it is the middle one", draw.variable));
+        notices.push(format!(
+            "the start of `{}` is drawn at random in EML; here it is the middle of what may be drawn",
+            draw.variable
+        ));
     }
     for link in &document.links {
         notices.push(format!("the link from {} to {} is left out", link.from.text, link.to.text));

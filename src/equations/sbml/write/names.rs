@@ -26,8 +26,13 @@ impl Names {
         let stands = system.quantities.iter().map(|quantity| &quantity.id).filter(|id| is_identifier(id));
         let mut names =
             Self { taken: stands.cloned().collect(), quantities: Vec::new(), events: Vec::new(), notices: Vec::new() };
-        for quantity in &system.quantities {
-            let id = if is_identifier(&quantity.id) { quantity.id.clone() } else { names.renamed(&quantity.id) };
+        for (number, quantity) in system.quantities.iter().enumerate() {
+            let id = match system.draws.iter().find(|draw| draw.quantity as usize == number) {
+                // It has no name of its own.
+                Some(draw) => names.new_id(&format!("drawn_for_{}", identifier(&draw.variable))),
+                None if is_identifier(&quantity.id) => quantity.id.clone(),
+                None => names.renamed(&quantity.id),
+            };
             names.quantities.push(id);
         }
         for (index, event) in system.events.iter().enumerate() {
