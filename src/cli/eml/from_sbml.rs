@@ -14,15 +14,9 @@ pub struct FromSbmlArgs {
     /// The SBML model.
     #[arg(value_name = "MODEL")]
     pub model: PathBuf,
-    /// The EML document to write; the terminal when absent.
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Replaces a file that is there.
-    #[arg(long)]
-    pub force: bool,
-    /// Prints what was made as JSON.
-    #[arg(long, requires = "output")]
-    pub json: bool,
+    /// Where it goes to.
+    #[command(flatten)]
+    pub target: Target,
 }
 
 /// Runs the command.
@@ -30,8 +24,7 @@ pub struct FromSbmlArgs {
 /// # Errors
 /// A model that cannot be read, or says what EML cannot; a file that exists or cannot be written.
 pub fn run(args: &FromSbmlArgs) -> Result<Report> {
-    let target = Target { read: &args.model, output: args.output.as_deref(), force: args.force, json: args.json };
-    target.write(convert)
+    args.target.write(&args.model, convert)
 }
 
 /// The model as EML, and what the reader should know.

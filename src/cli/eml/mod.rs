@@ -43,8 +43,8 @@ impl EmlCommand {
         match self {
             Self::Check(args) => ("eml check", args.json),
             Self::Solve(args) => ("eml solve", args.json),
-            Self::FromSbml(args) => ("eml from-sbml", args.json),
-            Self::ToSbml(args) => ("eml to-sbml", args.json),
+            Self::FromSbml(args) => ("eml from-sbml", args.target.json),
+            Self::ToSbml(args) => ("eml to-sbml", args.target.json),
         }
     }
 }

@@ -14,15 +14,9 @@ pub struct ToSbmlArgs {
     /// The EML document.
     #[arg(value_name = "FILE")]
     pub document: PathBuf,
-    /// The SBML model to write; the terminal when absent.
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Replaces a file that is there.
-    #[arg(long)]
-    pub force: bool,
-    /// Prints what was made as JSON.
-    #[arg(long, requires = "output")]
-    pub json: bool,
+    /// Where it goes to.
+    #[command(flatten)]
+    pub target: Target,
 }
 
 /// Runs the command.
@@ -30,8 +24,7 @@ pub struct ToSbmlArgs {
 /// # Errors
 /// A document that cannot be read, or says what SBML cannot; a file that exists or cannot be written.
 pub fn run(args: &ToSbmlArgs) -> Result<Report> {
-    let target = Target { read: &args.document, output: args.output.as_deref(), force: args.force, json: args.json };
-    target.write(convert)
+    args.target.write(&args.document, convert)
 }
 
 /// The document as SBML, and what the reader should know.
