@@ -43,6 +43,7 @@ pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Read> {
         system: model.system.clone(),
         grid: None,
         fields: Vec::new(),
+        scene: None,
         membrane: None,
         noise: Vec::new(),
         links: Vec::new(),

@@ -4,6 +4,7 @@
 //! time and space; [`Fields::deposit`] and [`Fields::sense`] are what cells do to them.
 
 mod axis;
+mod beside;
 mod broken;
 mod bundle;
 mod carry;
@@ -12,6 +13,7 @@ mod error;
 mod factors;
 mod fluxes;
 pub mod grid;
+mod joint;
 mod layout;
 mod limit;
 mod lines;
@@ -24,6 +26,7 @@ mod reactor_scratch;
 mod release;
 mod rows;
 mod scales;
+mod scene_course;
 mod sense;
 mod sensed;
 mod shared;
@@ -43,9 +46,12 @@ mod transpose;
 mod turn;
 
 pub use crate::equations::Range;
+pub use beside::Beside;
 pub use grid::{Grid, Wall, Walls};
+pub use joint::{Scene, ScenePace, SceneScratch};
 pub use layout::{ARRAYS, CARRYING, Placing};
 pub use react::{Chunk, POINTS, React};
+pub use scene_course::SceneCourse;
 pub use sensed::Sensed;
 pub use species::Species;
 pub use state::Fields;

@@ -3,9 +3,11 @@
 //! A document keeps its own units of time and length; the fields are moved in µm and s, and their values are
 //! concentrations in the unit that the document gives them.
 
+use super::beside::Beside;
 use super::carry::Carrying;
 use super::course::Course;
 use super::grid::Grid;
+use super::joint::{Joint, Scene};
 use super::layout::{Placing, describe, layout, unit};
 use super::lines;
 use super::noise::Noise;
@@ -16,9 +18,9 @@ use super::species::Species;
 use super::state::Fields;
 use super::step::{Acts, Report, Stepping};
 use super::transport::Transport;
-use crate::equations::eml;
 use crate::equations::program::initial_values;
 use crate::equations::tree::{QuantityId, Role, System};
+use crate::equations::{Range, eml};
 use crate::error::{Error, Fault, Location, Result};
 use crate::ode::{Kick, Numbers};
 
@@ -49,6 +51,9 @@ pub struct FieldSystem {
     transport: Option<Transport>,
     /// None where there is no noise.
     noise: Option<Noise>,
+    /// None where there are fields alone.
+    beside: Option<Beside>,
+    ranges: Vec<Range>,
     scales: Scales,
 }
 
@@ -76,12 +81,14 @@ impl FieldSystem {
     pub fn new(document: &eml::Document, placing: Option<&Placing>) -> Result<Self> {
         let grid = layout(document, placing)?;
         let mut faults = Vec::new();
-        let system = &document.system;
-        let constants = initial_values(system, 0.0).map_err(|circle| in_circle(document, &circle))?;
         let scales = Scales {
             seconds: document.seconds,
             micrometres: document.grid.as_ref().map_or(1.0, |grid| grid.micrometres),
         };
+        let beside = Beside::new(document, &grid, scales)?;
+        let document = &document.fields_alone();
+        let system = &document.system;
+        let constants = initial_values(system, 0.0).map_err(|circle| in_circle(document, &circle))?;
         let mut species = Vec::new();
         for field in &document.fields {
             let one = describe(field, system, &constants, scales);
@@ -111,7 +118,9 @@ impl FieldSystem {
             units: document.fields.iter().map(|field| unit(system, field)).collect(),
             starts: document.fields.iter().map(Start::of).collect(),
             system: system.clone(),
+            beside,
             grid,
+            ranges: species.iter().map(|species| species.range).collect(),
             species,
             reactor,
             noise: Noise::new(document, scales)?,
@@ -135,9 +144,34 @@ impl FieldSystem {
         self.transport.as_ref()
     }
 
+    /// What stands beside the fields; none where they are alone.
+    pub fn beside(&self) -> Option<&Beside> {
+        self.beside.as_ref()
+    }
+
     /// The relative and absolute tolerance of a step where nobody says any.
     pub fn usual_tolerance(&self) -> (f64, f64) {
-        if self.reactor.is_some() || self.transport.is_some() { REACTING } else { SPREADING }
+        if self.is_acted_on() || self.beside.is_some() { REACTING } else { SPREADING }
+    }
+
+    /// Whether anything acts on the fields beside diffusion and decay.
+    pub(super) fn is_acted_on(&self) -> bool {
+        self.reactor.is_some() || self.transport.is_some()
+    }
+
+    /// Seconds in the document's unit of time.
+    pub(super) fn seconds(&self) -> f64 {
+        self.scales.seconds
+    }
+
+    /// The document's units.
+    pub(super) fn scales(&self) -> Scales {
+        self.scales
+    }
+
+    /// Of each field, which values it may take.
+    pub(super) fn ranges(&self) -> &[Range] {
+        &self.ranges
     }
 
     /// The document's name.
@@ -217,6 +251,49 @@ impl FieldSystem {
             take(&mut fields, number, Ok(values))?;
         }
         if faults.is_empty() { Ok(fields) } else { Err(Error::Input(faults)) }
+    }
+
+    /// Moves the fields by a window of time, s, with what stands beside them. Those of the inputs that it gives are written, the others stand still;
+    /// there is one for each of [`Self::inputs`].
+    ///
+    /// # Errors
+    /// Numbers that fail in either; both then hold anything.
+    ///
+    /// # Panics
+    /// As [`Self::advance`], and where nothing stands beside the fields.
+    pub fn advance_with(
+        &self,
+        fields: &mut Fields,
+        window: f64,
+        inputs: &mut [f64],
+        stepping: Stepping,
+        scene: Scene,
+    ) -> Result<Report> {
+        self.joint(fields, inputs, stepping, scene).run(window)
+    }
+
+    /// Lets fields and what stands beside them see each other as they are, and executes the events that are due: at a start, or when an input has
+    /// been set.
+    ///
+    /// # Errors
+    /// As [`Self::advance_with`].
+    ///
+    /// # Panics
+    /// As [`Self::advance_with`].
+    pub fn settle(&self, fields: &mut Fields, inputs: &mut [f64], scene: Scene) -> Result<()> {
+        self.joint(fields, inputs, Stepping::Fixed(1), scene).settle()
+    }
+
+    fn joint<'a, 's>(
+        &'a self,
+        fields: &'a mut Fields,
+        inputs: &'a mut [f64],
+        stepping: Stepping,
+        scene: Scene<'s>,
+    ) -> Joint<'a, 's> {
+        assert_eq!(inputs.len(), self.inputs.len(), "one number for each input of '{}'", self.name);
+        let beside = self.beside.as_ref().expect("something stands beside the fields");
+        Joint { system: self, beside, fields, inputs, scene, stepping, report: Report::default() }
     }
 
     /// Moves the fields by a window of time, s. The inputs stand still within it; there is one for each of

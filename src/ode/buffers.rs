@@ -57,6 +57,8 @@ pub(super) struct Arrived {
     pub pace: (f64, f64),
     pub memory: EventMemory,
     pub work: Work,
+    /// When the first event was executed; infinite where none was.
+    pub first_event: f64,
     pub trouble: Option<OdeTrouble>,
 }
 
@@ -112,6 +114,11 @@ impl PopulationScratch {
         }
         self.arrived.resize_with(cells, Arrived::default);
         self.arrived.iter_mut().for_each(|arrived| plan.suit(&mut arrived.memory));
+    }
+
+    /// When a cell of the population whose window was the last executed its first event in it; infinite where it executed none.
+    pub fn first_event(&self, cell: usize) -> f64 {
+        self.arrived.get(cell).map_or(f64::INFINITY, |arrived| arrived.first_event)
     }
 
     /// Forgets everything.

@@ -105,7 +105,7 @@ impl Eventful<'_> {
             Course::new(&mut own, &mut events, (until, LOOKS_IN_WINDOW), &[], &mut |_, _| (), course).run().err();
         own.state_into(&mut arrived.state);
         arrived.open.clone_from(&own.open);
-        (arrived.pace, arrived.work) = (own.pace(), own.work);
+        (arrived.pace, arrived.work, arrived.first_event) = (own.pace(), own.work, own.first_event);
         *stepper = Some(own.into_buffers());
     }
 }

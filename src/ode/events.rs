@@ -212,6 +212,7 @@ impl<'a> Events<'a> {
                 }
             }
             stepper.work.events += 1;
+            stepper.first_event = stepper.first_event.min(stepper.time);
             self.update(stepper);
             count += 1;
             if count > MOST_AT_ONCE {

@@ -37,6 +37,8 @@ pub struct Stepper<'a> {
     pub(super) middle: Vec<f64>,
     /// Work so far.
     pub work: Work,
+    /// When the first event was executed since it began or went on; infinite before.
+    pub first_event: f64,
     /// Longest step allowed.
     pub longest: f64,
 }
@@ -86,6 +88,7 @@ impl<'a> Stepper<'a> {
             taken: 0.0,
             middle,
             work,
+            first_event: f64::INFINITY,
             longest,
         }
     }
@@ -107,7 +110,7 @@ impl<'a> Stepper<'a> {
         self.open.iter_mut().zip(open).for_each(|(to, from)| *to = from);
         (self.step, self.error) = pace;
         (self.time, self.taken, self.fresh, self.work) = (time, 0.0, true, Work::default());
-        self.jumped = f64::NEG_INFINITY;
+        (self.jumped, self.first_event) = (f64::NEG_INFINITY, f64::INFINITY);
         self.s.past.start(time);
     }
 

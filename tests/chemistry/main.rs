@@ -25,6 +25,7 @@ mod field_transport;
 mod field_walls;
 mod fields;
 mod fields_analytic;
+mod fields_beside;
 mod noise;
 mod sbml;
 mod sbml_algebraic;

@@ -17,6 +17,8 @@ pub(super) struct Column {
     pub(super) title: String,
     /// What it holds; the time when there is none.
     pub(super) quantity: Option<QuantityId>,
+    /// In which unit; empty where the document has none.
+    pub(super) unit: String,
 }
 
 impl Column {
@@ -30,11 +32,14 @@ impl Column {
 /// brackets its concentration. The first `time` is the clock, another one a quantity of that name, if there is one.
 pub(super) fn columns(names: &[String], read: &Read, faults: &mut Vec<Fault>) -> Vec<Column> {
     let system = &read.document.system;
+    let unit = |quantity: Option<QuantityId>| {
+        quantity.map_or(String::new(), |number| system.quantities[number as usize].unit.clone())
+    };
     if names.is_empty() {
         let variables = system.variables().into_iter();
         let named = variables.map(|number| (system.quantities[number as usize].id.clone(), Some(number)));
         let all = std::iter::once((TIME.to_owned(), None)).chain(named);
-        return all.map(|(title, quantity)| Column { title, quantity }).collect();
+        return all.map(|(title, quantity)| Column { title, unit: unit(quantity), quantity }).collect();
     }
     let mut found: Vec<Column> = Vec::new();
     // A model of SBML may have a quantity of that name.
@@ -42,9 +47,9 @@ pub(super) fn columns(names: &[String], read: &Read, faults: &mut Vec<Fault>) ->
     for name in names {
         let title = name.trim().to_owned();
         if title == TIME && clock(&found) {
-            found.push(Column { title, quantity: None });
+            found.push(Column { title, quantity: None, unit: String::new() });
         } else if let Some(number) = system.find(&title) {
-            found.push(Column { title, quantity: Some(number) });
+            found.push(Column { title, quantity: Some(number), unit: unit(Some(number)) });
         } else {
             let ids = || std::iter::once(TIME).chain(system.quantities.iter().map(|quantity| quantity.id.as_str()));
             let near = meant(&title, ids()).map_or(String::new(), |near| format!("did you mean `{near}`? "));

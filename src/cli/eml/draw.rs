@@ -55,12 +55,8 @@ impl<'a> Drawing<'a> {
     /// # Errors
     /// The file cannot be written.
     pub(super) fn save(self, document: &Document) -> Result<PathBuf> {
-        let unit = |column: &Column| {
-            let quantity = column.quantity.and_then(|number| document.system.quantities.get(number as usize));
-            quantity.map_or("", |quantity| quantity.unit.as_str())
-        };
-        let shared = unit(self.columns[0]);
-        let same = self.columns.iter().all(|column| unit(column) == shared) && !["", "1"].contains(&shared);
+        let shared = self.columns[0].unit.as_str();
+        let same = self.columns.iter().all(|column| column.unit == shared) && !["", "1"].contains(&shared);
         let label = if let [only] = self.columns[..] { only.title.clone() } else { String::new() };
         let label = if same { format!("{label} ({shared})").trim().to_owned() } else { label };
         let curves = self.columns.iter().zip(self.curves);

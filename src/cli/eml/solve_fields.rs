@@ -8,12 +8,13 @@ use super::options::{SolveArgs, points, wished_scheme};
 use crate::cli::files::{Named, refuse_existing, refuse_same};
 use crate::cli::report::{Report, path_text, paths};
 use crate::equations::Read;
-use crate::equations::eml::{Document, Profile};
+use crate::equations::eml::{Document, FieldDescription, Profile};
 use crate::equations::tree::{Expr, QuantityId};
 use crate::error::words::{any_of, meant};
 use crate::error::{Error, Fault, Result};
 use crate::experiment::load_profile;
-use crate::field::{FieldSystem, Fields, Grid, Placing, Report as Work, Stepping};
+use crate::field::{FieldSystem, Fields, Grid, Placing, Report as Work, SceneCourse, Stepping};
+use crate::ode::Numbers;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -27,7 +28,8 @@ const WHOLES: [&str; 4] = ["mean", "min", "max", "total"];
 pub(super) fn run(args: &SolveArgs, mut read: Read) -> Result<Report> {
     let mut faults = Vec::new();
     let points = points(args, &mut faults);
-    let columns = columns(&args.columns, &read.document, &mut faults);
+    let known = known(&read.document);
+    let columns = columns(&args.columns, &read.document.name, &known, &mut faults);
     refuse_idle(args, &mut faults);
     set(&args.sets, &mut read, &mut faults);
     set_starts(args, &mut read.document);
@@ -89,23 +91,40 @@ fn solve(
         relative: args.rtol.or(document.solver.rtol).unwrap_or(usual.0),
         absolute: args.atol.or(document.solver.atol).unwrap_or(usual.1),
     };
-    let inputs: Vec<f64> = system.inputs().iter().map(|(_, value)| *value).collect();
+    let mut inputs: Vec<f64> = system.inputs().iter().map(|(_, value)| *value).collect();
     let mut whole = Work::default();
     fields.set_time(points[0] * document.seconds);
-    row(points[0], &wholes(document, fields));
+    let span = points[points.len() - 1] - points[0];
+    let mut scene = system.beside().map(|beside| {
+        let numbers = Numbers { seed: args.seed, system: &document.name };
+        SceneCourse::new(beside, (points[0], span), numbers)
+    });
+    if let Some(scene) = &mut scene {
+        system.settle(fields, &mut inputs, scene.now())?;
+    }
+    let values = |fields: &Fields, scene: &Option<SceneCourse>, time: f64| {
+        let mut values = wholes(document, fields);
+        scene.iter().for_each(|scene| scene.values(time, &mut values));
+        values
+    };
+    row(points[0], &values(fields, &scene, points[0]));
     for pair in points.windows(2) {
         let window = pair[1] - pair[0];
         let stepping = match args.inner_step {
             Some(step) => Stepping::Fixed((window / step * (1.0 - 1e-12)).ceil().max(1.0) as u32),
             None => adaptive,
         };
-        let report = system.advance(fields, window * document.seconds, &inputs, stepping)?;
+        let seconds = window * document.seconds;
+        let report = match &mut scene {
+            Some(scene) => system.advance_with(fields, seconds, &mut inputs, stepping, scene.now())?,
+            None => system.advance(fields, seconds, &inputs, stepping)?,
+        };
         // The sum of windows is not the time of the row to the last bit.
         fields.set_time(pair[1] * document.seconds);
         whole.steps += report.steps;
         whole.checks += report.checks;
         whole.rejected += report.rejected;
-        row(pair[1], &wholes(document, fields));
+        row(pair[1], &values(fields, &scene, pair[1]));
     }
     Ok(whole)
 }
@@ -125,15 +144,32 @@ fn wholes(document: &Document, fields: &Fields) -> Vec<f64> {
     found
 }
 
+/// What there is to be shown, with its unit: what fields are as a whole, and what stands beside them.
+fn known(document: &Document) -> Vec<(String, String)> {
+    let length = document.grid.as_ref().map_or("um", |grid| grid.unit.as_str());
+    let dimension = document.grid.as_ref().map_or(2, |grid| grid.dimension);
+    let power = if dimension == 1 { String::new() } else { format!("^{dimension}") };
+    let of_field = |field: &FieldDescription| {
+        let unit = document.system.quantities[field.quantity as usize].unit.clone();
+        let total = if unit.is_empty() { String::new() } else { format!("{unit}*{length}{power}") };
+        let units = [unit.clone(), unit.clone(), unit, total];
+        WHOLES.into_iter().zip(units).map(|(whole, unit)| (format!("{}.{whole}", field.id), unit)).collect::<Vec<_>>()
+    };
+    let mut known: Vec<(String, String)> = document.fields.iter().flat_map(of_field).collect();
+    known.extend(document.quantities_beside().into_iter().map(|number| {
+        let quantity = &document.system.quantities[number as usize];
+        (quantity.id.clone(), quantity.unit.clone())
+    }));
+    known
+}
+
 /// The columns with some names, `FIELD.mean` and the like; without any the time and all.
-fn columns(names: &[String], document: &Document, faults: &mut Vec<Fault>) -> Vec<Column> {
-    let of_field =
-        |field: &crate::equations::eml::FieldDescription| WHOLES.map(|whole| format!("{}.{whole}", field.id));
-    let ids: Vec<String> = document.fields.iter().flat_map(of_field).collect();
-    let all = || std::iter::once("time").chain(ids.iter().map(String::as_str));
-    let column = |title: &str| Column {
-        quantity: ids.iter().position(|id| id == title).map(|number| number as QuantityId),
-        title: title.to_owned(),
+fn columns(names: &[String], document: &str, known: &[(String, String)], faults: &mut Vec<Fault>) -> Vec<Column> {
+    let all = || std::iter::once("time").chain(known.iter().map(|(title, _)| title.as_str()));
+    let column = |title: &str| {
+        let number = known.iter().position(|(known, _)| known == title);
+        let unit = number.map_or(String::new(), |number| known[number].1.clone());
+        Column { quantity: number.map(|number| number as QuantityId), title: title.to_owned(), unit }
     };
     if names.is_empty() {
         return all().map(column).collect();
@@ -146,7 +182,7 @@ fn columns(names: &[String], document: &Document, faults: &mut Vec<Fault>) -> Ve
             continue;
         }
         let near = meant(title, all()).map_or(String::new(), |near| format!("did you mean `{near}`? "));
-        let fault = Fault::new(format!("{} has no column `{title}`", document.name));
+        let fault = Fault::new(format!("{document} has no column `{title}`"));
         faults.push(fault.help(format!("{near}there are: {}", any_of(all()).replace(" or ", ", "))));
     }
     found

@@ -220,10 +220,7 @@ fn level(context: &mut Context, root: &Element) -> Level {
     };
     // What a document of fields may not hold, and the other way round.
     let (misplaced, help): (&[&str], &str) = match level {
-        Level::Field => (
-            &["variable", "event", "mean", "integral"],
-            "a document of fields has <field>s; one that does not spread has diffusion=\"0\"",
-        ),
+        Level::Field => (&[], ""),
         Level::Membrane => (
             &["field", "grid", "event"],
             "a document of membranes has <variable>s; give fields and events documents of their own",

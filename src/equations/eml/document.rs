@@ -24,6 +24,8 @@ pub struct Document {
     pub grid: Option<GridDescription>,
     /// The fields.
     pub fields: Vec<FieldDescription>,
+    /// What a document of fields has beside these; none where there are fields alone.
+    pub scene: Option<SceneDescription>,
     /// What a document of membranes says beside its equations.
     pub membrane: Option<MembraneDescription>,
     /// The variables, pools and fields with noise.
@@ -74,6 +76,16 @@ pub struct MembraneDescription {
     pub local: Vec<bool>,
 }
 
+/// What stands once in the scene beside the fields of a document: variables that are no fields, events, and what is summed over the grid,
+/// which is an input of the system.
+#[derive(Debug, Clone, Default)]
+pub struct SceneDescription {
+    /// What is summed over the grid, in the order of its quantities.
+    pub totals: Vec<Total>,
+    /// Of each quantity, whether it differs from point to point.
+    pub local: Vec<bool>,
+}
+
 /// A variable on the surface.
 #[derive(Debug, Clone)]
 pub struct SurfaceVariable {
@@ -85,7 +97,7 @@ pub struct SurfaceVariable {
     pub location: Location,
 }
 
-/// A number that is taken from the whole surface of a cell.
+/// A number that is taken from the whole surface of a cell, or from the whole grid of fields.
 #[derive(Debug, Clone)]
 pub struct Total {
     /// The input that has it.
@@ -98,12 +110,12 @@ pub struct Total {
     pub location: Location,
 }
 
-/// How a number is taken from a surface.
+/// How a number is taken from a surface or a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Taken {
-    /// The mean over the area.
+    /// The mean over the area, or over the grid.
     Mean,
-    /// The integral over the area, µm² times the unit of what is summed.
+    /// The integral over the area, µm² times the unit of what is summed; over a grid, its unit of length to the power of its dimension times that.
     Integral,
 }
 

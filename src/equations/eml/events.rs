@@ -107,7 +107,8 @@ impl Builder<'_, '_> {
     fn set(&mut self, set: &Element) -> Option<(QuantityId, Expr)> {
         let id = set.word("id");
         let sort = self.known.sort(&id);
-        if !matches!(sort, Some("variable" | "parameter")) {
+        let settable = matches!(sort, Some("variable" | "parameter" | "field"));
+        if !settable {
             let (message, help) = match sort {
                 Some(other) => (
                     format!("an event cannot set `{id}`, which is a <{other}>"),
@@ -125,7 +126,7 @@ impl Builder<'_, '_> {
         let unit = self.unit_of(&id);
         let what = format!("the new value of `{id}`");
         let value = self.expression(&set.text, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())));
-        let target = self.find(&id).filter(|_| matches!(sort, Some("variable" | "parameter")));
+        let target = self.find(&id).filter(|_| settable);
         Some((target?, value?))
     }
 

@@ -2,6 +2,7 @@
 
 use super::build::{Builder, Use};
 use super::document::{FieldDescription, GridDescription, Profile, SIDES, Wall};
+use super::parts::of_fields;
 use super::reads::reads;
 use super::xml::Element;
 use crate::equations::Range;
@@ -228,6 +229,7 @@ impl Builder<'_, '_> {
             return;
         }
         let values = super::start::values(system);
+        let system = &of_fields(system, fields);
         for field in fields {
             let element = self.known.quantities[field.quantity as usize].element;
             self.check_transport(field, system);

@@ -37,10 +37,7 @@ impl Builder<'_, '_> {
                 help,
             );
         }
-        let totals = elements("mean").map(|element| (element, Taken::Mean));
-        let totals = totals.chain(elements("integral").map(|element| (element, Taken::Integral)));
-        let mut totals: Vec<Total> = totals.filter_map(|(element, taken)| self.total(element, taken)).collect();
-        totals.sort_by_key(|total| total.quantity);
+        let totals = self.totals(root, &micrometre().to_the(2.0));
         let given = elements("input").filter_map(|element| self.given_at_atoms(element)).collect();
         Some(MembraneDescription { surface, given, totals, local: Vec::new() })
     }
@@ -73,14 +70,26 @@ impl Builder<'_, '_> {
         }
     }
 
-    fn total(&mut self, element: &Element, taken: Taken) -> Option<Total> {
+    /// What the document sums up, over the surface of a cell or over the grid, whose measure has this unit.
+    pub(super) fn totals(&mut self, root: &Element, measure: &Unit) -> Vec<Total> {
+        let elements = |name: &'static str| root.all(name).filter(|element| element.attribute("id").is_some());
+        let totals = elements("mean").map(|element| (element, Taken::Mean));
+        let totals = totals.chain(elements("integral").map(|element| (element, Taken::Integral)));
+        let mut totals: Vec<Total> =
+            totals.filter_map(|(element, taken)| self.total(element, taken, measure)).collect();
+        totals.sort_by_key(|total| total.quantity);
+        totals
+    }
+
+    fn total(&mut self, element: &Element, taken: Taken, measure: &Unit) -> Option<Total> {
         let id = element.word("id");
         let own = self.unit_of(&id);
-        let (unit, what) = match taken {
-            Taken::Mean => (own, format!("the mean `{id}`")),
-            Taken::Integral => {
-                let density = own.map(|unit| unit.times(&micrometre().to_the(-2.0)));
-                (density, format!("what `{id}` sums up over the area"))
+        let (unit, what) = match (taken, self.known.level) {
+            (Taken::Mean, _) => (own, format!("the mean `{id}`")),
+            (Taken::Integral, level) => {
+                let density = own.map(|unit| unit.times(&measure.to_the(-1.0)));
+                let whole = if level == Level::Field { "grid" } else { "area" };
+                (density, format!("what `{id}` sums up over the {whole}"))
             }
         };
         let integrand = self.expression(&element.text, Use::All, unit.as_ref().map(|unit| (unit, what.as_str())))?;
@@ -91,7 +100,6 @@ impl Builder<'_, '_> {
     /// Finds what differs from atom to atom, and tells what there is once in a cell and uses it all the same.
     pub(super) fn finish_membrane(&mut self, membrane: &mut MembraneDescription, system: &System) {
         membrane.local = local(membrane, system);
-        let is_total = |quantity: QuantityId| membrane.totals.iter().any(|total| total.quantity == quantity);
         let is_local = |quantity: QuantityId| membrane.local[quantity as usize];
         for (number, quantity) in system.quantities.iter().enumerate() {
             let Some(declared) = self.known.quantities.get(number) else { continue };
@@ -110,16 +118,7 @@ impl Builder<'_, '_> {
                 }
             }
         }
-        for total in &membrane.totals {
-            let reached = reached(&total.integrand, system);
-            if let Some(used) = reached.iter().copied().find(|used| is_total(*used)) {
-                let (id, used) = (&system.quantities[total.quantity as usize].id, &system.quantities[used as usize].id);
-                let message = format!("`{id}` sums up an expression that uses the sum `{used}`");
-                let element = self.known.quantities[total.quantity as usize].element;
-                let help = "sums stand side by side: let a <define> join them";
-                tell_at(self.context, element, "id", &message, "a sum of sums", help);
-            }
-        }
+        self.check_totals(&membrane.totals, system);
         if !self.context.is_clean() {
             return;
         }
@@ -131,6 +130,23 @@ impl Builder<'_, '_> {
                 let message = format!("`diffusion` of `{}` is {value}; 0 or more was expected", quantity.id);
                 let help = "what gathers by itself has no solution; attraction belongs into the rate";
                 tell_at(self.context, quantity.element, "diffusion", &message, "not 0 or more", help);
+            }
+        }
+    }
+}
+
+impl Builder<'_, '_> {
+    /// Tells sums of sums.
+    pub(super) fn check_totals(&mut self, totals: &[Total], system: &System) {
+        let is_total = |quantity: QuantityId| totals.iter().any(|total| total.quantity == quantity);
+        for total in totals {
+            let reached = reached(&total.integrand, system);
+            if let Some(used) = reached.iter().copied().find(|used| is_total(*used)) {
+                let (id, used) = (&system.quantities[total.quantity as usize].id, &system.quantities[used as usize].id);
+                let message = format!("`{id}` sums up an expression that uses the sum `{used}`");
+                let element = self.known.quantities[total.quantity as usize].element;
+                let help = "sums stand side by side: let a <define> join them";
+                tell_at(self.context, element, "id", &message, "a sum of sums", help);
             }
         }
     }
@@ -152,7 +168,7 @@ pub(super) fn first(expr: &Expr, holds: &impl Fn(QuantityId) -> bool) -> Option<
 }
 
 /// All quantities that an expression uses, also through definitions.
-fn reached(expr: &Expr, system: &System) -> Vec<QuantityId> {
+pub fn reached(expr: &Expr, system: &System) -> Vec<QuantityId> {
     let (mut open, mut seen) = (Vec::new(), Vec::new());
     expr.each_quantity(&mut |used| open.push(used));
     while let Some(quantity) = open.pop() {
@@ -169,13 +185,14 @@ fn reached(expr: &Expr, system: &System) -> Vec<QuantityId> {
 
 /// Of each quantity, whether it differs from atom to atom.
 fn local(membrane: &MembraneDescription, system: &System) -> Vec<bool> {
+    let surface = membrane.surface.iter().map(|variable| variable.quantity);
+    differing(surface.chain(membrane.given.iter().copied()), system)
+}
+
+/// Of each quantity, whether it differs from point to point, as these do and the position.
+pub(super) fn differing(these: impl Iterator<Item = QuantityId>, system: &System) -> Vec<bool> {
     let mut local = vec![false; system.quantities.len()];
-    for variable in &membrane.surface {
-        local[variable.quantity as usize] = true;
-    }
-    for given in &membrane.given {
-        local[*given as usize] = true;
-    }
+    these.for_each(|quantity| local[quantity as usize] = true);
     for (number, quantity) in system.quantities.iter().enumerate() {
         local[number] |= quantity.role == Role::Input && SURFACE[..3].contains(&quantity.id.as_str());
     }

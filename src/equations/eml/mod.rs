@@ -18,10 +18,12 @@ mod links;
 mod measured;
 mod membrane;
 mod noise;
+mod parts;
 mod random_words;
 mod reactions;
 mod reads;
 mod repeat;
+mod scene;
 mod solver;
 mod start;
 mod tables;
@@ -33,10 +35,12 @@ mod xml;
 pub use declare::SURFACE;
 pub use document::{
     Document, Endpoint, FieldDescription, FieldSource, GridDescription, Index, Level, LinkDescription,
-    MembraneDescription, NoiseDescription, Profile, Root, SIDES, Scheme, SolverChoice, Step, SurfaceVariable, Taken,
-    Taxis, Total, Wall,
+    MembraneDescription, NoiseDescription, Profile, Root, SIDES, SceneDescription, Scheme, SolverChoice, Step,
+    SurfaceVariable, Taken, Taxis, Total, Wall,
 };
 pub use links::{read_end, read_transfer};
+pub use membrane::reached;
+pub use parts::FieldEvent;
 pub use reads::{Reads, reads};
 pub use solver::SCHEMES;
 pub use vocabulary::{ELEMENTS, Kind};
@@ -81,6 +85,7 @@ pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Document> {
     let grid = builder.grid(&root);
     let mut fields = builder.fields(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
     let mut membrane = builder.membrane(&root);
+    let mut scene = builder.scene(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
     let noise = builder.noise(&root, grid.as_ref().map_or(3, |grid| grid.dimension));
     let links = builder.links(&root);
     let solver = builder.solver(&root);
@@ -89,6 +94,10 @@ pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Document> {
     let system = System { name: root.word("name"), quantities, events, history, reactions, draws };
     builder.check_values(&system);
     builder.finish_fields(&mut fields, &system);
+    if let Some(scene) = &mut scene {
+        builder.finish_scene(scene, &fields, &system);
+        builder.check_events_of_scene(&root, scene, &system);
+    }
     if let Some(membrane) = &mut membrane {
         builder.finish_membrane(membrane, &system);
         builder.check_noise_of_pools(membrane, &noise);
@@ -98,5 +107,19 @@ pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Document> {
         return Err(context.error());
     }
     let name = root.word("name");
-    Ok(Document { name, level, time_unit, seconds, system, locations, grid, fields, membrane, noise, links, solver })
+    Ok(Document {
+        name,
+        level,
+        time_unit,
+        seconds,
+        system,
+        locations,
+        grid,
+        fields,
+        scene,
+        membrane,
+        noise,
+        links,
+        solver,
+    })
 }
