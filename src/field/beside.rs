@@ -95,7 +95,10 @@ impl Beside {
         };
         let totals: Result<Vec<Option<Total>>> = scene.totals.iter().map(total).collect();
         let sets: Result<Vec<Sets>> = events.iter().map(|event| sets(&fields, &program, event)).collect();
-        let fed = document.beside().into_iter().filter_map(|q| Some((input(q)?, slot(q)?))).collect();
+        // What comes to the scene from outside is handed on.
+        let is_total = |quantity: &QuantityId| scene.totals.iter().any(|total| total.quantity == *quantity);
+        let fed = inputs.iter().copied().filter(|quantity| !is_total(quantity));
+        let fed = fed.filter_map(|quantity| Some((input(quantity)?, slot(quantity)?))).collect();
         let reads_totals = reads_totals(&fields, scene);
         let totals = totals?.into_iter().flatten().collect();
         let quantities = document.quantities_beside();

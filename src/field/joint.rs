@@ -252,7 +252,8 @@ impl Joint<'_, '_> {
         self.go_on((now, until))?;
         let event = self.scene.scratch.solver.first_event(0) * seconds;
         let event = if self.scene.memories.is_empty() { f64::INFINITY } else { event };
-        self.look(until);
+        self.fields.time = until;
+        self.look();
         let mut fires = false;
         if !self.scene.memories.is_empty() {
             let mut trial = std::mem::take(&mut self.scene.scratch.trial);
@@ -310,9 +311,8 @@ impl Joint<'_, '_> {
         Ok(())
     }
 
-    /// Gives each what there is of the other at a time.
-    fn look(&mut self, time: f64) {
-        self.fields.time = time;
+    /// Gives each what there is of the other.
+    pub fn look(&mut self) {
         self.beside.feed(self.scene.population, self.inputs);
         let mut totals = std::mem::take(&mut self.scene.scratch.totals);
         self.sum(&mut totals);
@@ -321,13 +321,13 @@ impl Joint<'_, '_> {
         self.scene.scratch.totals = totals;
     }
 
-    /// Lets each see the other as it is, and executes what is due now, until nothing more happens.
-    pub fn settle(&mut self) -> Result<()> {
-        let time = self.fields.time;
+    /// Lets each see the other as it is, and executes what is due now, until nothing more happens. Returns whether anything did.
+    pub fn settle(&mut self) -> Result<bool> {
+        let (time, mut any) = (self.fields.time, false);
         for _ in 0..MOST_AT_ONCE {
-            self.look(time);
+            self.look();
             if self.scene.memories.is_empty() {
-                return Ok(());
+                return Ok(false);
             }
             let mut before = std::mem::take(&mut self.scene.scratch.before);
             before.take(self.scene.population, self.scene.memories);
@@ -336,8 +336,9 @@ impl Joint<'_, '_> {
             self.scene.scratch.before = before;
             set?;
             if done? == 0 {
-                return Ok(());
+                return Ok(any);
             }
+            any = true;
         }
         Err(Error::Numbers {
             message: format!(
@@ -355,7 +356,7 @@ impl Joint<'_, '_> {
         for sets in &self.beside.sets {
             let times = self.scene.population.state(0, sets.count) - before.state(0, sets.count);
             for _ in 0..times.round() as u32 {
-                self.look(self.fields.time);
+                self.look();
                 let boxes = self.fields.grid.len();
                 let mut set = std::mem::take(&mut self.scene.scratch.set);
                 set.resize(sets.values.len() * boxes, 0.0);

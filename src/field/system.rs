@@ -272,15 +272,22 @@ impl FieldSystem {
         self.joint(fields, inputs, stepping, scene).run(window)
     }
 
-    /// Lets fields and what stands beside them see each other as they are, and executes the events that are due: at a start, or when an input has
-    /// been set.
+    /// Lets fields and what stands beside them see each other as they are.
+    ///
+    /// # Panics
+    /// As [`Self::advance_with`].
+    pub fn look(&self, fields: &mut Fields, inputs: &mut [f64], scene: Scene) {
+        self.joint(fields, inputs, Stepping::Fixed(1), scene).look();
+    }
+
+    /// The same, and executes the events that are due: at a start, or when an input has been set. Returns whether there were any.
     ///
     /// # Errors
     /// As [`Self::advance_with`].
     ///
     /// # Panics
     /// As [`Self::advance_with`].
-    pub fn settle(&self, fields: &mut Fields, inputs: &mut [f64], scene: Scene) -> Result<()> {
+    pub fn settle(&self, fields: &mut Fields, inputs: &mut [f64], scene: Scene) -> Result<bool> {
         self.joint(fields, inputs, Stepping::Fixed(1), scene).settle()
     }
 

@@ -70,6 +70,9 @@ fn add_chemistry(hash: &mut Fnv, chemistry: &Chemistry) {
         hash.value(&(&field.name, field.system.equations(), field.system.grid(), field.system.species()));
         hash.value(&(field.system.inputs(), field.stepping, &field.constants));
         hash.value(&(field.system.noise(), field.pace));
+        if let Some(beside) = field.system.beside() {
+            hash.value(beside);
+        }
         if let Some(transport) = field.system.transport() {
             hash.value(&transport);
         }

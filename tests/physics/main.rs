@@ -2,6 +2,7 @@
 
 mod areas;
 mod atoms;
+mod beside_fields;
 mod bonds;
 mod cohesion;
 mod contact;

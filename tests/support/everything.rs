@@ -12,7 +12,10 @@ const FIELD: &str = r#"<eml name="field"><grid dimension="2" spacing="4" origin=
     <field id="m" diffusion="2 + 0.1*m" decay="0.1" initial="1">
         <advection x="0.5 + 0.1*sin(time)" y="0.01*x"/><taxis towards="c" sensitivity="1/(1 + c)^2"/>
         <source at="3 -7" strength="2 + cos(time)"/>
-        <wall side="x-" kind="flux" value="0.1*(2 - m)"/><wall side="y+" kind="open" value="1 + 0.1*time"/></field></eml>"#;
+        <wall side="x-" kind="flux" value="0.1*(2 - m)"/><wall side="y+" kind="open" value="1 + 0.1*time"/></field>
+        <field id="w" initial="1" diffusion="10"><reaction>0.2*(bath - w)</reaction></field><mean id="mean_w">w</mean>
+        <variable id="bath" initial="2" rate="0.3*(1 - bath*mean_w)"/>
+        <event every="0.1"><set id="w">1.01*w</set><set id="bath">bath + 0.01</set></event></eml>"#;
 
 /// What each walker has.
 const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/><input id="c" default="0"/><input id="gx" default="0"/>

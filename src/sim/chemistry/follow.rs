@@ -39,6 +39,10 @@ fn may_be_followed(model: &Model, reactor: usize) -> bool {
 
 /// Whether a system is moved through a step with [`follow`].
 pub fn is_releasing(model: &Model, reactor: usize) -> bool {
+    if model.chemistry.reactors[reactor].beside.is_some() {
+        // It is moved with its fields.
+        return false;
+    }
     let owns = |link: &Link| matches!(link.owner, Owner::Reactor(owner) if owner == reactor);
     model.chemistry.links.iter().any(|link| owns(link) && is_followed(model, link))
 }

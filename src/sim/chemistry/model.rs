@@ -48,6 +48,8 @@ pub struct Reactor {
     pub pace: Pace,
     /// What of it lives on the membranes of its cells; its own equations are those of their insides.
     pub membrane: Option<Membrane>,
+    /// The number of the fields that it stands beside and is moved with; none where it is moved by itself.
+    pub beside: Option<usize>,
     /// Who has it.
     pub members: Members,
     /// Seconds in the system's unit of time.
@@ -88,6 +90,8 @@ pub struct FieldReactor {
     pub name: String,
     /// Grid, species, reactions.
     pub system: FieldSystem,
+    /// The number of the system of what stands beside them.
+    pub scene: Option<usize>,
     /// How a step of the model is cut into steps of the fields.
     pub stepping: FieldStepping,
     /// How often noise kicks, s.

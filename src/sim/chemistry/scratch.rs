@@ -9,7 +9,7 @@ use super::released::Released;
 use super::state::ChemistryState;
 use super::surface::AtomShapes;
 use crate::Vec3;
-use crate::field::{Fields, Sensed};
+use crate::field::{Fields, SceneScratch, Sensed};
 use crate::membrane::MembraneScratch;
 use crate::ode::PopulationScratch;
 
@@ -18,6 +18,8 @@ use crate::ode::PopulationScratch;
 pub struct ChemistryScratch {
     /// Solvers of the fields; their values are the state's while a stage works on them.
     pub(super) fields: Vec<Fields>,
+    /// What they and what stands beside them work in.
+    pub(super) scenes: Vec<SceneScratch>,
     /// Measures of all cells, where links read them.
     pub(super) cells: Vec<CellNumbers>,
     /// Who touches whom, where links read that.
@@ -54,6 +56,7 @@ impl ChemistryScratch {
         let fields = chemistry.fields.iter().map(|field| field.system.empty());
         Self {
             fields: fields.collect(),
+            scenes: chemistry.fields.iter().map(|_| SceneScratch::default()).collect(),
             own_steps: vec![0; chemistry.reactors.len()],
             populations: chemistry.reactors.iter().map(|_| PopulationScratch::default()).collect(),
             membranes: chemistry.reactors.iter().map(|_| MembraneScratch::default()).collect(),

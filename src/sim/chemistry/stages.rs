@@ -12,8 +12,9 @@ use super::advance::{advance_system, system_trouble};
 use super::carry::carry_links;
 use super::follow::{follow, is_releasing};
 use super::membranes::begin_membranes;
+use super::model::Reactor;
 use super::populations::{advance_population, eventful, ids};
-use super::release::move_fields;
+use super::release::{look_at_fields, move_fields, settle_fields};
 use super::scratch::ChemistryScratch;
 use super::state::ChemistryState;
 use crate::ode::{PopulationScratch, Substeps};
@@ -27,9 +28,12 @@ pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> 
     locate_contacts(model, state, ws);
     begin_membranes(model, state, &mut ws.chemistry.membranes);
     ws.chemistry.exchange_values(&mut state.chemistry, time);
+    // Links read sums over fields, too.
+    look_at_fields(model, state, ws);
     carry_links(model, time, true, state, ws)?;
     // What events change at the start goes through the links at once, so that the start shows it.
-    if begin_events(model, state, &mut ws.chemistry.populations)? {
+    let events = begin_events(model, state, &mut ws.chemistry.populations)?;
+    if settle_fields(model, state, ws)? || events {
         carry_links(model, time, true, state, ws)?;
     }
     ws.chemistry.exchange_values(&mut state.chemistry, time);
@@ -52,7 +56,9 @@ pub fn advance_chemistry(
     }
     let (start, end) = (from.time, from.time + dt);
     ws.chemistry.exchange_values(&mut to.chemistry, start);
-    for number in (0..model.chemistry.reactors.len()).filter(|number| !is_releasing(model, *number)) {
+    let is_moved_here =
+        |number: &usize| !is_releasing(model, *number) && model.chemistry.reactors[*number].beside.is_none();
+    for number in (0..model.chemistry.reactors.len()).filter(is_moved_here) {
         advance_system(model, number, end, from, to, &mut ws.chemistry)?;
     }
     follow(model, (start, dt), from, to, ws)?;
@@ -73,7 +79,8 @@ pub fn advance_systems_to(model: &Model, from: &ChemistryState, within: &mut Sta
     for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
         let begun = from.times[number];
         let stands_still = begun == within.chemistry.times[number] || begun >= time;
-        if !from.carried || stands_still || reactor.membrane.is_some() || reactor.noise.is_some() {
+        let is_alone = reactor.membrane.is_none() && reactor.noise.is_none() && reactor.beside.is_none();
+        if !from.carried || stands_still || !is_alone {
             continue;
         }
         let State { kinds, chemistry, .. } = &mut *within;
@@ -99,7 +106,8 @@ pub fn advance_systems_to(model: &Model, from: &ChemistryState, within: &mut Sta
 /// Executes the events of the start. Returns whether there were any.
 fn begin_events(model: &Model, state: &mut State, scratch: &mut [PopulationScratch]) -> Result<bool, Trouble> {
     let mut any = false;
-    for (number, reactor) in model.chemistry.reactors.iter().enumerate().filter(|(_, r)| !r.events.is_empty()) {
+    let begins_here = |reactor: &Reactor| !reactor.events.is_empty() && reactor.beside.is_none();
+    for (number, reactor) in model.chemistry.reactors.iter().enumerate().filter(|(_, r)| begins_here(r)) {
         let chemistry = &mut state.chemistry;
         let now = chemistry.times[number] / reactor.seconds;
         let (population, memories) = (&mut chemistry.populations[number], &mut chemistry.events[number]);

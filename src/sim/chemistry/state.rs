@@ -8,7 +8,7 @@ use super::super::model::Model;
 use super::field_values::FieldValues;
 use super::links::{Control, Owner, Target, Whose};
 use super::model::{Members, Reactor};
-use crate::field::Fields;
+use crate::field::{Fields, ScenePace};
 use crate::membrane::{MembraneCells, MembraneState};
 use crate::ode::{EventMemory, Numbers, Population};
 
@@ -44,6 +44,8 @@ pub struct FieldState {
     pub inputs: Vec<f64>,
     /// How often noise has kicked them.
     pub kicks: u64,
+    /// The pace of steps with what stands beside them.
+    pub scene: ScenePace,
 }
 
 impl ChemistryState {
@@ -77,6 +79,7 @@ impl ChemistryState {
             pace: fields.pace(),
             inputs: reactor.system.inputs().iter().map(|(_, value)| *value).collect(),
             kicks: 0,
+            scene: ScenePace::default(),
         };
         Self {
             populations: populations.collect(),
@@ -105,7 +108,7 @@ impl ChemistryState {
         for (to, from) in self.fields.iter_mut().zip(&other.fields) {
             to.values.copy_from(&from.values);
             to.inputs.clone_from(&from.inputs);
-            (to.pace, to.kicks) = (from.pace, from.kicks);
+            (to.pace, to.kicks, to.scene) = (from.pace, from.kicks, from.scene);
         }
         self.controls.copy_from(&other.controls);
         self.carried = other.carried;

@@ -1,6 +1,6 @@
 //! Links: those in the documents of equations and those that the experiment adds, joined to the model.
 
-use super::super::super::{ChemistryLink, Document};
+use super::super::super::{Chemistry as Entry, ChemistryLink, Document};
 use super::ends::{Ends, Side, differs, kind_of_cell};
 use super::order::order;
 use super::{Part, at, membrane, within};
@@ -17,16 +17,21 @@ use crate::sim::chemistry::{
 
 /// Parameters that a link of the experiment sets become inputs; those that events set do not.
 pub(super) fn open_linked_parameters(parts: &mut [Part]) {
-    for part in parts {
-        let set_by_events = assigned_parameters(&part.document.system);
-        for link in &part.entry.links {
-            if let Ok((Root::System(number), _)) = eml::read_end(&link.to, &part.document.system)
-                && !set_by_events.contains(&number)
-            {
-                let role = &mut part.document.system.quantities[number as usize].role;
-                if *role == Role::Parameter {
-                    *role = Role::Input;
-                }
+    for part in parts.iter_mut().filter(|part| part.beside.is_none() && part.document.scene.is_none()) {
+        open_linked(&mut part.document.system, part.entry);
+    }
+}
+
+/// The same of one system.
+pub(super) fn open_linked(system: &mut System, entry: &Entry) {
+    let set_by_events = assigned_parameters(system);
+    for link in &entry.links {
+        if let Ok((Root::System(number), _)) = eml::read_end(&link.to, system)
+            && !set_by_events.contains(&number)
+        {
+            let role = &mut system.quantities[number as usize].role;
+            if *role == Role::Parameter {
+                *role = Role::Input;
             }
         }
     }
@@ -44,7 +49,7 @@ pub(super) fn links(
     let before = faults.len();
     let mut links: Vec<(Link, Location)> = Vec::new();
     let planes: Vec<&str> = document.experiment.planes.iter().map(|plane| plane.name.as_str()).collect();
-    for part in parts {
+    for part in parts.iter().filter(|part| part.document.scene.is_none()) {
         let mut shown = Vec::new();
         let described = part.document.links.iter().map(|link| (link.clone(), Ok(link.location.clone())));
         let own: Vec<_> = described.chain(outside(document, part, faults)).collect();
@@ -137,6 +142,9 @@ fn link_kinds(
 /// A link; what membranes have to work out at atoms for it is put to what is shown.
 fn link(ends: &mut Ends, shown: &mut Vec<Expr>, description: &LinkDescription) -> Result<Link, Fault> {
     let owner = ends.owner();
+    if let Some(local) = ends.part.beside.as_ref().map(|beside| &beside.local) {
+        one_of_scene(ends.part, local, description)?;
+    }
     let (from, to, source) = joined(ends, shown.len(), description)?;
     let mut needs: Vec<QuantityId> = source.into_iter().collect();
     description.transfer.each_quantity(&mut |quantity| {
@@ -161,6 +169,23 @@ fn link(ends: &mut Ends, shown: &mut Vec<Expr>, description: &LinkDescription) -
     let text = format!("of `{}` from {} to {}", ends.part.name, description.from.text, description.to.text);
     let (transfer, gain) = (description.transfer.clone(), description.gain);
     Ok(Link { text, owner, from, to, transfer, uses, needs, gain })
+}
+
+/// Refuses a link of what stands beside fields that uses what differs from point to point.
+fn one_of_scene(part: &Part, local: &[bool], description: &LinkDescription) -> Result<(), Fault> {
+    let mut used = Vec::new();
+    if let Root::System(quantity) = description.from.root {
+        used.push((quantity, &description.from.location));
+    }
+    description.transfer.each_quantity(&mut |quantity| used.push((quantity, &description.location)));
+    let differs = |quantity: QuantityId| local.get(quantity as usize) == Some(&true);
+    let Some((quantity, location)) = used.into_iter().find(|(quantity, _)| differs(*quantity)) else { return Ok(()) };
+    let id = &part.document.system.quantities[quantity as usize].id;
+    let message = format!("`{id}` differs from point to point, and a link carries one number");
+    let help = format!(
+        "link from field[{id}], which a cell senses where it is, or from a <mean> or <integral> in the document"
+    );
+    Err(within(location, "at which point?", message, help))
 }
 
 /// The two ends of a link, and the quantity of the system that it reads.

@@ -89,6 +89,7 @@ pub(super) fn reactor(document: &Document, part: &Part, kinds: &[Kind], faults: 
     let is_recorded = |number: u32, role: &Role| *role != Role::Parameter && MembraneSystem::is_recorded(eml, number);
     let quantities = (0..).zip(&eml.system.quantities).filter(|(number, q)| is_recorded(*number, &q.role));
     Some(Reactor {
+        beside: None,
         name: part.name.to_owned(),
         program: system.inside().clone(),
         events: EventPlan::default(),

@@ -14,6 +14,7 @@ pub use profile::load as load_profile;
 use super::super::{Chemistry as Entry, Document, Scheme};
 use super::size::{self, Size};
 use crate::equations::eml::{self, Level};
+use crate::equations::expression::is_identifier;
 use crate::equations::program::initial_values;
 use crate::equations::tree::{Quantity, QuantityId, Role};
 use crate::error::{Error, Fault, Location};
@@ -37,6 +38,16 @@ struct Part<'a> {
     kinds: Vec<usize>,
     /// Its number among the systems, or among the fields.
     number: usize,
+    /// Of what stands beside fields, these.
+    beside: Option<BesideFields>,
+}
+
+/// Which fields a system stands beside.
+struct BesideFields {
+    /// Their number.
+    field: usize,
+    /// Of each quantity of the document, whether it differs from point to point.
+    local: Vec<bool>,
 }
 
 impl Part<'_> {
@@ -99,8 +110,13 @@ pub fn chemistry(
         })
         .collect();
     let mut fields = Vec::new();
+    let scene_of = |field: usize| {
+        let beside = |part: &&Part| part.beside.as_ref().is_some_and(|beside| beside.field == field);
+        parts.iter().find(beside).map(|part| part.number)
+    };
     for part in parts.iter().filter(|part| part.is_field()) {
-        if let Some((reactor, start)) = field(document, part, size, faults) {
+        if let Some((mut reactor, start)) = field(document, part, size, faults) {
+            reactor.scene = scene_of(part.number);
             chemistry.fields.push(reactor);
             fields.push(start);
         }
@@ -143,8 +159,9 @@ fn tell(error: Error, faults: &mut Vec<Fault>) {
 }
 
 fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<Reactor> {
-    let (entry, eml) = (part.entry, &part.document);
-    let method = method(document, part, faults)?;
+    // What the experiment says of a document of fields is of these; what stands beside them is solved as is usual.
+    let (entry, eml) = (part.beside.is_none().then_some(part.entry), &part.document);
+    let method = if entry.is_some() { method(document, part, faults)? } else { Method::Rosenbrock };
     let variables = eml.system.variables().len();
     if method.is_implicit() && variables > MOST_IMPLICIT {
         let fault = too_large(&format!("`{}`", part.name), variables, "rosenbrock", "add `scheme = \"rk45\"`");
@@ -170,27 +187,31 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
         }
     };
     let members = if part.kinds.is_empty() { Members::Scene } else { Members::Kinds(part.kinds.clone()) };
-    let exchange = entry.exchange.map(|time| time.value()).or(eml.solver.step.map(|step| step * eml.seconds));
+    let exchange = entry.and_then(|entry| entry.exchange).map(|time| time.value());
+    let exchange = exchange.or(eml.solver.step.map(|step| step * eml.seconds));
     let set_by_events = assigned_parameters(&eml.system);
     let kept = |number: u32, role: &Role| match role {
         Role::Variable { .. } | Role::Defined { .. } | Role::Input => true,
         Role::Parameter => set_by_events.contains(&number),
     };
-    let quantities = eml.system.quantities.iter().enumerate().filter(|(number, q)| kept(*number as u32, &q.role));
+    // What counts executions of events that set fields has no identifier.
+    let quantities = eml.system.quantities.iter().enumerate();
+    let quantities = quantities.filter(|(number, q)| kept(*number as u32, &q.role) && is_identifier(&q.id));
     Some(Reactor {
         name: part.name.to_owned(),
         program,
         events,
         noise,
         starts: Starts::new(&eml.system),
-        pace: pace(document, part, eml.seconds, faults),
+        pace: if entry.is_some() { pace(document, part, eml.seconds, faults) } else { Pace::Never },
         membrane: None,
+        beside: part.beside.as_ref().map(|beside| beside.field),
         members,
         seconds: eml.seconds,
         method,
         tolerances: Tolerances {
-            relative: entry.rtol.or(eml.solver.rtol).unwrap_or(SYSTEM_TOLERANCE.0),
-            absolute: entry.atol.or(eml.solver.atol).unwrap_or(SYSTEM_TOLERANCE.1),
+            relative: entry.and_then(|entry| entry.rtol).or(eml.solver.rtol).unwrap_or(SYSTEM_TOLERANCE.0),
+            absolute: entry.and_then(|entry| entry.atol).or(eml.solver.atol).unwrap_or(SYSTEM_TOLERANCE.1),
             ..Tolerances::default()
         },
         exchange,
@@ -330,5 +351,6 @@ fn field(document: &Document, part: &Part, size: &mut Size, faults: &mut Vec<Fau
     };
     let pace = pace(document, part, 1.0, faults);
     let constants = initial_values(&eml.system, 0.0).unwrap_or_default();
-    Some((FieldReactor { name: part.name.to_owned(), system, stepping, pace, constants }, start))
+    let name = part.name.to_owned();
+    Some((FieldReactor { name, system, scene: None, stepping, pace, constants }, start))
 }

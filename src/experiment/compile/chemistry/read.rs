@@ -1,7 +1,7 @@
 //! Reads the documents, takes in what the experiment changes, and finds out who has each system.
 
 use super::super::super::{Chemistry as Entry, Document};
-use super::{Part, at, tell};
+use super::{BesideFields, Part, at, tell};
 use crate::equations::eml::{self, Level};
 use crate::equations::tree::{Expr, Role};
 use crate::error::words;
@@ -20,9 +20,20 @@ pub(super) fn parts<'a>(document: &'a Document, kinds: &[Kind], faults: &mut Vec
         let has = |kind: &Kind| experiment.cells.get(&kind.name).is_some_and(|cell| cell.chemistry.contains(name));
         let owners: Vec<usize> = (0..kinds.len()).filter(|&kind| has(&kinds[kind])).collect();
         check_level(document, name, &eml, &owners, faults);
-        let is_field = !eml.fields.is_empty();
-        let number = parts.iter().filter(|part| part.is_field() == is_field).count();
-        parts.push(Part { name, entry, document: eml, kinds: owners, number });
+        let number = |parts: &[Part], is_field: bool| parts.iter().filter(|part| part.is_field() == is_field).count();
+        if eml.scene.is_some() {
+            super::links::open_linked(&mut eml.system, entry);
+        }
+        let (is_field, scene) = (!eml.fields.is_empty(), eml.scene_alone());
+        let own = number(&parts, is_field);
+        if let (Some((alone, _)), Some(scene)) = (scene, &eml.scene) {
+            // Its links are those of what stands beside the fields, which hands on what comes from outside.
+            let beside = Some(BesideFields { field: own, local: scene.local.clone() });
+            let number = number(&parts, false);
+            eml.links.clear();
+            parts.push(Part { name, entry, document: alone, kinds: Vec::new(), number, beside });
+        }
+        parts.push(Part { name, entry, document: eml, kinds: owners, number: own, beside: None });
     }
     parts
 }
