@@ -150,7 +150,10 @@ fn taking_of_everything() -> [Taking; 2] {
     pool.install(|| {
         // Until the cells lie where they stay and their bonds are as many as they become.
         let (mut state, mut ws) = after(&model, start, 1000);
-        let pulses = |state: &State| -> f64 { (0..3).map(|cell| state.chemistry.populations[0].state(cell, 3)).sum() };
+        let own =
+            model.chemistry.reactors.iter().position(|reactor| reactor.name == "own").expect("each walker has it");
+        let own = |state: &State, cell: usize| state.chemistry.populations[own].state(cell, 3);
+        let pulses = |state: &State| -> f64 { (0..3).map(|cell| own(state, cell)).sum() };
         let [mut all, mut with_events] = <[Taking; 2]>::default();
         for _ in 0..400 {
             // As the recorder does now and then: pseudopods that end are kept for the result until then.

@@ -1,7 +1,7 @@
 //! What stands beside fields while these are solved by themselves, without a run.
 
 use super::beside::Beside;
-use super::joint::{Scene, ScenePace, SceneScratch};
+use super::scene::{Scene, ScenePace, SceneScratch};
 use crate::ode::{EventMemory, Eventful, Method, Numbers, Population, Tolerances};
 
 /// What stands beside fields, and all that is known of it.

@@ -7,13 +7,14 @@ use super::beside::Beside;
 use super::carry::Carrying;
 use super::course::Course;
 use super::grid::Grid;
-use super::joint::{Joint, Scene};
+use super::joint::{Alone, Joint};
 use super::layout::{Placing, describe, layout, unit};
 use super::lines;
 use super::noise::Noise;
 use super::profiles::profiles;
 use super::reactor::Reactor;
 use super::scales::{POSITION, Scales, in_circle};
+use super::scene::Scene;
 use super::species::Species;
 use super::state::Fields;
 use super::step::{Acts, Report, Stepping};
@@ -155,23 +156,8 @@ impl FieldSystem {
     }
 
     /// Whether anything acts on the fields beside diffusion and decay.
-    pub(super) fn is_acted_on(&self) -> bool {
+    fn is_acted_on(&self) -> bool {
         self.reactor.is_some() || self.transport.is_some()
-    }
-
-    /// Seconds in the document's unit of time.
-    pub(super) fn seconds(&self) -> f64 {
-        self.scales.seconds
-    }
-
-    /// The document's units.
-    pub(super) fn scales(&self) -> Scales {
-        self.scales
-    }
-
-    /// Of each field, which values it may take.
-    pub(super) fn ranges(&self) -> &[Range] {
-        &self.ranges
     }
 
     /// The document's name.
@@ -269,7 +255,7 @@ impl FieldSystem {
         stepping: Stepping,
         scene: Scene,
     ) -> Result<Report> {
-        self.joint(fields, inputs, stepping, scene).run(window)
+        self.joint(fields, inputs, stepping, scene, |mut joint| joint.run(window))
     }
 
     /// Lets fields and what stands beside them see each other as they are.
@@ -277,7 +263,7 @@ impl FieldSystem {
     /// # Panics
     /// As [`Self::advance_with`].
     pub fn look(&self, fields: &mut Fields, inputs: &mut [f64], scene: Scene) {
-        self.joint(fields, inputs, Stepping::Fixed(1), scene).look();
+        self.joint(fields, inputs, Stepping::Fixed(1), scene, |mut joint| joint.look());
     }
 
     /// The same, and executes the events that are due: at a start, or when an input has been set. Returns whether there were any.
@@ -288,19 +274,31 @@ impl FieldSystem {
     /// # Panics
     /// As [`Self::advance_with`].
     pub fn settle(&self, fields: &mut Fields, inputs: &mut [f64], scene: Scene) -> Result<bool> {
-        self.joint(fields, inputs, Stepping::Fixed(1), scene).settle()
+        self.joint(fields, inputs, Stepping::Fixed(1), scene, |mut joint| joint.settle())
     }
 
-    fn joint<'a, 's>(
-        &'a self,
-        fields: &'a mut Fields,
-        inputs: &'a mut [f64],
+    /// Does something with the fields and what stands beside them.
+    fn joint<T>(
+        &self,
+        fields: &mut Fields,
+        inputs: &mut [f64],
         stepping: Stepping,
-        scene: Scene<'s>,
-    ) -> Joint<'a, 's> {
+        scene: Scene,
+        work: impl FnOnce(Joint) -> T,
+    ) -> T {
         assert_eq!(inputs.len(), self.inputs.len(), "one number for each input of '{}'", self.name);
         let beside = self.beside.as_ref().expect("something stands beside the fields");
-        Joint { system: self, beside, fields, inputs, scene, stepping, report: Report::default() }
+        let advance = |fields: &mut Fields, window: f64, inputs: &[f64], stepping: Stepping| {
+            self.advance(fields, window, inputs, stepping)
+        };
+        let alone = Alone {
+            name: &self.name,
+            scales: self.scales,
+            ranges: &self.ranges,
+            are_acted_on: self.is_acted_on(),
+            advance: &advance,
+        };
+        work(Joint { alone, beside, fields, inputs, scene, stepping, report: Report::default() })
     }
 
     /// Moves the fields by a window of time, s. The inputs stand still within it; there is one for each of

@@ -135,6 +135,22 @@ fn noise_reads_back_the_same() {
 }
 
 #[test]
+fn what_stands_beside_fields_reads_back_the_same() {
+    let text = r#"<eml name="f"><grid dimension="2" spacing="1"/>
+        <field id="c" initial="1"><reaction>s - c</reaction></field><variable id="s" initial="2" rate="m - s"/>
+        <mean id="m">c^2</mean><integral id="q">c*s</integral>
+        <event id="dose" when="q gt 3"><set id="c">c + x</set><set id="s">1</set></event></eml>"#;
+    let document = read_text("text", text.to_owned()).document;
+    let again = read_text("text again", eml::write(&document, "").text).document;
+    assert_eq!(again.system, document.system);
+    let totals = |document: &eml::Document| -> Vec<_> {
+        let scene = document.scene.as_ref().expect("something stands beside the field");
+        scene.totals.iter().map(|total| (total.quantity, total.taken, total.integrand.clone())).collect()
+    };
+    assert_eq!(totals(&again), totals(&document));
+}
+
+#[test]
 fn units_of_numbers_cost_the_units_of_the_text_and_not_its_meaning() {
     let text = r#"<eml name="m"><variable id="c" unit="uM" initial="1" rate="-0.1 [1/s]*c"/></eml>"#;
     let document = read_text("text", text.to_owned()).document;

@@ -7,7 +7,7 @@ use pseudopod::equations::tree::Expr;
 use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
 use pseudopod::mechanics::integrator::StepSize;
-use pseudopod::sim::chemistry::{Control, Target};
+use pseudopod::sim::chemistry::{Control, Members, Target};
 use pseudopod::sim::{Model, Plane, State, Trouble, Workspace, begin_chemistry, step};
 
 fn bytes(state: &State) -> Vec<u8> {
@@ -138,7 +138,8 @@ fn a_stage_of_chemistry_that_fails_leaves_every_byte() {
     let (model, state, mut ws) = scene(None);
     // Systems.
     let mut blown = state.clone();
-    blown.chemistry.populations[0].set_state(1, 0, f64::NAN);
+    let of_cells = model.chemistry.reactors.iter().position(|reactor| reactor.members != Members::Scene);
+    blown.chemistry.populations[of_cells.expect("cells have systems")].set_state(1, 0, f64::NAN);
     fails("systems", &model, &blown, &mut ws, |trouble| matches!(trouble, Trouble::System { .. }));
     // Fields.
     let mut burst = state.clone();

@@ -11,6 +11,7 @@ mod census;
 mod exchange;
 mod expected;
 mod field_values;
+mod fields;
 mod follow;
 mod links;
 mod measure;

@@ -145,12 +145,14 @@ impl<'a> Writer<'a> {
             let rule = self.expression(rule);
             return self.line(format_args!("  <define{head}{tail}>{rule}</define>"));
         }
+        let of_scene = document.scene.iter().flat_map(|scene| &scene.totals);
+        let mut totals = document.membrane.iter().flat_map(|membrane| &membrane.totals).chain(of_scene);
+        if let Some(total) = totals.find(|total| total.quantity == number) {
+            let element = if total.taken == Taken::Mean { "mean" } else { "integral" };
+            let integrand = self.expression(&total.integrand);
+            return self.line(format_args!("  <{element}{head}{tail}>{integrand}</{element}>"));
+        }
         if let Some(membrane) = &document.membrane {
-            if let Some(total) = membrane.totals.iter().find(|total| total.quantity == number) {
-                let element = if total.taken == Taken::Mean { "mean" } else { "integral" };
-                let integrand = self.expression(&total.integrand);
-                return self.line(format_args!("  <{element}{head}{tail}>{integrand}</{element}>"));
-            }
             match membrane.surface.iter().find(|variable| variable.quantity == number) {
                 Some(variable) => tail.push_str(&attribute("diffusion", &self.expression(&variable.diffusion))),
                 None if matches!(quantity.role, Role::Variable { .. }) => tail.push_str(&attribute("level", "cell")),
