@@ -1,7 +1,7 @@
 //! Files that are read: plain ones only, and whether two paths lead to the same.
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The bytes of a plain file. Pipes and devices are not read: they may have no end, or never begin.
 ///
@@ -52,6 +52,21 @@ fn resolved(path: &Path) -> PathBuf {
     })
 }
 
+/// A path without steps into folders that it leaves again.
+pub fn tidy(path: &Path) -> PathBuf {
+    let mut short = PathBuf::new();
+    for part in path.components() {
+        let leaves =
+            part == Component::ParentDir && matches!(short.components().next_back(), Some(Component::Normal(_)));
+        if leaves {
+            short.pop();
+        } else {
+            short.push(part);
+        }
+    }
+    short
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,5 +84,13 @@ mod tests {
         assert!(are_same(&path("a"), &path("b")) && are_same(&path("b"), &path("c")));
         assert!(are_same(&path("new"), &folder.path().join("./new")));
         assert!(!are_same(&path("a"), &path("new")));
+    }
+
+    #[test]
+    fn steps_into_a_folder_and_out_again_are_left_out() {
+        let short = |path: &str| tidy(Path::new(path)).display().to_string();
+        assert_eq!(short("out/../cells.toml"), "cells.toml");
+        assert_eq!(short("a/b/../../../cells.toml"), "../cells.toml");
+        assert_eq!(short("../out/./cells.toml"), "../out/cells.toml");
     }
 }

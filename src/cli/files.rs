@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Fault, Result};
 use crate::files::are_same;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Refuses files that a command would read and write, or write twice.
 ///
@@ -13,6 +13,20 @@ pub fn refuse_same(files: &[&Path]) -> Result<()> {
         if files[..number].iter().any(|other| are_same(other, path)) {
             let fault = Fault::new(format!("{} is named twice", path.display()));
             return Err(Error::input(fault.help("give each file that is read or written a name of its own")));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses to write over files that are read.
+///
+/// # Errors
+/// A file to be written that is one of those that are read.
+pub fn refuse_read<'a>(read: &[PathBuf], written: impl Iterator<Item = &'a Path>) -> Result<()> {
+    for path in written {
+        if read.iter().any(|other| are_same(other, path)) {
+            let fault = Fault::new(format!("{} is what the document names and reads", path.display()));
+            return Err(Error::input(fault.help("name another file to be written")));
         }
     }
     Ok(())

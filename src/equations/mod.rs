@@ -6,6 +6,7 @@
 pub mod eml;
 pub mod expression;
 mod fault;
+mod files;
 mod pieces;
 pub mod program;
 mod range;
@@ -13,5 +14,6 @@ pub mod reactions;
 mod read;
 pub mod sbml;
 pub mod tree;
+pub use files::{Files, NamedFile};
 pub use range::Range;
-pub use read::{Read, read, read_in};
+pub use read::{Read, named_files, read, read_in};

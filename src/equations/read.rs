@@ -1,8 +1,8 @@
 //! One entrance for documents of equations: EML, and SBML models wherever an EML document can stand.
 
+use super::files::{Files, NamedFile};
 use super::{eml, sbml};
 use crate::error::{Location, Result, Source};
-use std::path::Path;
 use std::sync::Arc;
 
 /// A document of equations as it was read.
@@ -21,16 +21,22 @@ pub struct Read {
 /// # Errors
 /// As [`read_in`].
 pub fn read(source: Arc<Source>) -> Result<Read> {
-    read_in(source, None)
+    read_in(source, Files::default())
 }
 
-/// Reads an EML document or an SBML model that stands in a folder, from which the files are found that it names.
+/// The files that a document names and that are read with it: documents that it includes, tables, images and datasets. Faults are
+/// left to who reads it.
+pub fn named_files(source: Arc<Source>, files: Files) -> Vec<NamedFile> {
+    if sbml::is_sbml(&source.text) { Vec::new() } else { eml::named_files(source, files) }
+}
+
+/// Reads an EML document or an SBML model, and the files that it names.
 ///
 /// # Errors
 /// As [`eml::read_in`] and [`sbml::read`].
-pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Read> {
+pub fn read_in(source: Arc<Source>, files: Files) -> Result<Read> {
     if !sbml::is_sbml(&source.text) {
-        return Ok(Read { document: eml::read_in(source, folder)?, notices: Vec::new(), sbml: None });
+        return Ok(Read { document: eml::read_in(source, files)?, notices: Vec::new(), sbml: None });
     }
     let model = sbml::read(&source)?;
     let whole = Location { source, start: 0, length: 0, label: String::new() };

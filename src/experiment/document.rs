@@ -2,6 +2,7 @@
 
 use super::tree::Node;
 use super::{Experiment, check};
+use crate::equations::{self, Files, NamedFile};
 use crate::error::{Location, Source};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,7 @@ pub struct Document {
     pub base_dir: PathBuf,
     /// What the text says, changes included.
     pub experiment: Experiment,
-    /// Texts of documents of equations, by the path that the experiment writes; they stand in place of the files.
+    /// Texts of documents of equations and of what they name, by paths as the experiment writes them; they stand in place of the files.
     pub equations: BTreeMap<String, String>,
     /// Bytes of memory that the experiment may take, by an estimate; [`compile`](super::compile()) refuses more. Any number when absent.
     pub memory: Option<u64>,
@@ -32,15 +33,19 @@ pub struct Document {
 }
 
 impl Document {
-    /// The document with the texts of all documents of equations that can be read now, so that it means the same whatever
-    /// becomes of the files. Those that cannot are left for [`compile`](super::compile) to tell of.
+    /// The document with the texts of all documents of equations that can be read now, and of those and the tables that they
+    /// name, so that it means the same whatever becomes of the files. Those that cannot are left for [`compile`](super::compile) to tell of.
     pub fn with_equations(&self) -> Self {
         let mut document = self.clone();
         for entry in self.experiment.chemistry.values() {
-            let is_kept = document.equations.contains_key(&written(&entry.document));
-            if let (false, Ok(Ok(text))) = (is_kept, self.equations_at(&entry.document).map(String::from_utf8)) {
-                document.equations.insert(written(&entry.document), text);
+            let Ok(Ok(text)) = self.equations_at(&entry.document).map(String::from_utf8) else { continue };
+            for NamedFile { path, text } in self.named_by(&entry.document, text.clone()) {
+                let path = path.strip_prefix(&self.base_dir).unwrap_or(&path);
+                if let Some(text) = text {
+                    document.equations.entry(written(path)).or_insert(text);
+                }
             }
+            document.equations.entry(written(&entry.document)).or_insert(text);
         }
         document
     }
@@ -63,11 +68,31 @@ impl Document {
         crate::files::read(&file)
     }
 
-    /// The files that the document reads, itself included where it came from one, as the system can open them.
+    /// Where the files are that one of its documents of equations names.
+    pub fn files_beside(&self, document: &Path) -> Files {
+        let folder = self.resolve(document).parent().map(Path::to_path_buf);
+        let kept = self.equations.iter().map(|(path, text)| (self.resolve(Path::new(path)), text.clone()));
+        Files { folder, kept: kept.collect() }
+    }
+
+    /// The files that one of its documents of equations names.
+    fn named_by(&self, document: &Path, text: String) -> Vec<NamedFile> {
+        let name = self.resolve(document).display().to_string();
+        equations::named_files(Arc::new(Source { name, text }), self.files_beside(document))
+    }
+
+    /// The files that the document reads and those that its documents of equations name, itself included where it came from
+    /// one, as the system can open them.
     pub fn files(&self) -> Vec<PathBuf> {
         let named = self.references.iter().filter(|reference| reference.kind == "file");
         let named = named.map(|reference| self.resolve(Path::new(&reference.text)));
-        std::iter::once(PathBuf::from(&self.source.name)).chain(named).collect()
+        let mut files: Vec<PathBuf> = std::iter::once(PathBuf::from(&self.source.name)).chain(named).collect();
+        for entry in self.experiment.chemistry.values() {
+            if let Ok(Ok(text)) = self.equations_at(&entry.document).map(String::from_utf8) {
+                files.extend(self.named_by(&entry.document, text).into_iter().map(|file| file.path));
+            }
+        }
+        files
     }
 
     /// A path of the document as the system can open it.

@@ -236,7 +236,7 @@ pub const CATALOGUE: &[Entry] = &[
     row("/events/pseudopods/abandoned", "1", "pseudopod", RowInteger(List::Pseudopods, |f, i| i64::from(f.pseudopods[i].abandoned)), "1 where it was given up when its protrusion ended, 0 where it was kept."),
     row("/scene/<name>", "of the series", "frame", Filled::Scene, "A series of the scene as a whole."),
     row("/provenance/experiment", "1", "1", OnceTexts, "The experiment document, verbatim."),
-    row("/provenance/equation_files", "1", "document", OnceTexts, "Documents of equations, as the experiment names them."),
+    row("/provenance/equation_files", "1", "document", OnceTexts, "Documents of equations, as the experiment names them, and the documents and tables that these name."),
     row("/provenance/equations", "1", "document", OnceTexts, "The texts of these documents, verbatim."),
     row("/provenance/sets", "1", "setting", OnceTexts, "Settings of the command line."),
     row("/summary/<name>", "of the measure", "scalar", Filled::Measure, "A measure that the experiment declares."),

@@ -18,7 +18,8 @@ pub struct Header {
     pub experiment: String,
     /// The settings of the command line (`a.b=value`), in their order.
     pub sets: Vec<String>,
-    /// Documents of equations that the experiment names: the path it writes and the text, verbatim.
+    /// Documents of equations that the experiment names, and documents and tables that these name: the path as the experiment
+    /// writes it and the text, verbatim.
     pub equations: Vec<(String, String)>,
     /// Seed of all random numbers.
     pub seed: u64,

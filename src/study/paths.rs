@@ -4,6 +4,8 @@ use crate::elementary::{FNV_START, fnv1a};
 use crate::error::Error;
 use std::path::{Component, Path, PathBuf};
 
+pub use crate::files::tidy;
+
 /// A number by which contents are told apart: FNV-1a in 64 bits, in hexadecimal.
 pub fn fingerprint(bytes: &[u8]) -> String {
     format!("{:016x}", fnv1a(FNV_START, bytes.iter().copied()))
@@ -41,21 +43,6 @@ pub fn relative(path: &Path, folder: &Path) -> PathBuf {
     up.chain(path_parts[shared..].iter().copied()).collect()
 }
 
-/// A path without steps into folders that it leaves again.
-pub fn tidy(path: &Path) -> PathBuf {
-    let mut short = PathBuf::new();
-    for part in path.components() {
-        let leaves =
-            part == Component::ParentDir && matches!(short.components().next_back(), Some(Component::Normal(_)));
-        if leaves {
-            short.pop();
-        } else {
-            short.push(part);
-        }
-    }
-    short
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,13 +54,5 @@ mod tests {
         assert_eq!(from("/a/b/c.toml", "/a/b/study/one"), "../../c.toml");
         assert_eq!(from("/a/x/c.toml", "/a/b"), "../x/c.toml");
         assert_eq!(from("/x/c.toml", "/a/b"), "/x/c.toml");
-    }
-
-    #[test]
-    fn steps_into_a_folder_and_out_again_are_left_out() {
-        let short = |path: &str| tidy(Path::new(path)).display().to_string();
-        assert_eq!(short("out/../cells.toml"), "cells.toml");
-        assert_eq!(short("a/b/../../../cells.toml"), "../cells.toml");
-        assert_eq!(short("../out/./cells.toml"), "../out/cells.toml");
     }
 }

@@ -1,7 +1,7 @@
 //! Tables as functions: values at and between rows, courses that follow them across their kinks, files.
 
 use pseudopod::equations::tree::{Expr, Role, System};
-use pseudopod::equations::{self, eml};
+use pseudopod::equations::{self, Files, eml};
 use pseudopod::error::{Paint, Source, render};
 use pseudopod::ode::{Method, Scheme, SolveOptions, solve};
 use std::path::Path;
@@ -9,7 +9,9 @@ use std::sync::Arc;
 
 fn read_in(text: &str, folder: Option<&Path>) -> Result<eml::Document, String> {
     let source = Source { name: "test".to_owned(), text: text.to_owned() };
-    equations::read_in(Arc::new(source), folder).map(|read| read.document).map_err(|error| render(&error, Paint::Plain))
+    equations::read_in(Arc::new(source), Files::of_folder(folder))
+        .map(|read| read.document)
+        .map_err(|error| render(&error, Paint::Plain))
 }
 
 fn read(text: &str) -> eml::Document {

@@ -5,6 +5,7 @@ mod damaged;
 mod frame_times;
 mod kept_state;
 mod meaning;
+mod named_files;
 mod population;
 mod random_scenes;
 mod shipped;

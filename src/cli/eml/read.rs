@@ -1,10 +1,10 @@
 //! Documents of equations from files.
 
-use crate::equations::{self, Read, sbml};
+use crate::equations::{self, Files, Read, sbml};
 use crate::error::{Error, Fault, Result, Source};
 use crate::experiment::near_file;
 use std::io::{ErrorKind, Read as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Reads a file that holds an EML document or an SBML model.
@@ -14,7 +14,15 @@ use std::sync::Arc;
 pub fn read(path: &Path) -> Result<Read> {
     let name = path.display().to_string();
     let source = Source { text: text(path, &name)?, name };
-    equations::read_in(Arc::new(source), path.parent())
+    equations::read_in(Arc::new(source), Files::of_folder(path.parent()))
+}
+
+/// The files that a document names, all of which are read with it.
+pub fn named_files(path: &Path) -> Vec<PathBuf> {
+    let name = path.display().to_string();
+    let Ok(text) = text(path, &name) else { return Vec::new() };
+    let named = equations::named_files(Arc::new(Source { name, text }), Files::of_folder(path.parent()));
+    named.into_iter().map(|file| file.path).collect()
 }
 
 /// The text of a file; a file larger than every document is not read.

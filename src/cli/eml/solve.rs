@@ -3,10 +3,10 @@
 use super::columns::{Table, columns, set};
 use super::draw::Drawing;
 use super::options::{SolveArgs, options, points};
-use super::read::read;
+use super::read::{named_files, read};
 use super::solve_fields;
 
-use crate::cli::files::{Named, refuse_existing, refuse_same};
+use crate::cli::files::{Named, refuse_existing, refuse_read, refuse_same};
 use crate::cli::report::{Report, path_text, paths};
 use crate::error::{Error, Fault, Result, say};
 use crate::ode::solve_each;
@@ -43,12 +43,9 @@ pub fn run(args: &SolveArgs) -> Result<Report> {
     if !faults.is_empty() {
         return Err(Error::Input(faults));
     }
-    let files: Vec<&Path> = [Some(&args.document), args.output.as_ref(), args.plot.as_ref()]
-        .into_iter()
-        .flatten()
-        .map(PathBuf::as_path)
-        .collect();
-    refuse_same(&files)?;
+    let outputs = || args.output.iter().chain(&args.plot).map(PathBuf::as_path);
+    refuse_same(&std::iter::once(args.document.as_path()).chain(outputs()).collect::<Vec<&Path>>())?;
+    refuse_read(&named_files(&args.document), outputs())?;
     for path in args.output.iter().chain(&args.plot) {
         refuse_existing(path, args.force, Named::ByUser)?;
     }

@@ -4,8 +4,9 @@ use super::columns::{Column, Table, set};
 use super::draw::Drawing;
 use super::last_values::Last;
 use super::options::{SolveArgs, points, wished_scheme};
+use super::read::named_files;
 
-use crate::cli::files::{Named, refuse_existing, refuse_same};
+use crate::cli::files::{Named, refuse_existing, refuse_read, refuse_same};
 use crate::cli::report::{Report, path_text, paths};
 use crate::equations::Read;
 use crate::equations::eml::{Document, FieldDescription, Profile};
@@ -46,6 +47,7 @@ pub(super) fn run(args: &SolveArgs, mut read: Read) -> Result<Report> {
     }
     let outputs = || args.output.iter().chain(&args.plot).chain(&args.last);
     refuse_same(&std::iter::once(&args.document).chain(outputs()).map(PathBuf::as_path).collect::<Vec<&Path>>())?;
+    refuse_read(&named_files(&args.document), outputs().map(PathBuf::as_path))?;
     for path in outputs() {
         refuse_existing(path, args.force, Named::ByUser)?;
     }

@@ -1,7 +1,8 @@
 //! What is made of a document of equations: a text in a file or on the terminal, with notices.
 
+use super::read::named_files;
 use super::solve::tell;
-use crate::cli::files::{Named, refuse_existing, refuse_same};
+use crate::cli::files::{Named, refuse_existing, refuse_read, refuse_same};
 use crate::cli::report::{Report, path_text, paths};
 use crate::error::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -32,6 +33,7 @@ impl Target {
     ) -> Result<Report> {
         if let Some(path) = &self.output {
             refuse_same(&[read, path])?;
+            refuse_read(&named_files(read), std::iter::once(path.as_path()))?;
             refuse_existing(path, self.force, Named::ByUser)?;
         }
         let (text, notices) = convert(read)?;

@@ -10,6 +10,7 @@ use crate::equations::reactions;
 use crate::equations::tree::{Binary, Draw, Expr, Quantity, QuantityId, Role, System};
 use crate::error::Location;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// The most definitions of which each uses the one before: what orders them is recursive.
 const LONGEST_CHAIN: usize = 1000;
@@ -40,7 +41,7 @@ pub(super) struct Builder<'a, 'd> {
     pub(super) now: Scope,
     before: Scope,
     /// Intervals of schedules, which must be above 0, and where they are written.
-    pub(super) schedules: Vec<(Expr, Location)>,
+    pub(super) schedules: Vec<(Expr, Range<usize>)>,
 }
 
 impl<'a, 'd> Builder<'a, 'd> {

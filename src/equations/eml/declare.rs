@@ -276,8 +276,8 @@ fn usable(context: &mut Context, element: &Element, id: &str, taken: Option<Leve
 
 fn unique(context: &mut Context, element: &Element, id: &str, lines: &mut BTreeMap<String, usize>) -> bool {
     let at = element.location("id");
-    if let Some(line) = lines.get(id) {
-        let label = format!("already declared in line {line}");
+    if let Some(&other) = lines.get(id) {
+        let label = format!("already declared in {}", context.line(other, at.start));
         context.fault(
             at,
             &format!("two things have the identifier `{id}`"),
@@ -286,8 +286,7 @@ fn unique(context: &mut Context, element: &Element, id: &str, lines: &mut BTreeM
         );
         return false;
     }
-    let line = context.line(at.start);
-    lines.insert(id.to_owned(), line);
+    lines.insert(id.to_owned(), at.start);
     true
 }
 

@@ -88,17 +88,16 @@ impl Builder<'_, '_> {
         let mut of = |name: &str| self.attribute(element, name, Use::Fixed, Some((&time, "a time of the schedule")));
         let (every, first, until) = (of("every"), of("first"), of("until"));
         let schedule = Schedule { first: first.unwrap_or(Expr::Number(0.0)), every: every?, until };
-        self.schedules.push((schedule.every.clone(), self.context.location(element.location("every"), "not above 0")));
+        self.schedules.push((schedule.every.clone(), element.location("every")));
         Some(schedule)
     }
 
     /// Tells schedules that do not go on.
     pub(super) fn check_schedules(&mut self, values: &[f64]) {
-        for (every, location) in std::mem::take(&mut self.schedules) {
+        for (every, at) in std::mem::take(&mut self.schedules) {
             let value = every.evaluate(0.0, &|quantity| values[quantity as usize]);
             if !(value > 0.0 && value.is_finite()) {
                 let message = format!("`every` is {value}; a time above 0 was expected");
-                let at = location.start..location.start + location.length;
                 self.context.fault(at, &message, "not above 0", "write the time from one to the next, such as 24");
             }
         }

@@ -138,13 +138,15 @@ impl Builder<'_, '_> {
         }
         let scale = self.number(element, "scale").unwrap_or(1.0);
         let location = self.context.location(element.location(given[0]), "the start");
+        // Seen from the folder of the document that is read, also in one that it includes.
+        let file = |written: &str| self.context.path(element.location(given[0]).start, written).display().to_string();
         Some(match given[0] {
             // The system has the expression, and has been told of its faults.
             "initial" => Profile::Expression(Expr::Number(0.0)),
-            "image" => Profile::Image { file: element.word("image"), scale, location },
+            "image" => Profile::Image { file: file(&element.word("image")), scale, location },
             _ => {
                 let text = element.word("dataset");
-                let Some((file, dataset)) = text.rsplit_once(":/") else {
+                let Some((name, dataset)) = text.rsplit_once(":/") else {
                     let help = "write dataset=\"FILE:/DATASET\", such as \"start.h5:/fields/U\"";
                     self.context.fault(
                         element.location("dataset"),
@@ -154,7 +156,7 @@ impl Builder<'_, '_> {
                     );
                     return None;
                 };
-                Profile::Dataset { file: file.to_owned(), dataset: format!("/{dataset}"), scale, location }
+                Profile::Dataset { file: file(name), dataset: format!("/{dataset}"), scale, location }
             }
         })
     }

@@ -14,11 +14,13 @@ mod document;
 mod draws;
 mod events;
 mod fields;
+mod include;
 mod links;
 mod measured;
 mod membrane;
 mod noise;
 mod parts;
+mod prefix;
 mod random_words;
 mod reactions;
 mod reads;
@@ -47,11 +49,11 @@ pub use vocabulary::{ELEMENTS, Kind};
 pub use write::{Written, numbers_are_plain, write};
 pub use xml::{DEEPEST_ELEMENT, LARGEST_DOCUMENT, MOST_ATTRIBUTES, MOST_NODES};
 
+use super::files::{Files, NamedFile};
 use super::tree::System;
 use crate::error::{Result, Source};
 use build::Builder;
 use context::Context;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Reads a document. A caller that reads files refuses those above [`LARGEST_DOCUMENT`] bytes unread.
@@ -60,16 +62,26 @@ use std::sync::Arc;
 /// [`crate::error::Error::Input`] with every fault: what is no XML, unknown elements, attributes and identifiers, faults
 /// of expressions, units that do not fit, circles, values that are missing or not finite.
 pub fn read(source: Arc<Source>) -> Result<Document> {
-    read_in(source, None)
+    read_in(source, Files::default())
 }
 
-/// As [`read`], of a document in a folder, from which the files are found that it names.
+/// The files that a document names and that are read with it: documents that it includes, tables, images and datasets. What is wrong
+/// with the document is left to [`read_in`].
+pub fn named_files(source: Arc<Source>, files: Files) -> Vec<NamedFile> {
+    let mut context = Context::new(source, files);
+    let Some(mut root) = xml::tree(&mut context, 0) else { return Vec::new() };
+    include::take(&mut context, &mut root);
+    include::named(&context, &root)
+}
+
+/// As [`read`], of a document that names files.
 ///
 /// # Errors
 /// As [`read`], and what is wrong with these files.
-pub fn read_in(source: Arc<Source>, folder: Option<&Path>) -> Result<Document> {
-    let mut context = Context::new(source, folder);
-    let Some(mut root) = xml::tree(&mut context) else { return Err(context.error()) };
+pub fn read_in(source: Arc<Source>, files: Files) -> Result<Document> {
+    let mut context = Context::new(source, files);
+    let Some(mut root) = xml::tree(&mut context, 0) else { return Err(context.error()) };
+    include::take(&mut context, &mut root);
     repeat::expand(&mut context, &mut root);
     let mut known = declare::declare(&mut context, &root);
     measured::complete(&mut context, &mut known);

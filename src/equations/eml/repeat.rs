@@ -19,7 +19,7 @@ struct Index<'a> {
 
 /// Writes repeated parts and sums out.
 pub(super) fn expand(context: &mut Context, root: &mut Element) {
-    let mut made = 0;
+    let mut made = context.repeated;
     if root.all("repeat").next().is_some() {
         let children = std::mem::take(&mut root.children);
         root.children = children.into_iter().flat_map(|child| copies(context, child, &mut made)).collect();
@@ -34,6 +34,7 @@ pub(super) fn expand(context: &mut Context, root: &mut Element) {
             }
         });
     }
+    context.repeated = made;
 }
 
 /// What an element is written out to: itself, or the copies of what it repeats.

@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// The most rows of a table: what calls it goes through them one after the other.
 const MOST_ROWS: usize = 1000;
 /// The largest file that is read, bytes.
-const LARGEST_FILE: u64 = 4 << 20;
+pub(super) const LARGEST_FILE: u64 = 4 << 20;
 /// The name of the argument in the function that a table is.
 const ARGUMENT: &str = "x";
 
@@ -112,22 +112,19 @@ fn from_file(context: &mut Context, element: &Element) -> Option<Vec<[f64; 2]>> 
     if !element.text.text.trim().is_empty() {
         context.fault(element.at.clone(), "the table has a file and rows", "which?", "remove one of the two");
     }
-    let Some(folder) = context.folder.clone() else {
+    let Some(folder) = context.files.folder.clone() else {
         let help = "write the rows between <table …> and </table>";
         context.fault(at, "this document is read from no folder, and names a file", "where?", help);
         return None;
     };
-    let path = folder.join(&name);
-    let length = std::fs::metadata(&path).map(|data| data.len());
-    if let Ok(length) = length
-        && length > LARGEST_FILE
-    {
-        let message = format!("{name} has {length} bytes; at most {LARGEST_FILE} are read");
-        context.fault(at, &message, "this file", "leave columns and rows out");
-        return None;
-    }
-    let text = match crate::files::read_text(&path) {
+    let path = folder.join(context.path(at.start, &name));
+    let text = match context.files.text(&path, LARGEST_FILE) {
         Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::FileTooLarge => {
+            let message = format!("{name} cannot be a table: {error}");
+            context.fault(at, &message, "this file", "leave columns and rows out");
+            return None;
+        }
         Err(error) => {
             let message = format!("{name} cannot be read: {error}");
             let help = format!("paths are those from the document: {} was looked for", path.display());

@@ -31,7 +31,8 @@ const fn kind(
 pub(super) const MOST_REPEATED: usize = 20_000;
 
 /// What stands at the top of a document.
-const PARTS: [&str; 16] = [
+const PARTS: [&str; 17] = [
+    "include",
     "parameter",
     "variable",
     "equation",
@@ -69,8 +70,9 @@ const REPEATED: [&str; 13] = [
 
 /// All elements.
 #[rustfmt::skip] // a table
-pub const ELEMENTS: [Kind; 23] = [
+pub const ELEMENTS: [Kind; 24] = [
     kind("eml", &["name"], &["level", "time_unit"], &PARTS, false),
+    kind("include", &["document"], &["prefix"], &["set"], false),
     kind("parameter", &["id", "value"], &["name", "unit"], &[], false),
     kind("variable", &["id", "initial"], &["diffusion", "history", "level", "name", "noise", "rate", "unit"], &[], false),
     kind("equation", &["of"], &[], &[], true),

@@ -65,13 +65,27 @@ impl Text {
         self.origin.extend(std::iter::repeat_n((at.start, at.end), c.len_utf8()));
     }
 
-    /// Takes pieces of the source; where there are none the text is empty and stands at `start`.
-    fn decode(source: &str, start: usize, pieces: impl Iterator<Item = Range<usize>>) -> Self {
-        let mut found = Self { start, ..Self::default() };
-        for (c, at) in pieces.flat_map(|piece| Characters::new(source, piece)) {
-            found.push(c, at);
+    /// Takes pieces of a page; where there are none the text is empty and stands at `start`.
+    fn decode(page: &Page, start: usize, pieces: impl Iterator<Item = Range<usize>>) -> Self {
+        let mut found = Self { start: page.first + start, ..Self::default() };
+        for (c, at) in pieces.flat_map(|piece| Characters::new(page.text, piece)) {
+            found.push(c, page.numbered(at));
         }
         found
+    }
+}
+
+/// The text that a tree is made of.
+struct Page<'a> {
+    text: &'a str,
+    /// The number of its first byte among those of all texts.
+    first: usize,
+}
+
+impl Page<'_> {
+    /// Bytes of the text as they are numbered in all texts.
+    fn numbered(&self, at: Range<usize>) -> Range<usize> {
+        self.first + at.start..self.first + at.end
     }
 }
 
@@ -115,17 +129,29 @@ impl Element {
         self.children.iter_mut().for_each(|child| child.each_text(visit));
     }
 
+    /// Visits the texts of the element with the names of their attributes (none: what stands inside).
+    pub(super) fn each_own_text(&mut self, visit: &mut impl FnMut(&str, &mut Text)) {
+        self.attributes.iter_mut().for_each(|(name, text)| visit(name, text));
+        visit("", &mut self.text);
+    }
+
+    /// Puts a text in the place of an attribute's, if the element has that.
+    pub(super) fn put(&mut self, name: &str, text: Text) {
+        self.attributes.iter_mut().filter(|(known, _)| *known == name).for_each(|(_, old)| *old = text.clone());
+    }
+
     pub(super) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
         self.children.iter().filter(move |child| child.kind.name == name)
     }
 }
 
-/// The root element; faults are told to the context. Nothing when there is no tree.
-pub(super) fn tree(context: &mut Context) -> Option<Element> {
-    let source = context.source.clone();
+/// The root element of the text that begins at a byte; faults are told to the context. Nothing when there is no tree.
+pub(super) fn tree(context: &mut Context, first: usize) -> Option<Element> {
+    let source = context.source(first).0.clone();
+    let page = Page { text: &source.text, first };
     let limits =
         Limits { bytes: LARGEST_DOCUMENT, depth: DEEPEST_ELEMENT, nodes: MOST_NODES, attributes: MOST_ATTRIBUTES };
-    let tree = Document::read(&source.text, limits).map_err(|trouble| broken(context, trouble)).ok()?;
+    let tree = Document::read(page.text, limits).map_err(|trouble| broken(context, &page, trouble)).ok()?;
     let root = tree.root();
     if root.name() != "eml" {
         let help = match root.name() {
@@ -134,26 +160,21 @@ pub(super) fn tree(context: &mut Context) -> Option<Element> {
             }
             _ => EXAMPLE,
         };
-        context.fault(
-            root.name_at(),
-            &format!("the document is a <{}> and not an <eml>", root.name()),
-            "not EML",
-            help,
-        );
+        let message = format!("the document is a <{}> and not an <eml>", root.name());
+        context.fault(page.numbered(root.name_at()), &message, "not EML", help);
         return None;
     }
-    kind_of("eml").map(|kind| element(context, root, kind))
+    kind_of("eml").map(|kind| element(context, &page, root, kind))
 }
 
 const EXAMPLE: &str = "an EML document is <eml name=\"…\"> … </eml>";
 
 /// Tells why there is no tree.
-fn broken(context: &mut Context, trouble: Trouble) {
-    let at = trouble.at;
+fn broken(context: &mut Context, page: &Page, trouble: Trouble) {
+    let at = page.numbered(trouble.at.clone());
     match trouble.what {
         What::TooLong => {
-            let message =
-                format!("the document has {} bytes; at most {LARGEST_DOCUMENT} are read", context.source.text.len());
+            let message = format!("the document has {} bytes; at most {LARGEST_DOCUMENT} are read", page.text.len());
             // The location would carry the whole text into the message: there is none.
             context.lost(message, "equations need far less: keep data in files of their own");
         }
@@ -179,8 +200,8 @@ fn broken(context: &mut Context, trouble: Trouble) {
         }
         What::Malformed { message, label, help } => {
             // A sign that expressions have and XML keeps for itself.
-            let words = match &context.source.text[at.clone()] {
-                "<" if in_equation(&context.source.text, at.start) => " (a reaction that goes both ways takes `=`)",
+            let words = match &page.text[trouble.at.clone()] {
+                "<" if in_equation(page.text, trouble.at.start) => " (a reaction that goes both ways takes `=`)",
                 "<" => " (expressions take `lt` and `le` for < and <=)",
                 sign if sign.starts_with('&') => " (expressions take `and` for &&)",
                 _ => "",
@@ -197,29 +218,34 @@ fn in_equation(text: &str, at: usize) -> bool {
     before.trim_end().strip_suffix('=').is_some_and(|before| before.trim_end().ends_with("equation"))
 }
 
-fn element(context: &mut Context, node: Node, kind: &'static Kind) -> Element {
-    let at = node.name_at();
-    let attributes = attributes(context, node, kind, &at);
+fn element(context: &mut Context, page: &Page, node: Node, kind: &'static Kind) -> Element {
+    let at = page.numbered(node.name_at());
+    let attributes = attributes(context, page, node, kind, &at);
     let mut children = Vec::new();
     for child in node.elements() {
         let name = child.name();
         match child_of(kind, name) {
-            Some(child_kind) => children.push(element(context, child, child_kind)),
-            None => unknown_child(context, kind, name, child.name_at()),
+            Some(child_kind) => children.push(element(context, page, child, child_kind)),
+            None => unknown_child(context, kind, name, page.numbered(child.name_at())),
         }
     }
-    let text = inner_text(context, node, kind);
+    let text = inner_text(context, page, node, kind);
     Element { kind, at, attributes, text, children }
 }
 
-fn attributes(context: &mut Context, node: Node, kind: &'static Kind, at: &Range<usize>) -> Vec<(&'static str, Text)> {
+fn attributes(
+    context: &mut Context,
+    page: &Page,
+    node: Node,
+    kind: &'static Kind,
+    at: &Range<usize>,
+) -> Vec<(&'static str, Text)> {
     let known = || kind.required.iter().chain(kind.optional).copied();
-    let source = context.source.clone();
     let mut found = Vec::new();
     for attribute in node.attributes().iter().filter(|attribute| attribute.namespace.is_none()) {
         let value = attribute.value_at();
         match known().find(|name| *name == attribute.name) {
-            Some(name) => found.push((name, Text::decode(&source.text, value.start, std::iter::once(value)))),
+            Some(name) => found.push((name, Text::decode(page, value.start, std::iter::once(value)))),
             None => {
                 let name = attribute.name;
                 let message = format!("<{}> has no attribute `{name}`", kind.name);
@@ -227,7 +253,7 @@ fn attributes(context: &mut Context, node: Node, kind: &'static Kind, at: &Range
                     Some(near) => format!("did you mean `{near}`?"),
                     None => format!("it has {}", any_of(known())),
                 };
-                context.fault(attribute.name_at(&source.text), &message, "unknown attribute", &help);
+                context.fault(page.numbered(attribute.name_at(page.text)), &message, "unknown attribute", &help);
             }
         }
     }
@@ -259,7 +285,7 @@ fn unknown_child(context: &mut Context, kind: &Kind, name: &str, at: Range<usize
 }
 
 /// The text inside an element; text where none belongs is told.
-fn inner_text(context: &mut Context, node: Node, kind: &Kind) -> Text {
+fn inner_text(context: &mut Context, page: &Page, node: Node, kind: &Kind) -> Text {
     let texts = || node.children().filter(|child| !child.is_element());
     if kind.text {
         // Without children: a child element has been told already.
@@ -267,15 +293,15 @@ fn inner_text(context: &mut Context, node: Node, kind: &Kind) -> Text {
             return Text::default();
         }
         let start = texts().next().map_or(node.tag_at().end, |text| text.at().start);
-        return Text::decode(&context.source.text, start, texts().map(Node::at));
+        return Text::decode(page, start, texts().map(Node::at));
     }
     if let Some(stray) = texts().find(|child| child.text().is_some_and(|text| !text.trim().is_empty())) {
         let range = stray.at();
-        let text = &context.source.text[range.clone()];
+        let text = &page.text[range.clone()];
         let start = range.start + text.len() - text.trim_start().len();
         let shown: usize = text.trim().lines().next().unwrap_or_default().chars().take(40).map(char::len_utf8).sum();
-        let help = "remove it, or make it a comment: <!-- … -->";
-        context.fault(start..start + shown, &format!("text in <{}>, which holds none", kind.name), "this text", help);
+        let (at, help) = (page.numbered(start..start + shown), "remove it, or make it a comment: <!-- … -->");
+        context.fault(at, &format!("text in <{}>, which holds none", kind.name), "this text", help);
     }
     Text::default()
 }

@@ -62,7 +62,10 @@ fn read(document: &Document, name: &str, entry: &Entry, faults: &mut Vec<Fault>)
         }
     };
     let source = Arc::new(Source { name: path.display().to_string(), text });
-    crate::equations::read_in(source, path.parent()).map_err(|error| tell(error, faults)).ok().map(|read| read.document)
+    crate::equations::read_in(source, document.files_beside(&entry.document))
+        .map_err(|error| tell(error, faults))
+        .ok()
+        .map(|read| read.document)
 }
 
 /// Puts the experiment's values in the place of the document's.
