@@ -10,6 +10,7 @@ use super::sweeps::{Factors, PARTS, diffuse, sweep_buffer};
 use crate::Vec3;
 use crate::equations::Range;
 use crate::error::{Error, Fault, Result};
+use crate::ode::{Piece, PopulationScratch};
 
 /// A window is never halved more often than this.
 pub const FINEST: u32 = 20;
@@ -56,6 +57,10 @@ pub(super) struct Work {
     pub change: Change,
     /// An error may be negative.
     free: Vec<Range>,
+    /// For what the clock switches: the pieces of a window, and the values where it begins.
+    pub clock: PopulationScratch,
+    pub pieces: Vec<Piece>,
+    pub begun: Vec<f64>,
     /// What transport works in, empty until it does.
     pub carrying: CarryScratch,
 }
@@ -80,6 +85,9 @@ impl Work {
             spreading: Factors::new(grid, species),
             change: Change::default(),
             free: vec![Range::Free; species.len()],
+            clock: PopulationScratch::default(),
+            pieces: Vec::new(),
+            begun: Vec::new(),
             carrying: CarryScratch::default(),
         }
     }
@@ -93,6 +101,8 @@ impl Work {
         lists.into_iter().chain(&mut self.sweeping).for_each(|list| list.fill(f64::NAN));
         self.reacting.iter_mut().for_each(PartScratch::poison);
         self.carrying.poison();
+        self.begun.fill(f64::NAN);
+        self.clock.poison();
     }
 
     /// Spreads what stands in `spread` over a time, s, as differences spread: held walls hold zero, and nothing decays.

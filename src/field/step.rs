@@ -36,6 +36,16 @@ pub struct Report {
     pub error: f64,
 }
 
+impl Report {
+    /// Adds what another window took.
+    pub(super) fn add(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.checks += other.checks;
+        self.rejected += other.rejected;
+        self.error = self.error.max(other.error);
+    }
+}
+
 /// What acts on fields beside diffusion and decay.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Acts<'a> {

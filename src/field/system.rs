@@ -5,6 +5,7 @@
 
 use super::beside::Beside;
 use super::carry::Carrying;
+use super::clock::clock;
 use super::course::Course;
 use super::grid::Grid;
 use super::joint::{Alone, Joint};
@@ -19,7 +20,7 @@ use super::species::Species;
 use super::state::Fields;
 use super::step::{Acts, Report, Stepping};
 use super::transport::Transport;
-use crate::equations::program::initial_values;
+use crate::equations::program::{Program, initial_values};
 use crate::equations::tree::{QuantityId, Role, System};
 use crate::equations::{Range, eml};
 use crate::error::{Error, Fault, Location, Result};
@@ -52,6 +53,8 @@ pub struct FieldSystem {
     transport: Option<Transport>,
     /// None where there is no noise.
     noise: Option<Noise>,
+    /// Tells when the clock switches something; none where it does not.
+    clock: Option<Program>,
     /// None where there are fields alone.
     beside: Option<Beside>,
     ranges: Vec<Range>,
@@ -119,6 +122,7 @@ impl FieldSystem {
             units: document.fields.iter().map(|field| unit(system, field)).collect(),
             starts: document.fields.iter().map(Start::of).collect(),
             system: system.clone(),
+            clock: clock(document)?,
             beside,
             grid,
             ranges: species.iter().map(|species| species.range).collect(),
@@ -312,6 +316,18 @@ impl FieldSystem {
     pub fn advance(&self, fields: &mut Fields, window: f64, inputs: &[f64], stepping: Stepping) -> Result<Report> {
         assert_eq!(inputs.len(), self.inputs.len(), "one number for each input of '{}'", self.name);
         assert_eq!(fields.species().len(), self.species.len(), "the fields of '{}'", self.name);
+        let Some(clock) = &self.clock else { return self.advance_piece(fields, window, inputs, stepping) };
+        fields.in_pieces(clock, window, self.scales.seconds, |fields, length, share| {
+            let stepping = match stepping {
+                Stepping::Fixed(steps) => Stepping::Fixed((f64::from(steps) * share).ceil().max(1.0) as u32),
+                adaptive => adaptive,
+            };
+            self.advance_piece(fields, length, inputs, stepping)
+        })
+    }
+
+    /// The same where the clock switches nothing.
+    fn advance_piece(&self, fields: &mut Fields, window: f64, inputs: &[f64], stepping: Stepping) -> Result<Report> {
         let carrying = self.transport.as_ref().map(|transport| Carrying { transport, inputs, window });
         let Some(reactor) = &self.reactor else {
             let acts = Acts { reactions: None, carrying };

@@ -13,7 +13,7 @@ use super::start::begin;
 use super::state::MembraneCells;
 use super::system::MembraneSystem;
 use super::window::{Part, advance, display};
-use crate::ode::Population;
+use crate::ode::{Piece, Population};
 
 /// The shapes of the cells of a kind where a step begins and where it ends: positions `[block][atom][axis][lane]`, µm.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +39,7 @@ enum Task<'a> {
     /// Cells that have not started do, at this time, and sums are worked out.
     Begin(f64),
     /// Through a window of time.
-    Advance(Course<'a>),
+    Advance(Course<'a>, &'a [Piece]),
     /// An expression that is shown, by its number, is worked out at this time.
     Show(usize, f64),
 }
@@ -74,7 +74,15 @@ impl MembraneSystem {
         course: Course,
         scratch: &mut MembraneScratch,
     ) -> Result<(), MembraneTrouble> {
-        self.each_block(cells, inside, shapes, Task::Advance(course), scratch)
+        let mut pieces = std::mem::take(&mut scratch.pieces);
+        pieces.clear();
+        if let Some(clock) = &self.clock {
+            let window = (course.substeps.from(), course.substeps.until());
+            scratch.clock.each_piece(clock, window, |piece| pieces.push(piece));
+        }
+        let done = self.each_block(cells, inside, shapes, Task::Advance(course, &pieces), scratch);
+        scratch.pieces = pieces;
+        done
     }
 
     /// Works out an expression that is shown at all atoms of the cells where they stand, and hands over the number of each atom of each cell in
@@ -109,7 +117,7 @@ impl MembraneSystem {
         if cells.cells == 0 {
             return Ok(());
         }
-        let MembraneScratch { threads, inside, shown, failures } = scratch;
+        let MembraneScratch { threads, inside, shown, failures, .. } = scratch;
         shown.resize(cells.areas.len(), 0.0);
         threads.resize_with(rayon::current_num_threads().max(threads.len()), Mutex::default);
         gather(cells, population, first, self.numbers(), inside);
@@ -208,7 +216,7 @@ impl<const L: usize> WithSimd for Block<'_, L> {
                 display(system, mesh, (&part, shown), shapes.1, (number, time), work);
                 None
             }
-            Task::Advance(course) => advance(system, mesh, &mut part, shapes, (&course, block), work),
+            Task::Advance(course, pieces) => advance(system, mesh, &mut part, shapes, (&course, pieces, block), work),
         }
     }
 }

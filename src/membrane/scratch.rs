@@ -8,6 +8,7 @@ use super::mesh::SurfaceMesh;
 use super::solve::Gradients;
 use super::system::MembraneSystem;
 use super::tableau::STAGES;
+use crate::ode::{Piece, PopulationScratch};
 
 /// Scratch of the membranes of a system. No result depends on what is in it.
 #[derive(Debug, Default)]
@@ -17,6 +18,9 @@ pub struct MembraneScratch {
     pub(super) inside: Vec<f64>,
     /// What is shown of atoms: `[block][atom][lane]`.
     pub(super) shown: Vec<f64>,
+    /// The pieces of a window between which the clock switches something; empty where it does not.
+    pub(super) pieces: Vec<Piece>,
+    pub(super) clock: PopulationScratch,
     /// What went wrong in each block.
     pub(super) failures: Vec<Option<Failure>>,
 }
@@ -33,6 +37,8 @@ impl MembraneScratch {
     pub fn poison(&mut self) {
         self.inside.fill(f64::NAN);
         self.shown.fill(f64::NAN);
+        self.pieces.clear();
+        self.clock.poison();
         for own in &mut self.threads {
             let own = own.get_mut().unwrap_or_else(PoisonError::into_inner);
             own.one.iter_mut().for_each(|work| work.poison());

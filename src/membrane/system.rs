@@ -3,6 +3,7 @@
 use crate::equations::eml::{Document, SURFACE, Taken};
 use crate::equations::program::Program;
 use crate::equations::tree::{Expr, QuantityId, Role, System};
+use crate::ode::clocked;
 
 /// How a window is cut into steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +70,8 @@ pub struct MembraneSystem {
     pub(super) inside: Program,
     /// All variables at the start: what its only further group says, those of the surface first.
     pub(super) start: Program,
+    /// Tells when the clock switches something in all cells; none where it does not.
+    pub(super) clock: Option<Program>,
     pub(super) slots: Vec<Slot>,
     pub(super) start_slots: Vec<Slot>,
     /// Where area and volume stand among the open quantities of the inside.
@@ -125,6 +128,7 @@ impl MembraneSystem {
                 (None, None) => Slot::Open(open(id)),
             }
         };
+        let clock = Some(clocked(system)?).filter(|program| !program.further.is_empty());
         let volume = system.find(SURFACE[4]);
         let expressions = system.quantities.iter().flat_map(|quantity| {
             let own = match &quantity.role {
@@ -159,6 +163,7 @@ impl MembraneSystem {
             surface,
             inside,
             start,
+            clock,
             stepping,
             uses_volume,
         })

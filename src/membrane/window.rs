@@ -8,7 +8,7 @@ use super::scratch::Work;
 use super::shape::{areas, areas_and_weights, coordinates};
 use super::step::{UNSOLVED, attempt};
 use super::system::{MembraneStepping, MembraneSystem};
-use crate::ode::Reason;
+use crate::ode::{Piece, Reason};
 
 /// Exponent, safety and bounds of the factor by which steps change.
 const EXPONENT: f64 = 1.0 / 3.0;
@@ -40,7 +40,7 @@ pub fn advance<const L: usize>(
     mesh: &SurfaceMesh,
     part: &mut Part<L>,
     (from, to): (&[[f64; L]], &[[f64; L]]),
-    (window, block): (&Course, usize),
+    (window, pieces, block): (&Course, &[Piece], usize),
     work: &mut Work<L>,
 ) -> Option<Failure> {
     let pools = system.inside.size();
@@ -75,8 +75,14 @@ pub fn advance<const L: usize>(
         if let Some(one) = substep.kick {
             kick(system, (window, block), (&substep, one), work);
         }
-        if substep.length > 0.0 {
+        if pieces.is_empty() && substep.length > 0.0 {
             failure = course(system, mesh, part, (substep.begin, substep.end), work);
+        }
+        for piece in pieces {
+            let (begin, end) = (piece.begin.max(substep.begin), piece.end.min(substep.end));
+            if failure.is_none() && end > begin {
+                failure = course(system, mesh, part, (begin, end), work);
+            }
         }
     }
     finish(system, mesh, part, to, window.substeps.until(), work);

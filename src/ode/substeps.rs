@@ -63,6 +63,11 @@ impl Substeps {
         self.kicks
     }
 
+    /// When the window begins.
+    pub fn from(&self) -> f64 {
+        self.from
+    }
+
     /// When the window ends.
     pub fn until(&self) -> f64 {
         self.until

@@ -27,6 +27,7 @@ mod field_walls;
 mod fields;
 mod fields_analytic;
 mod fields_beside;
+mod fields_clock;
 mod noise;
 mod sbml;
 mod sbml_algebraic;

@@ -373,3 +373,18 @@ fn a_cell_alone_and_cells_abreast_come_to_the_same() {
         assert!(worst < 1e-10, "cell {cell}: {worst:.1e}");
     }
 }
+
+#[test]
+fn pulses_far_shorter_than_a_step_are_all_there_on_membranes() {
+    let own = r#"<eml name="own" level="membrane"><variable id="a" initial="0" diffusion="1" rate="1000*pulse(3, 0.001, 4)"/>
+        <variable id="pool" level="cell" initial="0" rate="piecewise(100, rem(time, 7) lt 0.02, 0)"/><mean id="m">a</mean></eml>"#;
+    for step in ["1 s", "3 s"] {
+        let mut scene = crate::coupled_scene::scene(&[("own", own)], &crate::coupled_scene::one_cell("12 s", step));
+        scene.run();
+        // Three of one each on the surface, two of 2 in the pool.
+        for (id, wanted) in [("m", 3.0), ("pool", 4.0)] {
+            let found = scene.value(0, id, 0);
+            assert!((found / wanted - 1.0).abs() < 1e-9, "{step}, {id}: {found} for {wanted}");
+        }
+    }
+}
