@@ -27,6 +27,7 @@ use super::traction::{begin_tractions, keep_tractions};
 use super::trouble::Trouble;
 use super::velocity::measure_velocities;
 use super::workspace::Workspace;
+use crate::mechanics::integrator::StepSize;
 
 /// Moves the state by one step.
 ///
@@ -76,11 +77,11 @@ fn make_step(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) ->
     keep_contacts(model, from, to, ws);
     measure_velocities(model, plan.dt, from, to);
     keep_tractions(model, plan.dt, from, to, ws);
-    advance_chemistry(model, plan.dt, from, to, ws)?;
+    let longest = advance_chemistry(model, plan.dt, from, to, ws)?;
     release_rears(model, to);
     note_meetings(model, to, ws);
     gather_elasticity(model, to);
-    advance_clock(model, &plan, to);
+    advance_clock(model, &plan, longest, to);
     Ok(plan.report())
 }
 
@@ -123,8 +124,9 @@ fn inspect(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     Some(Flaw::Deepened(deepened.breaks_promise().then(|| deepened.trouble(model, from))))
 }
 
-/// The clock shows exactly when something is to happen, whatever round-off the steps before have left.
-fn advance_clock(model: &Model, plan: &Plan, to: &mut State) {
+/// The clock shows exactly when something is to happen, whatever round-off the steps before have left. A next step that the error chooses is no
+/// longer than chemistry allows.
+fn advance_clock(model: &Model, plan: &Plan, longest: f64, to: &mut State) {
     to.time += plan.dt;
     let slack = model.clock_slack();
     let exchange = next_exchange(model, to.time - 2.0 * slack);
@@ -132,5 +134,8 @@ fn advance_clock(model: &Model, plan: &Plan, to: &mut State) {
         to.time = instant;
     }
     to.step += 1;
-    to.next_step = plan.next_step(model);
+    to.next_step = match model.integrator.size {
+        StepSize::Fixed(_) => plan.next_step(model),
+        StepSize::Adaptive { .. } => plan.next_step(model).min(longest),
+    };
 }

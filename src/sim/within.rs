@@ -28,7 +28,7 @@ pub fn state_within(model: &Model, to: &mut State, time: f64, ws: &mut Workspace
     within.kinds.iter_mut().zip(&from.kinds).for_each(|(now, from)| now.go_back_to(from, share));
     within.chemistry.go_back_to(&from.chemistry, share);
     follow_walks(model, (&from, to.time), &mut within, ws);
-    advance_systems_to(model, &from.chemistry, &mut within, &mut ws.chemistry);
+    advance_systems_to(model, (&from.chemistry, &to.chemistry), &mut within, &mut ws.chemistry);
     ws.next = from;
     within.ended_runs = to.ended_runs.extract_if(.., |(_, end, _)| *end <= time).collect();
     within.ended_pseudopods = to.ended_pseudopods.extract_if(.., |(_, end, _)| *end <= time).collect();

@@ -560,3 +560,58 @@ fn each_cell_begins_at_what_is_drawn_for_its_id_on_any_threads() {
     pseudopod::sim::add_cells(&compiled.model, &mut compiled.state, ws, 0, &[new]).expect("space for one");
     assert_eq!(scene.value(0, "k", 37), starts.values(numbers, id)[0]);
 }
+
+#[test]
+fn what_systems_read_is_the_mean_of_a_step() {
+    let own = r#"<eml name="own" level="cell"><input id="t" default="0"/><variable id="u" initial="0" rate="t"/>
+        <link from="scene.time" to="system.t"/></eml>"#;
+    for step in ["0.25 s", "2.5 s"] {
+        let mut scene = scene(&[("own", own)], &one_cell("10 s", step));
+        scene.run();
+        assert!((scene.value(0, "u", 0) - 50.0).abs() < 1e-6, "{step}: {}", scene.value(0, "u", 0));
+    }
+}
+
+#[test]
+fn cells_and_the_field_that_they_read_and_feed_are_of_second_order_together() {
+    // What the field holds makes a cell release more of it: m' = -0.3 m + 600 u/1600, u' = m - 0.1 u.
+    let field = r#"<eml name="field"><grid dimension="2" spacing="2" origin="-20 -20" size="40 40"/>
+        <field id="c" diffusion="100" decay="0.3" initial="1"/></eml>"#;
+    let own = r#"<eml name="own" level="cell"><input id="c" default="0"/><variable id="u" initial="0.2" rate="c - 0.1*u"/>
+        <solver rtol="1e-10" atol="1e-12"/>
+        <link from="field[c].mean" to="system.c"/><link from="system.u" to="cell.secretion[c]" gain="600"/></eml>"#;
+    // Rates of the two modes, and how much of each there is in u.
+    let root = (0.01_f64 + 0.375).sqrt();
+    let (growth, decay) = (-0.2 + root, -0.2 - root);
+    let grows = (1.0 - 0.1 * 0.2 - decay * 0.2) / (growth - decay);
+    let u = |t: f64| grows * (growth * t).exp() + (0.2 - grows) * (decay * t).exp();
+    let m = |t: f64| grows * (growth + 0.1) * (growth * t).exp() + (0.2 - grows) * (decay + 0.1) * (decay * t).exp();
+    let errors: Vec<[f64; 2]> = ["0.5 s", "0.25 s", "0.125 s"]
+        .into_iter()
+        .map(|step| {
+            let mut scene = scene(&[("field", field), ("own", own)], &one_cell("12 s", step));
+            scene.run();
+            let mean = scene.state().chemistry.fields[0].values.iter().sum::<f64>() / 400.0;
+            [(scene.value(0, "u", 0) / u(12.0) - 1.0).abs(), (mean / m(12.0) - 1.0).abs()]
+        })
+        .collect();
+    println!("NOTE {errors:?}");
+    for pair in errors.windows(2) {
+        for (coarse, fine) in pair[0].iter().zip(&pair[1]) {
+            assert!(
+                (1.7..2.5).contains(&(coarse / fine).log2()) || *coarse > 0.03,
+                "order {}: {errors:?}",
+                (coarse / fine).log2()
+            );
+        }
+    }
+    assert!(errors[3].iter().all(|error| *error < 0.01), "{errors:?}");
+    // By default the step is as long as what cells and field do to each other allows, and amounts grow 180-fold.
+    let text = one_cell("12 s", "1 s").replace("integrator = { step = \"1 s\" }", "");
+    let mut free = scene(&[("field", field), ("own", own)], &text);
+    free.run();
+    let mean = free.state().chemistry.fields[0].values.iter().sum::<f64>() / 400.0;
+    let found = [free.value(0, "u", 0) / u(12.0) - 1.0, mean / m(12.0) - 1.0];
+    println!("NOTE by default {found:?} in {} steps", free.state().step);
+    assert!(found.iter().all(|error| error.abs() < 0.02), "{found:?}");
+}

@@ -6,6 +6,7 @@ use super::super::trouble::Trouble;
 use super::super::workspace::Workspace;
 use super::advance::advance_system;
 use super::carry::carry_releases;
+use super::correct::tell_means;
 use super::links::{Control, Link, Owner, Target};
 use super::released::{Cut, Released};
 use super::scratch::ChemistryScratch;
@@ -159,6 +160,11 @@ impl<'a> Followed<'a> {
         for number in self.systems() {
             self.to.chemistry.take_system(&self.from.chemistry, number);
             self.scratch.own_steps[number] = 0;
+        }
+        if self.to.chemistry.told_means {
+            // They begin with what they are told in this step.
+            let Self { model, scratch, to, .. } = self;
+            tell_means(&model.chemistry, &scratch.means, &mut to.chemistry);
         }
         self.released.pieces.clear();
         self.released.rates.clear();

@@ -22,6 +22,8 @@ pub struct Link {
     pub needs: Vec<QuantityId>,
     /// Factor of the transfer.
     pub gain: f64,
+    /// Whether what it sets changes the rates of a system without events, or of fields, directly: then the system is told the mean of a step.
+    pub drives: bool,
 }
 
 impl Link {

@@ -8,6 +8,7 @@ mod advance;
 mod atoms;
 mod carry;
 mod census;
+mod correct;
 mod exchange;
 mod expected;
 mod field_values;

@@ -32,6 +32,8 @@ pub struct ChemistryScratch {
     pub(in super::super) membranes: Vec<MembraneScratch>,
     /// What links read.
     pub(super) observed: Observed,
+    /// Means of what links tell in the step.
+    pub(super) means: Vec<f64>,
     /// Rates at which cells release in the step.
     pub(super) released: Released,
     /// Steps of its own that each system made meanwhile, all cells together.

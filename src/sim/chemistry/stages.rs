@@ -1,5 +1,7 @@
 //! The stages of chemistry in a step.
 
+use std::borrow::Cow;
+
 use super::super::constraints::enforce_constraints;
 use super::super::contact::locate_contacts;
 use super::super::model::Model;
@@ -10,6 +12,7 @@ use super::super::velocity::measure_velocities;
 use super::super::workspace::Workspace;
 use super::advance::{advance_system, system_trouble};
 use super::carry::carry_links;
+use super::correct::{has_changed, longest_next, moved, note_means, tell_means};
 use super::fields::{look_at_fields, settle_fields};
 use super::follow::{follow, is_releasing};
 use super::membranes::begin_membranes;
@@ -43,18 +46,41 @@ pub fn begin_chemistry(model: &Model, state: &mut State, ws: &mut Workspace) -> 
 }
 
 /// Chemistry over a step of mechanics that has just been made, `dt` long and from one state to another: intracellular and scene systems,
-/// secretion, fields, then the links. After an error `to` holds anything.
+/// secretion, fields, then the links. After an error `to` holds anything. Returns how long the next step may be, s, for what these do to each other.
 pub fn advance_chemistry(
     model: &Model,
     dt: f64,
     from: &State,
     to: &mut State,
     ws: &mut Workspace,
-) -> Result<(), Trouble> {
+) -> Result<f64, Trouble> {
     to.chemistry.copy_from(&from.chemistry);
+    let mut longest = f64::INFINITY;
     if model.chemistry.is_empty() {
-        return Ok(());
+        return Ok(longest);
     }
+    let (end, chemistry) = (from.time + dt, &model.chemistry);
+    to.chemistry.told_means = false;
+    move_chemistry(model, dt, from, to, ws)?;
+    if has_changed(chemistry, &from.chemistry, &to.chemistry) {
+        let mut means = std::mem::take(&mut ws.chemistry.means);
+        note_means(chemistry, &from.chemistry, &to.chemistry, &mut means);
+        to.chemistry.copy_from(&from.chemistry);
+        tell_means(chemistry, &means, &mut to.chemistry);
+        ws.chemistry.means = means;
+        to.chemistry.told_means = true;
+        move_chemistry(model, dt, from, to, ws)?;
+        longest = longest_next(dt, moved(chemistry, &from.chemistry, &ws.chemistry.means, &to.chemistry));
+    }
+    impose(model, end, to, ws)?;
+    if model.chemistry.imposes_atoms {
+        measure_velocities(model, dt, from, to);
+    }
+    Ok(longest)
+}
+
+/// Systems, secretion and fields over a step under what they are told where it begins, and then what links carry at its end.
+fn move_chemistry(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
     let (start, end) = (from.time, from.time + dt);
     ws.chemistry.exchange_values(&mut to.chemistry, start);
     let is_moved_here =
@@ -66,17 +92,20 @@ pub fn advance_chemistry(
     move_fields(model, (start, dt), from, to, ws)?;
     carry_links(model, end, false, to, ws)?;
     ws.chemistry.exchange_values(&mut to.chemistry, end);
-    impose(model, end, to, ws)?;
-    if model.chemistry.imposes_atoms {
-        measure_velocities(model, dt, from, to);
-    }
     Ok(())
 }
 
 /// Solves systems from where a step began to the time of a state within it, what they are told standing still as in the step: those without noise
 /// that are no membranes', and that move in it at all. The others, and one that fails, are left as they are.
-pub fn advance_systems_to(model: &Model, from: &ChemistryState, within: &mut State, scratch: &mut ChemistryScratch) {
+pub fn advance_systems_to(
+    model: &Model,
+    (from, to): (&ChemistryState, &ChemistryState),
+    within: &mut State,
+    scratch: &mut ChemistryScratch,
+) {
     let time = within.time;
+    let begun = if to.told_means { with_means(model, from, to) } else { Cow::Borrowed(from) };
+    let from = &*begun;
     for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
         let begun = from.times[number];
         let stands_still = begun == within.chemistry.times[number] || begun >= time;
@@ -102,6 +131,14 @@ pub fn advance_systems_to(model: &Model, from: &ChemistryState, within: &mut Sta
             Err(_) => (chemistry.populations[number], chemistry.events[number]) = between,
         }
     }
+}
+
+/// The state where a step began, with the means that systems were told in it.
+fn with_means<'a>(model: &Model, from: &ChemistryState, to: &ChemistryState) -> Cow<'a, ChemistryState> {
+    let (mut begun, mut means) = (from.clone(), Vec::new());
+    note_means(&model.chemistry, from, to, &mut means);
+    tell_means(&model.chemistry, &means, &mut begun);
+    Cow::Owned(begun)
 }
 
 /// Executes the events of the start. Returns whether there were any.

@@ -31,6 +31,8 @@ pub struct ChemistryState {
     pub controls: Controls,
     /// Whether links have carried the numbers of this instant.
     pub carried: bool,
+    /// Whether systems were told means in the step that led here.
+    pub told_means: bool,
 }
 
 /// The fields of one document.
@@ -90,6 +92,7 @@ impl ChemistryState {
             fields: fields.iter().zip(&chemistry.fields).map(field).collect(),
             controls: controls_of(model, cells),
             carried: false,
+            told_means: false,
         }
     }
 
@@ -111,7 +114,7 @@ impl ChemistryState {
             (to.pace, to.kicks, to.scene) = (from.pace, from.kicks, from.scene);
         }
         self.controls.copy_from(&other.controls);
-        self.carried = other.carried;
+        (self.carried, self.told_means) = (other.carried, other.told_means);
     }
 
     /// Takes a system with its events and its time as it is in another state of the same shape.

@@ -168,7 +168,22 @@ fn link(ends: &mut Ends, shown: &mut Vec<Expr>, description: &LinkDescription) -
     ends.check_grid(description, &from, &to)?;
     let text = format!("of `{}` from {} to {}", ends.part.name, description.from.text, description.to.text);
     let (transfer, gain) = (description.transfer.clone(), description.gain);
-    Ok(Link { text, owner, from, to, transfer, uses, needs, gain })
+    let drives = match (to, &description.to.root) {
+        (Target::Own(_), Root::System(quantity)) => drives(ends.part, *quantity),
+        _ => false,
+    };
+    Ok(Link { text, owner, from, to, transfer, uses, needs, gain, drives })
+}
+
+/// Whether rates change with a quantity that is set from outside, and no events may happen by it.
+fn drives(part: &Part, quantity: QuantityId) -> bool {
+    let system = &part.document.system;
+    let by_rate = |role: &Role| match role {
+        Role::Variable { rate } => eml::reached(rate, system).contains(&quantity),
+        _ => false,
+    };
+    let of_fields = part.is_field() || part.beside.is_some();
+    system.events.is_empty() && (of_fields || system.quantities.iter().any(|quantity| by_rate(&quantity.role)))
 }
 
 /// Refuses a link of what stands beside fields that uses what differs from point to point.
