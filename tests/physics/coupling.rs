@@ -611,3 +611,22 @@ fn cells_and_the_field_that_they_read_and_feed_are_of_second_order_together() {
     println!("NOTE by default {found:?} in {} steps", free.state().step);
     assert!(found.iter().all(|error| error.abs() < 0.02), "{found:?}");
 }
+
+#[test]
+fn what_a_cell_senses_of_its_own_release_does_not_depend_on_the_step() {
+    let field = r#"<eml name="field"><grid dimension="2" spacing="2" origin="-40 -40" size="80 80"/>
+        <field id="c" diffusion="100" decay="0.1" initial="0"/></eml>"#;
+    let own = r#"<eml name="own" level="cell"><input id="c" default="0"/><variable id="u" initial="1" rate="0"/>
+        <link from="field[c]" to="system.c"/><link from="system.u" to="cell.secretion[c]" gain="600"/></eml>"#;
+    let sensed = |step: &str| {
+        let mut scene = scene(&[("field", field), ("own", own)], &one_cell("4 s", step));
+        scene.run();
+        scene.value(0, "c", 0)
+    };
+    let exact = sensed("0.02 s");
+    for step in ["0.2 s", "1 s", "4 s"] {
+        let found = sensed(step);
+        println!("NOTE {step}: {found} for {exact}, {:.3} %", 100.0 * (found / exact - 1.0));
+        assert!((found / exact - 1.0).abs() < 0.01, "{step}: {found} for {exact}");
+    }
+}

@@ -24,6 +24,7 @@ mod observe;
 mod observed;
 mod populations;
 mod release;
+mod release_parts;
 mod released;
 mod scratch;
 mod stages;
