@@ -3,10 +3,12 @@
 //! A text becomes a [`tree::System`] (checked, with its units and locations), and the tree becomes a [`program`] over lanes of
 //! cells. Nothing here knows time steps: the engine advances programs for cells, fields advance them in space.
 
+mod determine;
 pub mod eml;
 pub mod expression;
 mod fault;
 mod files;
+mod linear;
 mod pieces;
 pub mod program;
 mod range;

@@ -103,6 +103,7 @@ pub fn extent(expr: &Expr) -> (usize, usize) {
             }
             below(otherwise);
         }
+        Expr::Root(equations, _) => equations.expressions().for_each(below),
     }
     (depth + 1, size)
 }
@@ -119,5 +120,6 @@ pub fn replaced(expr: &Expr, by: &impl Fn(QuantityId) -> Option<Expr>) -> Expr {
             otherwise: Box::new(replaced(otherwise, by)),
         },
         Expr::Delay(value, delay) => Expr::Delay(Box::new(replaced(value, by)), Box::new(replaced(delay, by))),
+        Expr::Root(equations, index) => Expr::Root(Box::new(equations.map(|part| replaced(part, by))), *index),
     }
 }

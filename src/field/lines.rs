@@ -109,6 +109,11 @@ fn moved(expr: &Expr, by: QuantityId) -> Expr {
             otherwise: moved_box(otherwise),
         },
         Expr::Delay(value, delay) => Expr::Delay(moved_box(value), moved_box(delay)),
+        Expr::Root(equations, index) => {
+            let mut equations = equations.map(|part| moved(part, by));
+            equations.unknowns.iter_mut().for_each(|unknown| *unknown += by);
+            Expr::Root(Box::new(equations), *index)
+        }
     }
 }
 

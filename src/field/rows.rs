@@ -44,6 +44,7 @@ fn is_plain(action: Action) -> bool {
         Action::Binary(function) => matches!(function, Add | Sub | Mul | Div | Lt | Le | Gt | Ge | Min | Max),
         Action::Unary(function) => matches!(function, Neg | Abs | Sqrt | Exp | Ln),
         Action::Select | Action::MulAdd | Action::MulSub | Action::SubMul => true,
+        Action::Copy | Action::Solve(_) => false,
     }
 }
 
@@ -56,7 +57,11 @@ impl Rows {
                 (Some(Stretch::Plain(ops)), true) => ops.push(*op),
                 (Some(Stretch::Other(code)), false) => code.ops.push(*op),
                 (_, true) => stretches.push(Stretch::Plain(vec![*op])),
-                (_, false) => stretches.push(Stretch::Other(Code { ops: vec![*op], ..Code::default() })),
+                (_, false) => stretches.push(Stretch::Other(Code {
+                    ops: vec![*op],
+                    solved: program.rates.solved.clone(),
+                    ..Code::default()
+                })),
             }
         }
         Self { stretches, outputs: program.rates.outputs.iter().map(|register| *register as usize).collect() }

@@ -11,7 +11,7 @@ use super::cells::{CellTrouble, Cells, Kept, kept_numbers};
 use super::narrow::Narrow;
 use super::population::{LANES, Population};
 use super::scratch::Scratch;
-use super::{Method, OdeTrouble, Tolerances, Work};
+use super::{Method, OdeTrouble, Tolerances, Work, lost};
 use crate::equations::program::{Lanes, Program};
 
 impl Population {
@@ -140,7 +140,7 @@ impl CellTrouble {
             time: self.time,
             variable: self.variable.map(|v| program.names[program.variables[v] as usize].clone()),
             reason: self.reason,
-            detail: String::new(),
+            detail: lost(program, self.unknown),
         }
     }
 }

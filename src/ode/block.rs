@@ -287,5 +287,6 @@ fn explain<const L: usize>(
         (true, true) => Reason::StepUnderflow,
         (true, false) => Reason::NotFinite,
     };
-    CellTrouble { cell, time: time[l], variable, reason }
+    let unknown = if program.searched.is_empty() { None } else { s.lost_unknown(program, time, l) };
+    CellTrouble { cell, time: time[l], variable, unknown, reason }
 }

@@ -4,6 +4,7 @@ use super::Reason;
 use super::mask::{Mask, YES, when};
 use super::scratch::Scratch;
 use crate::equations::program::Lanes;
+use crate::equations::tree::QuantityId;
 
 /// The first cell of a task that failed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +15,8 @@ pub struct CellTrouble {
     pub time: f64,
     /// The variable that is worst.
     pub variable: Option<usize>,
+    /// The quantity whose equations have no solution there.
+    pub unknown: Option<QuantityId>,
     /// What is wrong.
     pub reason: Reason,
 }

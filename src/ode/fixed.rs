@@ -42,7 +42,13 @@ pub fn advance<const L: usize, const CLASSICAL: bool>(
                     going[l] = 0;
                     let cell = block * L + l;
                     if trouble.is_none_or(|known| cell < known.cell) {
-                        trouble = Some(CellTrouble { cell, time, variable: broken, reason: Reason::NotFinite });
+                        trouble = Some(CellTrouble {
+                            cell,
+                            time,
+                            variable: broken,
+                            unknown: None,
+                            reason: Reason::NotFinite,
+                        });
                     }
                 }
             }

@@ -58,6 +58,8 @@ pub use substeps::{Kick, Pace, Substep, Substeps};
 
 use serde::{Deserialize, Serialize};
 
+use crate::equations::program::Program;
+use crate::equations::tree::QuantityId;
 use crate::error::{Error, Fault};
 
 /// A one-step method.
@@ -168,6 +170,16 @@ pub struct OdeTrouble {
     pub reason: Reason,
     /// More words, or none.
     pub detail: String,
+}
+
+/// That the equations of an unknown have no solution, in words; nothing where they have.
+fn lost(program: &Program, unknown: Option<QuantityId>) -> String {
+    unknown.map_or(String::new(), |unknown| {
+        format!(
+            "the algebraic equation of '{}' has no solution there that is found from its start",
+            program.names[unknown as usize]
+        )
+    })
 }
 
 impl std::fmt::Display for OdeTrouble {

@@ -4,6 +4,7 @@ use super::control::Tolerances;
 use super::linear::Linear;
 use crate::equations::program::code::Code;
 use crate::equations::program::{Lanes, Program, run};
+use crate::equations::tree::QuantityId;
 
 /// Stages of the method that has most, with the one in the middle of its step.
 const MOST_STAGES: usize = 10;
@@ -120,6 +121,28 @@ impl<const L: usize, P: LooksBack<L>> Scratch<L, P> {
         for (to, &from) in self.stages[stage * n..(stage + 1) * n].iter_mut().zip(&program.rates.outputs) {
             *to = self.file[from as usize];
         }
+    }
+
+    /// The quantity whose equations have no solution a little after the state, if there is one; the rates there have been worked out.
+    #[inline(never)]
+    pub fn lost_unknown(&mut self, program: &Program, time: Lanes<L>, l: usize) -> Option<QuantityId> {
+        let lost = |file: &[Lanes<L>]| {
+            let value = |quantity: QuantityId| file[program.observe.outputs[quantity as usize] as usize][l];
+            program.searched.iter().copied().find(|quantity| !value(*quantity).is_finite())
+        };
+        // Steps have become as short as the clock can tell, or little longer.
+        let sizes = std::iter::successors(Some(1e-15), |size| Some(size * 16.0)).take(8);
+        sizes.map(|size| size * time[l].abs().max(1e-9)).find_map(|ahead| {
+            self.file[0] = time.map(|time| time + ahead);
+            for (v, state) in self.state.iter().enumerate() {
+                for (to, (value, rate)) in self.file[1 + v].iter_mut().zip(state.iter().zip(&self.stages[v])) {
+                    *to = value + ahead * rate;
+                }
+            }
+            self.past.fill(program, &program.observe, &mut self.file);
+            run(&program.observe, &mut self.file);
+            lost(&self.file)
+        })
     }
 
     /// The variable that is to blame for trouble in a lane: the first whose value or rate is not finite, or else the one

@@ -12,9 +12,9 @@ use super::scheme::Scheme;
 use super::starts::drawn;
 use super::stepper::Stepper;
 use super::switches::LOOKS_IN_SOLVE;
-use super::{Method, Numbers, OdeTrouble, Reason, Work};
+use super::{Method, Numbers, OdeTrouble, Reason, Work, lost};
 use crate::equations::program::Program;
-use crate::equations::tree::System;
+use crate::equations::tree::{QuantityId, System};
 
 /// Scheme and tolerances.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -112,7 +112,7 @@ pub fn solve_each(
         Scheme::OneStep(method) => {
             let SolveOptions { seed, longest, .. } = *options;
             let solver = Solver { program: &program, plan: &plan, method, tolerances, seed, longest };
-            solver.solve((from, until), points, each)
+            solver.solve_to_values((from, until), points, each)
         }
         _ if program.size() == 0 => {
             let options = SolveOptions { scheme: SolveOptions::default().scheme, ..*options };
@@ -142,6 +142,34 @@ struct Solver<'a> {
 }
 
 impl Solver<'_> {
+    /// The course until the first values asked for that its equations do not determine: where nothing changes at a rate, only these
+    /// tell that there is no solution.
+    fn solve_to_values(
+        self,
+        span: (f64, f64),
+        points: &[f64],
+        each: &mut dyn FnMut(f64, &[f64]),
+    ) -> Result<Work, OdeTrouble> {
+        let (program, mut first) = (self.program, None);
+        let solved = self.solve(span, points, &mut |time, values| {
+            let is_lost = |quantity: &QuantityId| !values[*quantity as usize].is_finite();
+            match program.searched.iter().copied().find(is_lost) {
+                Some(unknown) => first = first.or(Some((time, unknown))),
+                None if first.is_none() => each(time, values),
+                None => {}
+            }
+        });
+        let Some((time, unknown)) = first else { return solved };
+        Err(OdeTrouble {
+            system: program.name.clone(),
+            cell: None,
+            time,
+            variable: None,
+            reason: Reason::NotFinite,
+            detail: lost(program, Some(unknown)),
+        })
+    }
+
     /// The course, and a second one with half of the relative tolerance where variables have become so small that round-off may
     /// be all that is left of them. With events it is not made: these happen at other times by their last bits.
     fn solve(self, span: (f64, f64), points: &[f64], each: &mut dyn FnMut(f64, &[f64])) -> Result<Work, OdeTrouble> {

@@ -6,7 +6,7 @@ use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
 use super::control::{self, NEAR, Tolerances};
 use super::lookback::Lookback;
 use super::scratch::{LooksBack, Scratch};
-use super::{Method, OdeTrouble, Reason, Work, explicit, rosenbrock};
+use super::{Method, OdeTrouble, Reason, Work, explicit, lost, rosenbrock};
 use crate::equations::program::code::Code;
 use crate::equations::program::{Program, run};
 
@@ -345,6 +345,9 @@ impl<'a> Stepper<'a> {
     pub fn trouble(&mut self, reason: Reason) -> OdeTrouble {
         self.load(self.time);
         let (worst, finite) = self.s.worst_variable(self.program, [self.time], 0);
+        let lacks_steps = matches!(reason, Reason::StepUnderflow | Reason::NotFinite);
+        let searched = lacks_steps && !self.program.searched.is_empty();
+        let unknown = if searched { self.s.lost_unknown(self.program, [self.time], 0) } else { None };
         self.fresh = true;
         OdeTrouble {
             system: self.program.name.clone(),
@@ -352,7 +355,7 @@ impl<'a> Stepper<'a> {
             time: self.time,
             variable: worst.map(|v| self.program.names[self.program.variables[v] as usize].clone()),
             reason: if reason == Reason::StepUnderflow && !finite { Reason::NotFinite } else { reason },
-            detail: String::new(),
+            detail: lost(self.program, unknown),
         }
     }
 }

@@ -74,6 +74,9 @@ fn comparisons(system: &System, expression: &Expr, steady: &mut Vec<Option<bool>
             }
             comparisons(system, otherwise, steady, found);
         }
+        Expr::Root(equations, _) => {
+            equations.expressions().for_each(|part| comparisons(system, part, steady, found));
+        }
         Expr::Delay(value, delay) => {
             comparisons(system, value, steady, found);
             comparisons(system, delay, steady, found);

@@ -3,6 +3,7 @@
 mod delays;
 mod documents;
 mod eml;
+mod eml_algebraic;
 mod eml_include;
 mod eml_models;
 mod eml_reactions;

@@ -79,3 +79,32 @@ fn a_boundary_species_is_held_where_something_else_can_follow() {
     let body = body.replace("constant=\"false\"", "constant=\"true\"") + &rules(&[equation(&twin)]);
     close(&at(&read(3, 2, &body), 1.0, &["[S]", "[B]", "S"]), &[3.0, 3.0, 1.5]);
 }
+
+#[test]
+fn what_is_not_linear_is_sought_from_the_value_that_the_model_gives() {
+    // p² + p = t + 6, from 1.
+    let square = |symbol: &str| apply("times", &format!("{symbol}{symbol}"));
+    let left = apply("plus", &(square(P) + P));
+    let right = apply("plus", &(time() + &n(6.0)));
+    let model = read(3, 2, &rules(&[equation(&apply("minus", &(left + &right)))]));
+    close(&at(&model, 6.0, &["p"]), &[3.0]);
+    // Behind an assignment rule, and where it begins says which of two: [S] = 4/q and q = [S] + 3.
+    for (start, expected) in [("0.5", 1.0), ("-3", -4.0)] {
+        let hidden = rule("assignmentRule", "q", &apply("plus", &("<ci> S </ci>".to_owned() + &n(3.0))));
+        let product = apply("minus", &(apply("times", &format!("<ci> S </ci>{Q}")) + &n(4.0)));
+        let species = format!(r#"initialConcentration="{start}""#);
+        let body = cell(r#"size="0.5" constant="true""#, &species) + &rules(&[hidden, equation(&product)]);
+        close(&at(&read(3, 2, &body), 1.0, &["[S]", "S", "q"]), &[expected, 0.5 * expected, expected + 3.0]);
+    }
+    // Two rules together, neither linear in either, of p' = p + 0.8 and q' = q + 0.8: p'² + q'³ = 2 + t, p'³ = q'² + t.
+    let cube = |symbol: &str| apply("times", &(symbol.to_owned() + &square(symbol)));
+    let shifted = |symbol: &str| apply("plus", &(symbol.to_owned() + &n(0.8)));
+    let (p, q) = (shifted(P), shifted(Q));
+    let one = apply("minus", &(apply("plus", &(square(&p) + &cube(&q))) + &apply("plus", &(n(2.0) + &time()))));
+    let other = apply("minus", &(cube(&p) + &apply("plus", &(square(&q) + &time()))));
+    let model = read(3, 2, &rules(&[equation(&one), equation(&other)]));
+    close(&at(&model, 1e-9, &["p", "q"]), &[0.2, 0.2]);
+    let found = at(&model, 2.0, &["p", "q"]);
+    let (p, q) = (found[0] + 0.8, found[1] + 0.8);
+    close(&[p * p + q.powi(3), p.powi(3) - q * q], &[4.0, 2.0]);
+}

@@ -24,6 +24,7 @@ const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/
     <variable id="clock" initial="0" rate="1"/><variable id="pulses" initial="0" rate="0"/>
     <event id="pulse" when="clock ge 0.35"><set id="clock">0</set><set id="pulses">pulses + 1</set></event>
     <solver scheme="rk45" rtol="1e-6" noise_step="0.03"/>
+    <algebraic id="sought" start="0">sought^3 + sought = u + time</algebraic>
     <link from="field[c]" to="system.c"/><link from="field[c].gradient.x" to="system.gx"/>
     <link from="cell.speed" to="system.speed"/><link from="cell.contact_share" to="system.share"/>
     <link from="system.gx" to="cell.motility.bias.x" gain="0.5"/><link from="system.gx" to="cell.pseudopods.cue.x" gain="20"/><link from="system.w" to="cell.secretion[c]" gain="2"/>
@@ -31,7 +32,8 @@ const OWN: &str = r#"<eml name="own" level="cell"><parameter id="k" value="0.5"/
     <link from="system.pulses" to="cell.adhesion" transfer="1 + 0.1*sin(value)"/>
     <link from="system.pulses" to="cell.load[push]" transfer="1 + 0.5*sin(value)"/>
     <link from="system.pulses" to="cell.fibre[trunk]" transfer="0.5 + 0.3*sin(value)"/>
-    <link from="system.clock" to="cell.rest_volume_ratio" transfer="1 + 0.001*value"/></eml>"#;
+    <link from="system.clock" to="cell.rest_volume_ratio" transfer="1 + 0.001*value"/>
+    <link from="system.sought" to="cell.motility.bias.z" transfer="1e-3*value"/></eml>"#;
 
 /// What is on the membranes of all.
 const SKIN: &str = r#"<eml name="skin" level="membrane"><input id="c" default="0"/>

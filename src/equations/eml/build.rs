@@ -4,6 +4,7 @@ use super::circles::circles;
 use super::context::Context;
 use super::declare::{Declarations, POSITION, tell};
 use super::random_words::misplaced;
+use super::vocabulary::with_article;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Node, Scope, Unit, UnitScope, is_constant, parse};
 use crate::equations::reactions;
@@ -161,6 +162,8 @@ impl<'a, 'd> Builder<'a, 'd> {
                     let rule = self.expression(&element.text, Use::All, own.as_ref().map(|unit| (unit, what.as_str())));
                     (rule.map(|rule| Role::Defined { rule }), Some(Expr::Number(0.0)))
                 }
+                // Their equations are looked at when all rules are known.
+                "algebraic" => (Some(Role::Input), Some(Expr::Number(0.0))),
                 "reaction" => {
                     let rule = self.rate_of_reaction(element, &id);
                     (rule.map(|rule| Role::Defined { rule }), Some(Expr::Number(0.0)))
@@ -229,7 +232,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                     continue;
                 }
                 Some(other) => (
-                    format!("`{id}` is a <{other}>, which has no rate of change"),
+                    format!("`{id}` is {}, which has no rate of change", with_article(other)),
                     format!("declare it with <variable id=\"{id}\" initial=\"…\">"),
                 ),
                 None => {
@@ -358,6 +361,7 @@ impl<'a, 'd> Builder<'a, 'd> {
                 let values = super::start::values(system);
                 self.check_finite(&values);
                 self.check_delays(system, &values);
+                self.check_roots(&system.quantities, &values);
                 self.check_schedules(&values);
             }
         }

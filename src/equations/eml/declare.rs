@@ -12,7 +12,8 @@ use crate::equations::tree::{Expr, QuantityId, Reaction};
 use std::collections::{BTreeMap, HashMap};
 
 /// Elements whose identifier names a quantity.
-const QUANTITIES: [&str; 8] = ["parameter", "variable", "define", "reaction", "input", "field", "mean", "integral"];
+const QUANTITIES: [&str; 9] =
+    ["parameter", "variable", "define", "algebraic", "reaction", "input", "field", "mean", "integral"];
 /// What is given on the surface of a cell: the position from its centre, and area and volume of the cell.
 pub const SURFACE: [&str; 5] = ["x", "y", "z", "area", "volume"];
 
@@ -220,9 +221,12 @@ fn level(context: &mut Context, root: &Element) -> Level {
     };
     // What a document of fields may not hold, and the other way round.
     let (misplaced, help): (&[&str], &str) = match level {
-        Level::Field => (&[], ""),
+        Level::Field => (
+            &["algebraic"],
+            "give it a document of its own, without fields, and join the two by <link>s",
+        ),
         Level::Membrane => (
-            &["field", "grid", "event"],
+            &["field", "grid", "event", "algebraic"],
             "a document of membranes has <variable>s; give fields and events documents of their own",
         ),
         _ => (
@@ -232,6 +236,12 @@ fn level(context: &mut Context, root: &Element) -> Level {
     };
     for element in root.children.iter().filter(|child| misplaced.contains(&child.kind.name)) {
         let message = format!("<{}> cannot stand in a document of level {}", element.kind.name, level.name());
+        let help = match element.kind.name {
+            "algebraic" => {
+                "equations that determine unknowns stand in documents of the scene and of cells: solve for it by hand"
+            }
+            _ => help,
+        };
         context.fault(element.at.clone(), &message, "not at this level", help);
     }
     level

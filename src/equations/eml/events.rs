@@ -1,6 +1,7 @@
 //! Events: what is set to what, when a condition comes true.
 
 use super::build::{Builder, Use};
+use super::vocabulary::with_article;
 use super::xml::Element;
 use crate::equations::expression::Unit;
 use crate::equations::tree::{Event, Expr, QuantityId, Schedule};
@@ -110,7 +111,7 @@ impl Builder<'_, '_> {
         if !settable {
             let (message, help) = match sort {
                 Some(other) => (
-                    format!("an event cannot set `{id}`, which is a <{other}>"),
+                    format!("an event cannot set `{id}`, which is {}", with_article(other)),
                     format!("declare <variable id=\"{id}\" initial=\"…\" rate=\"0\"/>"),
                 ),
                 None => {

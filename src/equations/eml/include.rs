@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::declare;
 use super::prefix::with_prefix;
+use super::vocabulary::with_article;
 use super::xml::{Element, LARGEST_DOCUMENT, Text, tree};
 use super::{repeat, tables};
 use crate::equations::expression::{Unit, is_identifier, is_reserved};
@@ -170,9 +171,12 @@ fn set(context: &mut Context, element: &Element, root: &mut Element) {
             Some("parameter") => "value",
             Some("variable" | "field") => "initial",
             Some("input") => "default",
+            Some("algebraic") => "start",
             other => {
                 let message = match other {
-                    Some(other) => format!("`{id}` of the included document is a <{other}>, which has no value to set"),
+                    Some(other) => {
+                        format!("`{id}` of the included document is {}, which has no value to set", with_article(other))
+                    }
                     None => format!("the included document declares no `{id}`"),
                 };
                 let names = root.children.iter().map(|child| child.word("id")).collect::<Vec<_>>();

@@ -6,6 +6,7 @@
 use super::build::Builder;
 use super::declare::tell;
 use super::document::{Endpoint, Index, LinkDescription, Root, Step};
+use super::vocabulary::with_article;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Measure, Scope, Trouble, UnitScope, is_identifier, is_reserved, parse};
 use crate::equations::tree::{Expr, QuantityId, System};
@@ -61,9 +62,8 @@ impl Builder<'_, '_> {
             (_, Root::System(number)) => {
                 let Some(target) = self.known.quantities.get(*number as usize) else { return };
                 if target.element.kind.name != "input" {
-                    let name = target.element.kind.name;
-                    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-                    let message = format!("a link cannot set `{}`, which is {article} <{name}>", target.id);
+                    let name = with_article(target.element.kind.name);
+                    let message = format!("a link cannot set `{}`, which is {name}", target.id);
                     let help = format!("declare <input id=\"{}\" default=\"…\"/> and use it in an equation", target.id);
                     self.context.fault(element.location("to"), &message, "set from outside", &help);
                 }

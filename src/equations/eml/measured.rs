@@ -41,6 +41,7 @@ fn value(element: &Element) -> Option<&Text> {
         "parameter" => element.attribute("value"),
         "variable" | "field" => element.attribute("initial"),
         "input" => element.attribute("default"),
+        "algebraic" => element.attribute("start"),
         _ => None,
     }
 }

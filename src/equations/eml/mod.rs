@@ -5,6 +5,7 @@
 //! writes them; where quantities have units, these are checked through every expression. The book has the language in
 //! its chapter EML, `eml/eml.xsd` has its grammar.
 
+mod algebraic;
 mod build;
 mod circles;
 mod context;
@@ -90,7 +91,8 @@ pub fn read_in(source: Arc<Source>, files: Files) -> Result<Document> {
         context.fault(root.at.clone(), "the document declares nothing", "empty", help);
     }
     let mut builder = Builder::new(&mut context, known);
-    let (quantities, locations) = builder.quantities(&root);
+    let (mut quantities, locations) = builder.quantities(&root);
+    builder.algebraic(&mut quantities);
     let events = builder.events(&root);
     let reactions = builder.known.reactions.clone();
     let history = builder.history(&root);

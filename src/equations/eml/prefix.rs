@@ -4,7 +4,7 @@ use super::xml::{Element, Text};
 use std::collections::HashSet;
 
 /// Attributes that hold identifiers and expressions, whatever the element.
-const ATTRIBUTES: [&str; 25] = [
+const ATTRIBUTES: [&str; 26] = [
     "id",
     "of",
     "towards",
@@ -17,6 +17,7 @@ const ATTRIBUTES: [&str; 25] = [
     "history",
     "noise",
     "default",
+    "start",
     "when",
     "every",
     "first",

@@ -1,6 +1,7 @@
 //! Equations of reactions, "2 A + $B -> C": what is used up and made, how many at a time.
 
 use super::context::Context;
+use super::vocabulary::with_article;
 use super::xml::{Element, Text};
 use crate::equations::expression::{Unit, is_identifier};
 use crate::equations::tree::{Participant, QuantityId, Reaction};
@@ -134,7 +135,7 @@ fn term<'a, N: Iterator<Item = &'a str>>(
             Some(Term { participant: Participant { quantity, stoichiometry, is_held }, id, at })
         }
         Some((_, declared)) => {
-            let what = declared.map_or("is given".to_owned(), |other| format!("is a <{}>", other.kind.name));
+            let what = declared.map_or("is given".to_owned(), |other| format!("is {}", with_article(other.kind.name)));
             let message = format!("a reaction cannot change `{id}`, which {what}");
             let help = format!("write `${id}` if the reaction leaves it as it is, or declare it as a <variable>");
             context.fault(at, &message, "changed here", &help);

@@ -31,13 +31,14 @@ const fn kind(
 pub(super) const MOST_REPEATED: usize = 20_000;
 
 /// What stands at the top of a document.
-const PARTS: [&str; 17] = [
+const PARTS: [&str; 18] = [
     "include",
     "parameter",
     "variable",
     "equation",
     "reaction",
     "define",
+    "algebraic",
     "function",
     "table",
     "input",
@@ -52,12 +53,13 @@ const PARTS: [&str; 17] = [
 ];
 
 /// What can be repeated.
-const REPEATED: [&str; 13] = [
+const REPEATED: [&str; 14] = [
     "parameter",
     "variable",
     "equation",
     "reaction",
     "define",
+    "algebraic",
     "function",
     "input",
     "mean",
@@ -70,7 +72,7 @@ const REPEATED: [&str; 13] = [
 
 /// All elements.
 #[rustfmt::skip] // a table
-pub const ELEMENTS: [Kind; 24] = [
+pub const ELEMENTS: [Kind; 25] = [
     kind("eml", &["name"], &["level", "time_unit"], &PARTS, false),
     kind("include", &["document"], &["prefix"], &["set"], false),
     kind("parameter", &["id", "value"], &["name", "unit"], &[], false),
@@ -78,6 +80,7 @@ pub const ELEMENTS: [Kind; 24] = [
     kind("equation", &["of"], &[], &[], true),
     kind("reaction", &["equation", "id", "rate"], &["name", "reverse"], &[], false),
     kind("define", &["id"], &["history", "name", "unit"], &[], true),
+    kind("algebraic", &["id"], &["name", "start", "unit"], &[], true),
     kind("function", &["args", "id"], &[], &[], true),
     kind("table", &["id"], &["argument", "argument_unit", "file", "interpolation", "unit", "value"], &[], true),
     kind("input", &["default", "id"], &["level", "name", "unit"], &[], false),
@@ -98,6 +101,12 @@ pub const ELEMENTS: [Kind; 24] = [
     kind("repeat", &["count", "index"], &["from", "periodic"], &REPEATED, false),
     kind("link", &["from", "to"], &["gain", "id", "transfer"], &[], false),
 ];
+
+/// The name of an element with its article: "an <input>".
+pub(super) fn with_article(name: &str) -> String {
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} <{name}>")
+}
 
 /// The element with a name.
 pub fn kind_of(name: &str) -> Option<&'static Kind> {

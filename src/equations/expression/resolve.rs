@@ -261,6 +261,7 @@ fn size(expr: &Expr) -> usize {
         Expr::Number(_) | Expr::Time | Expr::Quantity(_) => 1,
         Expr::Unary(_, a) => 1 + size(a),
         Expr::Binary(_, a, b) | Expr::Delay(a, b) => 1 + size(a) + size(b),
+        Expr::Root(equations, _) => 1 + equations.expressions().map(size).sum::<usize>(),
         Expr::Piecewise { branches, otherwise } => {
             1 + size(otherwise) + branches.iter().map(|(a, b)| size(a) + size(b)).sum::<usize>()
         }
@@ -273,6 +274,7 @@ fn depth(expr: &Expr) -> usize {
         Expr::Number(_) | Expr::Time | Expr::Quantity(_) => 0,
         Expr::Unary(_, a) => depth(a),
         Expr::Binary(_, a, b) | Expr::Delay(a, b) => depth(a).max(depth(b)),
+        Expr::Root(equations, _) => equations.expressions().map(depth).max().unwrap_or(0),
         Expr::Piecewise { branches, otherwise } => {
             branches.iter().map(|(a, b)| depth(a).max(depth(b))).max().unwrap_or(0).max(depth(otherwise))
         }

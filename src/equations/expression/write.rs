@@ -78,6 +78,8 @@ fn part(expr: &Expr, name: &impl Fn(QuantityId) -> String, strength: u8, text: &
             call("piecewise", &arguments, name, text);
         }
         Expr::Delay(value, delay) => call("delay", &[value, delay], name, text),
+        // The value of an unknown is its name: writers of documents write the equations that determine it.
+        Expr::Root(equations, index) => text.push_str(&name(equations.unknowns[*index as usize])),
     }
 }
 

@@ -1,7 +1,8 @@
 //! From graph to register code: operations in order, registers used again as soon as their value is done with.
 
-use super::graph::{Graph, Node, NodeId};
-use crate::equations::tree::{Binary, Unary};
+use super::graph::{Graph, Node, NodeId, Source};
+use crate::equations::tree::{Binary, Search, Unary};
+use std::sync::Arc;
 
 /// Number of a register: first the slots of the program, then its constants, then what is worked out.
 pub type Register = u32;
@@ -21,6 +22,10 @@ pub enum Action {
     MulSub,
     /// `c − a·b`, rounded twice.
     SubMul,
+    /// `a` itself.
+    Copy,
+    /// Solves the equations of one of [`Code::solved`] in the registers from `to` on.
+    Solve(u32),
 }
 
 /// One operation over all lanes.
@@ -47,6 +52,8 @@ pub struct Code {
     pub outputs: Vec<Register>,
     /// How many registers are needed.
     pub registers: usize,
+    /// Equations that are solved on the way.
+    pub solved: Vec<Arc<Function>>,
     /// The delayed values that must stand in their slots before, by their indices, inner ones first.
     pub delays: Vec<usize>,
 }
@@ -91,6 +98,8 @@ impl Code {
         let mut register = vec![Register::MAX; graph.len()];
         let (mut free, mut next) = (Vec::new(), (slots + constants.values.len()) as Register);
         let mut ops = Vec::new();
+        // Where the unknowns of each call stand, once it is made.
+        let (mut solved, mut unknowns) = (Vec::new(), vec![Register::MAX; graph.calls.len()]);
         for id in (0..graph.len()).filter(|&id| needed[id] && !merged.inner[id]) {
             let (action, operands) = match graph.node(id as NodeId) {
                 Node::Slot(slot) => {
@@ -106,6 +115,24 @@ impl Code {
                 Node::Binary(..) if merged.outer[id].is_some() => merged.outer[id].expect("just asked"),
                 Node::Binary(function, a, b) => (Action::Binary(function), [a, b, a]),
                 Node::Select(a, b, c) => (Action::Select, [a, b, c]),
+                Node::Root(number, index) => {
+                    let call = &graph.calls[number as usize];
+                    let unknowns = &mut unknowns[number as usize];
+                    if *unknowns == Register::MAX {
+                        let (function, first) = (Function::of(&call.source), next);
+                        next += function.registers() as Register;
+                        *unknowns = first + (function.first_of_search() + function.search.unknown(0)) as Register;
+                        for (operand, offset) in call.operands.iter().zip(function.operands()) {
+                            let a = register[*operand as usize];
+                            ops.push(Op { action: Action::Copy, to: first + offset as Register, a, b: a, c: a });
+                        }
+                        let action = Action::Solve(solved.len() as u32);
+                        ops.push(Op { action, to: first, a: first, b: first, c: first });
+                        solved.push(Arc::new(function));
+                    }
+                    register[id] = *unknowns + index;
+                    continue;
+                }
             };
             let [a, b, c] = operands.map(|operand| register[operand as usize]);
             for (index, operand) in operands.iter().enumerate() {
@@ -123,7 +150,49 @@ impl Code {
             ops.push(Op { action, to, a, b, c });
         }
         let outputs = roots.iter().map(|&root| register[root as usize]).collect();
-        Self { ops, outputs, registers: next as usize, delays: Vec::new() }
+        Self { ops, outputs, registers: next as usize, solved, delays: Vec::new() }
+    }
+}
+
+/// Equations that are solved on the way, as code of their own. Its slots are what they use, in the first one the time, and behind that
+/// the unknowns. Where it is called it has registers of its own, and behind them those of the search.
+#[derive(Debug, Clone, Hash)]
+pub struct Function {
+    /// Works out the equations' values, then their derivatives by the unknowns, row by row.
+    pub code: Code,
+    /// The constants behind the slots, by their bits.
+    pub constants: Vec<u64>,
+    /// How many slots are used before those of the unknowns.
+    pub used: usize,
+    /// The search for the unknowns.
+    pub search: Search,
+}
+
+impl Function {
+    fn of(source: &Source) -> Self {
+        let search = Search { count: source.residuals.len() };
+        let roots = [source.residuals.as_slice(), &source.slopes].concat();
+        let mut constants = Constants::default();
+        constants.collect(&source.graph, &roots);
+        let code = Code::of(&source.graph, &roots, source.used + search.count, &constants);
+        let constants = constants.values.iter().map(|value| value.to_bits()).collect();
+        Self { code, constants, used: source.used, search }
+    }
+
+    /// How many registers a call takes.
+    pub fn registers(&self) -> usize {
+        self.first_of_search() + self.search.registers()
+    }
+
+    /// Where the operands of a call must stand, from its first register on: what is used, and the starts.
+    pub fn operands(&self) -> impl Iterator<Item = usize> + use<> {
+        let starts = self.first_of_search();
+        (0..self.used).chain(starts..starts + self.search.count)
+    }
+
+    /// The first register of the search.
+    pub fn first_of_search(&self) -> usize {
+        self.code.registers.max(self.used + self.search.count + self.constants.len())
     }
 }
 

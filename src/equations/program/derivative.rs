@@ -22,6 +22,7 @@ impl Graph {
                 let (da, db) = (self.derivative(a, slot), self.derivative(b, slot));
                 self.derivative_of_binary(function, id, (a, b), (da, db))
             }
+            Node::Root(call, index) => self.derivative_of_root(call, index, slot),
             Node::Select(condition, yes, no) => {
                 let (yes, no) = (self.derivative(yes, slot), self.derivative(no, slot));
                 self.select(condition, yes, no)

@@ -1,8 +1,9 @@
 //! The equations as a graph in which equal subexpressions are one node and constants are worked out.
 
 use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
 
-use crate::equations::tree::{Binary, Expr, Unary};
+use crate::equations::tree::{Binary, Equations, Expr, Unary};
 
 /// Number of a node; a node uses only nodes with smaller numbers.
 pub type NodeId = u32;
@@ -20,6 +21,8 @@ pub enum Node {
     Binary(Binary, NodeId, NodeId),
     /// The second where the first is true, and else the third.
     Select(NodeId, NodeId, NodeId),
+    /// An unknown of a call among [`Graph::calls`], by the indices of both.
+    Root(u32, u32),
 }
 
 /// A value of a time ago. It stands in a slot of its own; in the slot behind that, how fast what is looked back at changed then.
@@ -35,6 +38,31 @@ pub struct Delayed {
     pub expressions: (Expr, Expr),
 }
 
+/// Equations that determine unknowns, as a graph of their own. Its slots are what they use, in the first one the time, and behind that the
+/// unknowns.
+#[derive(Debug, Clone)]
+pub struct Source {
+    /// The graph.
+    pub graph: Graph,
+    /// What is nothing.
+    pub residuals: Vec<NodeId>,
+    /// Derivatives by the unknowns, row by row.
+    pub slopes: Vec<NodeId>,
+    /// How many slots are used before those of the unknowns.
+    pub used: usize,
+}
+
+/// A call of equations in a graph.
+#[derive(Debug, Clone)]
+pub struct Call {
+    /// What is solved.
+    pub source: Arc<Source>,
+    /// What is used, and the starts.
+    pub operands: Vec<NodeId>,
+    /// What it was made of; none for what derivatives need.
+    pub equations: Option<Equations>,
+}
+
 /// Nodes, each once; made by the functions of `simplify`.
 #[derive(Debug, Clone, Default)]
 pub struct Graph {
@@ -46,6 +74,8 @@ pub struct Graph {
     pub(super) first_delayed: u32,
     /// Delayed values, inner ones before those around them.
     pub(super) delayed: Vec<Delayed>,
+    /// Where equations are solved.
+    pub(super) calls: Vec<Call>,
     pub(super) derivatives: HashMap<(NodeId, u32), NodeId>,
 }
 
@@ -115,6 +145,7 @@ impl Graph {
                 }
                 value
             }
+            Expr::Root(equations, index) => self.root(equations, *index, quantities),
             Expr::Delay(value, delay) => {
                 let (at, by) = (self.expression(value, quantities), self.expression(delay, quantities));
                 self.delayed((at, by), (value, delay))
@@ -175,13 +206,17 @@ impl Graph {
 
     /// The nodes that a node uses.
     pub fn operands(&self, id: NodeId) -> impl Iterator<Item = NodeId> + use<> {
+        let more = match self.node(id) {
+            Node::Root(call, _) => self.calls[call as usize].operands.clone(),
+            _ => Vec::new(),
+        };
         let operands = match self.node(id) {
-            Node::Constant(_) | Node::Slot(_) => [None; 3],
+            Node::Constant(_) | Node::Slot(_) | Node::Root(..) => [None; 3],
             Node::Unary(_, a) => [Some(a), None, None],
             Node::Binary(_, a, b) => [Some(a), Some(b), None],
             Node::Select(a, b, c) => [Some(a), Some(b), Some(c)],
         };
-        operands.into_iter().flatten()
+        operands.into_iter().flatten().chain(more)
     }
 
     /// Which nodes some others need, themselves included.

@@ -10,6 +10,7 @@ mod delayed;
 mod derivative;
 mod elimination;
 pub mod graph;
+mod implicit;
 mod initial;
 mod past;
 mod run;
@@ -62,6 +63,8 @@ pub struct Program {
     pub elimination: Option<Elimination>,
     /// All quantities.
     pub observe: Code,
+    /// The quantities that a search finds, which may find none.
+    pub searched: Vec<QuantityId>,
     /// One code for each further group of expressions.
     pub further: Vec<Code>,
     /// The values of earlier times that the codes use, inner ones before those around them.
@@ -102,7 +105,9 @@ impl Program {
         let open: Vec<QuantityId> = (0..system.quantities.len() as QuantityId).filter(is_open).collect();
         let mut graph = Graph::default();
         let nodes = quantity_nodes(system, &mut graph, &variables, &open, &initial)?;
-        let rates = rate_nodes(system, &mut graph, &variables, &nodes);
+        let mut rates = rate_nodes(system, &mut graph, &variables, &nodes);
+        let searched = searched(system);
+        stop_without(&mut graph, &mut rates, &searched, &nodes);
         let (linear, pattern) = linear_nodes(&mut graph, &rates);
         let drifts = &linear[rates.len()..2 * rates.len()];
         let timeless = drifts.iter().all(|&drift| graph.value(drift) == Some(0.0));
@@ -142,6 +147,7 @@ impl Program {
             sizes: sizes(system, &initial),
             initial,
             rates_stand_still: !rates.reads(0),
+            searched,
             mark: mark(&rates, &constants.values, slots, registers),
             rates,
             linear,
@@ -212,6 +218,27 @@ impl Program {
         }
         self.set_constants(&mut file);
         file
+    }
+}
+
+/// The quantities that equations determine which are not solved for.
+fn searched(system: &System) -> Vec<QuantityId> {
+    let is_searched = |number: &QuantityId| {
+        matches!(&system.quantities[*number as usize].role, Role::Defined { rule: Expr::Root(..) })
+    };
+    (0..system.quantities.len() as QuantityId).filter(is_searched).collect()
+}
+
+/// Lets the first rate be no number where a search finds nothing that no rate needs: a course ends where its equations have no
+/// solution, also one that only links and columns look at.
+fn stop_without(graph: &mut Graph, rates: &mut [NodeId], searched: &[QuantityId], nodes: &[NodeId]) {
+    let needed = graph.needed(rates);
+    let nothing = graph.constant(f64::NAN);
+    let Some(first) = rates.first_mut() else { return };
+    for node in searched.iter().map(|quantity| nodes[*quantity as usize]).filter(|node| !needed[*node as usize]) {
+        // What is no number differs from itself.
+        let is_found = graph.binary(Binary::Eq, node, node);
+        *first = graph.select(is_found, *first, nothing);
     }
 }
 

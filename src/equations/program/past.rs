@@ -75,6 +75,7 @@ fn only_delays(expression: &Expr) -> bool {
         Expr::Number(_) | Expr::Quantity(_) => true,
         Expr::Unary(_, a) => only_delays(a),
         Expr::Binary(_, a, b) | Expr::Delay(a, b) => only_delays(a) && only_delays(b),
+        Expr::Root(equations, _) => equations.expressions().all(only_delays),
         Expr::Piecewise { branches, otherwise } => {
             only_delays(otherwise) && branches.iter().all(|(a, b)| only_delays(a) && only_delays(b))
         }

@@ -1,6 +1,6 @@
 //! Runs register code over lanes of cells.
 
-use super::code::{Action, Code};
+use super::code::{Action, Code, Function};
 use crate::elementary;
 use crate::equations::tree::{Binary, Unary, larger, smaller};
 
@@ -97,8 +97,36 @@ pub fn run<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
             Action::MulAdd => zip3(a, b, &file[op.c as usize], |a, b, c| a * b + c),
             Action::MulSub => zip3(a, b, &file[op.c as usize], |a, b, c| a * b - c),
             Action::SubMul => zip3(a, b, &file[op.c as usize], |a, b, c| c - a * b),
+            Action::Copy => *a,
+            Action::Solve(number) => {
+                solve(&code.solved[number as usize], &mut file[op.to as usize..]);
+                continue;
+            }
             Action::Select => zip3(a, b, &file[op.c as usize], |a, b, c| if a != 0.0 { b } else { c }),
         };
         file[op.to as usize] = value;
     }
+}
+
+/// Solves the equations in the registers of a call.
+#[inline(never)]
+fn solve<const L: usize>(function: &Function, registers: &mut [Lanes<L>]) {
+    let (own, work) = registers.split_at_mut(function.first_of_search());
+    let (search, first_constant) = (function.search, function.used + function.search.count);
+    for (register, bits) in own[first_constant..].iter_mut().zip(&function.constants) {
+        *register = [f64::from_bits(*bits); L];
+    }
+    search.solve(&mut work[..search.registers()], |work| {
+        for index in 0..search.count {
+            own[function.used + index] = work[search.unknown(index)];
+        }
+        run(&function.code, own);
+        let value = |output: usize| own[function.code.outputs[output] as usize];
+        for row in 0..search.count {
+            work[search.residual(row)] = value(row);
+            for column in 0..search.count {
+                work[search.slope(row, column)] = value(search.count + row * search.count + column);
+            }
+        }
+    });
 }

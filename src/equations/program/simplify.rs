@@ -120,6 +120,7 @@ impl Graph {
                 Node::Binary(function, a, b) => graph.binary(function, at(a), at(b)),
                 Node::Unary(function, a) => graph.unary(function, at(a)),
                 Node::Select(a, b, c) => graph.select(at(a), at(b), at(c)),
+                Node::Root(call, index) => graph.called(&self.calls[call as usize], index, at),
                 leaf => graph.intern(leaf),
             };
         }

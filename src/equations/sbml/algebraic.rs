@@ -3,14 +3,14 @@
 //! A symbol can follow from an algebraic rule where nothing else determines it: it is not constant, has no other rule and no initial
 //! assignment, no reaction changes it and no event sets it. Rules with one such symbol are solved first, and what they
 //! determine is put into the others, as in Gauss' elimination. Rules that are left with as many symbols as there are rules
-//! determine these together.
+//! determine these together. What a rule is not linear in is sought, from the value that the model gives it.
 
 use super::document::RuleKind;
-use super::linear::root;
 use super::plan::{Kind, Plan};
 use super::xml::Node;
-use crate::equations::pieces::{extent, replaced};
-use crate::equations::tree::{Expr, QuantityId};
+use crate::equations::linear::root;
+use crate::equations::pieces::{extent, number, product, quotient, replaced};
+use crate::equations::tree::{Equations, Expr, QuantityId};
 use std::cell::Cell;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -19,6 +19,8 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 pub struct Determined<'a> {
     math: Node<'a>,
     symbol: &'a str,
+    /// The number that it shares with those with which it is sought together; none where the rule is solved for it.
+    sought: Option<usize>,
 }
 
 /// Most rules that are solved together: each is put into all others.
@@ -71,15 +73,32 @@ impl<'a> Plan<'_, 'a> {
         let mut ready: BTreeSet<usize> = open.iter().enumerate().filter_map(with_one).collect();
         let mut determined = Vec::new();
         while let Some(index) = ready.pop_first().or_else(|| first_of_square(&open)) {
-            let Some(rule) = open[index].take() else { continue };
-            let solution = rule.unknowns.iter().find_map(|&x| Some((x, root(&rule.formula, x)?)));
-            let Some((x, root)) = solution else {
-                self.not_linear(&rule, &free);
-                continue;
+            let (index, solution) = match self.solution(&open, index) {
+                Some((index, x, root)) => (index, Some((x, root))),
+                None => (index, None),
             };
-            let symbol = free.remove(&x).unwrap_or_default();
-            known.solved.insert(x, root);
-            determined.push(Determined { math: rule.math, symbol });
+            let Some(rule) = open[index].take() else { continue };
+            let x = match (solution, &rule.unknowns[..]) {
+                (Some((x, root)), _) => {
+                    known.solved.insert(x, root);
+                    determined.push(Determined { math: rule.math, symbol: free[&x], sought: None });
+                    x
+                }
+                (None, &[x]) if !rule.formula.has_delay() => {
+                    determined.push(Determined { math: rule.math, symbol: free[&x], sought: Some(determined.len()) });
+                    x
+                }
+                (None, [_, _, ..]) if !rule.formula.has_delay() => {
+                    open[index] = Some(rule);
+                    self.seek_together(&mut open, &mut free, &mut determined);
+                    continue;
+                }
+                (None, _) => {
+                    self.not_linear(&rule, &free);
+                    continue;
+                }
+            };
+            free.remove(&x);
             for other in uses.remove(&x).unwrap_or_default() {
                 let Some(rule) = open[other].as_mut() else { continue };
                 rule.formula = self.put_in(&rule.formula, &known, &[]);
@@ -93,22 +112,88 @@ impl<'a> Plan<'_, 'a> {
             }
         }
         open.iter().flatten().for_each(|rule| self.not_determined(rule, &free));
-        for &Determined { math, symbol } in &determined {
+        for &Determined { math, symbol, .. } in &determined {
             self.rules.insert(symbol, (RuleKind::Assignment, math));
         }
         determined
     }
 
+    /// Of the rules that are left, when these determine symbols together, the first that is linear in one; the rule itself alone where it
+    /// has one symbol.
+    fn solution(&self, open: &[Option<Open<'a>>], index: usize) -> Option<(usize, QuantityId, Expr)> {
+        let of = |index: usize| {
+            let rule = open[index].as_ref()?;
+            rule.unknowns.iter().find_map(|&x| Some((index, x, root(&rule.formula, x)?)))
+        };
+        let is_alone = open[index].as_ref().is_some_and(|rule| rule.unknowns.len() == 1);
+        of(index).or_else(|| if is_alone { None } else { (0..open.len()).find_map(of) })
+    }
+
+    /// Lets all rules that are left determine their symbols together.
+    fn seek_together(
+        &self,
+        open: &mut [Option<Open<'a>>],
+        free: &mut HashMap<QuantityId, &'a str>,
+        determined: &mut Vec<Determined<'a>>,
+    ) {
+        let rules: Vec<Open> = open.iter_mut().filter_map(Option::take).collect();
+        if let Some(rule) = rules.iter().find(|rule| rule.formula.has_delay()) {
+            return self.not_linear(rule, free);
+        }
+        let unknowns: BTreeSet<QuantityId> = rules.iter().flat_map(|rule| &rule.unknowns).copied().collect();
+        let sought = Some(determined.len());
+        for (rule, x) in rules.into_iter().zip(unknowns) {
+            determined.push(Determined { math: rule.math, symbol: free.remove(&x).unwrap_or_default(), sought });
+        }
+    }
+
     /// Solves the algebraic rules for what they determine, once all quantities have their numbers.
     pub fn solve(&mut self, determined: &[Determined<'a>]) {
         let mut known = self.known(&determined.iter().map(|one| one.symbol).collect());
-        for &Determined { math, symbol } in determined {
+        for &Determined { math, symbol, sought } in determined {
+            if sought.is_some() {
+                self.seek(determined, sought, symbol, &known);
+                continue;
+            }
             let x = self.reader.symbols[symbol];
             let formula = self.put_in(&self.reader.formula(math), &known, &[]);
             let solution = root(&formula, x).unwrap_or(Expr::Number(f64::NAN));
             self.solved.insert(symbol, solution.clone());
             known.solved.insert(x, solution);
         }
+    }
+
+    /// Gives a symbol that is sought, with all that are sought together with it, its rule.
+    fn seek(&mut self, determined: &[Determined<'a>], sought: Option<usize>, symbol: &'a str, known: &Known<'a>) {
+        let all: Vec<&Determined> = determined.iter().filter(|other| other.sought == sought).collect();
+        let index = all.iter().position(|other| other.symbol == symbol).unwrap_or(0);
+        let equations = Equations {
+            unknowns: all.iter().map(|other| self.reader.symbols[other.symbol]).collect(),
+            residuals: all.iter().map(|other| self.put_in(&self.reader.formula(other.math), known, &[])).collect(),
+            starts: all.iter().map(|other| self.value_given(other.symbol)).collect(),
+        };
+        self.solved.insert(symbol, Expr::Root(Box::new(equations), index as u32));
+    }
+
+    /// The value that the model gives a symbol that a rule determines; 1 where it gives none.
+    fn value_given(&self, symbol: &str) -> Expr {
+        let document = self.document;
+        let value = match self.kinds.get(symbol) {
+            Some(&Kind::Parameter(index)) => document.parameters[index].value,
+            Some(&Kind::Compartment(index)) => document.compartments[index].size,
+            Some(&Kind::Species(index)) => {
+                let (species, size) = (&document.species[index], self.species_ids(index).size());
+                return match (species.amount, species.concentration, species.only_amount) {
+                    (Some(amount), _, true) => number(amount),
+                    (Some(amount), _, false) => quotient(number(amount), size),
+                    (None, Some(concentration), true) => product(number(concentration), size),
+                    (None, Some(concentration), false) => number(concentration),
+                    (None, None, _) => number(1.0),
+                };
+            }
+            _ => None,
+        };
+        number(value.filter(|value| value.is_finite()).unwrap_or(1.0))
     }
 
     /// Nothing is solved for yet of some symbols.
@@ -179,8 +264,9 @@ impl<'a> Plan<'_, 'a> {
 
     fn not_linear(&self, rule: &Open<'a>, free: &HashMap<QuantityId, &'a str>) {
         let names = names(&rule.unknowns, free);
-        let found = format!("the algebraic rule is not linear in {names}, which nothing else determines");
-        let help = "solve the equation for it by hand, and write an <assignmentRule> for it in place of this rule";
+        let found =
+            format!("the algebraic rule looks back and is not linear in {names}, which nothing else determines");
+        let help = "give what was a time ago a parameter with an <assignmentRule> of its own";
         self.page.fault(rule.node, found, help);
     }
 

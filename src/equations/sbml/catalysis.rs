@@ -4,9 +4,9 @@
 //! away, and A is used up as soon as there is some B. Where c < 0 it is the other way round. Such a law is as good as J = n_A, or −n_B.
 
 use super::fast::DEPTH;
-use super::linear::line;
 use super::plan::Plan;
 use super::species::SpeciesIds;
+use crate::equations::linear::line;
 use crate::equations::pieces::{negative, quantity, quotient, replaced};
 use crate::equations::tree::{Binary, Expr, QuantityId, Unary};
 

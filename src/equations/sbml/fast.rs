@@ -6,8 +6,8 @@
 //! must draw amounts near: J falls as the reaction goes on.
 
 use super::document::Reaction;
-use super::linear::line;
 use super::plan::{Equilibrium, Kind, Plan};
+use crate::equations::linear::line;
 use crate::equations::pieces::{difference, negative, number, product, quantity, quotient, replaced, sum};
 use crate::equations::tree::{Expr, QuantityId, Role};
 use std::cell::Cell;

@@ -11,7 +11,6 @@ mod document;
 mod events;
 mod fast;
 mod history;
-mod linear;
 mod math;
 mod notes;
 mod operators;
@@ -89,7 +88,7 @@ pub fn is_sbml(text: &str) -> bool {
 ///
 /// # Errors
 /// [`crate::error::Error::Input`] with all faults found, each at its location: XML that is hostile or not well formed,
-/// constructs that are not supported (packages that the model needs, algebraic rules and fast reactions that are not
+/// constructs that are not supported (packages that the model needs, fast reactions that are not
 /// linear in what they determine), names
 /// that are not known, contradicting statements, definitions in a circle.
 pub fn read(source: &Arc<Source>) -> Result<Model> {

@@ -1,9 +1,11 @@
 //! The equations of a system as a tree: what EML and SBML are read into and what every solver is fed from.
 
 mod functions;
+mod roots;
 mod walk;
 
 pub use functions::{Binary, Unary, larger, smaller};
+pub use roots::{Equations, Search};
 
 use serde::{Deserialize, Serialize};
 
@@ -32,6 +34,8 @@ pub enum Expr {
     },
     /// What the first was a time ago that the second tells: x(t − τ). Not below 0; at 0 it is the value now.
     Delay(Box<Expr>, Box<Expr>),
+    /// The unknown with an index among those that equations determine. It stands in the rules of these unknowns and nowhere else.
+    Root(Box<Equations>, u32),
 }
 
 /// What a quantity is.

@@ -10,6 +10,7 @@ impl Expr {
             Self::Number(_) | Self::Quantity(_) => false,
             Self::Unary(_, a) => a.uses_time(),
             Self::Binary(_, a, b) => a.uses_time() || b.uses_time(),
+            Self::Root(equations, _) => equations.expressions().any(Self::uses_time),
             Self::Piecewise { branches, otherwise } => {
                 otherwise.uses_time() || branches.iter().any(|(a, b)| a.uses_time() || b.uses_time())
             }
@@ -32,6 +33,7 @@ impl Expr {
                 a.each_delay(visit);
                 b.each_delay(visit);
             }
+            Self::Root(equations, _) => equations.expressions().for_each(|one| one.each_delay(visit)),
             Self::Piecewise { branches, otherwise } => {
                 for (condition, value) in branches {
                     condition.each_delay(visit);
@@ -57,6 +59,7 @@ impl Expr {
                 a.each_quantity(visit);
                 b.each_quantity(visit);
             }
+            Self::Root(equations, _) => equations.used().into_iter().for_each(visit),
             Self::Piecewise { branches, otherwise } => {
                 for (condition, value) in branches {
                     condition.each_quantity(visit);
@@ -76,6 +79,9 @@ impl Expr {
             Self::Number(_) | Self::Time | Self::Quantity(_) => self.clone(),
             Self::Unary(function, a) => Self::Unary(*function, boxed(a)),
             Self::Binary(function, a, b) => Self::Binary(*function, boxed(a), boxed(b)),
+            Self::Root(equations, index) => {
+                Self::Root(Box::new(equations.map(|one| one.replaced(quantity, by))), *index)
+            }
             Self::Piecewise { branches, otherwise } => Self::Piecewise {
                 branches: branches.iter().map(|(condition, value)| (of(condition), of(value))).collect(),
                 otherwise: boxed(otherwise),
@@ -98,6 +104,7 @@ impl Expr {
             Self::Quantity(number) => value(*number, time),
             Self::Unary(function, a) => function.apply(a.evaluate_at(time, value)),
             Self::Binary(function, a, b) => function.apply(a.evaluate_at(time, value), b.evaluate_at(time, value)),
+            Self::Root(equations, index) => equations.evaluate_at(*index, time, value),
             Self::Piecewise { branches, otherwise } => {
                 let chosen = branches.iter().find(|(condition, _)| condition.evaluate_at(time, value) != 0.0);
                 chosen.map_or(otherwise.as_ref(), |(_, value)| value).evaluate_at(time, value)

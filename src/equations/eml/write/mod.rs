@@ -141,6 +141,12 @@ impl<'a> Writer<'a> {
         if let Some(before) = document.system.before_start(number) {
             tail.push_str(&attribute("history", &self.history(before)));
         }
+        if let Role::Defined { rule: Expr::Root(equations, index) } = &quantity.role {
+            let index = *index as usize;
+            let start = attribute("start", &self.expression(&equations.starts[index]));
+            let residual = self.expression(&equations.residuals[index]);
+            return self.line(format_args!("  <algebraic{head}{start}{tail}>{residual} = 0</algebraic>"));
+        }
         if let Role::Defined { rule } = &quantity.role {
             let rule = self.expression(rule);
             return self.line(format_args!("  <define{head}{tail}>{rule}</define>"));

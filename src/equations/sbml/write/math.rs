@@ -99,6 +99,8 @@ impl Writer<'_> {
                 let pieces = branches.iter().map(|(condition, value)| (self.value(value), self.truth(condition)));
                 piecewise(pieces.collect(), self.value(otherwise))
             }
+            // Rules of unknowns are written as the equations that determine them.
+            Expr::Root(equations, index) => self.quantity(equations.unknowns[*index as usize]),
             Expr::Delay(past, delay) => {
                 // A bare number is in the unit of time.
                 let time = self.formulas.time.as_deref().filter(|_| is_bare(delay));

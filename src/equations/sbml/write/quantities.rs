@@ -4,6 +4,7 @@ use super::Writer;
 use super::element::Element;
 use super::kinds::{Kind, is_substance};
 use super::left_out::is_said;
+use crate::equations::program::initial_values;
 use crate::equations::tree::{Binary, Expr, Role};
 
 impl Writer<'_> {
@@ -73,8 +74,16 @@ impl Writer<'_> {
     fn start(&mut self, number: usize) -> Option<String> {
         let document = self.document;
         let quantity = &document.system.quantities[number];
-        if matches!(quantity.role, Role::Defined { .. }) {
-            return None;
+        if let Role::Defined { rule } = &quantity.role {
+            // What an algebraic rule determines is sought from its value.
+            let Expr::Root(equations, index) = rule else { return None };
+            return match &equations.starts[*index as usize] {
+                Expr::Number(value) => Some(decimal(*value)),
+                _ => {
+                    let values = initial_values(&document.system, 0.0).unwrap_or_default();
+                    values.get(number).filter(|value| value.is_finite()).map(|value| decimal(*value))
+                }
+            };
         }
         let history = document.system.before_start(number as u32).filter(|_| is_said(document, number));
         match history.unwrap_or(&quantity.initial) {
@@ -100,6 +109,11 @@ impl Writer<'_> {
                 continue;
             }
             let before = system.before_start(number as u32);
+            if let Role::Defined { rule: Expr::Root(equations, index) } = &quantity.role {
+                let residual = self.formulas.number(&equations.residuals[*index as usize], None);
+                rules.push(Element::new("algebraicRule").child(residual));
+                continue;
+            }
             let (name, formula, unit) = match &quantity.role {
                 Role::Defined { rule } => {
                     ("assignmentRule", with_history(rule, before), self.units.reference(&quantity.unit))

@@ -39,7 +39,7 @@ fn parts(expr: &Expr, x: QuantityId) -> Option<Line> {
     }
     match expr {
         // What was is not what is.
-        Expr::Number(_) | Expr::Time | Expr::Delay(..) => None,
+        Expr::Number(_) | Expr::Time | Expr::Delay(..) | Expr::Root(..) => None,
         Expr::Quantity(_) => Some(Line { slope: Expr::Number(1.0), rest: ZERO }),
         Expr::Unary(Unary::Neg, a) => parts(a, x).map(|a| Line { slope: negative(a.slope), rest: negative(a.rest) }),
         Expr::Unary(..) => None,
