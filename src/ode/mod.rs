@@ -52,14 +52,14 @@ pub use noise::{Noise, Numbers};
 pub use pieces::Piece;
 pub use population::{BlockView, LANES, Population};
 pub use scheme::Scheme;
-pub use solve::{Solution, SolveOptions, solve, solve_each};
+pub use solve::{Solution, SolveOptions, solve, solve_each, too_many_times};
 pub use starts::{Starts, drawn};
 pub use substeps::{Kick, Pace, Substep, Substeps};
 
 use serde::{Deserialize, Serialize};
 
 use crate::equations::program::Program;
-use crate::equations::tree::QuantityId;
+use crate::equations::tree::{QuantityId, Schedule};
 use crate::error::{Error, Fault};
 
 /// A one-step method.
@@ -147,6 +147,8 @@ pub enum Reason {
     TooManySteps,
     /// Events follow each other without end at one time.
     EndlessEvents,
+    /// A schedule has more times than a course can have.
+    TooManyTimes,
     /// A value has become so small that round-off is all that is left of it.
     RoundOff,
     /// The solver gave up for a reason of its own.
@@ -193,6 +195,7 @@ impl std::fmt::Display for OdeTrouble {
             Reason::StepUnderflow => write!(f, " needs steps shorter than the clock can tell apart")?,
             Reason::TooManySteps => write!(f, " needs more steps than allowed")?,
             Reason::EndlessEvents => write!(f, " has events that follow each other without end")?,
+            Reason::TooManyTimes => write!(f, " has an event that would fire more than {} times", Schedule::MOST)?,
             Reason::RoundOff => write!(f, " has a value of which round-off has left no digit")?,
             Reason::LooksAhead => write!(f, " looks ahead")?,
             Reason::Solver => write!(f, " could not be solved")?,
@@ -218,6 +221,7 @@ impl From<OdeTrouble> for Error {
             }
             Reason::TooManySteps => "use the stiff method, loosen the tolerances, or allow more steps",
             Reason::EndlessEvents => "let the events change what triggers them",
+            Reason::TooManyTimes => "let `every` be longer, or write what goes on all the time as a rate",
             Reason::RoundOff => {
                 "let atol be above what is left of it; or where the equations keep a sum, let one of its variables follow from \
                  the others in place of having a rate"

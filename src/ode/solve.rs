@@ -14,7 +14,7 @@ use super::stepper::Stepper;
 use super::switches::LOOKS_IN_SOLVE;
 use super::{Method, Numbers, OdeTrouble, Reason, Work, lost};
 use crate::equations::program::Program;
-use crate::equations::tree::{QuantityId, System};
+use crate::equations::tree::{QuantityId, Schedule, System};
 
 /// Scheme and tolerances.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -106,6 +106,9 @@ pub fn solve_each(
     let system = &*drawn(system, Numbers { seed: options.seed, system: &system.name }, 0);
     let compiled = EventPlan::compile(system, from);
     let (program, plan) = compiled.map_err(|circle| trouble(format!("a circle of {}", circle.join(", "))))?;
+    if let Some(detail) = too_many_times(system, &program.initial, (from, until)) {
+        return Err(OdeTrouble { reason: Reason::TooManyTimes, ..trouble(detail) });
+    }
     let tolerances =
         Tolerances { relative: options.relative, absolute: options.absolute, max_steps: options.max_steps };
     match options.scheme {
@@ -129,6 +132,18 @@ pub fn solve_each(
         #[cfg(feature = "diffsol")]
         scheme => multistep::solve(&program, scheme, (from, until), points, &tolerances, each),
     }
+}
+
+/// Which schedule has more times in a span than a course can have, in words; with the values of the start.
+pub fn too_many_times(system: &System, initial: &[f64], span: (f64, f64)) -> Option<String> {
+    let value = |quantity: QuantityId| initial[quantity as usize];
+    system.events.iter().find_map(|event| {
+        let schedule = event.schedule.as_ref()?;
+        let (count, every) = (schedule.count(span, &value), schedule.every.evaluate(span.0, &value));
+        // What is no number of times is too many as well.
+        let is_good = count <= Schedule::MOST;
+        (!is_good).then(|| format!("the event '{}' fires every {every:?} until {}", event.id, span.1))
+    })
 }
 
 /// A system and how it is solved in one course.

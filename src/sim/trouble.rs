@@ -199,6 +199,7 @@ fn words_for(reason: Reason) -> &'static str {
         Reason::StepUnderflow => "no step is short enough for its tolerance",
         Reason::TooManySteps => "it takes too many steps",
         Reason::EndlessEvents => "events follow each other without end",
+        Reason::TooManyTimes => "a schedule has too many times",
         Reason::RoundOff => "round-off has left no digit of a value",
         Reason::LooksAhead => "a delay is below 0",
         Reason::Solver => "the solver gave up",

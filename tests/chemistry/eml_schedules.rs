@@ -143,3 +143,23 @@ fn the_doses_that_ship_are_absorbed_and_cleared_as_the_formula_says() {
     let (sum, count) = last.fold((0.0, 0.0), |(sum, count), (row, _)| (sum + row[number], count + 1.0));
     assert!((sum / count / mean - 1.0).abs() < 0.05, "{} and {mean}", sum / count);
 }
+
+#[test]
+fn schedules_that_no_course_can_meet_are_refused_and_long_ones_are_met() {
+    let counted = |every: &str, rest: &str| {
+        system(&format!(
+            r#"<variable id="n" initial="0" rate="0"/><event id="tick" every="{every}" {rest}><set id="n">n + 1</set></event>"#
+        ))
+    };
+    for every in ["1e-300", "1e-17", "1e-7"] {
+        let trouble = solve(&counted(every, ""), 0.0, 2.0, &[2.0], &SolveOptions::default()).expect_err("too many");
+        let words = trouble.to_string();
+        assert!(
+            words.contains("more than 10000000 times") && words.contains(&format!("'tick' fires every {every}")),
+            "{words}"
+        );
+    }
+    // What ends early, or begins after the course, is no trouble.
+    assert_eq!(course(&counted("1e-3", r#"until="1.0005""#), Method::Rk45, 0.0, &[2.0]), [1001.0]);
+    assert_eq!(course(&counted("1e-300", r#"first="3""#), Method::Rk45, 0.0, &[2.0]), [0.0]);
+}

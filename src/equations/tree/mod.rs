@@ -124,6 +124,16 @@ impl Schedule {
         two(Binary::And, holds, two(Binary::Lt, number(since()), two(Binary::Add, last, half())))
     }
 
+    /// The most times that a course can have: each costs it a step at least.
+    pub const MOST: f64 = 1e7;
+
+    /// How many of them lie in a span of time, but for one at either end.
+    pub fn count(&self, (from, until): (f64, f64), value: &impl Fn(QuantityId) -> f64) -> f64 {
+        let of = |expr: &Expr| expr.evaluate(from, value);
+        let last = self.until.as_ref().map_or(until, |last| of(last).min(until));
+        (last - of(&self.first).max(from)).max(0.0) / of(&self.every)
+    }
+
     /// Whether a time is one of them, but for round-off.
     pub fn has(&self, time: f64, value: &impl Fn(QuantityId) -> f64) -> bool {
         let of = |expr: &Expr| expr.evaluate(time, value);

@@ -16,11 +16,12 @@ use super::size::{self, Size};
 use crate::equations::eml::{self, Level};
 use crate::equations::expression::is_identifier;
 use crate::equations::program::initial_values;
-use crate::equations::tree::{Quantity, QuantityId, Role};
+use crate::equations::tree::{Quantity, QuantityId, Role, Schedule};
 use crate::error::{Error, Fault, Location};
 use crate::field::{FieldSystem, Fields, Placing};
 use crate::ode::{
     EventPlan, MOST_IMPLICIT, Method, Noise, Pace, Starts, Tolerances, assigned_parameters, clocked, too_large,
+    too_many_times,
 };
 use crate::sim::Kind;
 use crate::sim::chemistry::{Chemistry, FieldReactor, FieldStepping, Members, Reactor};
@@ -186,6 +187,17 @@ fn reactor(document: &Document, part: &Part, faults: &mut Vec<Fault>) -> Option<
             return None;
         }
     };
+    let until = document.experiment.run.until.value() / eml.seconds;
+    if let Some(detail) = too_many_times(&eml.system, &program.initial, (0.0, until)) {
+        let fault = Fault::new(format!(
+            "`{}` has an event that would fire more than {} times: {detail}",
+            part.name,
+            Schedule::MOST
+        ));
+        let fault = fault.help("let `every` be longer, or write what goes on all the time as a rate");
+        faults.push(at(document, &part.key("document"), "this document", fault));
+        return None;
+    }
     let members = if part.kinds.is_empty() { Members::Scene } else { Members::Kinds(part.kinds.clone()) };
     let exchange = entry.and_then(|entry| entry.exchange).map(|time| time.value());
     let exchange = exchange.or(eml.solver.step.map(|step| step * eml.seconds));
