@@ -11,6 +11,7 @@ mod contact_inhibition;
 mod contact_models;
 mod contact_order;
 mod coupling;
+mod coupling_line;
 mod events;
 mod fibres;
 mod forces;

@@ -110,11 +110,6 @@ fn set(document: &Document, name: &str, entry: &Entry, eml: &mut eml::Document, 
 /// Whether the document is for whom the experiment gives it.
 fn check_level(document: &Document, name: &str, eml: &eml::Document, owners: &[usize], faults: &mut Vec<Fault>) {
     let is_field = !eml.fields.is_empty();
-    if eml.grid.as_ref().is_some_and(|grid| grid.dimension == 1) {
-        let fault = Fault::new(format!("the fields of `{name}` lie on a line, and an experiment is in space"))
-            .help("write dimension=\"2\" in its <grid>, or solve it alone with `pseudopod eml solve`");
-        faults.push(at(document, &format!("chemistry.{name}.document"), "on a line", fault));
-    }
     if is_field && !owners.is_empty() {
         let fault = Fault::new(format!("`{name}` is a document of fields, which cells cannot have"))
             .help(format!("remove \"{name}\" from the types' `chemistry`; cells sense a field through links"));
