@@ -34,24 +34,21 @@ pub enum Undetermined {
     TooLarge,
 }
 
-/// Finds the rule of each unknown; `quantities` have the rules of all that is defined otherwise.
-pub fn rules(
-    unknowns: &[Unknown],
-    quantities: &[Quantity],
-) -> (Vec<(QuantityId, Expr)>, Vec<(QuantityId, Undetermined)>) {
+/// Finds the rule of each unknown, or why one is not determined; `quantities` have the rules of all that is defined otherwise.
+pub fn rules(unknowns: &[Unknown], quantities: &[Quantity]) -> Vec<(QuantityId, Result<Expr, Undetermined>)> {
     let numbers: HashMap<QuantityId, usize> =
         unknowns.iter().enumerate().map(|(number, unknown)| (unknown.quantity, number)).collect();
     let known = Known { quantities, numbers: &numbers };
     let uses: Vec<BTreeSet<usize>> = unknowns.iter().map(|unknown| known.uses(&unknown.residual)).collect();
-    let (mut found, mut faults) = (Vec::new(), Vec::new());
+    let mut found = Vec::new();
     for block in blocks(&uses) {
         let block: Vec<&Unknown> = block.iter().map(|&number| &unknowns[number]).collect();
         match known.solved(&block) {
-            Ok(rules) => found.extend(rules),
-            Err((quantity, why)) => faults.push((quantity, why)),
+            Ok(rules) => found.extend(rules.into_iter().map(|(quantity, rule)| (quantity, Ok(rule)))),
+            Err((quantity, why)) => found.push((quantity, Err(why))),
         }
     }
-    (found, faults)
+    found
 }
 
 /// What is known of a document's quantities.

@@ -23,12 +23,11 @@ impl Builder<'_, '_> {
         if !self.context.is_clean() {
             return;
         }
-        let (found, faults) = rules(&unknowns, quantities);
-        for (quantity, rule) in found {
-            quantities[quantity as usize].role = Role::Defined { rule };
-        }
-        for (quantity, why) in faults {
-            self.not_determined(quantity, why);
+        for (quantity, rule) in rules(&unknowns, quantities) {
+            match rule {
+                Ok(rule) => quantities[quantity as usize].role = Role::Defined { rule },
+                Err(why) => self.not_determined(quantity, why),
+            }
         }
     }
 
