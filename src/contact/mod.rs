@@ -21,6 +21,7 @@ mod near;
 mod near_facets;
 mod neighbours;
 mod opening;
+mod openings;
 mod owners;
 mod parts;
 mod passages;
@@ -44,7 +45,8 @@ pub use found::{AtomContact, Contacts, EdgeContact, Facing, Normal, PlaneContact
 pub use groove::add_walls_of_grooves;
 pub use inside::{Overlap, centre_is_inside, find_centre_inside, find_overlaps, find_overlaps_told, winding_number};
 pub use near_facets::{Near, NearFacets};
-pub use opening::{Opening, SURELY, is_surely_beyond, opening_to_facet, opening_to_feature, opening_to_plane};
+pub use opening::{Opening, SURELY, opening_to_facet, opening_to_feature, opening_to_plane};
+pub use openings::{Openings, PAIRS};
 pub use passages::{Coverage, Pair, Passage};
 pub use reference::detect_all_pairs;
 pub use scene::{Body, Plane, Reach, Scene};

@@ -18,18 +18,18 @@ pub struct Opening {
 
 /// What a point may be behind a facet that faces it and still touch it, over the length of the facet: twice the depth that is promised. Beside
 /// a ridge a point is behind the plane of the far wall by more, and is not in it.
-const BEHIND: f64 = 0.03;
+pub(super) const BEHIND: f64 = 0.03;
 
 /// Cosine below which normals face each other.
-const FACING: f64 = -0.3;
+pub(super) const FACING: f64 = -0.3;
 
 /// One over the squared cosine of the angle between the normal at a point and the way to where the other surface is touched, 75°, beyond which
 /// that is beside the point and not before it. A surface that is touched there looks to where the point's own looks, within 30°, and
 /// what moves it a little changes the ball without bound.
-const BESIDE: f64 = 16.0;
+pub(super) const BESIDE: f64 = 16.0;
 
 /// A step along the normal below which it gives no direction, over the distance.
-const LEVEL: f64 = 1e-9;
+pub(super) const LEVEL: f64 = 1e-9;
 
 /// The opening between a point x of a surface with the unit normal n to its outside and a facet with its unit normal m,
 ///
@@ -60,22 +60,6 @@ impl Opening {
     fn is_before(&self) -> bool {
         self.towards.norm_squared() <= BESIDE
     }
-}
-
-/// Whether the opening between a point of a surface with the unit normal n and a facet with its unit normal m is surely no less than a width,
-/// µm: the point is so far beyond a side of the facet, which all of it lies behind, that a ball as wide as that does not reach back to there.
-#[inline]
-pub fn is_surely_beyond(x: Vec3, n: Vec3, corners: &[Vec3; 3], m: Vec3, width: f64) -> bool {
-    // Behind a facet what is a little beside it counts as before it.
-    if (x - corners[0]).dot(&m) < 0.0 {
-        return false;
-    }
-    // A ball that rests at x along n reaches half of its width times 1 − n·e back across a side, against the direction e that leads away over it.
-    (0..3).any(|side| {
-        let away = (corners[(side + 1) % 3] - corners[side]).cross(&m);
-        let (beyond, reach) = ((x - corners[side]).dot(&away), away.norm() - n.dot(&away));
-        beyond > 0.0 && 2.0 * beyond * SURELY >= width * reach.max(0.0)
-    })
 }
 
 /// A little less than 1, so that rounding makes no bound too wide.
@@ -230,24 +214,6 @@ mod tests {
             }
         }
         assert!(passed_over > 10_000, "{passed_over}");
-    }
-
-    #[test]
-    fn what_is_surely_beyond_a_width_is_never_nearer() {
-        let mut stream = Stream::new(10, Purpose::Placement, 0, 0);
-        let mut seen = [0; 2];
-        for _ in 0..20_000 {
-            let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
-            let n = Vec3::new(number(), number(), number()).normalize();
-            let x = Vec3::new(2.0 + 4.0 * number(), 2.0 + 4.0 * number(), 0.5 * number());
-            let Some((found, _)) = opening_to_facet(x, n, &FACET, Vec3::z()) else { continue };
-            for share in [0.5, 0.9, 1.0 + 1e-6] {
-                let is_beyond = is_surely_beyond(x, n, &FACET, Vec3::z(), share * found.width);
-                assert!(!is_beyond || share < 1.0, "{found:?} at {x} along {n}");
-                seen[usize::from(share < 1.0 && is_beyond)] += 1;
-            }
-        }
-        assert!(seen[1] > 3000, "{seen:?}");
     }
 
     #[test]

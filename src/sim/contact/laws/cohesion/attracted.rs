@@ -36,11 +36,9 @@ pub fn more(one: Option<Attracted>, other: Option<Attracted>) -> Option<Attracte
 }
 
 /// A body whose facets may attract points of a facet.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Attracting {
     pub body: u32,
-    /// The end of its candidates; they begin where those of the body before it end.
-    pub end: usize,
     /// Of the point's side, pN/µm².
     pub strength: f64,
     /// µm.

@@ -1,92 +1,75 @@
-//! How near facets can be at best to a point or to another facet, for as many at a time as registers hold.
+//! Which facets may be nearer to points than what is known to attract these, for as many at a time as registers hold: the others are surely
+//! not, and are not looked at.
 
 use pulp::{Simd, WithSimd};
 
-use super::facet::{BEHIND, Looking};
+use super::facet::BEHIND;
 use crate::contact::SURELY;
 
 pub type V = [f64; 3];
 
-/// A facet that is seen: as [`Facet`].
-#[derive(Clone, Copy)]
-struct Seen {
-    middle: V,
-    normal: V,
-    radius: f64,
+/// Facets of a block.
+pub const FACETS: usize = 8;
+
+/// Numbers of all facets of a block side by side.
+pub type Row = [f64; FACETS];
+
+/// Some facets that are seen, as [`Facet`](super::facet::Facet) has each.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Block {
+    pub middles: [Row; 3],
+    pub normals: [Row; 3],
+    pub radii: Row,
+    /// The points that each may be near enough to: a bit for each point, up to 52 of which a number holds exactly.
+    pub may: Row,
 }
 
-/// Facets that are seen, axis by axis.
-#[derive(Clone, Copy)]
-pub struct Columns<'a> {
-    pub middles: [&'a [f64]; 3],
-    pub normals: [&'a [f64]; 3],
-    pub radii: &'a [f64],
-}
-
-impl Columns<'_> {
-    /// Calls `each` with all of them, in their order.
-    #[inline(always)]
-    fn fill(self, to: &mut [f64], each: impl Fn(f64, Seen) -> f64) {
-        let count = to.len();
-        let ([x, y, z], [u, v, w]) = (self.middles.map(|axis| &axis[..count]), self.normals.map(|axis| &axis[..count]));
-        let radii = &self.radii[..count];
-        for k in 0..count {
-            to[k] = each(to[k], Seen { middle: [x[k], y[k], z[k]], normal: [u[k], v[k], w[k]], radius: radii[k] });
-        }
-    }
-}
-
-/// Finds how near facets can be to a point. Closures would be compiled for the least of processors.
-pub struct ToPoint<'a> {
-    /// The point, µm, and the unit normal of its surface.
+/// A point that is looked at.
+#[derive(Debug, Clone, Copy)]
+pub struct Looked {
+    /// Where it is, µm.
     pub x: V,
-    pub n: V,
-    pub seen: Columns<'a>,
-    /// Where that goes, µm.
-    pub to: &'a mut [f64],
+    /// How wide the opening to a facet is at most that matters to it, µm.
+    pub widest: f64,
 }
 
-impl WithSimd for ToPoint<'_> {
+/// Finds which facets may be near enough to which of the points of a surface with the unit normal n. Closures would be compiled for the
+/// least of processors.
+pub struct ToPoints<'a> {
+    pub n: V,
+    pub points: &'a [Looked],
+    /// The number of the first of these points.
+    pub first: usize,
+    pub blocks: &'a mut [Block],
+}
+
+impl WithSimd for ToPoints<'_> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { x, n, seen, to } = self;
-        seen.fill(
-            to,
-            #[inline(always)]
-            |_, seen| least_opening(x, n, seen),
-        );
-    }
-}
-
-/// Finds how near facets can be to another one, as seen from the side to which n looks, and from the other if it has one.
-pub struct ToFacet<'a> {
-    pub of: &'a Looking,
-    pub n: V,
-    pub other: Option<V>,
-    pub seen: Columns<'a>,
-    /// Where that goes, µm.
-    pub to: &'a mut [f64],
-}
-
-impl WithSimd for ToFacet<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { of, n, other, seen, to } = self;
-        seen.fill(
-            to,
-            #[inline(always)]
-            |_, seen| least_opening_between(of, n, seen),
-        );
-        if let Some(n) = other {
-            seen.fill(
-                to,
-                #[inline(always)]
-                |before, seen| least(before, least_opening_between(of, n, seen)),
-            );
+        let Self { n, points, first, blocks } = self;
+        for Block { middles, normals, radii, may } in blocks {
+            let (mut along, mut strays) = ([0.0; FACETS], [0.0; FACETS]);
+            for k in 0..FACETS {
+                along[k] = dot(n, lane(normals, k));
+                // How high points of a facet are over its middle, along n.
+                strays[k] = radii[k] * (most(1.0 - along[k] * along[k], 0.0).sqrt() + BEHIND);
+            }
+            for (number, &Looked { x, widest }) in (first..).zip(points) {
+                let bit = (1_u64 << number) as f64;
+                for k in 0..FACETS {
+                    let from = minus(x, lane(middles, k));
+                    let far = is_surely_farther(widest, from, n, lane(normals, k), (radii[k], along[k], strays[k]));
+                    may[k] += if far { 0.0 } else { bit };
+                }
+            }
         }
     }
+}
+
+#[inline(always)]
+fn lane(rows: &[Row; 3], k: usize) -> V {
+    [rows[0][k], rows[1][k], rows[2][k]]
 }
 
 #[inline(always)]
@@ -100,58 +83,29 @@ fn minus(a: V, b: V) -> V {
 }
 
 #[inline(always)]
-fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
 fn most(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The least opening, µm, that a facet can have to a point with the unit normal n: that of the ball that just touches the sphere
-/// around the facet, and of the one that just touches its plane, the greater of the two; infinity where all of it lies below the surface.
+/// Whether a facet with a unit normal and radius surely has no opening to a point with the unit normal n that is less than the `widest`, µm:
+/// a ball so wide does not reach to the plane of the facet or to the disc around it there, or all of it lies below the surface. `from`
+/// leads from its middle to the point.
 #[inline(always)]
-fn least_opening(x: V, n: V, Seen { middle, normal, radius }: Seen) -> f64 {
-    let from = minus(x, middle);
-    let (height, along) = (dot(from, normal), dot(n, normal));
-    // What is behind a facet may be a little beside it, too.
-    let sphere = if height > 0.0 { radius } else { (1.0 + BEHIND) * radius };
-    // How high points of the facet are over the plane of the surface.
-    let strays = radius * most(1.0 - along * along, 0.0).sqrt() + BEHIND * radius;
-    let top = strays - dot(from, n);
-    let squared = dot(from, from);
-    let outside = most(squared - sphere * sphere, 0.0);
-    let rise = sphere - dot(from, n);
-    let to_sphere = if top > 0.0 { outside / rise } else { f64::INFINITY };
+fn is_surely_farther(widest: f64, from: V, n: V, normal: V, (radius, along, strays): (f64, f64, f64)) -> bool {
+    let (height, over, squared) = (dot(from, normal), dot(from, n), dot(from, from));
     let is_before = height > 0.0;
+    let is_below = !(strays > over);
+    // The ball's middle: how far it is from that of the facet, squared, and how high over its plane. Its own radius is half of the widest.
+    let half = 0.5 * widest;
+    let (apart, over_plane) = (squared + widest * over + half * half, height + half * along);
+    let aside = most(apart - over_plane * over_plane, 0.0);
+    // It is out of reach if aside + disc² + height² − 2 disc √aside is more than the radius of the ball squared. What is behind a facet and
+    // only a little beside it touches it without a ball.
+    let disc = if is_before { radius } else { (1.0 + BEHIND) * radius };
+    let beyond = SURELY * (apart + disc * disc) - half * half;
+    let is_out = is_before | (squared > disc * disc);
+    let reaches = (aside <= disc * disc) | (beyond <= 0.0) | (SURELY * beyond * beyond < 4.0 * disc * disc * aside);
     let height = if is_before { height } else { -height - BEHIND * radius };
-    let to_plane = 2.0 * most(height, 0.0) / most(if is_before { 1.0 - along } else { 1.0 + along }, f64::MIN_POSITIVE);
-    SURELY * most(to_sphere, to_plane)
-}
-
-/// The least opening, µm, that a facet can have to any point of another one, as seen from the side of the other to which n looks: the greatest
-/// of what [`least_opening`] has for all of these points, and what it takes to reach beyond the sides of the other.
-#[inline(always)]
-fn least_opening_between(of: &Looking, n: V, Seen { middle, normal, radius }: Seen) -> f64 {
-    let own = of.facet;
-    let from = minus([own.middle.x, own.middle.y, own.middle.z], middle);
-    let (height, along) = (dot(from, normal), dot(n, normal));
-    // Points of either lie in its plane: they are all as high as its middle, and stray along the normal of the other by so much.
-    let sine = most(1.0 - along * along, 0.0).sqrt();
-    let strays = own.radius * sine;
-    let sphere = if height > strays { radius } else { (1.0 + BEHIND) * radius };
-    let (rise, top) = (sphere - dot(from, n), (sine + BEHIND) * radius - dot(from, n));
-    let apart = most(dot(from, from).sqrt() - own.radius, 0.0);
-    let outside = most(apart * apart - sphere * sphere, 0.0);
-    let to_sphere = if top > 0.0 { outside / rise } else { f64::INFINITY };
-    let before = 2.0 * most(height - strays, 0.0) / most(1.0 - along, f64::MIN_POSITIVE);
-    let behind = 2.0 * most(-height - strays - BEHIND * radius, 0.0) / most(1.0 + along, f64::MIN_POSITIVE);
-    // A ball that rests inside a side reaches half of its width across it at most.
-    let mut beyond = 0.0;
-    for (corner, out) in of.sides {
-        let away = dot(minus(middle, [corner.x, corner.y, corner.z]), [out.x, out.y, out.z]);
-        beyond = most(beyond, away - (1.0 + BEHIND) * radius);
-    }
-    SURELY * most(most(to_sphere, 2.0 * beyond), most(before, behind))
+    let level = most(if is_before { 1.0 - along } else { 1.0 + along }, f64::MIN_POSITIVE);
+    is_below | (is_out & !reaches) | (SURELY * 2.0 * height >= widest * level)
 }

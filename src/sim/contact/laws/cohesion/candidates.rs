@@ -1,106 +1,67 @@
-//! Facets that may attract the points of a facet, and how near each can at best be: what is surely farther than the best is not looked at.
+//! Facets that may attract the points of a facet: what is surely farther from a point than what is known to attract it is not looked at.
 
 use pulp::Arch;
 
-use super::bounds::{Columns, ToFacet, ToPoint};
-use super::facet::{Facet, Looking};
+use super::bounds::{Block, FACETS, Looked, ToPoints};
+use super::facet::Facet;
 use crate::Vec3;
 
-/// Facets that may attract points of a facet, number by number: their middles and unit normals axis by axis, and from there to their
-/// farthest corners, µm. What stands beyond their count is of no account.
+/// Facets that may attract points of a facet, in blocks of some side by side. What stands beyond their count is of no account.
 #[derive(Debug, Clone, Default)]
 pub struct Candidates {
-    /// Which they are, numbered through all bodies.
-    pub facets: Vec<u32>,
-    middles: [Vec<f64>; 3],
-    normals: [Vec<f64>; 3],
-    radii: Vec<f64>,
+    blocks: Vec<Block>,
+    /// Which they are, numbered through all bodies, and which of the attracting bodies each belongs to.
+    numbers: Vec<[(u32, u32); FACETS]>,
     count: usize,
-    /// The least opening that each can have to the facet, or to each of its points, µm: all candidates for a point after those for the one
-    /// before.
-    bounds: Vec<f64>,
 }
 
 impl Candidates {
     /// Makes room for so many, and forgets what was there.
     pub fn empty_for(&mut self, most: usize) {
         self.count = 0;
-        if self.facets.len() < most {
-            self.facets.resize(most, 0);
-            let Self { middles, normals, radii, .. } = self;
-            middles.iter_mut().chain(normals).chain([radii]).for_each(|numbers| numbers.resize(most, 0.0));
+        let blocks = most.div_ceil(FACETS);
+        if self.blocks.len() < blocks {
+            self.blocks.resize(blocks, Block::default());
+            self.numbers.resize(blocks, Default::default());
         }
     }
 
-    /// How many there are.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
-    /// Adds a facet if it `counts`. There must be room for it.
+    /// Adds a facet of an attracting body if it `counts`. There must be room for it.
     #[inline]
-    pub fn add_if(&mut self, counts: bool, number: u32, facet: &Facet) {
+    pub fn add_if(&mut self, counts: bool, (facet, body): (u32, u32), seen: &Facet) {
         // Written in any case: whether it counts can be foreseen by no processor.
-        let at = self.count;
-        self.facets[at] = number;
+        let (block, lane) = (self.count / FACETS, self.count % FACETS);
+        self.numbers[block][lane] = (facet, body);
+        let block = &mut self.blocks[block];
         for axis in 0..3 {
-            self.middles[axis][at] = facet.middle[axis];
-            self.normals[axis][at] = facet.normal[axis];
+            block.middles[axis][lane] = seen.middle[axis];
+            block.normals[axis][lane] = seen.normal[axis];
         }
-        self.radii[at] = facet.radius;
+        block.radii[lane] = seen.radius;
+        block.may[lane] = 0.0;
         self.count += usize::from(counts);
     }
 
-    /// Adds that with a number of others if it `counts`. There must be room for it.
+    /// Finds which of them may have openings to points that matter, of a surface with the unit normal n; `first` is the number of the first
+    /// of the points.
+    pub fn look_from(&mut self, points: &[Looked], first: usize, n: Vec3) {
+        let blocks = &mut self.blocks[..self.count.div_ceil(FACETS)];
+        Arch::new().dispatch(ToPoints { n: [n.x, n.y, n.z], points, first, blocks });
+    }
+
+    /// Calls `each` with the numbers of a point, of a facet that may have such an opening to it, and of its body.
     #[inline]
-    fn take_if(&mut self, counts: bool, others: &Self, number: usize) {
-        let at = self.count;
-        self.facets[at] = others.facets[number];
-        for axis in 0..3 {
-            self.middles[axis][at] = others.middles[axis][number];
-            self.normals[axis][at] = others.normals[axis][number];
+    pub fn near_points(&self, mut each: impl FnMut(usize, u32, u32)) {
+        for (number, block) in self.blocks[..self.count.div_ceil(FACETS)].iter().enumerate() {
+            let lanes = FACETS.min(self.count - number * FACETS);
+            for (may, (facet, body)) in block.may[..lanes].iter().zip(&self.numbers[number]) {
+                let mut may = *may as u64;
+                while may != 0 {
+                    each(may.trailing_zeros() as usize, *facet, *body);
+                    may &= may - 1;
+                }
+            }
         }
-        self.radii[at] = others.radii[number];
-        self.count += usize::from(counts);
-    }
-
-    /// Adds those of others in a range of their numbers that have a bound less than the `widest`, µm.
-    pub fn take_nearer(&mut self, others: &Self, numbers: std::ops::Range<usize>, widest: f64) {
-        for number in numbers {
-            self.take_if(others.bounds[number] < widest, others, number);
-        }
-    }
-
-    /// Finds how near each can be to the points of a facet, from the side to which its normal points, and from the other one if it has two.
-    pub fn bound_all(&mut self, of: &Looking, has_two: bool) {
-        let (seen, to) = self.seen(1);
-        let n = [of.facet.normal.x, of.facet.normal.y, of.facet.normal.z];
-        Arch::new().dispatch(ToFacet { of, n, other: has_two.then(|| n.map(|axis| -axis)), seen, to });
-    }
-
-    /// Finds how near each can be to each of some points of a surface with the unit normal n.
-    pub fn bound(&mut self, points: impl ExactSizeIterator<Item = Vec3>, n: Vec3) {
-        let (seen, to) = self.seen(points.len());
-        if seen.radii.is_empty() {
-            return;
-        }
-        for (x, to) in points.zip(to.chunks_exact_mut(seen.radii.len())) {
-            Arch::new().dispatch(ToPoint { x: [x.x, x.y, x.z], n: [n.x, n.y, n.z], seen, to });
-        }
-    }
-
-    /// All of them, and where their bounds to so many points go.
-    fn seen(&mut self, points: usize) -> (Columns<'_>, &mut [f64]) {
-        let Self { middles, normals, radii, count, bounds, .. } = self;
-        let most = points * *count;
-        bounds.resize(most.max(bounds.len()), 0.0);
-        let [middles, normals] = [middles, normals].map(|axes| axes.each_ref().map(|axis| &axis[..*count]));
-        (Columns { middles, normals, radii: &radii[..*count] }, &mut bounds[..most])
-    }
-
-    /// How near each can be to one of the points, µm.
-    pub fn bounds_of(&self, point: usize) -> &[f64] {
-        &self.bounds[point * self.count..][..self.count]
     }
 }
 
@@ -111,32 +72,40 @@ mod tests {
     use crate::contact::opening_to_facet;
     use crate::random::{Purpose, Stream};
 
-    fn only(facet: &Facet) -> Candidates {
+    /// Whether a facet may have an opening to a point that is less than the `widest`, µm.
+    fn may_be_nearer((x, n): (Vec3, Vec3), facet: &Facet, widest: f64) -> bool {
         let mut candidates = Candidates::default();
         candidates.empty_for(1);
-        candidates.add_if(true, 7, facet);
-        candidates
+        candidates.add_if(true, (7, 0), facet);
+        candidates.look_from(&[Looked { x: [x.x, x.y, x.z], widest }], 3, n);
+        let mut found = false;
+        candidates.near_points(|point, facet, body| {
+            assert_eq!((point, facet, body), (3, 7, 0));
+            found = true;
+        });
+        found
     }
 
     #[test]
-    fn no_facet_is_nearer_than_its_bound() {
+    fn no_facet_that_is_passed_over_is_nearer() {
         let mut stream = Stream::new(11, Purpose::Placement, 0, 0);
         let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
-        let (mut seen, mut near) = (0, 0);
+        let (mut seen, mut passed_over) = (0, 0);
         for _ in 0..20_000 {
             let corners = [0, 1, 2].map(|_| Vec3::new(number(), number(), number()));
             let m = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).normalize();
             let n = Vec3::new(number(), number(), number()).normalize();
             let x = 2.0 * Vec3::new(number(), number(), number());
-            let mut candidates = only(&Facet::of(&corners));
-            candidates.bound([x].into_iter(), n);
-            let bound = candidates.bounds_of(0)[0];
             let Some((opening, _)) = opening_to_facet(x, n, &corners, m) else { continue };
             seen += 1;
-            near += usize::from(opening.width < 2.0 * bound);
-            assert!(opening.width < 0.0 && bound <= 1e-9 || bound <= opening.width, "{bound} {opening:?}");
+            let facet = Facet::of(&corners);
+            for more in [1e-6, 0.1, 10.0] {
+                let widest = opening.width.max(0.0) * (1.0 + more) + 1e-6;
+                assert!(may_be_nearer((x, n), &facet, widest), "{opening:?} {widest}");
+            }
+            passed_over += usize::from(opening.width > 0.0 && !may_be_nearer((x, n), &facet, 0.5 * opening.width));
         }
-        assert!(seen > 5000 && near > seen / 4, "bounds of {near} of {seen} facets tell something");
+        assert!(seen > 5000 && passed_over > seen / 4, "{passed_over} of {seen} facets are passed over");
     }
 
     #[test]
@@ -148,7 +117,7 @@ mod tests {
             let corners = [0, 1, 2].map(|_| Vec3::new(number(), number(), number()));
             let twice = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
             let m = twice.normalize();
-            let n = (0.3 * Vec3::new(number(), number(), number()) - m).normalize();
+            let n = (1.2 * Vec3::new(number(), number(), number()) - m).normalize();
             // Around the first corner, on all sides of it.
             let (v, w, behind) = (0.03 * number(), 0.03 * number(), 0.03 * number().abs());
             let at = (1.0 - v - w) * corners[0] + v * corners[1] + w * corners[2];
@@ -158,12 +127,10 @@ mod tests {
                 continue;
             }
             let facet = Facet::of(&corners);
-            let mut candidates = only(&facet);
-            candidates.bound([x].into_iter(), n);
-            let of_point = candidates.bounds_of(0)[0];
+            for widest in [1e-9, 0.3, 3.0] {
+                assert!(may_be_nearer((x, n), &facet, widest), "{widest} {found:?} {corners:?}");
+            }
             let point = Facet { normal: n, middle: x, radius: 0.0 };
-            candidates.bound_all(&Looking::from(point, &[x; 3]), false);
-            assert_eq!([of_point, candidates.bounds_of(0)[0]], [0.0, 0.0], "{found:?} {corners:?}");
             assert!(apart(&point, n, &facet, 0.0) <= 0.0);
             seen += 1;
             outside += usize::from((x - facet.middle).norm() > facet.radius);
@@ -172,18 +139,15 @@ mod tests {
     }
 
     #[test]
-    fn no_point_of_a_facet_is_nearer_to_another_than_their_bound() {
+    fn no_point_of_a_facet_is_nearer_to_another_than_they_are_apart() {
         let mut stream = Stream::new(12, Purpose::Placement, 0, 0);
         let mut number = || 2.0 * stream.uniform_pair()[0] - 1.0;
-        let (mut seen, mut near) = (0, 0);
+        let mut seen = 0;
         for _ in 0..20_000 {
             let mut corners = || [0, 1, 2].map(|_| Vec3::new(number(), number(), number()));
             let (own, there) = (corners(), corners());
             let own = own.map(|corner| 0.5 * corner + Vec3::new(1.0, 0.0, 0.0));
             let (facet, other) = (Facet::of(&there), Facet::of(&own));
-            let mut candidates = only(&facet);
-            candidates.bound_all(&Looking::from(other, &own), false);
-            let bound = candidates.bounds_of(0)[0];
             let mut widths = Vec::new();
             for [u, v] in [[0.01, 0.01], [0.98, 0.01], [0.01, 0.98], [0.3, 0.3]] {
                 let x = (1.0 - u - v) * own[0] + u * own[1] + v * own[2];
@@ -191,10 +155,8 @@ mod tests {
             }
             let Some(least) = widths.into_iter().reduce(f64::min) else { continue };
             seen += 1;
-            near += usize::from(bound > 0.0);
-            assert!(least < 0.0 && bound <= 1e-9 || bound <= least, "{bound} {least}");
             assert!(apart(&other, other.normal, &facet, least.max(0.0) + 1e-9) <= 0.0, "{least}");
         }
-        assert!(seen > 5000 && near > seen / 4, "bounds of {near} of {seen} pairs tell something");
+        assert!(seen > 5000);
     }
 }

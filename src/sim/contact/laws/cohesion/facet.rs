@@ -5,8 +5,9 @@ use crate::Vec3;
 /// What a point may be behind a facet, and beside it there, and still be looked at, over the size of the facet.
 pub const BEHIND: f64 = 0.2;
 
-/// A facet at an instant.
+/// A facet at an instant, in one line of the cache.
 #[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
 pub struct Facet {
     /// Its unit normal; zero where it has no area.
     pub normal: Vec3,
@@ -23,25 +24,6 @@ impl Facet {
         let middle = (a + b + c) / 3.0;
         let squared = corners.iter().map(|corner| (corner - middle).norm_squared()).fold(0.0, f64::max);
         Self { normal: (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default(), middle, radius: squared.sqrt() }
-    }
-}
-
-/// The three corners of the facet that is looked at, its unit normal, and what sticks out of it.
-#[derive(Debug, Clone, Copy)]
-pub struct Looking {
-    pub facet: Facet,
-    /// A corner of each side, and the unit normal of the side in the plane of the facet, to its outside.
-    pub sides: [(Vec3, Vec3); 3],
-}
-
-impl Looking {
-    /// That with these corners.
-    pub fn from(facet: Facet, corners: &[Vec3; 3]) -> Self {
-        let side = |k: usize| {
-            let along = corners[(k + 1) % 3] - corners[k];
-            (corners[k], along.cross(&facet.normal).try_normalize(0.0).unwrap_or_default())
-        };
-        Self { facet, sides: [side(0), side(1), side(2)] }
     }
 }
 

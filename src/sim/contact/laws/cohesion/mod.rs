@@ -12,6 +12,7 @@ mod candidates;
 mod closed;
 mod facet;
 mod facing;
+mod pairs;
 mod patch;
 mod points;
 mod search;

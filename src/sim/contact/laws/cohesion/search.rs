@@ -2,13 +2,15 @@
 
 use super::super::super::vectors::gather_corners;
 use super::attracted::{Attracted, Attracting, more};
+use super::bounds::Looked;
 use super::candidates::Candidates;
-use super::facet::{Facet, Looking};
-use super::patch::{Partner, Patch, depth_of_well};
+use super::facet::Facet;
+use super::pairs::{Pairs, SeenFacet};
+use super::patch::{Partner, Patch};
 use super::points::points_of_facet;
 use super::table::CohesionTable;
 use crate::Vec3;
-use crate::contact::{Near, Plane, Scene, is_surely_beyond, opening_to_facet, opening_to_plane};
+use crate::contact::{Near, Plane, Scene, opening_to_plane};
 use crate::sim::controls::Controls;
 
 /// All surfaces at an instant.
@@ -36,12 +38,15 @@ pub struct Spot {
 /// What may attract points of the facet that is looked at.
 #[derive(Debug, Clone, Default)]
 pub struct Around {
-    /// What is near it, and what of this its points may be attracted by.
+    /// What is near it, and the bodies of that.
     near: Candidates,
-    candidates: Candidates,
     bodies: Vec<Attracting>,
-    /// What is known to attract each of its points before candidates are looked at.
-    first: Vec<Option<Attracted>>,
+    /// Where its points are, and the unit normals there.
+    points: Vec<(Vec3, Vec3)>,
+    looked: Vec<Looked>,
+    pairs: Pairs,
+    /// What attracts each of its points most of all that was looked at.
+    most: Vec<Option<Attracted>>,
 }
 
 /// No facet is known.
@@ -76,28 +81,22 @@ impl Seen<'_> {
             let corners = gather_corners(self.positions, own);
             let at = |weights: &[f64; 3]| weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
             let seen_from = [(own, normal), ([own[0], own[2], own[1]], -normal)];
-            around.first.clear();
-            for (side, (_, n)) in seen_from[..sides].iter().enumerate() {
-                around.first.extend(points.iter().enumerate().map(|(number, weights)| {
-                    let known = known.get(side * points.len() + number).copied().unwrap_or(UNKNOWN);
-                    more(self.of_known(body, (at(weights), *n), known), self.of_planes(body, (at(weights), *n)))
-                }));
+            around.points.clear();
+            for (_, n) in &seen_from[..sides] {
+                around.points.extend(points.iter().map(|weights| (at(weights), *n)));
             }
-            self.look_around(body, (facet, &corners, sides), near, around);
-            for (side, (own, n)) in seen_from[..sides].iter().enumerate() {
-                around.candidates.bound(points.iter().map(at), *n);
-                for (number, weights) in points.iter().enumerate() {
-                    let point = side * points.len() + number;
-                    let first = around.first[point];
-                    let most = self.strongest((at(weights), *n), first, (around, number));
-                    if let Some(known) = known.get_mut(point) {
-                        *known = most.map_or(UNKNOWN, |most| most.number);
-                    }
-                    let Some(Attracted { strength, range, partner: other, .. }) = most else { continue };
-                    let strength = share * strength * self.adhesion_of(*own, weights, other);
-                    let spot = Spot { facet, point: point as u32 };
-                    found(spot, Patch { own: *own, other, weights, share, strength, range });
+            self.look_at_known(body, known, around);
+            self.look_around(body, facet, near, around);
+            self.look_at_nearer(points.len(), known, around);
+            for (point, most) in around.most.iter().enumerate() {
+                if let Some(known) = known.get_mut(point) {
+                    *known = most.map_or(UNKNOWN, |most| most.number);
                 }
+                let Some(Attracted { strength, range, partner: other, .. }) = *most else { continue };
+                let (own, weights) = (seen_from[point / points.len()].0, &points[point % points.len()]);
+                let strength = share * strength * self.adhesion_of(own, weights, other);
+                let spot = Spot { facet, point: point as u32 };
+                found(spot, Patch { own, other, weights, share, strength, range });
             }
         }
     }
@@ -116,21 +115,33 @@ impl Seen<'_> {
         let [kind, of_other] = [body, other].map(|body| self.scene.bodies[body as usize].shape as usize);
         let cohesive = self.table.between[kind * self.table.points.len() + of_other];
         let factors = self.controls.adhesion_of(body as usize) * self.controls.adhesion_of(other as usize);
-        Attracting { body: other, end: 0, strength: 0.5 * factors * cohesive.strength, range: cohesive.range() }
+        Attracting { body: other, strength: 0.5 * factors * cohesive.strength, range: cohesive.range() }
     }
 
-    /// Finds what of the facets near one of a body, with these corners and so many sides, may attract a point of it more than what is known
-    /// to.
-    fn look_around(
-        &self,
-        body: u32,
-        (facet, corners, sides): (u32, &[Vec3; 3], usize),
-        near: Near,
-        around: &mut Around,
-    ) {
-        let (own, own_nearer) = (self.facets[facet as usize], self.nearer[facet as usize]);
-        let Around { near: all, candidates, bodies, first } = around;
-        all.empty_for(near.facets.len());
+    /// Finds what attracts the points of a facet of a body most of the facets that are known to have done so, and of planes.
+    fn look_at_known(&self, body: u32, known: &[u32], around: &mut Around) {
+        let Around { points, pairs, most, .. } = around;
+        most.clear();
+        most.resize(points.len(), None);
+        for (point, (at, facet)) in points.iter().zip(known).enumerate() {
+            let is_there = (*facet as usize) < self.facets.len();
+            let Some(other) = is_there.then(|| self.scene.body_of_facet(*facet)).filter(|other| *other != body) else {
+                continue;
+            };
+            let by = self.between(body, other);
+            pairs.add((point, *at), self.seen_from(at.0, by.body, *facet), by, most);
+        }
+        pairs.look(most);
+        for (most, at) in most.iter_mut().zip(points) {
+            *most = more(*most, self.of_planes(body, *at));
+        }
+    }
+
+    /// Gathers the facets near one of a body.
+    fn look_around(&self, body: u32, facet: u32, near: Near, around: &mut Around) {
+        let own_nearer = self.nearer[facet as usize];
+        let Around { near: all, bodies, .. } = around;
+        all.empty_for(near.facets.len() + 1);
         bodies.clear();
         let Near { facets: mut rest, apart: mut rest_apart } = near;
         while let Some(&next) = rest.first() {
@@ -144,82 +155,42 @@ impl Seen<'_> {
             for (&facet, &apart) in facets.iter().zip(apart) {
                 // Not what was too far apart then and has not come near enough since.
                 let counts = f64::from(apart) <= own_nearer + self.nearer[facet as usize];
-                all.add_if(counts, facet, &self.facets[facet as usize]);
+                all.add_if(counts, (facet, bodies.len() as u32), &self.facets[facet as usize]);
             }
-            bodies.push(Attracting { end: all.count(), ..self.between(body, other) });
-        }
-        all.bound_all(&Looking::from(own, corners), sides == 2);
-        let released = first.iter().map(|first| first.map_or(0.0, |first| first.released));
-        let released = released.reduce(f64::min).unwrap_or_default();
-        candidates.empty_for(all.count());
-        let mut start = 0;
-        for attracting in bodies {
-            candidates.take_nearer(all, start..attracting.end, attracting.widest(released));
-            (start, attracting.end) = (attracting.end, candidates.count());
+            bodies.push(self.between(body, other));
         }
     }
 
-    /// What attracts a point most, with the normal of its surface there, of this and all candidates; its number is that by which their
-    /// bounds were found.
-    fn strongest(
-        &self,
-        point: (Vec3, Vec3),
-        first: Option<Attracted>,
-        (around, number): (&Around, usize),
-    ) -> Option<Attracted> {
-        let bounds = around.candidates.bounds_of(number);
-        let (mut most, mut start) = (first, 0);
-        for attracting in &around.bodies {
-            let widest = |most: &Option<Attracted>| attracting.widest(most.map_or(0.0, |most| most.released));
-            let mut least = widest(&most);
-            for candidate in start..attracting.end {
-                if bounds[candidate] >= least {
-                    continue;
-                }
-                let facet = around.candidates.facets[candidate];
-                if first.is_some_and(|first| first.number == facet) {
-                    continue;
-                }
-                if let Some(found) = self.of_facet(attracting, facet, point, least)
-                    && most.is_none_or(|most| found.is_more_than(&most))
-                {
-                    most = Some(found);
-                    least = widest(&most);
-                }
+    /// Looks at all of what is near that may attract points, so many on a side, more than what is known to, these facets among that.
+    fn look_at_nearer(&self, on_side: usize, known: &[u32], around: &mut Around) {
+        let Around { near, bodies, points, looked, pairs, most } = around;
+        looked.clear();
+        looked.extend(points.iter().zip(&*most).map(|((x, _), most)| {
+            let released = most.map_or(0.0, |most| most.released);
+            let widest = bodies.iter().map(|by| by.widest(released)).fold(0.0, f64::max);
+            Looked { x: [x.x, x.y, x.z], widest }
+        }));
+        for (side, (looked, points)) in looked.chunks(on_side).zip(points.chunks(on_side)).enumerate() {
+            near.look_from(looked, side * on_side, points[0].1);
+        }
+        near.near_points(|point, facet, body| {
+            if known.get(point) != Some(&facet) {
+                let (at, by) = (points[point], bodies[body as usize]);
+                pairs.add((point, at), self.seen_from(at.0, by.body, facet), by, most);
             }
-            start = attracting.end;
-        }
-        most
+        });
+        pairs.look(most);
     }
 
-    /// How a facet attracts a point of a body, if there is such a one.
-    fn of_known(&self, body: u32, point: (Vec3, Vec3), facet: u32) -> Option<Attracted> {
-        let is_there = (facet as usize) < self.facets.len();
-        let other = is_there.then(|| self.scene.body_of_facet(facet)).filter(|other| *other != body)?;
-        let attracting = self.between(body, other);
-        self.of_facet(&attracting, facet, point, attracting.range)
-    }
-
-    /// How a facet of a body attracts a point, where the opening is less than the `widest`, µm.
-    fn of_facet(&self, by: &Attracting, facet: u32, (x, n): (Vec3, Vec3), widest: f64) -> Option<Attracted> {
-        let Facet { normal: mut m, middle, .. } = self.facets[facet as usize];
-        let mut atoms = self.scene.facet_atoms(by.body, facet);
-        if self.scene.sides_of(by.body) == 2 && (x - middle).dot(&m) < 0.0 {
-            (atoms, m) = ([atoms[0], atoms[2], atoms[1]], -m);
+    /// A facet of a body as a point sees it: of a surface with two sides the one on which the point is.
+    #[inline]
+    fn seen_from(&self, x: Vec3, body: u32, facet: u32) -> SeenFacet {
+        let Facet { mut normal, middle, .. } = self.facets[facet as usize];
+        let mut atoms = self.scene.facet_atoms(body, facet);
+        if self.scene.sides_of(body) == 2 && (x - middle).dot(&normal) < 0.0 {
+            (atoms, normal) = ([atoms[0], atoms[2], atoms[1]], -normal);
         }
-        let corners = gather_corners(self.positions, atoms);
-        if is_surely_beyond(x, n, &corners, m, widest) {
-            return None;
-        }
-        let (opening, feature) = opening_to_facet(x, n, &corners, m)?;
-        self.attracted(by, facet, opening.width, Partner::Facet(atoms, feature))
-    }
-
-    /// What attracts a point so far open, if it does.
-    fn attracted(&self, by: &Attracting, number: u32, width: f64, partner: Partner) -> Option<Attracted> {
-        let Attracting { strength, range, .. } = *by;
-        let released = strength * range * depth_of_well(width / range);
-        (released > 0.0).then_some(Attracted { released, width, number, strength, range, partner })
+        SeenFacet { number: facet, atoms, corners: gather_corners(self.positions, atoms), normal }
     }
 
     /// What of the planes attracts a point of a body most.
@@ -228,9 +199,9 @@ impl Seen<'_> {
         let planes = (0..).zip(&self.scene.planes).filter_map(|(number, plane)| {
             let cohesive = self.table.on_planes[kind * self.scene.planes.len() + number as usize];
             let strength = self.controls.adhesion_of(body as usize) * cohesive.strength;
-            let by = Attracting { body, end: 0, strength, range: cohesive.range() };
+            let by = Attracting { body, strength, range: cohesive.range() };
             let (width, _) = opening_to_plane(n, (x - plane.point).dot(&plane.normal), plane.normal)?;
-            self.attracted(&by, self.facets.len() as u32 + number, width, Partner::Plane(number))
+            by.attracted(self.facets.len() as u32 + number, width, Partner::Plane(number))
         });
         planes.fold(None, |most, found| more(most, Some(found)))
     }
