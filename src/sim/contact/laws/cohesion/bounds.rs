@@ -94,7 +94,7 @@ fn most(a: f64, b: f64) -> f64 {
 fn is_surely_farther(widest: f64, from: V, n: V, normal: V, (radius, along, strays): (f64, f64, f64)) -> bool {
     let (height, over, squared) = (dot(from, normal), dot(from, n), dot(from, from));
     let is_before = height > 0.0;
-    let is_below = !(strays > over);
+    let is_below = strays <= over;
     // The ball's middle: how far it is from that of the facet, squared, and how high over its plane. Its own radius is half of the widest.
     let half = 0.5 * widest;
     let (apart, over_plane) = (squared + widest * over + half * half, height + half * along);
