@@ -221,10 +221,7 @@ fn level(context: &mut Context, root: &Element) -> Level {
     };
     // What a document of fields may not hold, and the other way round.
     let (misplaced, help): (&[&str], &str) = match level {
-        Level::Field => (
-            &["algebraic"],
-            "give it a document of its own, without fields, and join the two by <link>s",
-        ),
+        Level::Field => (&["algebraic"], "give it a document of its own, without fields, and join the two by <link>s"),
         Level::Membrane => (
             &["field", "grid", "event", "algebraic"],
             "a document of membranes has <variable>s; give fields and events documents of their own",
