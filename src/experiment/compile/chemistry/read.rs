@@ -86,7 +86,11 @@ fn set(document: &Document, name: &str, entry: &Entry, eml: &mut eml::Document, 
         let is_given = eml.membrane.as_ref().is_some_and(|membrane| {
             eml::SURFACE.contains(&id.as_str()) || membrane.totals.iter().any(|total| total.quantity == number)
         });
-        let refused = if is_given {
+        let of_scene =
+            eml.scene.as_ref().is_some_and(|scene| scene.totals.iter().any(|total| total.quantity == number));
+        let refused = if of_scene {
+            Some("it is taken from the fields: set what it is taken of")
+        } else if is_given {
             Some("it is taken from the membrane: set what it is taken of")
         } else if is_field {
             Some("it is a field, which starts from a profile: set a parameter that its initial expression uses")
