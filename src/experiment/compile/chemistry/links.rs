@@ -3,7 +3,7 @@
 use super::super::super::{Chemistry as Entry, ChemistryLink, Document};
 use super::ends::{Ends, Side, differs, kind_of_cell};
 use super::order::order;
-use super::{Part, at, membrane, within};
+use super::{BesideFields, Part, at, membrane, within};
 use crate::cell::ends::Reading;
 use crate::equations::eml::{self, Endpoint, LinkDescription, Root};
 use crate::equations::expression::Trouble;
@@ -142,8 +142,9 @@ fn link_kinds(
 /// A link; what membranes have to work out at atoms for it is put to what is shown.
 fn link(ends: &mut Ends, shown: &mut Vec<Expr>, description: &LinkDescription) -> Result<Link, Fault> {
     let owner = ends.owner();
-    if let Some(local) = ends.part.beside.as_ref().map(|beside| &beside.local) {
-        one_of_scene(ends.part, local, description)?;
+    if let Some(beside) = &ends.part.beside {
+        let fields = &ends.chemistry.fields[beside.field].system;
+        one_of_scene(ends.part, beside, &|id| fields.species_number(id).is_some(), description)?;
     }
     let (from, to, source) = joined(ends, shown.len(), description)?;
     let mut needs: Vec<QuantityId> = source.into_iter().collect();
@@ -187,7 +188,12 @@ fn drives(part: &Part, quantity: QuantityId) -> bool {
 }
 
 /// Refuses a link of what stands beside fields that uses what differs from point to point.
-fn one_of_scene(part: &Part, local: &[bool], description: &LinkDescription) -> Result<(), Fault> {
+fn one_of_scene(
+    part: &Part,
+    BesideFields { local, .. }: &BesideFields,
+    is_field: &dyn Fn(&str) -> bool,
+    description: &LinkDescription,
+) -> Result<(), Fault> {
     let mut used = Vec::new();
     if let Root::System(quantity) = description.from.root {
         used.push((quantity, &description.from.location));
@@ -197,9 +203,10 @@ fn one_of_scene(part: &Part, local: &[bool], description: &LinkDescription) -> R
     let Some((quantity, location)) = used.into_iter().find(|(quantity, _)| differs(*quantity)) else { return Ok(()) };
     let id = &part.document.system.quantities[quantity as usize].id;
     let message = format!("`{id}` differs from point to point, and a link carries one number");
-    let help = format!(
-        "link from field[{id}], which a cell senses where it is, or from a <mean> or <integral> in the document"
-    );
+    let help = match is_field(id) {
+        true => format!("link from field[{id}], which a cell senses where it is, or from a <mean> or <integral> of it"),
+        false => "link from a <mean> or an <integral> of it".to_owned(),
+    };
     Err(within(location, "at which point?", message, help))
 }
 
