@@ -62,7 +62,8 @@ pub fn advance_chemistry(
     let (end, chemistry) = (from.time + dt, &model.chemistry);
     to.chemistry.told_means = false;
     move_chemistry(model, dt, from, to, ws)?;
-    if has_changed(chemistry, &from.chemistry, &to.chemistry) {
+    // What links impose on atoms has changed shapes that a second time must begin with.
+    if !chemistry.imposes_atoms && has_changed(chemistry, &from.chemistry, &to.chemistry) {
         let mut means = std::mem::take(&mut ws.chemistry.means);
         note_means(chemistry, &from.chemistry, &to.chemistry, &mut means);
         to.chemistry.copy_from(&from.chemistry);
