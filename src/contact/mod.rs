@@ -15,6 +15,7 @@ mod edge_edge;
 mod found;
 mod groove;
 mod inside;
+pub(crate) mod lanes;
 mod lists;
 mod motion;
 mod near;

@@ -4,10 +4,9 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::closest::Feature;
+use super::lanes::{V, dot, lane, minus};
 use super::opening::{BEHIND, BESIDE, FACING, LEVEL};
 use crate::Vec3;
-
-type V = [f64; 3];
 
 /// Pairs that are worked out at a time.
 pub const PAIRS: usize = 8;
@@ -84,23 +83,8 @@ impl WithSimd for Find<'_> {
 }
 
 #[inline(always)]
-fn lane(rows: &[Row; 3], k: usize) -> V {
-    [rows[0][k], rows[1][k], rows[2][k]]
-}
-
-#[inline(always)]
-fn dot(a: V, b: V) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
 fn plus(a: V, b: V) -> V {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-#[inline(always)]
-fn minus(a: V, b: V) -> V {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]

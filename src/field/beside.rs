@@ -202,17 +202,12 @@ fn sets(fields: &Document, program: &Program, event: &FieldEvent) -> Result<Sets
 fn reads_totals(fields: &Document, scene: &eml::SceneDescription) -> bool {
     let system = &fields.system;
     let is_total = |quantity: &QuantityId| scene.totals.iter().any(|total| total.quantity == *quantity);
-    let mut exprs: Vec<&Expr> = Vec::new();
-    for field in &fields.fields {
-        let Role::Variable { rate } = &system.quantities[field.quantity as usize].role else { continue };
-        exprs.extend([rate, &field.diffusion]);
-        exprs.extend(field.advection.iter().flatten());
-        exprs.extend(field.taxis.iter().map(|taxis| &taxis.sensitivity));
-        exprs.extend(field.sources.iter().map(|source| &source.strength));
-        exprs.extend(field.walls.iter().filter_map(|wall| match wall {
-            eml::Wall::Fixed(value) | eml::Wall::Flux(value) | eml::Wall::Open(value) => Some(value),
-            eml::Wall::NoFlux | eml::Wall::Periodic => None,
-        }));
-    }
-    exprs.into_iter().any(|expr| eml::reached(expr, system).iter().any(is_total))
+    let reads = |expr: &Expr| eml::reached(expr, system).iter().any(is_total);
+    fields.fields.iter().any(|field| {
+        let by_rate = match &system.quantities[field.quantity as usize].role {
+            Role::Variable { rate } => reads(rate),
+            _ => false,
+        };
+        by_rate || field.carriers().any(reads)
+    })
 }

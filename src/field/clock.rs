@@ -1,7 +1,7 @@
 //! When the clock switches something in what a document does to its fields: windows are cut there, as those of populations are, eq. (ode.9).
 
 use super::scales::in_circle;
-use crate::equations::eml::{self, Document, Wall};
+use crate::equations::eml::Document;
 use crate::equations::program::Program;
 use crate::equations::tree::{Expr, Quantity, Role};
 use crate::error::Result;
@@ -13,7 +13,7 @@ use crate::ode::clocked;
 /// Definitions in a circle.
 pub fn clock(document: &Document) -> Result<Option<Program>> {
     let mut system = document.system.clone();
-    let transport: Vec<Expr> = document.fields.iter().flat_map(carriers).cloned().collect();
+    let transport: Vec<Expr> = document.fields.iter().flat_map(|field| field.carriers()).cloned().collect();
     for rule in transport {
         system.quantities.push(Quantity {
             id: String::new(),
@@ -25,15 +25,4 @@ pub fn clock(document: &Document) -> Result<Option<Program>> {
     }
     let program = clocked(&system).map_err(|circle| in_circle(document, &circle))?;
     Ok((!program.further.is_empty()).then_some(program))
-}
-
-/// What carries a field and comes through its walls.
-fn carriers(field: &eml::FieldDescription) -> impl Iterator<Item = &Expr> {
-    let walls = field.walls.iter().filter_map(|wall| match wall {
-        Wall::Fixed(value) | Wall::Flux(value) | Wall::Open(value) => Some(value),
-        Wall::NoFlux | Wall::Periodic => None,
-    });
-    let flows = field.advection.iter().flatten().chain(field.taxis.iter().map(|taxis| &taxis.sensitivity));
-    let sources = field.sources.iter().map(|source| &source.strength);
-    std::iter::once(&field.diffusion).chain(flows).chain(sources).chain(walls)
 }

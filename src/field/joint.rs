@@ -4,9 +4,10 @@
 //! what fields sum up to where the step begins and ends. Steps are as long as their error allows, and are cut where events happen.
 
 use super::beside::{Beside, PartSum, parts_of};
+use super::pieces::halvings;
 use super::scales::Scales;
 use super::scene::{Kept, Scene};
-use super::state::{FINEST, Fields};
+use super::state::Fields;
 use super::step::{Report, Stepping};
 use super::tables::Now;
 use crate::equations::Range;
@@ -17,6 +18,19 @@ use crate::ode::{EventMemory, Eventful, OdeTrouble, Population, PopulationScratc
 const NEAR: f64 = 1e-9;
 /// The shortest step, over the window.
 const SHORTEST: f64 = 1e-12;
+
+/// How much shorter a step is tried after one that failed.
+const SHORTER: f64 = 0.2;
+
+/// What becomes of a step.
+enum Outcome {
+    /// It stands.
+    Stands,
+    /// Its error is too large; all is as before it.
+    TooLong,
+    /// An event happens in it: one was executed at this time, s, or, where that is infinite, one fires at its end.
+    Happens(f64),
+}
 
 /// What happened in a step.
 #[derive(Debug, Clone, Copy)]
@@ -60,6 +74,7 @@ impl Joint<'_, '_> {
         let near = (NEAR * window).max(4.0 * f64::EPSILON * end.abs());
         // When an event is known to come, as far as is known: not before the first, surely by the second.
         let mut coming: Option<(f64, f64)> = None;
+        let mut failed = None;
         self.settle()?;
         while self.fields.time < end {
             let now = self.fields.time;
@@ -67,45 +82,67 @@ impl Joint<'_, '_> {
             if end - until < near {
                 until = end;
             }
-            let (mut at_event, mut cut) = (false, until < end && self.scene.pace.step == 0.0);
+            let (mut at_event, mut cut) = (false, until - now < self.scene.pace.step * (1.0 - NEAR));
             if let Some((earliest, latest)) = coming.filter(|(_, latest)| *latest <= until) {
                 at_event = latest - now <= 3.0 * near;
                 let early = if earliest > now { earliest } else { 0.5 * (now + latest) };
                 (until, cut) = (if at_event { latest } else { early }, true);
             }
             if until - now < SHORTEST * window {
-                return Err(self.unreachable_tolerance(now));
+                return Err(failed.unwrap_or_else(|| self.unreachable_tolerance(now)));
             }
-            self.keep();
-            let step = self.step(until)?;
-            let happens = step.event.is_finite() || step.fires;
-            if happens && !at_event && until - now > 3.0 * near {
-                coming = Some(match step.event > now && step.event.is_finite() {
-                    true => ((step.event - near).max(now), (step.event + near).min(until)),
-                    false => (0.5 * (now + until), until),
-                });
-                self.report.rejected += 1;
-                self.restore(now);
-                continue;
+            let goes_through = at_event || until - now <= 3.0 * near;
+            match self.attempt((now, until), (goes_through, cut)) {
+                Ok(Outcome::Stands) => {
+                    coming = coming.filter(|_| !at_event);
+                    self.arrive(until)?;
+                }
+                Ok(Outcome::TooLong) => {}
+                Ok(Outcome::Happens(event)) => {
+                    coming = Some(match event > now && event.is_finite() {
+                        true => ((event - near).max(now), (event + near).min(until)),
+                        false => (0.5 * (now + until), until),
+                    });
+                    self.restore(now);
+                    self.report.rejected += 1;
+                }
+                // What fails in a step that is too long may go well in a shorter one.
+                Err(error) if matches!(self.stepping, Stepping::Adaptive { .. }) => {
+                    failed = Some(error);
+                    self.restore(now);
+                    self.report.rejected += 1;
+                    self.scene.pace.step = SHORTER * (until - now);
+                }
+                Err(error) => return Err(error),
             }
-            let accepted = at_event || happens || self.is_good(now, until, cut)?;
-            if !accepted {
-                continue;
-            }
-            if at_event || happens {
-                coming = None;
-            }
-            self.report.steps += 1;
-            self.fields.time = until;
-            let before = self.scene.scratch.before.population.take();
-            let before = before.expect("it was kept");
-            let set = self.set_fields(&before);
-            self.scene.scratch.before.population = Some(before);
-            set?;
-            self.settle()?;
         }
         self.fields.time = begin + window;
         Ok(self.report)
+    }
+
+    /// Tries a step from one time to another; where it goes through an event it stands whatever its error. `cut` says that something cut it, so that
+    /// it says nothing against a longer one.
+    fn attempt(&mut self, (now, until): (f64, f64), (goes_through, cut): (bool, bool)) -> Result<Outcome> {
+        self.keep();
+        let step = self.step(until)?;
+        let happens = step.event.is_finite() || step.fires;
+        Ok(match (happens, goes_through) {
+            (true, false) => Outcome::Happens(step.event),
+            (_, true) => Outcome::Stands,
+            (false, false) if self.is_good(now, until, cut)? => Outcome::Stands,
+            (false, false) => Outcome::TooLong,
+        })
+    }
+
+    /// Takes a step that stands: what its events set is set.
+    fn arrive(&mut self, until: f64) -> Result<()> {
+        self.report.steps += 1;
+        self.fields.time = until;
+        let before = self.scene.scratch.before.population.take().expect("it was kept");
+        let set = self.set_fields(&before);
+        self.scene.scratch.before.population = Some(before);
+        set?;
+        self.settle().map(|_| ())
     }
 
     /// The step that is tried where nothing else cuts it.
@@ -191,9 +228,7 @@ impl Joint<'_, '_> {
             adaptive => adaptive,
         };
         let inner = self.scene.pace.inner;
-        let level =
-            if inner > 0.0 { (length / inner * (1.0 - NEAR)).log2().ceil().clamp(0.0, f64::from(FINEST)) } else { 0.0 };
-        self.fields.set_pace((level as u32, 0));
+        self.fields.set_pace((if inner > 0.0 { halvings(length, inner) } else { 0 }, 0));
         let report = (self.alone.advance)(self.fields, length, self.inputs, stepping)?;
         self.scene.pace.inner = length / f64::from(1_u32 << self.fields.level);
         self.report.checks += report.checks;

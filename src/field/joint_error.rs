@@ -41,7 +41,6 @@ impl Joint<'_, '_> {
         self.report.error = self.report.error.max(error);
         self.extrapolate();
         let next = length * factor;
-        // One that was cut by something else says nothing against a longer one.
         self.scene.pace.step = if cut { next.max(self.scene.pace.step) } else { next };
         Ok(true)
     }

@@ -31,11 +31,11 @@ impl Joint<'_, '_> {
         }
         Err(Error::Numbers {
             message: format!(
-                "{} has events that follow each other without end at t = {} s",
+                "document '{}': events follow each other without end at t = {} s",
                 self.alone.name,
                 short(time)
             ),
-            help: "let the events change what triggers them".into(),
+            help: "let each event change what triggers it, so that its condition turns false".into(),
             kept: None,
         })
     }
@@ -69,7 +69,7 @@ impl Joint<'_, '_> {
                                 self.fields.grid.told(at),
                                 short(self.fields.time)
                             ),
-                            help: "a concentration is finite and not below 0; range=\"free\" allows what is negative"
+                            help: "write max(…, 0) where less may come out, or range=\"free\" at a field that may be negative"
                                 .into(),
                             kept: None,
                         });

@@ -72,10 +72,13 @@ impl Fields {
 
     /// Keeps about the step that was taken in a window of another length.
     pub(super) fn keep_step(&mut self, from: f64, to: f64) {
-        // Windows that differ by round-off keep their number of steps.
-        let halvings = f64::from(self.level) + (to / from * (1.0 - 1e-9)).log2();
-        self.set_pace((halvings.ceil().clamp(0.0, f64::from(FINEST)) as u32, self.unchecked));
+        self.set_pace((halvings(to, from / f64::from(1_u32 << self.level)), self.unchecked));
     }
+}
+
+/// How often a window of a length is halved for steps of about another one, or shorter. Lengths that differ by round-off are the same.
+pub(super) fn halvings(window: f64, step: f64) -> u32 {
+    (window / step * (1.0 - 1e-9)).log2().ceil().clamp(0.0, f64::from(FINEST)) as u32
 }
 
 /// Whether there is one piece, and it is the whole window.

@@ -209,13 +209,13 @@ impl Plan {
     }
 
     /// The step to try first after the one that was accepted, s. A step cut short by a kink says nothing against the step planned before
-    /// it; one of a fixed size that was made shorter is made up for.
-    pub fn next_step(&self, model: &Model) -> f64 {
+    /// it; one of a fixed size that was made shorter is made up for. One that the error chooses is no longer than `longest`, s, allows.
+    pub fn next_step(&self, model: &Model, longest: f64) -> f64 {
         match model.integrator.size {
             StepSize::Fixed(_) if self.wanted < self.first => self.first - self.dt,
             StepSize::Fixed(whole) => whole,
-            StepSize::Adaptive { .. } if self.dt < self.wanted => self.wanted.max(self.next),
-            StepSize::Adaptive { .. } => self.next,
+            StepSize::Adaptive { .. } if self.dt < self.wanted => self.wanted.max(self.next).min(longest),
+            StepSize::Adaptive { .. } => self.next.min(longest),
         }
     }
 

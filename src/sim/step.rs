@@ -27,7 +27,6 @@ use super::traction::{begin_tractions, keep_tractions};
 use super::trouble::Trouble;
 use super::velocity::measure_velocities;
 use super::workspace::Workspace;
-use crate::mechanics::integrator::StepSize;
 
 /// Moves the state by one step.
 ///
@@ -124,8 +123,8 @@ fn inspect(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     Some(Flaw::Deepened(deepened.breaks_promise().then(|| deepened.trouble(model, from))))
 }
 
-/// The clock shows exactly when something is to happen, whatever round-off the steps before have left. A next step that the error chooses is no
-/// longer than chemistry allows.
+/// The clock shows exactly when something is to happen, whatever round-off the steps before have left; the next step
+/// is no longer than chemistry allows.
 fn advance_clock(model: &Model, plan: &Plan, longest: f64, to: &mut State) {
     to.time += plan.dt;
     let slack = model.clock_slack();
@@ -134,8 +133,5 @@ fn advance_clock(model: &Model, plan: &Plan, longest: f64, to: &mut State) {
         to.time = instant;
     }
     to.step += 1;
-    to.next_step = match model.integrator.size {
-        StepSize::Fixed(_) => plan.next_step(model),
-        StepSize::Adaptive { .. } => plan.next_step(model).min(longest),
-    };
+    to.next_step = plan.next_step(model, longest);
 }

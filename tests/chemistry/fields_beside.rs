@@ -77,10 +77,12 @@ fn a_bath_and_a_field_come_to_rest_as_is_known() {
         let exact = bath(0.5 * f64::from(row));
         let amount = 1600.0 * course.mean(0) + 1000.0 * course.number("s");
         worst = worst.max((course.mean(0) - exact[0]).abs()).max((course.number("s") - exact[1]).abs());
-        assert!((amount / 2800.0 - 1.0).abs() < 3e-3, "{row}: {amount}");
+        // It is not kept to round-off, but as well as either is known.
+        assert!((amount / 2800.0 - 1.0).abs() < 1e-4, "{row}: {amount}");
     }
     println!("NOTE bath: off by {worst:e} of values up to 2, {} steps", course.steps);
-    // The tolerance of a step is 3e-3 of what changes in it, and steps are extrapolated.
+    // Halves of steps are off by 1e-3 of what changes in them at most, a third of the tolerance; extrapolated, by a part of the next order: 1e-5 is
+    // measured.
     assert!(worst < 1e-4, "{worst}");
 }
 
@@ -137,6 +139,7 @@ fn events_fire_when_means_pass_a_bound_and_set_fields() {
     assert_eq!(course.number("n"), 0.0);
     course.go(0.5);
     assert_eq!(course.number("n"), 1.0);
+    // Instants are found to 1e-9 of a window.
     assert!((course.number("last") - 1.0).abs() < 1e-8, "{}", course.number("last"));
     assert!((course.mean(0) - (0.1 + 0.499_999)).abs() < 1e-8, "{}", course.mean(0));
     // At 1.9 once more; what is put in at 2.3 and 2.55 has a mean of 1 each and no flux through walls, so that the bound is passed by both.
@@ -184,6 +187,7 @@ fn a_plane_sheet_in_a_stirred_bath_takes_up_as_crank_says() {
         course.go(window);
         let (found, exact) = (course.number("taken"), taken(course.fields.time()));
         println!("NOTE {}: taken {found}, by Crank {exact}", course.fields.time());
+        // Measured are 1.7e-4 after a second, where eight boxes have been reached, and less later: of the boxes, and of the tolerance.
         assert!((found / exact - 1.0).abs() < 5e-4, "{}: {found} {exact}", course.fields.time());
     }
 }

@@ -568,7 +568,8 @@ fn what_systems_read_is_the_mean_of_a_step() {
     for step in ["0.25 s", "2.5 s"] {
         let mut scene = scene(&[("own", own)], &one_cell("10 s", step));
         scene.run();
-        assert!((scene.value(0, "u", 0) - 50.0).abs() < 1e-6, "{step}: {}", scene.value(0, "u", 0));
+        // The mean of a line is exact; what is left is round-off.
+        assert!((scene.value(0, "u", 0) - 50.0).abs() < 1e-9, "{step}: {}", scene.value(0, "u", 0));
     }
 }
 
@@ -601,15 +602,21 @@ fn cells_and_the_field_that_they_read_and_feed_are_of_second_order_together() {
             assert!((1.7..2.3).contains(&(coarse / fine).log2()), "order {}: {errors:?}", (coarse / fine).log2());
         }
     }
-    assert!(errors[1].iter().all(|error| *error < 0.01), "{errors:?}");
-    // By default the step is as long as what cells and field do to each other allows, and amounts grow 180-fold.
+    // By default the step is as long as what cells and field do to each other allows: it moves what is carried by 1 % at most, and what is left of
+    // that is of the next order.
     let text = one_cell("12 s", "1 s").replace("integrator = { step = \"1 s\" }", "");
     let mut free = scene(&[("field", field), ("own", own)], &text);
     free.run();
     let mean = free.state().chemistry.fields[0].values.iter().sum::<f64>() / 400.0;
     let found = [free.value(0, "u", 0) / u(12.0) - 1.0, mean / m(12.0) - 1.0];
-    println!("NOTE by default {found:?} in {} steps", free.state().step);
-    assert!(found.iter().all(|error| error.abs() < 0.02), "{found:?}");
+    println!(
+        "NOTE by default {found:?} in {} steps; grown {} and {} fold",
+        free.state().step,
+        u(12.0) / u(0.0),
+        m(12.0) / m(0.0)
+    );
+    assert!((20..400).contains(&free.state().step), "{} steps", free.state().step);
+    assert!(found.iter().all(|error| error.abs() < 0.005), "{found:?}");
 }
 
 #[test]
@@ -623,11 +630,10 @@ fn what_a_cell_senses_of_its_own_release_does_not_depend_on_the_step() {
         scene.run();
         scene.value(0, "c", 0)
     };
-    // What is released in a part of the step spreads from one instant, from a shape that is nearly that of a Gaussian.
     let exact = sensed("0.02 s");
-    for step in ["0.2 s", "1 s", "4 s"] {
-        let found = sensed(step);
-        println!("NOTE {step}: {found} for {exact}, {:.3} %", 100.0 * (found / exact - 1.0));
-        assert!((found / exact - 1.0).abs() < 0.02, "{step}: {found} for {exact}");
-    }
+    let found = ["0.2 s", "1 s", "4 s"].map(|step| (step, sensed(step) / exact - 1.0));
+    println!("NOTE of {exact}: {found:?}");
+    // What is released in a part of the step spreads from one instant. That is right for a Gaussian of the size of the cell, which a ring of
+    // atoms on boxes is not: measured are 0.3, 0.2 and 1.7 %.
+    assert!(found.iter().all(|(_, apart)| apart.abs() < 0.02), "{found:?}");
 }

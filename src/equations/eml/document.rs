@@ -235,6 +235,17 @@ pub struct FieldSource {
 }
 
 impl FieldDescription {
+    /// The expressions of what carries it and comes through its walls and from its sources.
+    pub fn carriers(&self) -> impl Iterator<Item = &Expr> {
+        let walls = self.walls.iter().filter_map(|wall| match wall {
+            Wall::Fixed(value) | Wall::Flux(value) | Wall::Open(value) => Some(value),
+            Wall::NoFlux | Wall::Periodic => None,
+        });
+        let flows = self.advection.iter().flatten().chain(self.taxis.iter().map(|taxis| &taxis.sensitivity));
+        let sources = self.sources.iter().map(|source| &source.strength);
+        std::iter::once(&self.diffusion).chain(flows).chain(sources).chain(walls)
+    }
+
     /// Whether it is carried or changes at walls and sources in ways that one diffusion coefficient and walls that stay do not tell.
     pub fn is_carried(&self, system: &System) -> bool {
         let still = |expr: &Expr| super::reads::reads(expr, system).is_number();

@@ -40,8 +40,7 @@ fn may_be_followed(model: &Model, reactor: usize) -> bool {
 
 /// Whether a system is moved through a step with [`follow`].
 pub fn is_releasing(model: &Model, reactor: usize) -> bool {
-    if model.chemistry.reactors[reactor].beside.is_some() {
-        // It is moved with its fields.
+    if !model.chemistry.reactors[reactor].is_moved_alone() {
         return false;
     }
     let owns = |link: &Link| matches!(link.owner, Owner::Reactor(owner) if owner == reactor);

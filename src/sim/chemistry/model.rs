@@ -64,6 +64,13 @@ pub struct Reactor {
     pub recorded: Vec<(QuantityId, String, String)>,
 }
 
+impl Reactor {
+    /// Whether it is moved by itself, and not with the fields that it stands beside.
+    pub fn is_moved_alone(&self) -> bool {
+        self.beside.is_none()
+    }
+}
+
 /// Who has a system.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Members {

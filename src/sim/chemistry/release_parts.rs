@@ -2,7 +2,6 @@
 
 use super::super::model::Model;
 use super::links::{AtAtoms, Source};
-use crate::field::FieldSystem;
 
 /// The longest part of a step over the time in which what is released decays: it does not spread much farther than what lives so long.
 const LONGEST: f64 = 0.5;
@@ -34,12 +33,8 @@ impl Near {
         let cell = model.chemistry.rest.iter().map(|[_, area]| area / (4.0 * std::f64::consts::PI));
         let width = cell.fold(f64::INFINITY, f64::min) + spacing * spacing;
         let widened = width / (4.0 * fastest);
-        (widened.is_finite() && widened > 0.0).then_some(Self { widened, dimension: dimension(system) })
+        (widened.is_finite() && widened > 0.0).then_some(Self { widened, dimension: system.grid().dimension() })
     }
-}
-
-fn dimension(system: &FieldSystem) -> usize {
-    system.grid().dimension()
 }
 
 /// Whether links sense a species where cells or their atoms are.
@@ -81,7 +76,7 @@ impl Part {
         // What would be left of round-off belongs to it.
         let length = if longest >= left * (1.0 - 1e-9) { left } else { longest };
         let is_last = length >= left;
-        // As much of what is left once more would be as short as the time in which what is released is as wide as a cell.
+        // What would be left is much shorter than the time in which it becomes as wide as a cell.
         let length = match near {
             Some(near) if !is_last && left - length < 0.5 * near.widened => left.min(of_decay),
             _ => length,

@@ -85,7 +85,7 @@ fn move_chemistry(model: &Model, dt: f64, from: &State, to: &mut State, ws: &mut
     let (start, end) = (from.time, from.time + dt);
     ws.chemistry.exchange_values(&mut to.chemistry, start);
     let is_moved_here =
-        |number: &usize| !is_releasing(model, *number) && model.chemistry.reactors[*number].beside.is_none();
+        |number: &usize| !is_releasing(model, *number) && model.chemistry.reactors[*number].is_moved_alone();
     for number in (0..model.chemistry.reactors.len()).filter(is_moved_here) {
         advance_system(model, number, end, from, to, &mut ws.chemistry)?;
     }
@@ -110,7 +110,7 @@ pub fn advance_systems_to(
     for (number, reactor) in model.chemistry.reactors.iter().enumerate() {
         let begun = from.times[number];
         let stands_still = begun == within.chemistry.times[number] || begun >= time;
-        let is_alone = reactor.membrane.is_none() && reactor.noise.is_none() && reactor.beside.is_none();
+        let is_alone = reactor.membrane.is_none() && reactor.noise.is_none() && reactor.is_moved_alone();
         if !from.carried || stands_still || !is_alone {
             continue;
         }
@@ -145,7 +145,7 @@ fn with_means<'a>(model: &Model, from: &ChemistryState, to: &ChemistryState) -> 
 /// Executes the events of the start. Returns whether there were any.
 fn begin_events(model: &Model, state: &mut State, scratch: &mut [PopulationScratch]) -> Result<bool, Trouble> {
     let mut any = false;
-    let begins_here = |reactor: &Reactor| !reactor.events.is_empty() && reactor.beside.is_none();
+    let begins_here = |reactor: &Reactor| !reactor.events.is_empty() && reactor.is_moved_alone();
     for (number, reactor) in model.chemistry.reactors.iter().enumerate().filter(|(_, r)| begins_here(r)) {
         let chemistry = &mut state.chemistry;
         let now = chemistry.times[number] / reactor.seconds;

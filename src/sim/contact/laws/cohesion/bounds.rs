@@ -5,8 +5,7 @@ use pulp::{Simd, WithSimd};
 
 use super::facet::BEHIND;
 use crate::contact::SURELY;
-
-pub type V = [f64; 3];
+use crate::contact::lanes::{V, dot, lane, minus};
 
 /// Facets of a block.
 pub const FACETS: usize = 8;
@@ -65,21 +64,6 @@ impl WithSimd for ToPoints<'_> {
             }
         }
     }
-}
-
-#[inline(always)]
-fn lane(rows: &[Row; 3], k: usize) -> V {
-    [rows[0][k], rows[1][k], rows[2][k]]
-}
-
-#[inline(always)]
-fn dot(a: V, b: V) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn minus(a: V, b: V) -> V {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]
