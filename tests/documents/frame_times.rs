@@ -218,7 +218,7 @@ times = ["7.999999 s", "9.999999 s"]
     let result = ResultFile::open(&path).unwrap();
     assert_eq!(result.interpolated().unwrap(), [false, true, true, false]);
     let found: Vec<f64> = result.cell_series("own.U").unwrap().iter().copied().collect();
-    // t²/2, as far as a microsecond before the end of a step may be off; told what was at the begin of the steps it would be 24 and 40.
+    // t²/2, as far as a microsecond before the end of a step may be off; told what was at the begin of the steps it would be 30 and 48.
     for (found, exact) in found.iter().zip([0.0, 32.0, 50.0, 50.0]) {
         assert!((found - exact).abs() < 2e-5, "{found} for {exact}");
     }

@@ -11,11 +11,11 @@ use super::state::ChemistryState;
 const UNCHANGED: f64 = 5e-3;
 
 /// How far what links carry at the end of a step may move when systems are told means, over the largest that any member has.
-const BEARABLE: f64 = 1e-2;
+const BEARABLE: f64 = 2e-3;
 
 /// Bounds of the factor by which the next step may differ.
 const SHRINK: f64 = 0.2;
-const GROW: f64 = 4.0;
+const GROW: f64 = 2.0;
 
 /// Links whose numbers drive a system or fields that exchange with the model in every step.
 fn driving(chemistry: &Chemistry) -> impl Iterator<Item = &Link> {
