@@ -9,7 +9,7 @@ use super::rows::ROW;
 use super::scales::{POSITION, Scales, in_circle};
 use super::state::Fields;
 use crate::equations::eml::Document;
-use crate::equations::program::{Program, run};
+use crate::equations::program::{Program, run_wide};
 use crate::error::Result;
 use crate::ode::{Kick, Numbers};
 
@@ -79,7 +79,7 @@ impl WithSimd for Job<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { noise, grid, inputs, chunk, numbers, number, time, factor } = self;
         let Noise { program, species, position_registers, inputs: registers, scales } = noise;
         let file = &mut *chunk.kicks;
@@ -94,7 +94,7 @@ impl WithSimd for Job<'_, '_> {
                 file[*register] = [*value; ROW];
             }
             set_positions(grid, *scales, position_registers, chunk.first + first, file);
-            run(code, file);
+            run_wide(simd, code, file);
             for (&s, &output) in species.iter().zip(&code.outputs) {
                 let normals = numbers.of(&program.names[program.variables[s] as usize]);
                 let values = &mut chunk.values[s * POINTS + first..][..ROW];

@@ -95,7 +95,7 @@ impl Reactor {
             }
             set_positions(grid, self.scales, &self.position_registers, chunk.first + first, &mut scratch.file);
             match self.method {
-                None => classical(&self.rows, scratch, from, dt),
+                None => classical(simd, &self.rows, scratch, from, dt),
                 Some(method) => self.with_method(simd, method, own, (from, from + dt)),
             }
             let scratch = &mut own.scratch;
@@ -169,14 +169,14 @@ fn broken_box(scratch: &Scratch<WIDTH>, chunk: &Chunk, first: usize) -> Option<B
 
 /// Leaves the proposal of a step of the classical method of order 4, eq. (field.12).
 #[inline(always)]
-fn classical(rows: &Rows, s: &mut Scratch<WIDTH>, time: f64, dt: f64) {
+fn classical<S: pulp::Simd>(simd: S, rows: &Rows, s: &mut Scratch<WIDTH>, time: f64, dt: f64) {
     let n = s.state.len();
     s.file[0] = [time; WIDTH];
     s.file[1..=n].copy_from_slice(&s.state);
     s.proposal.copy_from_slice(&s.state);
     // What each stage adds to the proposal, where the next one begins, and when.
     for (weight, ahead, at) in [(1.0, 0.5, 0.5), (2.0, 0.5, 0.5), (2.0, 1.0, 1.0), (1.0, 0.0, 0.0)] {
-        rows.run(&mut s.file);
+        rows.run(simd, &mut s.file);
         // A rate may stand in the register of another variable: all are read before one is written.
         for (to, register) in s.stages.iter_mut().zip(&rows.outputs) {
             *to = s.file[*register];

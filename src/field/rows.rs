@@ -3,9 +3,11 @@
 
 use std::cell::Cell;
 
+use pulp::Simd;
+
 use crate::elementary;
 use crate::equations::program::code::{Action, Code, Op};
-use crate::equations::program::{Lanes, Program, run};
+use crate::equations::program::{Lanes, Program, run_wide};
 use crate::equations::tree::{Binary, Unary};
 
 /// Boxes in a row.
@@ -69,7 +71,7 @@ impl Rows {
 
     /// Works the rates out from the registers that are set.
     #[inline(always)]
-    pub fn run(&self, file: &mut File) {
+    pub fn run<S: Simd>(&self, simd: S, file: &mut File) {
         for stretch in &self.stretches {
             match stretch {
                 Stretch::Plain(ops) => {
@@ -79,7 +81,7 @@ impl Rows {
                         plain(op, cells);
                     }
                 }
-                Stretch::Other(code) => run(code, file),
+                Stretch::Other(code) => run_wide(simd, code, file),
             }
         }
     }
@@ -176,8 +178,11 @@ fn plain(op: &Op, file: Row) {
 
 #[cfg(test)]
 mod tests {
+    use pulp::Scalar;
+
     use super::*;
     use crate::equations::eml;
+    use crate::equations::program::run;
     use crate::error::Source;
     use std::sync::Arc;
 
@@ -201,7 +206,7 @@ mod tests {
             (here[0][l], here[1][l], here[2][l]) = (0.1 * l as f64, 0.03 * l as f64, 2.0 / (1.0 + l as f64));
         }
         there[..3].copy_from_slice(&here[..3]);
-        rows.run(&mut here);
+        rows.run(Scalar, &mut here);
         run(&program.rates, &mut there);
         for (output, other) in rows.outputs.iter().zip(&program.rates.outputs) {
             assert_eq!(here[*output].map(f64::to_bits), there[*other as usize].map(f64::to_bits));

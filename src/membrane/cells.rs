@@ -205,18 +205,20 @@ struct Block<'a, const L: usize> {
 impl<const L: usize> WithSimd for Block<'_, L> {
     type Output = Option<Failure>;
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let Self { system, mesh, mut part, shapes, task, number: block, shown, work } = self;
         match task {
             Task::Begin(time) => {
-                begin(system, mesh, &mut part, shapes.1, time, work);
+                begin(simd, system, mesh, &mut part, shapes.1, time, work);
                 None
             }
             Task::Show(number, time) => {
-                display(system, mesh, (&part, shown), shapes.1, (number, time), work);
+                display(simd, system, mesh, (&part, shown), shapes.1, (number, time), work);
                 None
             }
-            Task::Advance(course, pieces) => advance(system, mesh, &mut part, shapes, (&course, pieces, block), work),
+            Task::Advance(course, pieces) => {
+                advance(simd, system, mesh, &mut part, shapes, (&course, pieces, block), work)
+            }
         }
     }
 }

@@ -1,13 +1,15 @@
 //! The compiled equations on a block of cells: one pass over the atoms, eight numbers side by side (eight cells of a block, or eight
 //! atoms of a cell that stands alone).
 
+use pulp::Simd;
+
 use std::ops::Range;
 
 use super::shape;
 use super::system::{MembraneSystem, Slot};
 use crate::equations::eml::Taken;
 use crate::equations::program::code::Code;
-use crate::equations::program::{Lanes, Program, run};
+use crate::equations::program::{Lanes, Program, run_wide};
 
 /// Numbers side by side.
 pub const WIDTH: usize = 8;
@@ -91,7 +93,8 @@ pub struct Atoms<'a, const L: usize> {
 
 /// Runs a code for all atoms, and shows the registers after each group: which numbers of a row they belong to.
 #[inline(always)]
-fn sweep<const L: usize>(
+fn sweep<S: Simd, const L: usize>(
+    simd: S,
     (program, code, slots): (&Program, &Code, &[Slot]),
     atoms: Atoms<L>,
     file: &mut [Lanes<WIDTH>],
@@ -112,14 +115,15 @@ fn sweep<const L: usize>(
             };
             register[..count].copy_from_slice(&rows[number * length + first..][..count]);
         }
-        run(code, file);
+        run_wide(simd, code, file);
         each(first..first + count, file);
     }
 }
 
 /// Works out what is summed over the surface, eq. (surface.4), and puts it among what is open of the inside.
 #[inline(always)]
-pub fn sum<const L: usize>(
+pub fn sum<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     cell: &Cell<L>,
     (atoms, areas): (Atoms<L>, &[[f64; L]]),
@@ -137,7 +141,7 @@ pub fn sum<const L: usize>(
     let (program, code) = (&system.surface, &system.surface.further[0]);
     fill(program, &system.slots, cell, open, &mut registers.surface);
     let areas = areas.as_flattened();
-    sweep((program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
+    sweep(simd, (program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
         for (sum, &output) in system.sums.iter().zip(&code.outputs) {
             let total = &mut open[sum.open];
             // Numbers of a group are eight cells, or eight atoms of one: added in the order of the atoms either way.
@@ -155,7 +159,8 @@ pub fn sum<const L: usize>(
 
 /// Rates of change of all variables on the surface, `[variable][atom]`, and of the pools.
 #[inline(always)]
-pub fn rates<const L: usize>(
+pub fn rates<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     cell: &Cell<L>,
     atoms: Atoms<L>,
@@ -163,12 +168,13 @@ pub fn rates<const L: usize>(
     registers: &mut Registers,
     rates: (&mut [[f64; L]], &mut [[f64; L]]),
 ) {
-    work_out(system, (&system.surface.rates, &system.inside.rates), cell, atoms, open, registers, rates);
+    work_out(simd, system, (&system.surface.rates, &system.inside.rates), cell, atoms, open, registers, rates);
 }
 
 /// Strengths of noise, of each variable that has it at all atoms, `[variable][atom]`, and of each such pool.
 #[inline(always)]
-pub fn strengths<const L: usize>(
+pub fn strengths<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     cell: &Cell<L>,
     atoms: Atoms<L>,
@@ -177,12 +183,13 @@ pub fn strengths<const L: usize>(
     strengths: (&mut [[f64; L]], &mut [[f64; L]]),
 ) {
     let codes = (&system.surface.further[1], &system.inside.further[0]);
-    work_out(system, codes, cell, atoms, open, registers, strengths);
+    work_out(simd, system, codes, cell, atoms, open, registers, strengths);
 }
 
 /// Numbers of all atoms, `[number][atom]`, and of the inside of each cell.
 #[inline(always)]
-fn work_out<const L: usize>(
+fn work_out<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     (on_surface, of_inside): (&Code, &Code),
     cell: &Cell<L>,
@@ -195,7 +202,7 @@ fn work_out<const L: usize>(
         let program = &system.surface;
         fill(program, &system.slots, cell, open, &mut registers.surface);
         let (numbers, length) = (surface.as_flattened_mut(), atoms.coordinates.len() / 3 * L);
-        sweep((program, on_surface, &system.slots), atoms, &mut registers.surface, |part, file| {
+        sweep(simd, (program, on_surface, &system.slots), atoms, &mut registers.surface, |part, file| {
             for (number, &output) in on_surface.outputs.iter().enumerate() {
                 let row = &mut numbers[number * length..][..length][part.clone()];
                 row.copy_from_slice(&file[output as usize][..row.len()]);
@@ -210,7 +217,7 @@ fn work_out<const L: usize>(
     for (register, value) in file[1..].iter_mut().zip(cell.pools.iter().chain(open)) {
         *register = spread(value);
     }
-    run(of_inside, file);
+    run_wide(simd, of_inside, file);
     for (number, &output) in inside.iter_mut().zip(&of_inside.outputs) {
         number.copy_from_slice(&file[output as usize][..L]);
     }
@@ -218,7 +225,8 @@ fn work_out<const L: usize>(
 
 /// An expression that is shown, at all atoms.
 #[inline(always)]
-pub fn show<const L: usize>(
+pub fn show<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     cell: &Cell<L>,
     (number, atoms): (usize, Atoms<L>),
@@ -229,7 +237,7 @@ pub fn show<const L: usize>(
     let (program, code) = (&system.surface, &system.surface.further[2 + number]);
     fill(program, &system.slots, cell, open, &mut registers.surface);
     let (shown, output) = (shown.as_flattened_mut(), code.outputs[0] as usize);
-    sweep((program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
+    sweep(simd, (program, code, &system.slots), atoms, &mut registers.surface, |numbers, file| {
         let row = &mut shown[numbers];
         row.copy_from_slice(&file[output][..row.len()]);
     });
@@ -237,7 +245,8 @@ pub fn show<const L: usize>(
 
 /// The values of all variables at the start: on the surface `[variable][atom]`, and of the pools.
 #[inline(always)]
-pub fn start<const L: usize>(
+pub fn start<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     cell: &Cell<L>,
     atoms: Atoms<L>,
@@ -249,7 +258,7 @@ pub fn start<const L: usize>(
     fill(program, &system.start_slots, cell, open, &mut registers.start);
     let (values, length) = (surface.as_flattened_mut(), atoms.coordinates.len() / 3 * L);
     let count = system.variables();
-    sweep((program, code, &system.start_slots), atoms, &mut registers.start, |numbers, file| {
+    sweep(simd, (program, code, &system.start_slots), atoms, &mut registers.start, |numbers, file| {
         for (variable, &output) in code.outputs[..count].iter().enumerate() {
             let row = &mut values[variable * length..][..length][numbers.clone()];
             row.copy_from_slice(&file[output as usize][..row.len()]);

@@ -1,5 +1,7 @@
 //! Noise on surfaces and in pools, eq. (noise.3).
 
+use pulp::Simd;
+
 use super::evaluate::{Atoms, Cell, strengths, sum};
 use super::scratch::Work;
 use super::system::MembraneSystem;
@@ -26,7 +28,8 @@ impl Course<'_> {
 
 /// Kicks the cells of a block where a part of the window begins.
 #[inline(always)]
-pub fn kick<const L: usize>(
+pub fn kick<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     (course, block): (&Course, usize),
     (part, kick): (&Substep, Kick),
@@ -36,9 +39,9 @@ pub fn kick<const L: usize>(
     let cell = Cell { time: [part.begin; L], pools, area: area[0], volume: volume[0] };
     let atoms = Atoms { y, coordinates, given };
     // Where densities have moved since sums were taken, so have these.
-    sum(system, &cell, (atoms, areas), open, registers);
+    sum(simd, system, &cell, (atoms, areas), open, registers);
     // Rates are worked out after the kick: their memory is free.
-    strengths(system, &cell, atoms, open, registers, (explicit, pool_rates));
+    strengths(simd, system, &cell, atoms, open, registers, (explicit, pool_rates));
     let (cells, count) = (course.cells::<L>(block), areas.len());
     let [surface, of_pools] = &system.noisy;
     for (strengths, &variable) in explicit.chunks_exact(count).zip(surface) {

@@ -1,5 +1,7 @@
 //! Where membranes start, and what is summed over them where they stand.
 
+use pulp::Simd;
+
 use super::evaluate::{Atoms, Cell, measures, start, sum};
 use super::mesh::SurfaceMesh;
 use super::scratch::Work;
@@ -9,7 +11,8 @@ use super::window::Part;
 
 /// Gives the cells of a block that have not started their first values, and works out what is summed over their surfaces.
 #[inline(always)]
-pub fn begin<const L: usize>(
+pub fn begin<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     mesh: &SurfaceMesh,
     part: &mut Part<L>,
@@ -27,7 +30,7 @@ pub fn begin<const L: usize>(
     let Work { next, pools_next, open, registers, .. } = work;
     let cell = Cell { time: [time; L], pools: &work.pools, area, volume };
     let atoms = Atoms { y: &[], coordinates: &work.coordinates, given: part.given };
-    start(system, &cell, atoms, open, registers, (next, pools_next));
+    start(simd, system, &cell, atoms, open, registers, (next, pools_next));
     for l in (0..L).filter(|l| fresh[*l]) {
         part.values.iter_mut().zip(&*next).for_each(|(value, start)| value[l] = start[l]);
         part.areas.iter_mut().zip(&work.areas).for_each(|(area, own)| area[l] = own[l]);
@@ -35,7 +38,7 @@ pub fn begin<const L: usize>(
         part.volume[l] = volume[l];
     }
     let cell = Cell { time: [time; L], pools: &work.pools, area, volume };
-    sum(system, &cell, (Atoms { y: part.values, ..atoms }, &work.areas), open, registers);
+    sum(simd, system, &cell, (Atoms { y: part.values, ..atoms }, &work.areas), open, registers);
     for l in (0..L).filter(|l| fresh[*l]) {
         part.inside.iter_mut().zip(work.pools.iter().chain(&*open)).for_each(|(to, value)| to[l] = value[l]);
     }

@@ -1,5 +1,7 @@
 //! One step of reactions, diffusion and exchange together, eq. (surface.5) and (surface.6).
 
+use pulp::Simd;
+
 use super::evaluate::{Atoms, Cell, rates, sum};
 use super::mesh::SurfaceMesh;
 use super::scratch::Work;
@@ -17,7 +19,8 @@ pub const UNSOLVED: f64 = f64::MAX;
 /// Tries a step of each lane from `work.y` and `work.pools`; lanes whose step is 0 stay. Where it leads stands in `work.next` and
 /// `work.pools_next`. Returns the error of each lane over what is allowed.
 #[inline(always)]
-pub fn attempt<const L: usize>(
+pub fn attempt<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     mesh: &SurfaceMesh,
     work: &mut Work<L>,
@@ -31,7 +34,7 @@ pub fn attempt<const L: usize>(
                 error[l] = if solved[l] { error[l] } else { UNSOLVED };
             }
         }
-        react_stage(system, work, stage, (time, step));
+        react_stage(simd, system, work, stage, (time, step));
     }
     for variable in 0..system.variables() {
         let own = arrive(system, work, variable, step);
@@ -127,7 +130,8 @@ fn spread_stage<const L: usize>(
 
 /// Sums over the surface, rates of reactions and rates of pools at a stage.
 #[inline(always)]
-fn react_stage<const L: usize>(
+fn react_stage<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     work: &mut Work<L>,
     stage: usize,
@@ -149,9 +153,9 @@ fn react_stage<const L: usize>(
         work;
     let cell = Cell { time: now, pools: pools_stage, area: work.area[0], volume: work.volume[0] };
     let atoms = Atoms { y: values, coordinates, given };
-    sum(system, &cell, (atoms, areas), open, registers);
+    sum(simd, system, &cell, (atoms, areas), open, registers);
     let to = (&mut explicit[stage * all..(stage + 1) * all], &mut pool_rates[stage * pools..(stage + 1) * pools]);
-    rates(system, &cell, atoms, open, registers, to);
+    rates(simd, system, &cell, atoms, open, registers, to);
 }
 
 /// Where a variable is at the end of the step. Returns its error over what is allowed.

@@ -1,5 +1,7 @@
 //! A block of cells through a step of mechanics: each lane with steps of its own.
 
+use pulp::Simd;
+
 use super::evaluate::{Atoms, Cell, measures, show, sum};
 use super::failure::Failure;
 use super::kick::{Course, kick};
@@ -35,7 +37,8 @@ pub struct Part<'a, const L: usize> {
 
 /// Moves the cells of a block from one shape to another in a window of the document's time.
 #[inline(always)]
-pub fn advance<const L: usize>(
+pub fn advance<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     mesh: &SurfaceMesh,
     part: &mut Part<L>,
@@ -73,25 +76,26 @@ pub fn advance<const L: usize>(
         && let Some(substep) = substeps.next()
     {
         if let Some(one) = substep.kick {
-            kick(system, (window, block), (&substep, one), work);
+            kick(simd, system, (window, block), (&substep, one), work);
         }
         if pieces.is_empty() && substep.length > 0.0 {
-            failure = course(system, mesh, part, (substep.begin, substep.end), work);
+            failure = course(simd, system, mesh, part, (substep.begin, substep.end), work);
         }
         for piece in pieces {
             let (begin, end) = (piece.begin.max(substep.begin), piece.end.min(substep.end));
             if failure.is_none() && end > begin {
-                failure = course(system, mesh, part, (begin, end), work);
+                failure = course(simd, system, mesh, part, (begin, end), work);
             }
         }
     }
-    finish(system, mesh, part, to, window.substeps.until(), work);
+    finish(simd, system, mesh, part, to, window.substeps.until(), work);
     failure
 }
 
 /// Steps until every lane has reached the end of a part of the window.
 #[inline(always)]
-fn course<const L: usize>(
+fn course<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     mesh: &SurfaceMesh,
     part: &mut Part<L>,
@@ -120,7 +124,7 @@ fn course<const L: usize>(
             *part.steps = std::array::from_fn(|l| if l < part.cells && fixed.is_none() { wanted[l] } else { 0.0 });
             return failure;
         }
-        let error = attempt(system, mesh, work, (&time, &step));
+        let error = attempt(simd, system, mesh, work, (&time, &step));
         let mut good = [false; L];
         for l in (0..L).filter(|l| step[*l] > 0.0) {
             let bearable = error[l] <= 1.0 || (fixed.is_some() && error[l] < UNSOLVED);
@@ -159,7 +163,8 @@ fn course<const L: usize>(
 
 /// The end of the window: densities on the shape that has come, and what is summed over it.
 #[inline(always)]
-fn finish<const L: usize>(
+fn finish<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     mesh: &SurfaceMesh,
     part: &mut Part<L>,
@@ -187,7 +192,7 @@ fn finish<const L: usize>(
     *part.volume = volume;
     let cell = Cell { time: [end; L], pools: &work.pools, area, volume };
     let atoms = Atoms { y: &work.y, coordinates: &work.coordinates, given: part.given };
-    sum(system, &cell, (atoms, part.areas), &mut work.open, &mut work.registers);
+    sum(simd, system, &cell, (atoms, part.areas), &mut work.open, &mut work.registers);
     part.inside[..pools].copy_from_slice(&work.pools);
     part.inside[pools..].copy_from_slice(&work.open);
     // Lanes without a cell hold zeros.
@@ -199,7 +204,8 @@ fn finish<const L: usize>(
 
 /// Works out an expression that is shown at all atoms of the cells of a block where they stand.
 #[inline(always)]
-pub fn display<const L: usize>(
+pub fn display<S: Simd, const L: usize>(
+    simd: S,
     system: &MembraneSystem,
     mesh: &SurfaceMesh,
     (part, shown): (&Part<L>, &mut [[f64; L]]),
@@ -213,5 +219,5 @@ pub fn display<const L: usize>(
     let (area, volume) = measures(mesh, x, &work.areas);
     let cell = Cell { time: [time; L], pools, area, volume };
     let atoms = Atoms { y: part.values, coordinates: &work.coordinates, given: part.given };
-    show(system, &cell, (number, atoms), open, &mut work.registers, shown);
+    show(simd, system, &cell, (number, atoms), open, &mut work.registers, shown);
 }

@@ -1,6 +1,8 @@
 //! The cells of one task through one window.
 
-use pulp::Simd;
+use std::marker::PhantomData;
+
+use pulp::{Simd, WithSimd};
 
 use super::adaptive::{Adaptive, Rodas, Tsitouras, Verner};
 use super::cells::{CellTrouble, Cells, LaneCells};
@@ -29,8 +31,8 @@ pub fn advance<S: Simd, const L: usize>(
         Method::Rk45 => adaptive::<S, L, Tsitouras>(simd, program, scratch, cells, window, tolerances),
         Method::Rk65 => adaptive::<S, L, Verner>(simd, program, scratch, cells, window, tolerances),
         Method::Rosenbrock => adaptive::<S, L, Rodas>(simd, program, scratch, cells, window, tolerances),
-        Method::Rk4 { step } => fixed::advance::<L, true>(program, scratch, cells, window, step),
-        Method::Euler { step } => fixed::advance::<L, false>(program, scratch, cells, window, step),
+        Method::Rk4 { step } => fixed::advance::<S, L, true>(simd, program, scratch, cells, window, step),
+        Method::Euler { step } => fixed::advance::<S, L, false>(simd, program, scratch, cells, window, step),
     }
 }
 
@@ -74,19 +76,18 @@ fn adaptive<S: Simd, const L: usize, M: Adaptive>(
         if left == 0 {
             break;
         }
-        begin::<L, M>(program, s, &mut lanes, &progress.time, until - from, tolerances, &mut work);
+        begin::<S, L, M>(simd, program, s, &mut lanes, (&progress.time, until - from), tolerances, &mut work);
         let round = plan(&lanes, &progress, (from, until));
-        M::step(simd, program, s, &progress.time, &round.step);
-        work.jacobians += M::JACOBIANS * left as u64;
-        work.rates += M::RATES * left as u64;
-        let mut error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
+        let (time, step, method) = (&progress.time, &round.step, PhantomData::<M>);
+        let mut error = simd.vectorize(Attempt { program, s, time, step, tolerances, method });
+        let mut tries = left as u64;
         if M::KEEPS_SIDE && is_nan(&error, &lanes.active) && s.keep_sides(&error, &program.sizes, tolerances) {
-            M::step(simd, program, s, &progress.time, &round.step);
-            work.jacobians += M::JACOBIANS * left as u64;
-            work.rates += M::RATES * left as u64;
-            error = control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances);
+            error = simd.vectorize(Attempt { program, s, time, step, tolerances, method });
+            tries *= 2;
             s.keeps_side = false;
         }
+        work.jacobians += M::JACOBIANS * tries;
+        work.rates += M::RATES * tries;
         let accepted = judge(&mut lanes, &mut progress, &round, &error, &M::CONTROLLER, until);
         let steps = mask::count(&accepted);
         work.steps += steps as u64;
@@ -111,6 +112,27 @@ fn adaptive<S: Simd, const L: usize, M: Adaptive>(
         }
     }
     trouble.map_or(Ok(work), Err)
+}
+
+/// A step of all lanes, as an object: a function of its own for each method and kind of registers.
+struct Attempt<'a, const L: usize, M> {
+    program: &'a Program,
+    s: &'a mut Scratch<L>,
+    time: &'a Lanes<L>,
+    step: &'a Lanes<L>,
+    tolerances: &'a Tolerances,
+    method: PhantomData<M>,
+}
+
+impl<const L: usize, M: Adaptive> WithSimd for Attempt<'_, L, M> {
+    /// The errors of the lanes, in tolerances.
+    type Output = Lanes<L>;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Lanes<L> {
+        let Self { program, s, time, step, tolerances, .. } = self;
+        M::step(simd, program, s, time, step);
+        control::norm(&s.error, &s.state, &s.proposal, &program.sizes, tolerances)
+    }
 }
 
 /// Whether the error of an active lane is not a number.
@@ -240,12 +262,12 @@ fn sit<const L: usize>(
 
 /// What cells that have just sat down need: the rates at their state, and a first step where none is known.
 #[inline(always)]
-fn begin<const L: usize, M: Adaptive>(
+fn begin<S: Simd, const L: usize, M: Adaptive>(
+    simd: S,
     program: &Program,
     s: &mut Scratch<L>,
     lanes: &mut LaneCells<L>,
-    time: &Lanes<L>,
-    window: f64,
+    (time, window): (&Lanes<L>, f64),
     tolerances: &Tolerances,
     work: &mut Work,
 ) {
@@ -261,7 +283,7 @@ fn begin<const L: usize, M: Adaptive>(
     }
     if fresh > 0 {
         // Those of the others come out as they are: the same code at the same time and state.
-        s.rates_at_state(program, *time);
+        s.rates_at_state(simd, program, *time);
         work.rates += fresh as u64;
     }
     if unknown {

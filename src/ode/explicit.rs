@@ -26,7 +26,7 @@ fn stage<S: Simd, const W: usize, const L: usize, P: LooksBack<L>>(
     for l in 0..L {
         clock[l] = time[l] + share * step[l];
     }
-    s.rates_into(program, W);
+    s.rates_into(simd, program, W);
 }
 
 /// One step of the pair from (time, state), whose rates are stage 0. Leaves proposal, error, and the rates at the
@@ -122,7 +122,8 @@ pub fn tsitouras_between<P>(s: &Scratch<1, P>, step: f64, share: f64, state: &mu
 
 /// One step of the classical method of order 4 from (time, state).
 #[inline(always)]
-pub fn classical<const L: usize, P: LooksBack<L>>(
+pub fn classical<S: Simd, const L: usize, P: LooksBack<L>>(
+    simd: S,
     program: &Program,
     s: &mut Scratch<L, P>,
     time: Lanes<L>,
@@ -140,7 +141,7 @@ pub fn classical<const L: usize, P: LooksBack<L>>(
         for l in 0..L {
             s.file[0][l] = time[l] + SHARE[stage] * step[l];
         }
-        s.rates_into(program, stage);
+        s.rates_into(simd, program, stage);
     }
     for v in 0..n {
         for l in 0..L {
@@ -153,13 +154,14 @@ pub fn classical<const L: usize, P: LooksBack<L>>(
 
 /// One step of Euler's method from (time, state).
 #[inline(always)]
-pub fn euler<const L: usize, P: LooksBack<L>>(
+pub fn euler<S: Simd, const L: usize, P: LooksBack<L>>(
+    simd: S,
     program: &Program,
     s: &mut Scratch<L, P>,
     time: Lanes<L>,
     step: Lanes<L>,
 ) {
-    s.rates_at_state(program, time);
+    s.rates_at_state(simd, program, time);
     for v in 0..s.state.len() {
         for l in 0..L {
             s.proposal[v][l] = s.state[v][l] + step[l] * s.stages[v][l];

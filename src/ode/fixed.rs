@@ -1,5 +1,7 @@
 //! The cells of one task through one window by equal inner steps.
 
+use pulp::Simd;
+
 use super::cells::{CellTrouble, Cells};
 use super::mask::{Mask, choose, when};
 use super::scratch::Scratch;
@@ -11,7 +13,8 @@ use crate::equations::program::Program;
 /// # Errors
 /// The trouble of the first cell that failed; it keeps its last good state.
 #[inline(always)]
-pub fn advance<const L: usize, const CLASSICAL: bool>(
+pub fn advance<S: Simd, const L: usize, const CLASSICAL: bool>(
+    simd: S,
     program: &Program,
     s: &mut Scratch<L>,
     cells: &mut Cells<L>,
@@ -32,9 +35,9 @@ pub fn advance<const L: usize, const CLASSICAL: bool>(
         for number in 0..count as u64 {
             let time = from + number as f64 * step;
             if CLASSICAL {
-                explicit::classical(program, s, [time; L], [step; L]);
+                explicit::classical(simd, program, s, [time; L], [step; L]);
             } else {
-                explicit::euler(program, s, [time; L], [step; L]);
+                explicit::euler(simd, program, s, [time; L], [step; L]);
             }
             for l in 0..L {
                 let broken = (0..n).find(|&v| !s.proposal[v][l].is_finite());

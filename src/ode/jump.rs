@@ -1,5 +1,7 @@
 //! Jumps of the rates that no step is short enough for, eq. (ode.10).
 
+use pulp::Scalar;
+
 use super::stepper::Stepper;
 
 /// Rates after a jump are alike when they differ by less than this share of the larger, or what they change by this share of the relative tolerance.
@@ -14,7 +16,7 @@ impl Stepper<'_> {
         let begin = self.s.state.clone();
         let mut rates = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
         for (rates, number) in rates.iter_mut().zip(0..) {
-            self.s.rates_at_state(self.program, [self.time + f64::from(number) * step]);
+            self.s.rates_at_state(Scalar, self.program, [self.time + f64::from(number) * step]);
             for (v, rate) in rates.iter_mut().enumerate() {
                 *rate = self.s.stages[v][0];
                 self.s.state[v][0] += step * *rate;

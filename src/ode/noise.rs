@@ -8,7 +8,7 @@ use super::population::{LANES, Population};
 use super::substeps::Kick;
 use super::{OdeTrouble, Reason};
 use crate::equations::eml::Document;
-use crate::equations::program::{Lanes, Program, run};
+use crate::equations::program::{Lanes, Program, run_wide};
 use crate::random::{Choices, Normals, Purpose};
 
 /// How strongly the variables of a system are kicked: compiled, and never changed.
@@ -112,7 +112,7 @@ impl<I: Iterator<Item = u64>> WithSimd for Blocks<'_, I> {
     /// A cell that has no number after the kick, and the variable.
     type Output = Option<(usize, usize)>;
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let mut broken = None;
         let Self { population, noise, normals, mut ids, time, kick, file } = self;
         let (n, m, root) = (population.variables, population.open, kick.span.sqrt());
@@ -122,7 +122,7 @@ impl<I: Iterator<Item = u64>> WithSimd for Blocks<'_, I> {
             file[0] = [time; LANES];
             file[1..=n].copy_from_slice(states);
             file[1 + n..1 + n + m].copy_from_slice(&population.open_values[block * m..(block + 1) * m]);
-            run(code, file);
+            run_wide(simd, code, file);
             let (mut cells, count) = ([0; LANES], LANES.min(population.cells - block * LANES));
             for (cell, id) in cells[..count].iter_mut().zip(&mut ids) {
                 *cell = id as u32;

@@ -1,11 +1,12 @@
 //! The step for stiff systems, eq. (ode.2).
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
+use super::linear::Linear;
 use super::scratch::{LooksBack, Scratch};
 use super::tableau::rodas::{A1, A2, A3, A4, A5, C, D2, D3, G, GAMMA, K1, K2, K3, K4, K5, STAGES};
 use super::wide::{combine, negated_where_finite, take_away};
-use crate::equations::program::{Lanes, Program, run};
+use crate::equations::program::{Lanes, Program, run_wide};
 
 /// One step from (time, state). Leaves proposal, error and the stages. Derivatives that are not finite (a root at 0,
 /// say) count as 0: the error estimate then decides about the step. Where values keep to their side of nothing, what they were beyond it at
@@ -89,7 +90,7 @@ fn stage<S: Simd, const W: usize, const L: usize, P: LooksBack<L>>(
             }
         }
     }
-    s.rates_into(program, W);
+    s.rates_into(simd, program, W);
     let (earlier, present) = s.stages.split_at_mut(W * n);
     for (v, rate) in present[..n].iter_mut().enumerate() {
         combine(simd, right, earlier, (n, v), *rate, clock.inverse, rate);
@@ -117,7 +118,22 @@ fn solve_stage<S: Simd, const L: usize, P>(
             take_away(simd, rate, &weight, negated);
         }
     }
-    s.linear.solve(simd, program, present);
+    simd.vectorize(Solve { linear: &mut s.linear, program, right: present });
+}
+
+/// The linear system of a stage, as an object: a function of its own for each kind of registers, not one in each stage.
+struct Solve<'a, const L: usize> {
+    linear: &'a mut Linear<L>,
+    program: &'a Program,
+    right: &'a mut [Lanes<L>],
+}
+
+impl<const L: usize> WithSimd for Solve<'_, L> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.linear.solve(simd, self.program, self.right);
+    }
 }
 
 /// What a rate takes in a step from a variable that is nothing, over the absolute tolerance, beyond which it is no round-off: the equations lead
@@ -137,7 +153,7 @@ fn prepare<S: Simd, const L: usize, P: LooksBack<L>>(
     s.file[0] = *time;
     s.file[1..=n].copy_from_slice(&s.state);
     s.past.fill(program, &program.linear, &mut s.file);
-    run(&program.linear, &mut s.file);
+    run_wide(simd, &program.linear, &mut s.file);
     for v in 0..n {
         s.stages[v] = s.file[program.linear.outputs[v] as usize];
         if !program.timeless {

@@ -1,9 +1,11 @@
 //! Buffers that are kept from window to window so that nothing is allocated meanwhile.
 
+use pulp::{Scalar, Simd};
+
 use super::control::Tolerances;
 use super::linear::Linear;
 use crate::equations::program::code::Code;
-use crate::equations::program::{Lanes, Program, run};
+use crate::equations::program::{Lanes, Program, run, run_wide};
 use crate::equations::tree::QuantityId;
 
 /// Stages of the method that has most, with the one in the middle of its step.
@@ -105,18 +107,18 @@ impl<const L: usize, P: LooksBack<L>> Scratch<L, P> {
 
     /// Rates at the state of the step's begin, as stage 0.
     #[inline(always)]
-    pub fn rates_at_state(&mut self, program: &Program, time: Lanes<L>) {
+    pub fn rates_at_state<S: Simd>(&mut self, simd: S, program: &Program, time: Lanes<L>) {
         let n = self.state.len();
         self.file[0] = time;
         self.file[1..=n].copy_from_slice(&self.state);
-        self.rates_into(program, 0);
+        self.rates_into(simd, program, 0);
     }
 
     /// Rates at the time and state that stand in the registers, as a stage.
     #[inline(always)]
-    pub fn rates_into(&mut self, program: &Program, stage: usize) {
+    pub fn rates_into<S: Simd>(&mut self, simd: S, program: &Program, stage: usize) {
         self.past.fill(program, &program.rates, &mut self.file);
-        run(&program.rates, &mut self.file);
+        run_wide(simd, &program.rates, &mut self.file);
         let n = self.state.len();
         for (to, &from) in self.stages[stage * n..(stage + 1) * n].iter_mut().zip(&program.rates.outputs) {
             *to = self.file[from as usize];
@@ -149,7 +151,7 @@ impl<const L: usize, P: LooksBack<L>> Scratch<L, P> {
     /// that changes fastest for its size. Also returns whether all are finite.
     #[inline(never)]
     pub fn worst_variable(&mut self, program: &Program, time: Lanes<L>, l: usize) -> (Option<usize>, bool) {
-        self.rates_at_state(program, time);
+        self.rates_at_state(Scalar, program, time);
         let (state, rates) = (&self.state, &self.stages);
         let broken = (0..state.len()).find(|&v| !(state[v][l].is_finite() && rates[v][l].is_finite()));
         let speed = |v: usize| rates[v][l].abs() / (state[v][l].abs() + f64::MIN_POSITIVE);

@@ -197,15 +197,15 @@ impl<'a> Stepper<'a> {
         let euler = matches!(self.method, Method::Euler { .. });
         let known = self.attempt(step, |stepper| {
             if euler {
-                explicit::euler(stepper.program, &mut stepper.s, [stepper.time], [step]);
+                explicit::euler(Scalar, stepper.program, &mut stepper.s, [stepper.time], [step]);
                 stepper.work.rates += 1;
                 return;
             }
-            explicit::classical(stepper.program, &mut stepper.s, [stepper.time], [step]);
+            explicit::classical(Scalar, stepper.program, &mut stepper.s, [stepper.time], [step]);
             // The rates at the end, for the values between.
             let n = stepper.s.state.len();
             stepper.s.file[1..=n].copy_from_slice(&stepper.s.proposal);
-            stepper.s.rates_into(stepper.program, 6);
+            stepper.s.rates_into(Scalar, stepper.program, 6);
             stepper.work.rates += 5;
         });
         self.check_delays()?;
@@ -221,7 +221,7 @@ impl<'a> Stepper<'a> {
         let n = self.s.state.len();
         self.middle.clear();
         if self.fresh {
-            self.s.rates_at_state(self.program, [self.time]);
+            self.s.rates_at_state(Scalar, self.program, [self.time]);
             self.work.rates += 1;
             self.fresh = false;
         }

@@ -18,10 +18,17 @@ fn sum<S: Simd, const L: usize>(
     for (stage, &weight) in weights.iter().enumerate() {
         if weight != 0.0 {
             let part = simd.mul_f64s(simd.splat_f64s(weight), S::as_simd_f64s(&stages[stage * n + variable]).0[slot]);
-            sum = Some(sum.map_or(part, |sum| simd.add_f64s(sum, part)));
+            // No closure: it would be compiled for the registers of all processors, and then not always put in its place.
+            sum = Some(match sum {
+                Some(sum) => simd.add_f64s(sum, part),
+                None => part,
+            });
         }
     }
-    sum.unwrap_or(simd.splat_f64s(0.0))
+    match sum {
+        Some(sum) => sum,
+        None => simd.splat_f64s(0.0),
+    }
 }
 
 /// begin + factor·Σ weight·stage for one variable.

@@ -20,7 +20,7 @@ pub use delayed::DelayedValue;
 pub use elimination::Elimination;
 pub use initial::initial_values;
 pub use past::Past;
-pub use run::{Lanes, run};
+pub use run::{Lanes, run, run_wide};
 
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;

@@ -1,5 +1,7 @@
 //! Runs register code over lanes of cells.
 
+use pulp::{Simd, WithSimd};
+
 use super::code::{Action, Code, Function};
 use crate::elementary;
 use crate::equations::tree::{Binary, Unary, larger, smaller};
@@ -51,8 +53,39 @@ fn pairs(function: Binary, a: &mut [f64], b: &[f64]) {
 }
 
 /// Runs code on a register file whose slots and constants are set.
-#[inline(always)]
+#[inline(never)]
 pub fn run<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
+    run_in_place(code, file);
+}
+
+/// As [`run`], in the processor's wide registers. It is a function of its own for each kind of these: compiled into every stage of every method, it
+/// is most of the program, and a call costs less than one operation of the code.
+#[inline(always)]
+pub fn run_wide<S: Simd, const L: usize>(simd: S, code: &Code, file: &mut [Lanes<L>]) {
+    if S::IS_SCALAR {
+        run(code, file);
+    } else {
+        simd.vectorize(Run { code, file });
+    }
+}
+
+/// Code and registers as an object with a method of its own: only so is all of it compiled for the wide registers, which a closure is not always.
+struct Run<'a, const L: usize> {
+    code: &'a Code,
+    file: &'a mut [Lanes<L>],
+}
+
+impl<const L: usize> WithSimd for Run<'_, L> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        run_in_place(self.code, self.file);
+    }
+}
+
+/// As [`run`], compiled for the registers of the place where it stands.
+#[inline(always)]
+fn run_in_place<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
     for op in &code.ops {
         // Operands stay where they are: copied, they would go through the stack.
         let (a, b) = (&file[op.a as usize], &file[op.b as usize]);
