@@ -41,6 +41,19 @@ fn a_chain_of_compartments_passes_on_as_the_terms_of_poisson() {
 }
 
 #[test]
+fn a_number_may_stand_right_before_what_has_an_index() {
+    // Each of the pairs that join to X_(i+1) takes two of X_i; `2e1` is twenty.
+    let system = system(
+        r#"<variable id="X_1" initial="8"/><repeat index="i" from="2" count="2"><variable id="X[i]" initial="0"/></repeat>
+           <repeat index="i" count="2"><reaction id="join[i]" equation="2X[i] -> X[i+1]" rate="2e1*X[i]"/></repeat>"#,
+    );
+    let value = at(&system, 10.0);
+    for (id, expected) in [("X_1", 0.0), ("X_2", 0.0), ("X_3", 2.0)] {
+        assert!((value(id) - expected).abs() < 1e-9, "{id}: {}", value(id));
+    }
+}
+
+#[test]
 fn waves_round_a_ring_decay_at_the_rates_of_its_modes() {
     let system = system(
         r#"<repeat index="i" from="0" count="24" periodic="true">

@@ -167,13 +167,24 @@ fn next(text: &str, from: usize) -> Option<Piece> {
             }
             return Some(Piece { name: at..end, brackets });
         } else if c.is_ascii_digit() {
-            // `2e3` has no name in it.
-            at += text[at..].find(|c| !is_part(c) && c != '.').unwrap_or(text.len() - at);
+            at += number(&text[at..]);
         } else {
             at += c.len_utf8();
         }
     }
     None
+}
+
+/// The length of the number that a text begins with: `2e3` has no name in it, `2X` has one.
+fn number(text: &str) -> usize {
+    let digits = |from: usize| text[from..].find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len() - from);
+    let whole = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let Some(rest) = text[whole..].strip_prefix(['e', 'E']) else { return whole };
+    let exponent = whole + 1 + usize::from(rest.starts_with(['+', '-']));
+    match digits(exponent) {
+        0 => whole,
+        length => exponent + length,
+    }
 }
 
 /// What stands in brackets as a number: `i`, `i + 1`, `i - 2` or `7`.
