@@ -1,10 +1,12 @@
 //! `pseudopod resume`: goes on with a run from its last checkpoint.
 
 use super::crash;
+use super::memory;
 use super::report::{Form, Report};
 use super::run::{How, cancelled_by_signals, reporter, tell};
 use crate::error::Result;
 use crate::output::{ResultFile, to_json};
+use crate::run::ResumeOptions;
 use std::path::{Path, PathBuf};
 
 /// Goes on with a run that was stopped or killed.
@@ -12,6 +14,9 @@ use std::path::{Path, PathBuf};
 pub struct ResumeArgs {
     /// The result file of the run.
     pub result: PathBuf,
+    /// The most memory that it may take by an estimate, as in "8 GB"; by default what the machine has.
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<String>,
     /// How it is run.
     #[command(flatten)]
     pub how: How,
@@ -36,8 +41,12 @@ pub fn run(args: &ResumeArgs) -> Result<Report> {
         };
         return Ok(Report { words, ..Report::of_files(&args.result, &[]) });
     }
-    let (threads, cancel) = (args.how.threads, cancelled_by_signals());
-    let outcome = crate::run::resume(&args.result, threads, &cancel, &mut *reporter(args.how.quiet))?;
+    let options = ResumeOptions {
+        threads: args.how.threads,
+        memory: memory::allowed(args.memory.as_deref())?,
+        cancel: cancelled_by_signals(),
+    };
+    let outcome = crate::run::resume(&args.result, &options, &mut *reporter(args.how.quiet))?;
     tell(&args.result, &outcome, &args.how)
 }
 

@@ -38,6 +38,30 @@ impl RunOptions {
     }
 }
 
+/// How a run is to be gone on with.
+#[derive(Debug, Clone)]
+pub struct ResumeOptions {
+    /// Threads; all cores when absent. The result does not depend on it.
+    pub threads: Option<usize>,
+    /// The most memory that the experiment may take by an estimate, in bytes; any when absent.
+    pub memory: Option<u64>,
+    /// Ends the run at the next step, with a checkpoint to resume from.
+    pub cancel: CancelToken,
+}
+
+impl ResumeOptions {
+    /// On all cores, with any memory.
+    pub fn new() -> Self {
+        Self { threads: None, memory: None, cancel: CancelToken::new() }
+    }
+}
+
+impl Default for ResumeOptions {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// What a run did.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
@@ -104,15 +128,22 @@ pub fn finished_already(result: &Path) -> Result<Option<Outcome>> {
 /// Goes on with a run that was stopped or killed, from its last checkpoint. A finished run stays as it is.
 ///
 /// # Errors
-/// As [`run`], and [`Error::Input`] when there is no checkpoint or it belongs to another experiment.
-pub fn resume(result: &Path, threads: Option<usize>, cancel: &CancelToken, report: &mut dyn Report) -> Result<Outcome> {
-    let builder = Simulation::builder().threads_or_all(threads).cancel_token(cancel.clone());
+/// As [`run`], and [`Error::Input`] when there is no checkpoint, it belongs to another experiment, or the experiment takes more memory than it may.
+pub fn resume(result: &Path, options: &ResumeOptions, report: &mut dyn Report) -> Result<Outcome> {
+    let builder = Simulation::builder().threads_or_all(options.threads).cancel_token(options.cancel.clone());
     if let Some(outcome) = finished_already(result)? {
         return Ok(outcome);
     }
-    let Some(checkpoint) = load_checkpoint(result)? else { return begin_again(&builder, result, report) };
+    let within_memory = |header: &Header| {
+        let mut document = document_of(header, result)?;
+        document.memory = options.memory;
+        Ok(document)
+    };
+    let Some(checkpoint) = load_checkpoint(result)? else {
+        return begin_again(&builder, result, within_memory, report);
+    };
     let header = checkpoint.meta.header.clone();
-    let document = document_of(&header, result)?;
+    let document = within_memory(&header)?;
     let mut ready = builder.ready_to_restore(&document)?;
     ready.simulation.restore(&checkpoint.payload).map_err(|error| cannot_restore(&error, result))?;
     let layout = layout_of(ready.simulation.model());
@@ -121,7 +152,12 @@ pub fn resume(result: &Path, threads: Option<usize>, cancel: &CancelToken, repor
 }
 
 /// Goes on with a run that was killed before its first checkpoint, from its start, which is all that it has recorded.
-fn begin_again(builder: &Builder, result: &Path, report: &mut dyn Report) -> Result<Outcome> {
+fn begin_again(
+    builder: &Builder,
+    result: &Path,
+    document_of: impl Fn(&Header) -> Result<Document>,
+    report: &mut dyn Report,
+) -> Result<Outcome> {
     let file = ResultFile::open(result)?;
     if file.steps()?.iter().any(|step| *step > 0) {
         let (name, side) = (result.display(), checkpoint_path(result));
@@ -131,7 +167,7 @@ fn begin_again(builder: &Builder, result: &Path, report: &mut dyn Report) -> Res
     }
     let header = file.header().clone();
     drop(file);
-    let ready = builder.ready_told(&document_of(&header, result)?, &|_| ())?;
+    let ready = builder.ready_told(&document_of(&header)?, &|_| ())?;
     let writer = ResultWriter::reopen(result, &header, &layout_of(ready.simulation.model()), Kept::until(0))?;
     drive(ready, writer, result, report, Start::Recorded).map_err(|error| can_go_on(error, result))
 }

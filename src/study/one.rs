@@ -9,7 +9,7 @@ use super::plan::Plan;
 use crate::error::{Error, Fault, Result, short};
 use crate::experiment::Document;
 use crate::output::{Header, Overwrite, ResultFile, checkpoint_path};
-use crate::run::{self, Outcome, Report, RunOptions, finished_already};
+use crate::run::{self, Outcome, Report, ResumeOptions, RunOptions, finished_already};
 use crate::simulation::CancelToken;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -97,7 +97,10 @@ pub fn run_one(plan: &Plan, run: &Run, options: &OneOptions, report: &mut dyn Re
     let begun = begun_before(plan, run, &files)?;
     plan.check_files()?;
     let made = match begun {
-        true => run::resume(&files.partial, options.threads, &options.cancel, report),
+        true => {
+            let OneOptions { threads, memory, cancel, .. } = options.clone();
+            run::resume(&files.partial, &ResumeOptions { threads, memory, cancel }, report)
+        }
         false => begin(plan, run, &files, options, report),
     };
     let done = match made {

@@ -1,10 +1,9 @@
 //! What a run promises: resume is exact, threads and output do not matter, exit codes.
 
 use crate::turns::take_turn;
-use pseudopod::CancelToken;
 use pseudopod::experiment::Document;
 use pseudopod::output::ResultFile;
-use pseudopod::run::{Quiet, RunOptions, resume, run};
+use pseudopod::run::{Quiet, ResumeOptions, RunOptions, resume, run};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -109,7 +108,7 @@ fn a_killed_run_resumes_to_the_same_bits() {
     child.wait().unwrap();
     assert!(killed, "the run ended before it could be killed");
     if !ResultFile::open(&result).unwrap().ending().finished {
-        resume(&result, Some(1), &CancelToken::new(), &mut Quiet).unwrap();
+        resume(&result, &ResumeOptions { threads: Some(1), ..ResumeOptions::new() }, &mut Quiet).unwrap();
     }
     assert_eq!(contents(&whole), contents(&result));
 }

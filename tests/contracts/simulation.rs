@@ -4,7 +4,7 @@
 use crate::turns::take_turn;
 use pseudopod::experiment::Document;
 use pseudopod::output::ResultFile;
-use pseudopod::run::{Quiet, RunOptions, run};
+use pseudopod::run::{Quiet, ResumeOptions, RunOptions, run};
 use pseudopod::sim::contact::PlaneBond;
 use pseudopod::sim::{AtomBalance, State};
 use pseudopod::simulation::{Builder, CellId, CheckpointFault, EXAMPLE, NewCell, PopulationTrouble, SeriesScope};
@@ -226,7 +226,7 @@ fn a_cancelled_run_can_be_resumed_to_the_same_bits() {
     stopped.cancel.cancel();
     let ended = run(&document, &stopped, &mut Quiet);
     assert_eq!(ended.unwrap_err().exit_code(), 130);
-    pseudopod::run::resume(&stopped.result, None, &CancelToken::new(), &mut Quiet).unwrap();
+    pseudopod::run::resume(&stopped.result, &ResumeOptions::new(), &mut Quiet).unwrap();
     let last = |options: &RunOptions| {
         let file = ResultFile::open(&options.result).unwrap();
         (file.times().unwrap(), file.positions(file.frames() - 1).unwrap())
