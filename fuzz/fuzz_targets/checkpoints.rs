@@ -7,7 +7,7 @@ use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
 use pseudopod::output::{Header, checkpoint_path, frames_path, load_checkpoint};
-use pseudopod::run::{Report, document_of, resume};
+use pseudopod::run::{Report, ResumeOptions, document_of, resume};
 use pseudopod::simulation::{CancelToken, Simulation};
 use pseudopod_fuzz::base::BASE;
 use pseudopod_fuzz::commands::told;
@@ -60,8 +60,8 @@ fuzz_target!(init: { one_thread(); let _ = &*BASE; }, |data: &[u8]| {
     }
     write("run.h5", &BASE.running);
     std::fs::write(frames_path(&result), &BASE.log).expect("a file can be written");
-    let cancel = CancelToken::new();
-    if let Err(error) = resume(&result, None, &cancel.clone(), &mut OneStep(cancel)) {
+    let options = ResumeOptions::new();
+    if let Err(error) = resume(&result, &options, &mut OneStep(options.cancel.clone())) {
         told(&error);
     }
 });
