@@ -60,7 +60,7 @@ fuzz_target!(init: { one_thread(); let _ = &*BASE; }, |data: &[u8]| {
     }
     write("run.h5", &BASE.running);
     std::fs::write(frames_path(&result), &BASE.log).expect("a file can be written");
-    let options = ResumeOptions::new();
+    let options = ResumeOptions::default();
     if let Err(error) = resume(&result, &options, &mut OneStep(options.cancel.clone())) {
         told(&error);
     }

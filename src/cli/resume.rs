@@ -27,6 +27,7 @@ pub struct ResumeArgs {
 /// # Errors
 /// As [`crate::run::resume`].
 pub fn run(args: &ResumeArgs) -> Result<Report> {
+    let memory = memory::allowed(args.memory.as_deref())?;
     let form = if args.how.json { Form::Json } else { Form::Words };
     let finished = crash::told_as_damage("resume", form, &args.result, || {
         if args.result.exists() {
@@ -41,11 +42,7 @@ pub fn run(args: &ResumeArgs) -> Result<Report> {
         };
         return Ok(Report { words, ..Report::of_files(&args.result, &[]) });
     }
-    let options = ResumeOptions {
-        threads: args.how.threads,
-        memory: memory::allowed(args.memory.as_deref())?,
-        cancel: cancelled_by_signals(),
-    };
+    let options = ResumeOptions { threads: args.how.threads, memory, cancel: cancelled_by_signals() };
     let outcome = crate::run::resume(&args.result, &options, &mut *reporter(args.how.quiet))?;
     tell(&args.result, &outcome, &args.how)
 }

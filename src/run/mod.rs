@@ -39,7 +39,7 @@ impl RunOptions {
 }
 
 /// How a run is to be gone on with.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct ResumeOptions {
     /// Threads; all cores when absent. The result does not depend on it.
     pub threads: Option<usize>,
@@ -47,19 +47,6 @@ pub struct ResumeOptions {
     pub memory: Option<u64>,
     /// Ends the run at the next step, with a checkpoint to resume from.
     pub cancel: CancelToken,
-}
-
-impl ResumeOptions {
-    /// On all cores, with any memory.
-    pub fn new() -> Self {
-        Self { threads: None, memory: None, cancel: CancelToken::new() }
-    }
-}
-
-impl Default for ResumeOptions {
-    fn default() -> Self {
-        Self::new()
-    }
 }
 
 /// What a run did.
@@ -134,16 +121,9 @@ pub fn resume(result: &Path, options: &ResumeOptions, report: &mut dyn Report) -
     if let Some(outcome) = finished_already(result)? {
         return Ok(outcome);
     }
-    let within_memory = |header: &Header| {
-        let mut document = document_of(header, result)?;
-        document.memory = options.memory;
-        Ok(document)
-    };
-    let Some(checkpoint) = load_checkpoint(result)? else {
-        return begin_again(&builder, result, within_memory, report);
-    };
+    let Some(checkpoint) = load_checkpoint(result)? else { return begin_again(&builder, result, options, report) };
     let header = checkpoint.meta.header.clone();
-    let document = within_memory(&header)?;
+    let document = document_within(&header, result, options)?;
     let mut ready = builder.ready_to_restore(&document)?;
     ready.simulation.restore(&checkpoint.payload).map_err(|error| cannot_restore(&error, result))?;
     let layout = layout_of(ready.simulation.model());
@@ -152,12 +132,7 @@ pub fn resume(result: &Path, options: &ResumeOptions, report: &mut dyn Report) -
 }
 
 /// Goes on with a run that was killed before its first checkpoint, from its start, which is all that it has recorded.
-fn begin_again(
-    builder: &Builder,
-    result: &Path,
-    document_of: impl Fn(&Header) -> Result<Document>,
-    report: &mut dyn Report,
-) -> Result<Outcome> {
+fn begin_again(builder: &Builder, result: &Path, options: &ResumeOptions, report: &mut dyn Report) -> Result<Outcome> {
     let file = ResultFile::open(result)?;
     if file.steps()?.iter().any(|step| *step > 0) {
         let (name, side) = (result.display(), checkpoint_path(result));
@@ -167,9 +142,16 @@ fn begin_again(
     }
     let header = file.header().clone();
     drop(file);
-    let ready = builder.ready_told(&document_of(&header)?, &|_| ())?;
+    let ready = builder.ready_told(&document_within(&header, result, options)?, &|_| ())?;
     let writer = ResultWriter::reopen(result, &header, &layout_of(ready.simulation.model()), Kept::until(0))?;
     drive(ready, writer, result, report, Start::Recorded).map_err(|error| can_go_on(error, result))
+}
+
+/// The document of a result, which may take as much memory as the options say.
+fn document_within(header: &Header, result: &Path, options: &ResumeOptions) -> Result<Document> {
+    let mut document = document_of(header, result)?;
+    document.memory = options.memory;
+    Ok(document)
 }
 
 /// Why the state in a checkpoint cannot be taken up.

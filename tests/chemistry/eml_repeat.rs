@@ -42,11 +42,13 @@ fn a_chain_of_compartments_passes_on_as_the_terms_of_poisson() {
 
 #[test]
 fn a_number_may_stand_right_before_what_has_an_index() {
-    // Each of the pairs that join to X_(i+1) takes two of X_i; `2e1` is twenty.
+    // Each of the pairs that join to X_(i+1) takes two of X_i; `2e1` is twenty, so that X_1 falls at 40 of it.
     let system = system(
         r#"<variable id="X_1" initial="8"/><repeat index="i" from="2" count="2"><variable id="X[i]" initial="0"/></repeat>
            <repeat index="i" count="2"><reaction id="join[i]" equation="2X[i] -> X[i+1]" rate="2e1*X[i]"/></repeat>"#,
     );
+    let early = at(&system, 0.05)("X_1");
+    assert!((early - 8.0 * (-2.0_f64).exp()).abs() < 1e-9, "{early}");
     let value = at(&system, 10.0);
     for (id, expected) in [("X_1", 0.0), ("X_2", 0.0), ("X_3", 2.0)] {
         assert!((value(id) - expected).abs() < 1e-9, "{id}: {}", value(id));
@@ -86,4 +88,13 @@ fn indices_stand_within_each_other_and_units_links_and_sums_are_what_they_were()
     assert_eq!(ends, [["system.a_1_4", "cell.atom[4].y"], ["system.a_1_5", "cell.atom[5].y"]]);
     let value = at(&document.system, 1e-9);
     assert!((value("d") - (14.0 + 2.0 * 24.0 + 15.0 + 2.0 * 25.0)).abs() < 1e-6, "{}", value("d"));
+}
+
+#[test]
+fn an_index_right_behind_a_number_is_no_digit_of_it() {
+    let text =
+        r#"<eml name="m"><repeat index="i" count="1"><variable id="X[i]" initial="1" rate="3i"/></repeat></eml>"#;
+    let source = Source { name: "test".to_owned(), text: text.to_owned() };
+    let told = render(&eml::read(Arc::new(source)).expect_err("31 is not what was meant"), Paint::Plain);
+    assert!(told.contains("3i") && !told.contains("31"), "{told}");
 }

@@ -108,7 +108,7 @@ fn a_killed_run_resumes_to_the_same_bits() {
     child.wait().unwrap();
     assert!(killed, "the run ended before it could be killed");
     if !ResultFile::open(&result).unwrap().ending().finished {
-        resume(&result, &ResumeOptions { threads: Some(1), ..ResumeOptions::new() }, &mut Quiet).unwrap();
+        resume(&result, &ResumeOptions { threads: Some(1), ..ResumeOptions::default() }, &mut Quiet).unwrap();
     }
     assert_eq!(contents(&whole), contents(&result));
 }

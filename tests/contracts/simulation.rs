@@ -226,7 +226,7 @@ fn a_cancelled_run_can_be_resumed_to_the_same_bits() {
     stopped.cancel.cancel();
     let ended = run(&document, &stopped, &mut Quiet);
     assert_eq!(ended.unwrap_err().exit_code(), 130);
-    pseudopod::run::resume(&stopped.result, &ResumeOptions::new(), &mut Quiet).unwrap();
+    pseudopod::run::resume(&stopped.result, &ResumeOptions::default(), &mut Quiet).unwrap();
     let last = |options: &RunOptions| {
         let file = ResultFile::open(&options.result).unwrap();
         (file.times().unwrap(), file.positions(file.frames() - 1).unwrap())

@@ -151,9 +151,10 @@ struct Piece {
     brackets: Vec<Range<usize>>,
 }
 
-/// The next name in a text; units of numbers, which stand in brackets by themselves, are passed over.
+/// The next name in a text. Units of numbers, which stand in brackets by themselves, are passed over, and so is what stands right behind a number,
+/// unless it has an index: `2X[i]` is two of `X[i]`, but `2i` is no number with the value of `i` written behind the 2.
 fn next(text: &str, from: usize) -> Option<Piece> {
-    let mut at = from;
+    let (mut at, mut number_end) = (from, None);
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
     while let Some(c) = text[at..].chars().next() {
         if c == '[' {
@@ -165,9 +166,13 @@ fn next(text: &str, from: usize) -> Option<Piece> {
                 brackets.push(behind + 1..behind + 1 + length);
                 behind += length + 2;
             }
-            return Some(Piece { name: at..end, brackets });
+            if number_end != Some(at) || !brackets.is_empty() {
+                return Some(Piece { name: at..end, brackets });
+            }
+            at = end;
         } else if c.is_ascii_digit() {
-            at += number(&text[at..]);
+            at += length_of_number(&text[at..]);
+            number_end = Some(at);
         } else {
             at += c.len_utf8();
         }
@@ -176,7 +181,7 @@ fn next(text: &str, from: usize) -> Option<Piece> {
 }
 
 /// The length of the number that a text begins with: `2e3` has no name in it, `2X` has one.
-fn number(text: &str) -> usize {
+fn length_of_number(text: &str) -> usize {
     let digits = |from: usize| text[from..].find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len() - from);
     let whole = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let Some(rest) = text[whole..].strip_prefix(['e', 'E']) else { return whole };

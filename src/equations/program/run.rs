@@ -58,8 +58,8 @@ pub fn run<const L: usize>(code: &Code, file: &mut [Lanes<L>]) {
     run_in_place(code, file);
 }
 
-/// As [`run`], in the processor's wide registers. It is a function of its own for each kind of these: compiled into every stage of every method, it
-/// is most of the program, and a call costs less than one operation of the code.
+/// As [`run`], in the processor's wide registers: a function of its own for each kind of these. Compiled into every stage of every method it was a
+/// fifth of the library's machine code, and took a third of the time in which it is built.
 #[inline(always)]
 pub fn run_wide<S: Simd, const L: usize>(simd: S, code: &Code, file: &mut [Lanes<L>]) {
     if S::IS_SCALAR {
