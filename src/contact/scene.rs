@@ -185,6 +185,17 @@ impl Scene {
         self.batches.len() - 1
     }
 
+    /// The batch of a body.
+    pub fn batch_of(&self, body: u32) -> u32 {
+        self.bodies[body as usize].batch
+    }
+
+    /// The numbers of the atoms of a batch.
+    pub fn atoms_of(&self, batch: usize) -> std::ops::Range<usize> {
+        let first = |body: u32| self.bodies.get(body as usize).map_or(self.atoms, |body| body.first_atom as usize);
+        first(self.batches[batch])..first(self.batches[batch + 1])
+    }
+
     /// The numbers of bodies of a batch.
     pub fn bodies_of(&self, batch: usize) -> std::ops::Range<u32> {
         self.batches[batch]..self.batches[batch + 1]

@@ -19,4 +19,10 @@ impl Change {
         }
         self.work += next.work;
     }
+
+    /// With what was changed after this.
+    pub fn and(mut self, next: &Self) -> Self {
+        self.add(next);
+        self
+    }
 }

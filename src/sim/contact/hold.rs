@@ -8,6 +8,7 @@ use super::mobility::Mobility;
 use super::momentum::{begin, go_on, go_on_by_modes};
 use super::prepare::{arrange_rows, load_rows, prepare};
 use super::respond::find_columns;
+use super::rounds::{Crew, with_crew};
 use super::rows::Row;
 use super::scene::ContactScene;
 use super::scratch::{ContactScratch, SweepRules};
@@ -24,6 +25,9 @@ use crate::sim::workspace::Workspace;
 
 /// Sweeps that mend depths. They need not come to rest: what is left is mended in the next step.
 const MENDING: usize = 8;
+
+/// Atoms from which on threads share the sweeps: to wake them takes as long as some sweeps over fewer.
+const WORTH_A_CREW: usize = 4096;
 
 /// Cells that a thread looks at at once, at least.
 const CELLS_PER_JOB: usize = 64;
@@ -54,11 +58,15 @@ pub fn hold_contacts(
     arrange_rows(contact, s);
     find_columns(model, contact, dt, (from, to), s, kinds, buffers);
     load_rows(contact, rules, s);
-    let left = sweep(model, contact, dt, rules, s);
+    let mut left = Change::default();
+    let is_deep = rules.mends && s.rows.iter().any(|row| row.gap() < 0.0);
     s.deep.clear();
-    if rules.mends && s.rows.iter().any(|row| row.gap() < 0.0) {
-        mend(model, contact, s);
-    }
+    with_crew(contact.scene.atoms >= WORTH_A_CREW, |crew| {
+        left = sweep(model, contact, dt, rules, s, crew);
+        if is_deep {
+            mend(model, contact, s, crew);
+        }
+    });
     s.law.adhesives.align(&s.start, &mut s.moved);
     put_back(model, contact, s, from, to);
     note_rows(contact, s);
@@ -123,7 +131,14 @@ fn for_each_part(
 }
 
 /// Sweeps until nothing moves any more; returns what the last sweep changed.
-fn sweep(model: &Model, contact: &ContactScene, dt: f64, rules: SweepRules, s: &mut ContactScratch) -> Change {
+fn sweep(
+    model: &Model,
+    contact: &ContactScene,
+    dt: f64,
+    rules: SweepRules,
+    s: &mut ContactScratch,
+    crew: Crew,
+) -> Change {
     let keeps_start = contact.law.needs_start();
     let mut before = std::mem::take(if keeps_start { &mut s.before } else { &mut s.start });
     let mut direction = std::mem::take(&mut s.forces.carried);
@@ -132,7 +147,7 @@ fn sweep(model: &Model, contact: &ContactScene, dt: f64, rules: SweepRules, s: &
     let (mut change, mut share) = (Change::default(), 0.0);
     for number in 1..=contact.most_sweeps {
         change = Change::default();
-        sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, &mut s.mobility, (dt, share), &mut change);
+        sweep_contacts(&s.rows, &mut s.pulls, &mut s.moved, &mut s.mobility, (dt, share), &mut change, crew);
         s.law.adhesives.sweep(&s.start, &mut s.moved, share, &mut change);
         for &(atom, axis) in &s.held {
             s.moved[atom as usize][axis as usize] = before[atom as usize][axis as usize];
@@ -142,7 +157,7 @@ fn sweep(model: &Model, contact: &ContactScene, dt: f64, rules: SweepRules, s: &
             contact,
             ((&s.volumes, &s.volume_modes), &s.gradient, &mut s.moved, &mut s.mobility),
             |part| {
-                sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut change);
+                sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut change, crew);
             },
         );
         s.sweeps = number;
@@ -151,9 +166,9 @@ fn sweep(model: &Model, contact: &ContactScene, dt: f64, rules: SweepRules, s: &
             break;
         }
         share = s.momentum.share(change.work);
-        go_on(share, &mut s.moved, &mut before, &mut direction);
+        go_on(share, &mut s.moved, &mut before, &mut direction, crew);
         if s.mobility.has_modes {
-            go_on_by_modes(share, &mut s.mobility);
+            go_on_by_modes(share, &mut s.mobility, crew);
         }
     }
     s.forces.carried = direction;
@@ -162,19 +177,21 @@ fn sweep(model: &Model, contact: &ContactScene, dt: f64, rules: SweepRules, s: &
 }
 
 /// Pushes out what is inside.
-fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch) {
+fn mend(model: &Model, contact: &ContactScene, s: &mut ContactScratch, crew: Crew) {
     let is_deep = |(_, row): &(u32, &Row)| row.compliance > 0.0 && row.gap() < 0.0;
     s.deep.clear();
     s.deep.extend((0..).zip(&s.rows).filter(is_deep).map(|(number, _)| (number, 0.0)));
     for _ in 0..MENDING {
-        sweep_depths(&s.rows, &mut s.deep, &mut s.moved, &mut s.mobility, MENDED * contact.reach.safe_travel());
+        let most = MENDED * contact.reach.safe_travel();
+        sweep_depths(&s.rows, &mut s.deep, &mut s.moved, &mut s.mobility, most, crew);
         s.law.adhesives.align(&s.start, &mut s.moved);
         for_each_part(
             model,
             contact,
             ((&s.volumes, &s.volume_modes), &s.gradient, &mut s.moved, &mut s.mobility),
             |part| {
-                sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, &mut Change::default());
+                let unheeded = &mut Change::default();
+                sweep_volumes(part.volumes, part.gradient, part.moved, part.mobility, unheeded, crew);
             },
         );
     }

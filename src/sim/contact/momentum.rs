@@ -4,6 +4,8 @@
 use rayon::prelude::*;
 
 use super::mobility::{Mobility, Motion};
+use super::rounds::Crew;
+use super::together::Together;
 use super::vectors::V4;
 use crate::Vec3;
 
@@ -12,9 +14,12 @@ use crate::Vec3;
 /// same, give or take a percent: starting again at each of these would leave plain sweeps.
 const RESTART: f64 = 1.15;
 
-/// Atoms and cells that a thread takes at once, at least.
+/// Atoms that a thread takes at once, at least, where it has to be woken.
 const ATOMS_PER_JOB: usize = 4096;
-const CELLS_PER_JOB: usize = 128;
+
+/// Atoms and cells that one of a crew takes at once.
+const ATOMS_OF_CREW: usize = 1024;
+const CELLS_OF_CREW: usize = 32;
 
 /// How much of the last direction is taken; those of forces stand in the rows.
 #[derive(Debug, Clone, Default)]
@@ -52,9 +57,8 @@ pub fn begin(moved: &[V4], before: &mut Vec<Vec3>, direction: &mut Vec<Vec3>) {
 
 /// Goes on from displacements after a sweep along a share of the last direction: `before` are those before the sweep, and
 /// become those before the next.
-pub fn go_on(share: f64, moved: &mut [V4], before: &mut [Vec3], direction: &mut [Vec3]) {
-    let lists = moved.par_iter_mut().zip(before).zip(direction).with_min_len(ATOMS_PER_JOB);
-    lists.for_each(|((now, before), direction)| {
+pub fn go_on(share: f64, moved: &mut [V4], before: &mut [Vec3], direction: &mut [Vec3], crew: Crew) {
+    in_parts(ATOMS_OF_CREW, (moved, before, direction), crew, |now, before, direction| {
         for i in 0..3 {
             let (change, old) = (now[i] - before[i], share * direction[i]);
             now[i] += old;
@@ -65,10 +69,33 @@ pub fn go_on(share: f64, moved: &mut [V4], before: &mut [Vec3], direction: &mut 
 }
 
 /// The same for what the modes of cells have moved.
-pub fn go_on_by_modes(share: f64, mobility: &mut Mobility) {
+pub fn go_on_by_modes(share: f64, mobility: &mut Mobility, crew: Crew) {
     let Mobility { moved, before, direction, .. } = mobility;
-    let lists = moved.par_iter_mut().zip(before).zip(direction).with_min_len(CELLS_PER_JOB);
-    lists.for_each(|((now, before), direction)| go_on_one(share, now, before, direction));
+    in_parts(CELLS_OF_CREW, (moved, before, direction), crew, |now, before, direction| {
+        go_on_one(share, now, before, direction);
+    });
+}
+
+/// Does something with what stands at the same place in three lists, in parts of so many.
+fn in_parts<A: Send, B: Send>(
+    size: usize,
+    (now, before, direction): (&mut [A], &mut [B], &mut [B]),
+    crew: Crew,
+    work: impl Fn(&mut A, &mut B, &mut B) + Sync,
+) {
+    let len = now.len().min(before.len()).min(direction.len());
+    let (now, before, direction) = (Together::new(now), Together::new(before), Together::new(direction));
+    crew.each(len.div_ceil(size), |part| {
+        let part = part * size..len.min((part + 1) * size);
+        // SAFETY: each part is that of one job.
+        let lists = unsafe { (now.part(part.clone()), before.part(part.clone()), direction.part(part)) };
+        lists
+            .0
+            .iter_mut()
+            .zip(lists.1)
+            .zip(lists.2)
+            .for_each(|((now, before), direction)| work(now, before, direction));
+    });
 }
 
 fn go_on_one(share: f64, now: &mut Motion, before: &mut Motion, direction: &mut Motion) {
@@ -86,7 +113,7 @@ fn go_on_one(share: f64, now: &mut Motion, before: &mut Motion, direction: &mut 
 
 #[cfg(test)]
 mod tests {
-    use super::{Momentum, go_on};
+    use super::{Crew, Momentum, go_on};
     use crate::Vec3;
 
     #[test]
@@ -97,7 +124,7 @@ mod tests {
         let mut after = |work: f64| {
             moved[0][0] += 1.0;
             let share = momentum.share(work);
-            go_on(share, &mut moved, &mut before, &mut direction);
+            go_on(share, &mut moved, &mut before, &mut direction, Crew::ALONE);
             (share, moved[0][0])
         };
         assert_eq!(after(2.0), (0.0, 1.0), "no direction yet");

@@ -10,7 +10,7 @@ use super::mobility::{Mobility, Response};
 use super::rows::{Pull, Row};
 use super::scene::ContactScene;
 use super::scratch::{ContactScratch, SweepRules};
-use super::volumes::VolumeRow;
+use super::volumes::{InModes, VolumeRow};
 use crate::mechanics::integrator::Method;
 use crate::mechanics::volume;
 use crate::sim::implicit::gamma;
@@ -20,8 +20,8 @@ use crate::sim::state::{State, vector};
 use crate::sim::thread_buffers::ThreadBuffers;
 use crate::sim::workspace::KindScratch;
 
-/// Cells and rows that a thread takes at once, at least.
-const CELLS_PER_JOB: usize = 64;
+/// Atoms and rows that a thread takes at once, at least.
+const ATOMS_PER_JOB: usize = 1024;
 const ROWS_PER_JOB: usize = 1024;
 
 /// What the stiffest shape of a cell takes back of a displacement in a step, over what is left, up to which all shapes move as drag lets
@@ -81,7 +81,7 @@ pub fn prepare(
             }
         }
         let cells = s.moved[range.clone()].par_chunks_exact_mut(kind.atoms()).enumerate();
-        cells.with_min_len(CELLS_PER_JOB).for_each(|(cell, moved)| {
+        cells.with_min_len(ATOMS_PER_JOB / kind.atoms()).for_each(|(cell, moved)| {
             for (atom, moved) in moved.iter_mut().enumerate() {
                 let change = vector(kind, &next.positions, cell, atom) - vector(kind, &now.positions, cell, atom);
                 *moved = [change.x, change.y, change.z, mobility];
@@ -183,37 +183,54 @@ fn add_volumes(
                 gather(kind, gradient, own, <[f64; 3]>::from);
             });
         });
-    for (cell, g) in own.chunks_exact(kind.atoms()).enumerate() {
+    let moved = &s.moved[first..];
+    let volume = |(cell, g): (usize, &[[f64; 3]])| {
         let (start, end) = (cell * kind.atoms(), (cell + 1) * kind.atoms());
-        let (mut along, mut squared) = (0.0, 0.0);
-        for (g, d) in g.iter().zip(&s.moved[first + start..first + end]) {
+        let (mut along, squared) = (0.0, squared(g));
+        for (g, d) in g.iter().zip(&moved[start..end]) {
             along += (0..3).map(|axis| g[axis] * d[axis]).sum::<f64>();
-            squared += (0..3).map(|axis| g[axis] * g[axis]).sum::<f64>();
         }
-        let offset = free_volume[cell] - target[cell] - along;
-        let mut row = VolumeRow {
+        VolumeRow {
             first: start,
             end,
-            offset,
+            offset: free_volume[cell] - target[cell] - along,
             inverse: 1.0 / (mobility * squared),
             mobility,
             swelling: mobility * mobility * squared,
             column: None,
             body: first_body + cell,
-        };
-        if s.mobility.has_modes {
-            let modes = s.mobility.project(row.body, g);
-            let response = s.mobility.response(row.body);
-            let (mut compliance, mut swelling) = (mobility * squared, mobility * mobility * squared);
-            for (response, part) in response.iter().zip(&modes) {
-                let squared: f64 = part.iter().map(|part| part * part).sum();
-                compliance += response * squared;
-                // What is moved by a mode is moved by its response and by what each atom moves alone.
-                swelling += response * (response + 2.0 * mobility) * squared;
-            }
-            (row.inverse, row.swelling) = (1.0 / compliance, swelling);
-            s.volume_modes.push(modes);
         }
-        s.volumes.push(row);
+    };
+    let cells = own.par_chunks_exact(kind.atoms()).enumerate().with_min_len(ATOMS_PER_JOB / kind.atoms());
+    s.volumes.par_extend(cells.map(volume));
+    if s.mobility.has_modes {
+        let begin = s.volumes.len() - own.len() / kind.atoms();
+        for (row, g) in s.volumes[begin..].iter_mut().zip(own.chunks_exact(kind.atoms())) {
+            s.volume_modes.push(yield_by_modes(row, g, &s.mobility));
+        }
     }
+}
+
+/// Lets a volume yield by the modes of its cell, too; returns what its gradient is in these.
+fn yield_by_modes(row: &mut VolumeRow, g: &[[f64; 3]], mobility: &Mobility) -> InModes {
+    let alone = row.mobility;
+    let modes = mobility.project(row.body, g);
+    let mut compliance = alone * squared(g);
+    for (response, part) in mobility.response(row.body).iter().zip(&modes) {
+        let squared: f64 = part.iter().map(|part| part * part).sum();
+        compliance += response * squared;
+        // What is moved by a mode is moved by its response and by what each atom moves alone.
+        row.swelling += response * (response + 2.0 * alone) * squared;
+    }
+    row.inverse = 1.0 / compliance;
+    modes
+}
+
+/// Of a gradient.
+fn squared(g: &[[f64; 3]]) -> f64 {
+    let mut squared = 0.0;
+    for g in g {
+        squared += g.iter().map(|g| g * g).sum::<f64>();
+    }
+    squared
 }

@@ -3,15 +3,24 @@
 //! A round of a sweep takes some ten microseconds, in which a thread that sleeps does not wake up. So threads that help stay awake from the first
 //! round to the last. None of them is waited for: what it has not begun others do.
 
-use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::ptr;
+use std::sync::atomic::{AtomicPtr, AtomicUsize, Ordering};
 
 /// Looks for a job after which a thread lets others have its processor for a moment.
 const PATIENCE: u32 = 200;
 
+/// What the jobs of a round do, each told its number in the round.
+struct Round<'a> {
+    /// The number of its first job through all rounds.
+    first: usize,
+    work: &'a (dyn Fn(usize) + Sync),
+}
+
 /// Jobs that are numbered through all rounds.
 #[derive(Default)]
 struct Rounds {
+    /// The round under way.
+    round: AtomicPtr<Round<'static>>,
     /// The next job to be taken.
     next: AtomicUsize,
     /// One behind the last job that may be taken; all taken and none left where this is the largest number.
@@ -38,9 +47,27 @@ impl Drop for Over<'_> {
     }
 }
 
+/// A round with jobs up to this one is over, also where one of them failed: no job of it is begun any more or still done.
+struct Finished<'a> {
+    rounds: &'a Rounds,
+    end: usize,
+}
+
+impl Drop for Finished<'_> {
+    fn drop(&mut self) {
+        let Self { rounds, end } = *self;
+        let begun = rounds.next.swap(end, Ordering::Relaxed);
+        rounds.done.fetch_add(end - begun, Ordering::Release);
+        let mut looks = 0;
+        while rounds.done.load(Ordering::Acquire) < end {
+            wait(&mut looks);
+        }
+    }
+}
+
 impl Rounds {
     /// Takes a job and does it, if there is one.
-    fn take(&self, work: &impl Fn(usize)) -> bool {
+    fn take(&self) -> bool {
         let next = self.next.load(Ordering::Relaxed);
         let end = self.end.load(Ordering::Acquire);
         if next >= end || end == usize::MAX {
@@ -48,29 +75,28 @@ impl Rounds {
         }
         if self.next.compare_exchange(next, next + 1, Ordering::Relaxed, Ordering::Relaxed).is_ok() {
             let _counted = Counted(&self.done);
-            work(next);
+            // SAFETY: written before the end of this round was, and there until all of its jobs are done, of which this is one.
+            let round = unsafe { &*self.round.load(Ordering::Relaxed) };
+            (round.work)(next - round.first);
         }
         true
     }
 
-    /// Does all rounds, with whoever helps.
-    fn lead(&self, rounds: impl Iterator<Item = Range<usize>>, work: &impl Fn(usize)) {
-        let _over = Over(&self.end);
-        for round in rounds {
-            self.end.store(round.end, Ordering::Release);
-            while self.take(work) {}
-            let mut looks = 0;
-            while self.done.load(Ordering::Acquire) < round.end {
-                wait(&mut looks);
-            }
-        }
+    /// Does the jobs of a round, with whoever helps.
+    fn lead(&self, jobs: usize, work: &(dyn Fn(usize) + Sync)) {
+        let first = self.end.load(Ordering::Relaxed);
+        let (round, end) = (Round { first, work }, first + jobs);
+        self.round.store(ptr::from_ref(&round).cast_mut().cast(), Ordering::Relaxed);
+        let _finished = Finished { rounds: self, end };
+        self.end.store(end, Ordering::Release);
+        while self.take() {}
     }
 
     /// Does jobs until the last round is over.
-    fn help(&self, work: &impl Fn(usize)) {
+    fn help(&self) {
         let mut looks = 0;
         while self.end.load(Ordering::Acquire) != usize::MAX {
-            match self.take(work) {
+            match self.take() {
                 true => looks = 0,
                 false => wait(&mut looks),
             }
@@ -87,17 +113,37 @@ fn wait(looks: &mut u32) {
     }
 }
 
-/// Does `work` with the number of each job, round by round: jobs of a round at the same time, all before the first of the next. Rounds
-/// follow each other without gaps, from job 0 on.
-pub fn in_rounds(rounds: impl Iterator<Item = Range<usize>> + Send, work: impl Fn(usize) + Sync) {
-    let threads = rayon::current_num_threads();
-    if threads == 1 {
-        return rounds.flatten().for_each(work);
+/// Threads that do the jobs of rounds together.
+#[derive(Clone, Copy)]
+pub struct Crew<'a>(Option<&'a Rounds>);
+
+impl Crew<'_> {
+    /// Nobody but the thread that asks.
+    pub const ALONE: Crew<'static> = Crew(None);
+
+    /// Does `work` with each number below that of the `jobs`: a round, done when this returns.
+    pub fn each(self, jobs: usize, work: impl Fn(usize) + Sync) {
+        match self.0.filter(|_| jobs > 1) {
+            Some(rounds) => rounds.lead(jobs, &work),
+            None => (0..jobs).for_each(work),
+        }
     }
-    let all = Rounds::default();
-    let mut rounds = Some(rounds);
-    let mut lead = || rounds.take().into_iter().for_each(|rounds| all.lead(rounds, &work));
-    with_helpers(threads - 1, &mut lead, &|| all.help(&work));
+}
+
+/// Leads on this thread through as many rounds as there are, which others of its pool help with, where any are idle; alone where the work
+/// is not `worth` waking them.
+pub fn with_crew(worth: bool, lead: impl FnOnce(Crew) + Send) {
+    let threads = rayon::current_num_threads();
+    if !worth || threads == 1 {
+        return lead(Crew::ALONE);
+    }
+    let rounds = Rounds::default();
+    let mut lead = Some(lead);
+    let mut lead = || {
+        let _over = Over(&rounds.end);
+        lead.take().into_iter().for_each(|lead| lead(Crew(Some(&rounds))));
+    };
+    with_helpers(threads - 1, &mut lead, &|| rounds.help());
 }
 
 /// Leads on this thread while others, where any are idle, help.
@@ -110,7 +156,7 @@ fn with_helpers(helpers: usize, lead: &mut (dyn FnMut() + Send), help: &(dyn Fn(
 
 #[cfg(test)]
 mod tests {
-    use super::in_rounds;
+    use super::with_crew;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn in_pool(threads: usize, work: impl FnOnce() + Send) {
@@ -122,13 +168,20 @@ mod tests {
         for threads in [1, 2, 5] {
             in_pool(threads, || {
                 for _ in 0..200 {
-                    let ends = [3, 3, 10, 11, 40];
-                    let starts = [0].into_iter().chain(ends);
                     let done: Vec<AtomicUsize> = (0..40).map(|_| AtomicUsize::new(0)).collect();
-                    in_rounds(starts.zip(ends).map(|(start, end)| start..end), |job| {
-                        let before = ends.iter().filter(|end| **end <= job).max().copied().unwrap_or(0);
-                        assert!(done[..before].iter().all(|done| done.load(Ordering::Relaxed) == 1), "{job}");
-                        done[job].fetch_add(1, Ordering::Relaxed);
+                    let done = &done;
+                    with_crew(true, |crew| {
+                        let mut begun = 0;
+                        for jobs in [3, 0, 7, 1, 29] {
+                            crew.each(jobs, |job| {
+                                let before = &done[..begun];
+                                assert!(before.iter().all(|done| done.load(Ordering::Relaxed) == 1), "{job}");
+                                done[begun + job].fetch_add(1, Ordering::Relaxed);
+                            });
+                            begun += jobs;
+                            let now = done.iter().filter(|done| done.load(Ordering::Relaxed) == 1).count();
+                            assert_eq!(now, begun, "a round is done when it returns");
+                        }
                     });
                     assert!(done.iter().all(|done| done.load(Ordering::Relaxed) == 1));
                 }
@@ -138,10 +191,21 @@ mod tests {
 
     #[test]
     fn a_job_that_fails_is_told_and_stops_nobody() {
-        let caught = std::panic::catch_unwind(|| {
-            in_pool(2, || in_rounds([0..4, 4..8].into_iter(), |job| assert!(job != 5, "this one")));
-        });
-        assert!(caught.is_err());
+        for threads in [1, 2, 3] {
+            for failing in [0, 5, 63] {
+                let caught = std::panic::catch_unwind(|| {
+                    in_pool(threads, || {
+                        with_crew(true, |crew| {
+                            // What a round uses is gone once it is over, also where it fails.
+                            let used: Vec<usize> = (0..64).collect();
+                            crew.each(64, |job| assert!(used[job] != failing, "this one"));
+                            crew.each(64, |job| assert!(used[job] < 64));
+                        });
+                    });
+                });
+                assert!(caught.is_err(), "{threads} {failing}");
+            }
+        }
     }
 
     #[test]
@@ -151,8 +215,12 @@ mod tests {
             rayon::scope(|scope| {
                 for _ in 0..6 {
                     scope.spawn(|_| {
-                        in_rounds((0..50).map(|round| 4 * round..4 * round + 4), |_| {
-                            count.fetch_add(1, Ordering::Relaxed);
+                        with_crew(true, |crew| {
+                            for _ in 0..50 {
+                                crew.each(4, |_| {
+                                    count.fetch_add(1, Ordering::Relaxed);
+                                });
+                            }
                         });
                     });
                 }

@@ -8,7 +8,7 @@ use pulp::{Arch, NullaryFnOnce};
 use super::change::Change;
 use super::columns::Columns;
 use super::mobility::{Body, Lever, Mobility, Motion, moved_apart, push_body, sides};
-use super::rounds::in_rounds;
+use super::rounds::Crew;
 use super::rows::{Pull, Row};
 use super::together::Together;
 use super::turns::Turns;
@@ -106,6 +106,7 @@ pub fn sweep_contacts(
     mobility: &mut Mobility,
     (dt, share): (f64, f64),
     change: &mut Change,
+    crew: Crew,
 ) {
     let Mobility { has_modes, shapes, kinds, bodies, levers, moved: motions, turns, changes, columns, .. } = mobility;
     let columns = columns.if_there();
@@ -128,11 +129,7 @@ pub fn sweep_contacts(
     let of_jobs = Together::new(changes);
     // SAFETY: each job has a change of its own.
     let sweep = |job: usize| sweep(job, unsafe { of_jobs.item(job) });
-    if turns.jobs() == 1 {
-        sweep(0);
-    } else {
-        in_rounds(turns.colours(), sweep);
-    }
+    turns.colours().for_each(|jobs| crew.each(jobs.len(), |job| sweep(jobs.start + job)));
     changes.iter().for_each(|of_job| change.add(of_job));
 }
 
@@ -244,7 +241,14 @@ impl<const BY_MODES: bool> NullaryFnOnce for Sweep<'_, BY_MODES> {
 /// Pushes out what is inside, by no more than `most` (µm), and leaves no force behind: what curved paths let slip is
 /// mended by displacement, not by force, eq. (adhesion.7). `deep` are the rows that are inside and can move, each with the force that
 /// would do it, zero at first.
-pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], mobility: &mut Mobility, most: f64) {
+pub fn sweep_depths(
+    rows: &[Row],
+    deep: &mut [(u32, f64)],
+    moved: &mut [V4],
+    mobility: &mut Mobility,
+    most: f64,
+    crew: Crew,
+) {
     let Mobility { shapes, kinds, bodies, levers, moved: motions, has_modes, turns, deep_ends, columns, .. } = mobility;
     let (moved, motions) = (&Together::new(moved), &Together::new(motions));
     let cells = Cells { shapes, kinds, bodies, moved, motions, columns: columns.if_there() };
@@ -258,7 +262,8 @@ pub fn sweep_depths(rows: &[Row], deep: &mut [(u32, f64)], moved: &mut [V4], mob
     let part = |job: usize| if job == 0 { 0 } else { deep_ends[job - 1] }..deep_ends[job];
     let deep = Together::new(deep);
     // SAFETY: jobs have rows of their own, and those of a colour move different cells.
-    in_rounds(turns.colours(), |job| push_out(rows, unsafe { deep.part(part(job)) }, levers, cells, most));
+    let push_out = |job: usize| push_out(rows, unsafe { deep.part(part(job)) }, levers, cells, most);
+    turns.colours().for_each(|jobs| crew.each(jobs.len(), |job| push_out(jobs.start + job)));
 }
 
 /// Pushes out what some rows are inside, one after the other.

@@ -2,6 +2,7 @@
 
 use super::change::Change;
 use super::mobility::{Mobility, Response};
+use super::rounds::Crew;
 use super::rows::{Pairing, Pull, Row};
 use super::sweep::sweep_contacts;
 use super::vectors::V4;
@@ -115,7 +116,7 @@ fn a_sweep_in_wide_registers_is_that_of_the_book() {
         }
         let (mut change, mut mobility) = (Change::default(), Mobility::default());
         mobility.turns.leave(rows.len());
-        sweep_contacts(&rows, &mut pulls, &mut moved, &mut mobility, (DT, 0.0), &mut change);
+        sweep_contacts(&rows, &mut pulls, &mut moved, &mut mobility, (DT, 0.0), &mut change, Crew::ALONE);
         for (fast, plain) in moved.iter().zip(&plain) {
             // Forces are kept to seven digits.
             assert!((Vec3::new(fast[0], fast[1], fast[2]) - plain).norm() < 1e-6, "{seed}: {fast:?} and {plain:?}");
@@ -139,14 +140,14 @@ fn a_sweep_over_volumes_meets_every_linear_target() {
     };
     let volumes = [volume(0, 25, 0.3), volume(25, 40, -0.1)];
     let mut change = Change::default();
-    sweep_volumes((&volumes, &[]), &gradient, &mut moved, &mut Mobility::default(), &mut change);
+    sweep_volumes((&volumes, &[]), &gradient, &mut moved, &mut Mobility::default(), &mut change, Crew::ALONE);
     for volume in &volumes {
         let parts = gradient[volume.first..volume.end].iter().zip(&moved[volume.first..volume.end]);
         let along: f64 = parts.map(|(g, d)| (0..3).map(|axis| g[axis] * d[axis]).sum::<f64>()).sum();
         assert!((along + volume.offset).abs() < 1e-13, "{along} and {}", volume.offset);
     }
     let (mut again, before) = (Change::default(), moved.clone());
-    sweep_volumes((&volumes, &[]), &gradient, &mut moved, &mut Mobility::default(), &mut again);
+    sweep_volumes((&volumes, &[]), &gradient, &mut moved, &mut Mobility::default(), &mut again, Crew::ALONE);
     assert!(again.largest < 1e-13 * change.largest.max(1.0), "nothing is left: {again:?}");
     assert!(moved.iter().zip(&before).all(|(now, before)| now[3] == before[3]), "mobilities stay");
 }
@@ -207,7 +208,7 @@ fn a_force_of_a_contact_moves_and_turns_a_cell_as_free_drag_lets_it_and_dents_it
     let mut moved = vec![[0.0, 0.0, 0.0, response.rest]; 84];
     moved[50] = [0.3, 0.1, -0.2, response.rest];
     let (mut pulls, mut change) = (vec![Pull::default()], Change::default());
-    sweep_contacts(&[row], &mut pulls, &mut moved, &mut mobility, (DT, 0.0), &mut change);
+    sweep_contacts(&[row], &mut pulls, &mut moved, &mut mobility, (DT, 0.0), &mut change, Crew::ALONE);
     moved[50] = [moved[50][0] - 0.3, moved[50][1] - 0.1, moved[50][2] + 0.2, response.rest];
     let force = pulls[0].force();
     let displaced = |atom: usize| {
@@ -255,7 +256,7 @@ fn a_sweep_by_modes_brings_volumes_to_their_targets() {
         body: 0,
     };
     let mut moved = vec![[0.0, 0.0, 0.0, response.rest]; 84];
-    sweep_volumes((&[volume], &[parts]), &gradient, &mut moved, &mut mobility, &mut Change::default());
+    sweep_volumes((&[volume], &[parts]), &gradient, &mut moved, &mut mobility, &mut Change::default(), Crew::ALONE);
     let displaced = |atom: usize| {
         Vec3::new(moved[atom][0], moved[atom][1], moved[atom][2]) + mobility.of_atom(0, atom, positions[atom])
     };

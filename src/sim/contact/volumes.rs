@@ -1,10 +1,10 @@
 //! Volumes in the sweeps, to first order; exact ones come after.
 
 use pulp::{Arch, NullaryFnOnce};
-use rayon::prelude::*;
 
 use super::change::Change;
 use super::mobility::{Body, Mobility, Motion};
+use super::rounds::Crew;
 use super::together::Together;
 use super::vectors::{V4, map};
 use crate::mechanics::modes::{MODES, OfModes};
@@ -33,8 +33,11 @@ pub struct VolumeRow {
 /// What the gradient of a volume is in the modes of its cell, µm².
 pub type InModes = [V4; MODES];
 
-/// Volumes that a thread takes at once.
-const VOLUMES_PER_JOB: usize = 64;
+/// Volumes whose changes are added up before those of others: the sums do not depend on what threads take.
+const ADDED_UP: usize = 64;
+
+/// Atoms of the volumes that a thread takes at once, about.
+const ATOMS_PER_JOB: usize = 1024;
 
 /// Puts all volumes back to first order, eq. (adhesion.6); `gradient` are those of the volumes, µm², and `modes` what these are in modes, where
 /// cells move by them.
@@ -44,28 +47,35 @@ pub fn sweep_volumes(
     moved: &mut [V4],
     mobility: &mut Mobility,
     change: &mut Change,
+    crew: Crew,
 ) {
     let Mobility { has_modes, kinds, bodies, moved: motions, changes, columns, .. } = mobility;
     let columns = &columns.values[..];
+    let per_job = (ATOMS_PER_JOB * volumes.len() / moved.len().max(1)).max(1);
     let (moved, motions) = (Together::new(moved), Together::new(motions));
-    let sweep = |first: usize, volumes: &[VolumeRow], change: &mut Change| {
-        let cells = Cells { gradient, columns, kinds, bodies, moved: &moved, motions: &motions };
-        if *has_modes {
-            let modes = &modes[first..first + volumes.len()];
-            Arch::new().dispatch(SweepVolumes::<true> { volumes, modes, cells, change });
-        } else {
-            Arch::new().dispatch(SweepVolumes::<false> { volumes, modes: &[], cells, change });
-        }
-    };
-    if volumes.len() <= VOLUMES_PER_JOB {
-        return sweep(0, volumes, change);
-    }
     changes.clear();
-    changes.resize(volumes.len().div_ceil(VOLUMES_PER_JOB), Change::default());
-    let jobs = changes.par_iter_mut().zip(volumes.par_chunks(VOLUMES_PER_JOB));
-    jobs.enumerate().for_each(|(job, (change, volumes))| sweep(job * VOLUMES_PER_JOB, volumes, change));
+    changes.resize(volumes.len(), Change::default());
+    let of_volumes = Together::new(changes);
+    crew.each(volumes.len().div_ceil(per_job), |job| {
+        let part = job * per_job..volumes.len().min((job + 1) * per_job);
+        let cells = Cells { gradient, columns, kinds, bodies, moved: &moved, motions: &motions };
+        // SAFETY: each volume is that of one job.
+        let changes = unsafe { of_volumes.part(part.clone()) };
+        if *has_modes {
+            let modes = &modes[part.clone()];
+            Arch::new().dispatch(SweepVolumes::<true> { volumes: &volumes[part], modes, cells, changes });
+        } else {
+            Arch::new().dispatch(SweepVolumes::<false> { volumes: &volumes[part], modes: &[], cells, changes });
+        }
+    });
+    // What is worst is told of contacts alone.
     let worst = change.worst;
-    changes.iter().for_each(|of_job| change.add(of_job));
+    if volumes.len() <= ADDED_UP {
+        changes.iter().for_each(|of_volume| change.add(of_volume));
+    } else {
+        let sum = |changes: &[Change]| changes.iter().fold(Change::default(), Change::and);
+        changes.chunks(ADDED_UP).for_each(|changes| change.add(&sum(changes)));
+    }
     change.worst = worst;
 }
 
@@ -83,7 +93,8 @@ struct SweepVolumes<'a, const BY_MODES: bool> {
     volumes: &'a [VolumeRow],
     modes: &'a [InModes],
     cells: Cells<'a>,
-    change: &'a mut Change,
+    /// What becomes of each.
+    changes: &'a mut [Change],
 }
 
 impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
@@ -91,9 +102,9 @@ impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { volumes, modes, cells, change } = self;
+        let Self { volumes, modes, cells, changes } = self;
         let Cells { gradient, columns, kinds, bodies, moved, motions } = cells;
-        for (number, volume) in volumes.iter().enumerate() {
+        for (number, (volume, change)) in volumes.iter().zip(changes).enumerate() {
             let gradient = &gradient[volume.first..volume.end];
             // SAFETY: each volume has atoms of its own.
             let moved = unsafe { moved.part(volume.first..volume.end) };
@@ -131,8 +142,8 @@ impl<const BY_MODES: bool> NullaryFnOnce for SweepVolumes<'_, BY_MODES> {
                 }
             }
             // As far as all atoms move in the mean.
-            change.largest = change.largest.max((pressure * pressure * volume.swelling / moved.len() as f64).sqrt());
-            change.work += pressure * pressure / volume.inverse;
+            change.largest = (pressure * pressure * volume.swelling / moved.len() as f64).sqrt();
+            change.work = pressure * pressure / volume.inverse;
         }
     }
 }

@@ -114,16 +114,20 @@ impl Law {
         mut noted: Option<&mut ContactTractions>,
     ) {
         match self {
-            Self::Adhesives | Self::VirtualAdhesives(_) => 0.0,
+            Self::Adhesives | Self::VirtualAdhesives(_) => {}
             Self::Cohesion(table) => table.add_forces(scene, &mut found.cohesion, now, force, noted),
-            Self::Links(table) => table.act(scene, controls, &found.links.links, now, |atom, pull| {
-                force[atom as usize] += pull;
-                noted.iter_mut().for_each(|noted| noted.by_cell(atom, pull));
-            }),
-            Self::Penalty(penalty) => penalty.act(rows, (start, now), force, |row, push| {
-                noted.iter_mut().for_each(|noted| noted.by_row(scene, row, push));
-            }),
-        };
+            Self::Links(table) => {
+                table.act(scene, controls, &found.links.links, now, |atom, pull| {
+                    force[atom as usize] += pull;
+                    noted.iter_mut().for_each(|noted| noted.by_cell(atom, pull));
+                });
+            }
+            Self::Penalty(penalty) => {
+                penalty.act(rows, (start, now), force, |row, push| {
+                    noted.iter_mut().for_each(|noted| noted.by_row(scene, row, push));
+                });
+            }
+        }
     }
 
     /// The energy of what the law found at the start of a step where the atoms are now, pN·µm; that of laws that are passive and have

@@ -2,6 +2,7 @@
 //! is drawn to the other by a traction against how far open the space between them is there, eq. (adhesion.17), at most the strength σ and
 //! nothing from the range 2W/σ on, so that opening an area takes the work of separation W.
 
+mod acting;
 mod area;
 #[cfg(test)]
 mod area_tests;
@@ -24,6 +25,7 @@ mod turnover;
 
 use rayon::prelude::*;
 
+use self::acting::Acting;
 pub use self::area::AreaScratch;
 pub use self::bonds::{BondKinetics, Pathway};
 pub use self::closed::Earlier;
@@ -57,11 +59,8 @@ pub struct CohesionScratch {
     /// What their turnover changes of the forces on atoms, pN.
     change: Vec<Vec3>,
     /// What parts of some batches do.
-    pulls: Vec<Vec<Option<PatchPull>>>,
+    acting: Acting,
 }
-
-/// Batches of bodies for each thread whose parts are looked at before what they do is added up.
-const BATCHES_A_THREAD: usize = 2;
 
 impl CohesionScratch {
     /// Forgets what was near, so that the next look finds it anew.
@@ -160,39 +159,17 @@ impl CohesionTable {
         of_batches.iter().for_each(|of_batch| facing.extend_from_slice(of_batch));
     }
 
-    /// Adds the forces of what attracts each other where the atoms are now, and returns the energy, pN·µm. Threads find what parts do, some
-    /// batches at a time; it is added up in the order of parts, so that no sum depends on who found it.
+    /// Adds the forces of what attracts each other where the atoms are now, and notes them.
     pub(super) fn add_forces(
         &self,
         scene: &Scene,
         found: &mut CohesionScratch,
         now: &[Vec3],
         force: &mut [Vec3],
-        mut noted: Option<&mut ContactTractions>,
-    ) -> f64 {
-        let mut energy = 0.0;
-        let CohesionScratch { patches, pulls, .. } = found;
-        pulls.resize_with(BATCHES_A_THREAD * rayon::current_num_threads(), Vec::new);
-        for batches in patches.chunks(pulls.len()) {
-            pulls.par_iter_mut().zip(batches).for_each(|(pulls, patches)| {
-                pulls.clear();
-                pulls.extend(patches.iter().map(|patch| patch.pull(scene, now)));
-            });
-            let parts = batches.iter().zip(&*pulls).flat_map(|(patches, pulls)| patches.iter().zip(pulls));
-            for (patch, pull) in parts {
-                let Some(pull) = pull else { continue };
-                energy += pull.energy;
-                let mut add = |atoms: [u32; 3], forces: [Vec3; 3]| {
-                    atoms.iter().zip(forces).for_each(|(atom, pull)| force[*atom as usize] += pull);
-                };
-                add(patch.own, pull.on_own);
-                if let Partner::Facet(atoms, _) = patch.other {
-                    add(atoms, pull.on_other);
-                }
-                noted.iter_mut().for_each(|noted| note(patch, pull, noted));
-            }
-        }
-        energy
+        noted: Option<&mut ContactTractions>,
+    ) {
+        let CohesionScratch { patches, acting, .. } = found;
+        acting::add_forces(scene, patches, acting, now, force, noted);
     }
 
     /// How many bonds are closed of what was found, where the atoms are now.

@@ -1,5 +1,7 @@
 //! The facets of an instant, and which of them are near which.
 
+use rayon::prelude::*;
+
 use super::super::super::vectors::gather_corners;
 use super::facet::{Facet, apart, nearer};
 use crate::Vec3;
@@ -22,12 +24,7 @@ impl Surroundings {
     /// what is near is looked for some way farther and kept as long as it will do.
     pub fn find(&mut self, scene: &Scene, positions: &[Vec3], range: f64, are_followed: bool) {
         let Self { near, facets, then, nearer: of_facets } = self;
-        facets.clear();
-        facets.extend((0..scene.bodies.len() as u32).flat_map(|body| {
-            let first = scene.bodies[body as usize].first_atom;
-            let corners = move |facet: &[u32; 3]| gather_corners(positions, facet.map(|atom| first + atom));
-            scene.shape(body).facets.iter().map(move |facet| Facet::of(&corners(facet)))
-        }));
+        see_facets(scene, positions, facets);
         // Rounded so that it is less than it was.
         let apart = |own: u32, other: u32| {
             let has_two = scene.sides_of(scene.body_of_facet(own)) == 2;
@@ -44,7 +41,19 @@ impl Surroundings {
         if are_new {
             then.clone_from(facets);
         }
-        of_facets.clear();
-        of_facets.extend(facets.iter().zip(&*then).map(|(now, then)| nearer(now, then, range)));
+        let come_nearer = facets.par_iter().zip(&*then).with_min_len(FACETS_PER_JOB);
+        come_nearer.map(|(now, then)| nearer(now, then, range)).collect_into_vec(of_facets);
     }
+}
+
+/// Facets that a thread sees at once, at least.
+const FACETS_PER_JOB: usize = 512;
+
+/// Sees all facets at these positions.
+fn see_facets(scene: &Scene, positions: &[Vec3], facets: &mut Vec<Facet>) {
+    let facet = |number: usize| {
+        let atoms = scene.facet_atoms(scene.body_of_facet(number as u32), number as u32);
+        Facet::of(&gather_corners(positions, atoms))
+    };
+    (0..scene.facets).into_par_iter().with_min_len(FACETS_PER_JOB).map(facet).collect_into_vec(facets);
 }

@@ -58,7 +58,8 @@ fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
         let (table, scene, positions) = scene(&surfaces, planes, GLUE);
         let mut found = found(&table, &scene, &positions);
         let mut force = vec![Vec3::zeros(); positions.len()];
-        let energy = table.add_forces(&scene, &mut found, &positions, &mut force, None);
+        table.add_forces(&scene, &mut found, &positions, &mut force, None);
+        let energy = table.energy(&scene, &found, &positions);
         assert!(energy < -0.5, "{energy}");
         let acted = force.iter().filter(|force| force.norm() > 0.0).count();
         assert!(acted > 30, "{acted}");
@@ -195,4 +196,37 @@ fn a_box_on_a_floor_is_in_contact_with_its_floor_alone() {
 #[test]
 fn a_patch_takes_as_much_memory_as_its_decision_says() {
     assert_eq!((size_of::<Patch>(), size_of::<facet::Facet>()), (64, 64));
+}
+
+#[test]
+fn forces_are_added_up_in_the_order_of_parts_by_any_number_of_threads() {
+    // Cells of several batches, each beside cells of its own and of others, on a floor.
+    let place = |number: u32| [number % 4, number / 4 % 4, number / 16].map(|place| 3.9 * f64::from(place));
+    let cells: Vec<(Surface, Sides)> = (0..40)
+        .map(|number| (moved(icosphere(2.0, 1), Vec3::from(place(number)) + 2.1 * Vec3::z()), Sides::Outer))
+        .collect();
+    let (table, scene, positions) = scene(&cells, vec![floor()], GLUE);
+    assert!(scene.batches() > 5);
+    let mut found = found(&table, &scene, &positions);
+    let mut plain = vec![Vec3::zeros(); positions.len()];
+    let mut between_batches = 0;
+    for patch in found.patches.iter().flatten() {
+        let Some(pull) = patch.pull(&scene, &positions) else { continue };
+        let mut add = |atoms: [u32; 3], forces: [Vec3; 3]| {
+            atoms.iter().zip(forces).for_each(|(atom, force)| plain[*atom as usize] += force);
+        };
+        add(patch.own, pull.on_own);
+        if let Partner::Facet(atoms, _) = patch.other {
+            add(atoms, pull.on_other);
+            let [own, other] = [patch.own, atoms].map(|atoms| scene.batch_of(scene.body_of_atom(atoms[0])));
+            between_batches += usize::from(own != other);
+        }
+    }
+    assert!(between_batches > 1000, "{between_batches}");
+    for threads in [1, 2, 5] {
+        let mut force = vec![Vec3::zeros(); positions.len()];
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| table.add_forces(&scene, &mut found, &positions, &mut force, None));
+        assert!(force == plain, "the same to the last bit with {threads} threads");
+    }
 }
