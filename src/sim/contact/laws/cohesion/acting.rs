@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::note;
 use super::patch::{Partner, Patch, PatchPull};
 use crate::Vec3;
 use crate::contact::Scene;
@@ -145,4 +144,15 @@ fn add_by_batches(
             }
         }
     });
+}
+
+/// Notes what a part does to what attracts it, with what spreads it along the other: that has no sum, but a moment.
+fn note(patch: &Patch, pull: &PatchPull, noted: &mut ContactTractions) {
+    let own = patch.own.into_iter().zip(pull.on_own);
+    match patch.other {
+        Partner::Plane(_) => own.for_each(|(atom, force)| noted.by_plane(atom, force)),
+        Partner::Facet(atoms, _) => {
+            own.chain(atoms.into_iter().zip(pull.on_other)).for_each(|(atom, force)| noted.by_cell(atom, force));
+        }
+    }
 }

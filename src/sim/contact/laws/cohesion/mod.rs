@@ -31,7 +31,7 @@ pub use self::bonds::{BondKinetics, Pathway};
 pub use self::closed::Earlier;
 use self::closed::PatchBonds;
 pub use self::facing::{Faced, Facing, area_between, number_of};
-use self::patch::{Partner, Patch, PatchPull};
+use self::patch::Patch;
 use self::search::{Around, Seen, UNKNOWN};
 use self::surroundings::Surroundings;
 pub use self::table::{CohesionTable, Cohesive};
@@ -181,16 +181,5 @@ impl CohesionTable {
     /// The energy of what was found, where the atoms are now, pN·µm.
     pub fn energy(&self, scene: &Scene, found: &CohesionScratch, now: &[Vec3]) -> f64 {
         found.patches.iter().flatten().filter_map(|patch| patch.pull(scene, now)).map(|pull| pull.energy).sum()
-    }
-}
-
-/// Notes what a part does to what attracts it, with what spreads it along the other: that has no sum, but a moment.
-fn note(patch: &Patch, pull: &PatchPull, noted: &mut ContactTractions) {
-    let own = patch.own.into_iter().zip(pull.on_own);
-    match patch.other {
-        Partner::Plane(_) => own.for_each(|(atom, force)| noted.by_plane(atom, force)),
-        Partner::Facet(atoms, _) => {
-            own.chain(atoms.into_iter().zip(pull.on_other)).for_each(|(atom, force)| noted.by_cell(atom, force));
-        }
     }
 }

@@ -1,5 +1,6 @@
 //! Forces of the cohesive law against its energy, and energies of scenes whose openings are known.
 
+use super::patch::Partner;
 use super::*;
 use crate::contact::Sides;
 use crate::contact::{Plane, Reach, Shape};
@@ -201,9 +202,9 @@ fn a_patch_takes_as_much_memory_as_its_decision_says() {
 #[test]
 fn forces_are_added_up_in_the_order_of_parts_by_any_number_of_threads() {
     // Cells of several batches, each beside cells of its own and of others, on a floor.
-    let place = |number: u32| [number % 4, number / 4 % 4, number / 16].map(|place| 3.9 * f64::from(place));
+    let middle = |number: u32| [number % 4, number / 4 % 4, number / 16].map(|index| 3.9 * f64::from(index));
     let cells: Vec<(Surface, Sides)> = (0..40)
-        .map(|number| (moved(icosphere(2.0, 1), Vec3::from(place(number)) + 2.1 * Vec3::z()), Sides::Outer))
+        .map(|number| (moved(icosphere(2.0, 1), Vec3::from(middle(number)) + 2.1 * Vec3::z()), Sides::Outer))
         .collect();
     let (table, scene, positions) = scene(&cells, vec![floor()], GLUE);
     assert!(scene.batches() > 5);
