@@ -265,7 +265,10 @@ impl Check<'_, '_> {
             }
             return value;
         }
-        let Some(function) = known(name) else { return Measure::Unknown };
+        // What is miscounted is told where it is resolved; units that follow from it are looked for before.
+        let Some(function) = known(name).filter(|function| function.meaning.takes(given.len())) else {
+            return Measure::Unknown;
+        };
         let plain = || Measure::Known(Unit::plain());
         let parts: Vec<&Node> = given.iter().collect();
         let what = format!("the argument of `{name}`");
