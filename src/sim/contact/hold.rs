@@ -26,7 +26,7 @@ use crate::sim::workspace::Workspace;
 /// Sweeps that mend depths. They need not come to rest: what is left is mended in the next step.
 const MENDING: usize = 8;
 
-/// Atoms from which on threads share the sweeps: to wake them takes as long as some sweeps over fewer.
+/// Atoms from which on threads share the sweeps, if not by their rows: over fewer a sweep takes some microseconds, in which nobody wakes up.
 const WORTH_A_CREW: usize = 4096;
 
 /// Cells that a thread looks at at once, at least.
@@ -61,7 +61,8 @@ pub fn hold_contacts(
     let mut left = Change::default();
     let is_deep = rules.mends && s.rows.iter().any(|row| row.gap() < 0.0);
     s.deep.clear();
-    with_crew(contact.scene.atoms >= WORTH_A_CREW, |crew| {
+    let is_worth_it = contact.scene.atoms >= WORTH_A_CREW || s.mobility.turns.jobs() > 1;
+    with_crew(is_worth_it, |crew| {
         left = sweep(model, contact, dt, rules, s, crew);
         if is_deep {
             mend(model, contact, s, crew);

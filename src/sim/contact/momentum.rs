@@ -88,13 +88,9 @@ fn in_parts<A: Send, B: Send>(
     crew.each(len.div_ceil(size), |part| {
         let part = part * size..len.min((part + 1) * size);
         // SAFETY: each part is that of one job.
-        let lists = unsafe { (now.part(part.clone()), before.part(part.clone()), direction.part(part)) };
-        lists
-            .0
-            .iter_mut()
-            .zip(lists.1)
-            .zip(lists.2)
-            .for_each(|((now, before), direction)| work(now, before, direction));
+        let (now, before, direction) =
+            unsafe { (now.part(part.clone()), before.part(part.clone()), direction.part(part)) };
+        now.iter_mut().zip(before).zip(direction).for_each(|((now, before), direction)| work(now, before, direction));
     });
 }
 

@@ -31,14 +31,10 @@ struct OfBatch {
 }
 
 impl OfBatch {
-    /// Finds what parts do where the atoms are now.
+    /// Finds what parts do where the atoms are now, and which batches attract them.
     fn find(&mut self, scene: &Scene, patches: &[Patch], now: &[Vec3]) {
         self.pulls.clear();
         self.pulls.extend(patches.iter().map(|patch| patch.pull(scene, now)));
-    }
-
-    /// Finds which batches attract the parts.
-    fn find_runs(&mut self, scene: &Scene, patches: &[Patch]) {
         self.runs.clear();
         for (number, patch) in (0..).zip(patches) {
             let Partner::Facet([atom, ..], _) = patch.other else { continue };
@@ -49,6 +45,11 @@ impl OfBatch {
             }
         }
         self.runs.sort_unstable();
+    }
+
+    /// The batches that attract parts.
+    fn attracted_by(&self) -> impl Iterator<Item = u32> {
+        self.runs.chunk_by(|one, next| one.0 == next.0).map(|runs| runs[0].0)
     }
 
     /// The runs of parts that a batch attracts.
@@ -69,52 +70,32 @@ pub fn add_forces(
     mut noted: Option<&mut ContactTractions>,
 ) {
     let Acting { of_batches, acted_on } = acting;
-    let threads = rayon::current_num_threads();
-    of_batches.resize_with(BATCHES_A_THREAD * threads, OfBatch::default);
+    of_batches.resize_with(BATCHES_A_THREAD * rayon::current_num_threads(), OfBatch::default);
     let mut first = 0;
     for patches in patches.chunks(of_batches.len()) {
         let of_batches = &mut of_batches[..patches.len()];
-        of_batches.par_iter_mut().zip(patches).for_each(|(of_batch, patches)| {
-            of_batch.find(scene, patches, now);
-            if threads > 1 {
-                of_batch.find_runs(scene, patches);
-            }
-        });
-        let parts = || patches.iter().flatten().zip(of_batches.iter().flat_map(|of_batch| &of_batch.pulls));
-        let parts = || parts().filter_map(|(patch, pull)| Some((patch, pull.as_ref()?)));
-        match threads {
-            1 => parts().for_each(|(patch, pull)| {
-                add(patch.own, &pull.on_own, force);
-                if let Partner::Facet(atoms, _) = patch.other {
-                    add(atoms, &pull.on_other, force);
-                }
-            }),
-            _ => {
-                acted_on.clear();
-                acted_on.extend(first as u32..(first + patches.len()) as u32);
-                acted_on.extend(of_batches.iter().flat_map(|of_batch| of_batch.runs.iter().map(|(batch, ..)| *batch)));
-                acted_on.sort_unstable();
-                acted_on.dedup();
-                add_by_batches(scene, acted_on, (first, patches), of_batches, force);
-            }
-        }
+        of_batches.par_iter_mut().zip(patches).for_each(|(of_batch, patches)| of_batch.find(scene, patches, now));
+        acted_on.clear();
+        acted_on.extend(first..first + patches.len() as u32);
+        acted_on.extend(of_batches.iter().flat_map(OfBatch::attracted_by));
+        acted_on.sort_unstable();
+        acted_on.dedup();
+        add(scene, acted_on, (first, patches), of_batches, force);
         if let Some(noted) = noted.as_deref_mut() {
-            parts().for_each(|(patch, pull)| note(patch, pull, noted));
+            let parts = patches.iter().flatten().zip(of_batches.iter().flat_map(|of_batch| &of_batch.pulls));
+            let acting = parts.filter_map(|(patch, pull)| Some((patch, pull.as_ref()?)));
+            acting.for_each(|(patch, pull)| note(patch, pull, noted));
         }
-        first += patches.len();
+        first += patches.len() as u32;
     }
-}
-
-fn add(atoms: [u32; 3], forces: &[Vec3; 3], to: &mut [Vec3]) {
-    atoms.iter().zip(forces).for_each(|(atom, pull)| to[*atom as usize] += pull);
 }
 
 /// Adds what parts do to the atoms of the batches that they act on, those of all at the same time: `patches` are those of the batches from
 /// the `first` on.
-fn add_by_batches(
+fn add(
     scene: &Scene,
     acted_on: &[u32],
-    (first, patches): (usize, &[Vec<Patch>]),
+    (first, patches): (u32, &[Vec<Patch>]),
     of_batches: &[OfBatch],
     force: &mut [Vec3],
 ) {
@@ -123,8 +104,10 @@ fn add_by_batches(
         let atoms = scene.atoms_of(to as usize);
         // SAFETY: each batch is there once, and has atoms of its own.
         let force = unsafe { force.part(atoms.clone()) };
-        let mut add = |of: [u32; 3], forces: &[Vec3; 3]| add(of.map(|atom| atom - atoms.start as u32), forces, force);
-        for (batch, (patches, of_batch)) in (first as u32..).zip(patches.iter().zip(of_batches)) {
+        let mut add = |of: [u32; 3], forces: &[Vec3; 3]| {
+            of.iter().zip(forces).for_each(|(atom, pull)| force[*atom as usize - atoms.start] += pull);
+        };
+        for (batch, (patches, of_batch)) in (first..).zip(patches.iter().zip(of_batches)) {
             let mut act = |parts: Range<usize>| {
                 for (patch, pull) in patches[parts.clone()].iter().zip(&of_batch.pulls[parts]) {
                     let Some(pull) = pull else { continue };
