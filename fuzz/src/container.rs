@@ -21,7 +21,8 @@ fn datasets(group: &Group, found: &mut Vec<String>) -> Result<()> {
 pub fn apply(file: &File, edit: Edit) -> Result<()> {
     let mut paths = Vec::new();
     datasets(file, &mut paths)?;
-    let path = &paths[usize::from(edit.part) % paths.len()];
+    // Edits before may have taken all.
+    let Some(path) = paths.get(usize::from(edit.part) % paths.len().max(1)) else { return Ok(()) };
     let dataset = file.dataset(path)?;
     match edit.kind % 8 {
         0..=3 => number(&dataset, edit),

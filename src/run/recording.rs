@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::progress::Report;
 use crate::error::{Error, Result};
@@ -15,7 +16,7 @@ use crate::simulation::{Recorder, Simulation, SimulationError, passed};
 pub struct Recording<'a> {
     pub writer: ResultWriter,
     recorder: Recorder,
-    schedule: Schedule,
+    schedule: Arc<Schedule>,
     result: &'a Path,
     pub report: &'a mut dyn Report,
     /// Time at the end of the step before, s.
@@ -50,7 +51,7 @@ impl<'a> Recording<'a> {
         Self {
             writer,
             recorder: if schedule.forces { recorder.with_forces(simulation.model()) } else { recorder },
-            schedule,
+            schedule: Arc::new(schedule),
             result,
             report,
             time: simulation.time(),
@@ -77,18 +78,22 @@ impl<'a> Recording<'a> {
         let (before, after) = (std::mem::replace(&mut self.time, simulation.time()), simulation.time());
         let last = after >= simulation.end();
         self.limited += u64::from(made.limited);
-        let due = self.schedule.due(before, after);
-        if last || !due.is_empty() {
+        let schedule = Arc::clone(&self.schedule);
+        let mut due = schedule.due(before, after).peekable();
+        if last || due.peek().is_some() {
             if let Err(trouble) = check_passed(simulation.model(), simulation.state()) {
                 return ControlFlow::Break(Stop::Passed(trouble));
             }
             self.remember_good(simulation);
         }
-        let (ends, within): (Vec<f64>, Vec<f64>) = due.into_iter().partition(|time| Schedule::is_end(*time, after));
-        for time in within {
-            self.record_within(simulation, time)?;
+        let mut ends = None;
+        for time in due {
+            match Schedule::is_end(time, after) {
+                true => ends = Some(time),
+                false => self.record_within(simulation, time)?,
+            }
         }
-        if let Some(time) = ends.last().copied().or(last.then_some(after)) {
+        if let Some(time) = ends.or(last.then_some(after)) {
             // As the time was asked for, without the round-off of the clock.
             or_stop(self.writer.append(&Frame { time, ..simulation.record(&mut self.recorder) }))?;
             self.recorded = simulation.steps();

@@ -30,23 +30,29 @@ pub fn schedule(document: &Document) -> Schedule {
 }
 
 impl Schedule {
-    /// The times in (before, after] that have a frame, rising, those included that `after` misses by round-off alone. Nothing is allocated where
-    /// there is none.
-    pub fn due(&self, before: f64, after: f64) -> Vec<f64> {
-        let mut due = Vec::new();
-        if let Some(every) = self.every {
-            let passed = |time: f64| (time / every * (1.0 + SLACK)).floor();
-            let (mut number, last) = (passed(before) + 1.0, passed(after));
-            while number <= last {
-                due.push(number * every);
-                number += 1.0;
-            }
-        }
+    /// The times in (before, after] that have a frame, rising, those included that `after` misses by round-off alone. None is held beside the next:
+    /// a step may have millions.
+    pub fn due(&self, before: f64, after: f64) -> impl Iterator<Item = f64> + '_ {
+        let every = self.every.unwrap_or(f64::INFINITY);
+        let passed = |time: f64| (time / every * (1.0 + SLACK)).floor();
+        let (mut number, last) = (passed(before) + 1.0, passed(after));
         let later = |bound: f64| self.times.partition_point(|time| *time <= bound * (1.0 + SLACK));
-        due.extend(&self.times[later(before)..later(after)]);
-        due.sort_by(f64::total_cmp);
-        due.dedup_by(|one, other| (*one - *other).abs() <= SLACK * after);
-        due
+        let mut own = self.times[later(before)..later(after)].iter().copied().peekable();
+        let mut told = f64::NEG_INFINITY;
+        let next = move || {
+            let regular = (number <= last).then_some(number * every);
+            let is_own = own.peek().is_some_and(|own| regular.is_none_or(|regular| *own < regular));
+            if is_own {
+                return own.next();
+            }
+            number += 1.0;
+            regular
+        };
+        std::iter::from_fn(next).filter(move |time| {
+            let is_new = *time - told > SLACK * after;
+            told = if is_new { *time } else { told };
+            is_new
+        })
     }
 
     /// Whether a time at which a frame is due is, but for round-off, the one at which a step ended.
@@ -72,10 +78,14 @@ mod tests {
     #[test]
     fn frames_are_due_once_at_multiples_and_at_times_of_their_own() {
         let both = of(Some(0.5), &[0.2, 0.5, 0.7]);
-        assert!(both.due(0.0, 0.19).is_empty());
-        assert_eq!(both.due(0.19, 0.6), [0.2, 0.5]);
-        assert_eq!(both.due(0.6, 1.75), [0.7, 1.0, 1.5], "a step may be longer than the time between frames");
-        assert!(of(None, &[3.0]).due(0.0, 2.0).is_empty());
+        let due = |schedule: &Schedule, before: f64, after: f64| schedule.due(before, after).collect::<Vec<f64>>();
+        assert!(due(&both, 0.0, 0.19).is_empty());
+        assert_eq!(due(&both, 0.19, 0.6), [0.2, 0.5]);
+        assert_eq!(due(&both, 0.6, 1.75), [0.7, 1.0, 1.5], "a step may be longer than the time between frames");
+        assert!(due(&of(None, &[3.0]), 0.0, 2.0).is_empty());
+        assert_eq!(due(&of(None, &[1.0, 1.0, 2.0]), 0.0, 3.0), [1.0, 2.0], "a time that is given twice has one frame");
+        let first: Vec<f64> = of(Some(1e-9), &[0.5]).due(0.0, 1.0).take(3).collect();
+        assert_eq!(first, [1e-9, 2.0 * 1e-9, 3.0 * 1e-9], "of a thousand million");
         assert_eq!(both.frames(1.0), 2.0 + 1.0 + 3.0, "the one at 0.5 s is counted twice: it is an estimate");
         assert_eq!(of(Some(0.5), &[]).frames(1.0), 3.0);
     }

@@ -6,6 +6,9 @@ use crate::experiment::{MeasureCurve, OneOrMany, PlotKind, When};
 use crate::units::{Dimension, pretty};
 use std::collections::HashSet;
 
+/// The most frames of a run: a result of one cell has 14 GB with so many.
+const MOST_FRAMES: f64 = 1e7;
+
 impl Check<'_> {
     pub(super) fn scene(&mut self) {
         let experiment = &self.document.experiment;
@@ -42,6 +45,16 @@ impl Check<'_> {
             let (path, time) = (format!("output.times[{index}]"), pretty(time.value(), Dimension::TIME));
             let message = format!("`{path}` is {time}, before the start of the run");
             self.fault(&path, "before the start", message, "times of frames count from the start of the run, 0 s");
+        }
+        if let Some(every) = &experiment.output.every
+            && experiment.run.until.value() > MOST_FRAMES * every.value()
+        {
+            let [every, until] =
+                [every.value(), experiment.run.until.value()].map(|time| pretty(time, Dimension::TIME));
+            let message =
+                format!("`output.every` is {every}, so that a run of {until} has more than ten million frames");
+            let help = "make `output.every` longer, or record what is of interest alone, at `output.times`";
+            self.fault("output.every", "too short for this run", message, help);
         }
         if let When::At(time) = experiment.picture.time {
             self.instant("picture.time", time.value(), Late::Picture);
