@@ -10,11 +10,14 @@
 use rayon::prelude::*;
 
 use super::contact::{has_live_forces, pull_contacts};
+use super::coupled::{begin_coupling, couple};
+use super::coupled_scratch::Coupled;
 use super::forces::{Acting, Forces};
 use super::kind::Kind;
 use super::model::Model;
 use super::planes::{self, TouchScratch};
 use super::pressure::{carry_pressure, constrain};
+use super::scheme::{gamma, larger, root_mean_square, share_of_stage};
 use super::solver::{Solver, Stage, System, solve_block};
 use super::state::State;
 use super::targets::Targets;
@@ -23,26 +26,6 @@ use super::workspace::{KindScratch, Workspace};
 use crate::mechanics::integrator::{Order, StepSize};
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::tangent::Scales;
-
-/// γ of the two-stage scheme where K is a good stand-in for the true stiffness: damps what contacts make ring, for any K at or above a half
-/// of the true stiffness.
-const DAMPING: f64 = 1.0;
-
-/// The same where K is far too large for some shapes, which are damped by that, and relax too slowly as it is.
-const EXACT: f64 = 0.5;
-
-/// The same with the tangent stiffness of each cell.
-const TANGENT: f64 = 1.0;
-
-/// γ for an order.
-pub fn gamma(kind: &Kind, order: Order) -> f64 {
-    match order {
-        Order::First => 1.0,
-        Order::Second if kind.tangent.is_some() => TANGENT,
-        Order::Second if kind.is_told() => DAMPING,
-        Order::Second => EXACT,
-    }
-}
 
 /// Moves all atoms freely by one step: forces, the increments that they cause, and where these take the atoms; constraints hold to
 /// first order. Returns the largest error estimate over the mean edge of its kind, 0 at first order and for steps of a fixed size. A block goes through all
@@ -58,22 +41,23 @@ pub fn advance_implicitly(
 ) -> f64 {
     let controls = &from.chemistry.controls;
     pull_contacts(model, controls, &from.kinds, &mut ws.contact, share_of_stage(order));
+    let couples = begin_coupling(model, (dt, order), from, ws);
     match order {
+        Order::First if couples => {
+            advance_stages(model, dt, order, &[Stage::First], from, to, ws);
+            couple(model, order, Stage::First, from, to, ws)
+        }
         Order::First => advance_stages(model, dt, order, &[Stage::First], from, to, ws),
         Order::Second if has_live_forces(model) => {
             advance_stages(model, dt, order, &[Stage::First], from, to, ws);
+            if couples {
+                couple(model, order, Stage::First, from, to, ws);
+            }
             pull_contacts(model, controls, &to.kinds, &mut ws.contact, share_of_stage(order));
-            advance_stages(model, dt, order, &[Stage::Second], from, to, ws)
+            let error = advance_stages(model, dt, order, &[Stage::Second], from, to, ws);
+            if couples { couple(model, order, Stage::Second, from, to, ws) } else { error }
         }
         Order::Second => advance_stages(model, dt, order, &[Stage::First, Stage::Second], from, to, ws),
-    }
-}
-
-/// What forces of a stage count of what moves a cell as a whole: (step.3) moves it by the mean of both.
-pub(super) fn share_of_stage(order: Order) -> f64 {
-    match order {
-        Order::First => 1.0,
-        Order::Second => 0.5,
     }
 }
 
@@ -99,14 +83,16 @@ fn advance_stages(
         let step = Step { model, kind, forces, solver, targets, order, start: from.time, dt };
         let (length, lanes) = (kind.block_len(), kind.lanes);
         let blocks = now.blocks(kind);
-        if order == Order::Second && stages.len() == 1 {
+        let couples = w.coupled.couples();
+        if couples || order == Order::Second && stages.len() == 1 {
             w.increments.resize(now.positions.len(), 0.0);
         }
         // Contacts move cells by their factors; alone each has it only while it is made a step with.
         let of_block = kind.tangent.as_ref().map_or(0, |tangent| tangent.len(lanes));
         let are_kept = model.contact.is_some() && solver.own.is_empty();
         w.own_factors.resize(if are_kept { of_block * blocks } else { 0 }, 0.0);
-        let KindScratch { increments, energy, volume, target, pressure, touch, own_factors, outer, .. } = w;
+        let KindScratch { increments, energy, volume, target, pressure, touch, own_factors, outer, coupled, .. } = w;
+        let Coupled { gradient, swell, second, .. } = coupled;
         let error = (next.positions.par_chunks_exact_mut(length))
             .zip(now.rest_volumes.par_chunks_exact(lanes).zip(now.positions.par_chunks_exact(length)))
             .zip(volume.par_chunks_exact_mut(lanes).zip(target.par_chunks_exact_mut(lanes)))
@@ -115,12 +101,16 @@ fn advance_stages(
                 each_or_none(increments, length, blocks)
                     .zip(each_or_none(own_factors, of_block.max(1), blocks))
                     .zip(each_or_none(outer, length, blocks))
+                    .zip(each_or_none(gradient, length, blocks).zip(each_or_none(swell, length, blocks)))
+                    .zip(each_or_none(second, length, blocks))
                     .zip(touch),
             )
             .enumerate()
             .map(|(number, ((((x, (rest, start)), (volume, target)), (energy, pressure)), kept))| {
-                let (((kept, own), outer), touch) = kept;
-                let mut block = Block { number, x, rest, start, volume, target, energy, pressure, outer, touch };
+                let (((((kept, own), outer), (gradient, swell)), second), touch) = kept;
+                let swelling = gradient.zip(swell);
+                let mut block =
+                    Block { number, x, rest, start, volume, target, energy, pressure, outer, swelling, second, touch };
                 buffers.enter_with_factor(length, |buffer, spare| {
                     let (factor, has_factor) = match own {
                         Some(own) => (own, stages[0] == Stage::Second),
@@ -164,6 +154,10 @@ struct Block<'a> {
     pressure: &'a mut [f64],
     /// Where forces from outside are added up, if somebody asks.
     outer: Option<&'a mut [f64]>,
+    /// Where the gradients of volumes and what a unit of pressure moves are kept, where cells are coupled to others.
+    swelling: Option<(&'a mut [f64], &'a mut [f64])>,
+    /// Where the increments of the second stage are kept then.
+    second: Option<&'a mut [f64]>,
     touch: &'a mut TouchScratch,
 }
 
@@ -211,6 +205,10 @@ impl Step<'_> {
             // The displacement that a unit of pressure causes, eq. (step.5).
             swell.copy_from_slice(gradient);
             solve_block(kind, kind.lanes, system, block.start, swell, spare, spare2);
+            if let Some(kept) = &mut block.swelling {
+                kept.0.copy_from_slice(gradient);
+                kept.1.copy_from_slice(swell);
+            }
         }
         let mut error = 0.0;
         for &stage in stages {
@@ -227,7 +225,9 @@ impl Step<'_> {
             }
             self.solve(system, block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
             block.go_on(stage, y, first);
-            if stage == Stage::Second && self.asks_for_error() {
+            if let (Stage::Second, Some(kept)) = (stage, &mut block.second) {
+                kept.copy_from_slice(y);
+            } else if stage == Stage::Second && self.asks_for_error() {
                 first.iter_mut().zip(&*y).for_each(|(first, y)| *first = 0.5 * (*first + y));
                 system.filter(kind, block.start, first, spare, spare2);
                 error = root_mean_square(kind, first);
@@ -280,19 +280,4 @@ impl Block<'_> {
             starts.zip(first).for_each(|(((x, start), y2), y1)| *x = start + 1.5 * *y1 + 0.5 * y2);
         }
     }
-}
-
-/// The largest root mean square over the atoms of a cell of a block, µm.
-fn root_mean_square(kind: &Kind, errors: &[f64]) -> f64 {
-    let mut squares = [0.0; LANES];
-    for errors in errors.chunks_exact(kind.lanes) {
-        squares.iter_mut().zip(errors).for_each(|(square, error)| *square += error * error);
-    }
-    let largest = squares[..kind.lanes].iter().copied().fold(0.0, larger);
-    (largest / kind.atoms() as f64).sqrt()
-}
-
-/// The larger of two numbers, or whatever is not a number.
-pub fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
 }

@@ -7,6 +7,10 @@ pub mod chemistry;
 pub mod constraints;
 pub mod contact;
 pub mod controls;
+mod coupled;
+mod coupled_scratch;
+#[cfg(test)]
+mod coupled_tests;
 mod elasticity;
 pub mod fibre_state;
 mod fibres;
@@ -31,6 +35,7 @@ mod pressure;
 pub mod projection;
 mod protrude;
 mod refresh;
+mod scheme;
 pub mod seeding;
 mod skeleton;
 mod solver;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::acting_fibres::ActingFibres;
 use super::chemistry::ChemistryScratch;
 use super::contact::ContactScratch;
+use super::coupled_scratch::Coupled;
 use super::kind::Kind;
 use super::model::Model;
 use super::planes::TouchScratch;
@@ -70,6 +71,8 @@ pub struct KindScratch {
     pub target: Vec<f64>,
     /// The factors of cells that have a stiffness of their own, block by block, where contacts need them in the attempt; else empty.
     pub own_factors: Vec<f64>,
+    /// What couples the cells to others by forces that the step answers; empty where none are so steep.
+    pub coupled: Coupled,
     /// One entry a block: contact with planes.
     pub touch: Vec<TouchScratch>,
     /// One entry a block: the thorough projection.
@@ -105,6 +108,7 @@ impl KindScratch {
             pressure: Vec::new(),
             target: Vec::new(),
             own_factors: Vec::new(),
+            coupled: Coupled::default(),
             touch: Vec::new(),
             project: Vec::new(),
             stiffness_shape: Vec::new(),
@@ -181,6 +185,7 @@ impl KindScratch {
         ] {
             array.fill(f64::NAN);
         }
+        self.coupled.poison();
         self.touch.iter_mut().for_each(TouchScratch::poison);
         self.project.iter_mut().for_each(ProjectScratch::poison);
     }

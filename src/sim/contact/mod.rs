@@ -34,6 +34,7 @@ mod scratch;
 mod settle;
 mod spread;
 mod state;
+mod steep;
 mod sweep;
 #[cfg(test)]
 mod sweep_tests;
@@ -63,6 +64,7 @@ pub use scene::ContactScene;
 pub use scratch::{ContactForces, ContactScratch, SweepRules};
 pub use settle::settle_adhesives;
 pub use state::{AdhesiveAtom, AtomBond, ContactState, EdgeBond, Faced, Link, Numbered, PlaneBond, SurfaceBonds};
+pub use steep::{answer, are_steep, find_slopes, take_answer};
 pub use touch::near_cell;
 pub use tractions::ContactTractions;
 pub use turnover::turn_over_bonds;

@@ -130,6 +130,39 @@ impl Law {
         }
     }
 
+    /// The most that a pull of the law on an area grows with an opening, over 2, pN/µm³; 0 under laws whose forces the implicit step does not
+    /// answer.
+    pub(super) fn steepest(&self) -> f64 {
+        match self {
+            Self::Cohesion(table) => table.steepest(),
+            Self::Adhesives | Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => 0.0,
+        }
+    }
+
+    /// Finds how what the law does changes as the atoms move from where they are now.
+    pub(super) fn find_slopes(&self, scene: &Scene, found: &mut LawScratch, now: &[Vec3]) {
+        match self {
+            Self::Cohesion(_) => CohesionTable::find_slopes(scene, &mut found.cohesion, now),
+            Self::Adhesives | Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => {}
+        }
+    }
+
+    /// Adds what the law does, beyond what it does where slopes were found, where atoms are moved so (µm), so many times; notes what of it
+    /// cells do to what they touch.
+    pub(super) fn answer(
+        &self,
+        scene: &Scene,
+        found: &mut LawScratch,
+        moved: (f64, &[Vec3]),
+        force: &mut [Vec3],
+        noted: Option<&mut ContactTractions>,
+    ) {
+        match self {
+            Self::Cohesion(_) => CohesionTable::answer(scene, &mut found.cohesion, moved, force, noted),
+            Self::Adhesives | Self::Links(_) | Self::Penalty(_) | Self::VirtualAdhesives(_) => {}
+        }
+    }
+
     /// The energy of what the law found at the start of a step where the atoms are now, pN·µm; that of laws that are passive and have
     /// forces.
     pub(super) fn energy(&self, scene: &Scene, found: &LawScratch, now: &[Vec3]) -> f64 {

@@ -31,10 +31,10 @@ struct OfBatch {
 }
 
 impl OfBatch {
-    /// Finds what parts do where the atoms are now, and which batches attract them.
-    fn find(&mut self, scene: &Scene, patches: &[Patch], now: &[Vec3]) {
+    /// Finds what parts do, and which batches attract them.
+    fn find(&mut self, scene: &Scene, patches: &[Patch], pull: impl Fn(usize, &Patch) -> Option<PatchPull>) {
         self.pulls.clear();
-        self.pulls.extend(patches.iter().map(|patch| patch.pull(scene, now)));
+        self.pulls.extend(patches.iter().enumerate().map(|(number, patch)| pull(number, patch)));
         self.runs.clear();
         for (number, patch) in (0..).zip(patches) {
             let Partner::Facet([atom, ..], _) = patch.other else { continue };
@@ -60,12 +60,12 @@ impl OfBatch {
     }
 }
 
-/// Adds the forces of all parts where the atoms are now to those of the atoms, and notes what they do.
+/// Adds what all parts do, each by its batch and its number there, to the forces on atoms, and notes it.
 pub fn add_forces(
     scene: &Scene,
     patches: &[Vec<Patch>],
     acting: &mut Acting,
-    now: &[Vec3],
+    pull: impl Fn(usize, usize, &Patch) -> Option<PatchPull> + Sync,
     force: &mut [Vec3],
     mut noted: Option<&mut ContactTractions>,
 ) {
@@ -74,7 +74,10 @@ pub fn add_forces(
     let mut first = 0;
     for patches in patches.chunks(of_batches.len()) {
         let of_batches = &mut of_batches[..patches.len()];
-        of_batches.par_iter_mut().zip(patches).for_each(|(of_batch, patches)| of_batch.find(scene, patches, now));
+        of_batches.par_iter_mut().zip(patches).enumerate().for_each(|(number, (of_batch, patches))| {
+            let batch = first as usize + number;
+            of_batch.find(scene, patches, |number, patch| pull(batch, number, patch));
+        });
         acted_on.clear();
         acted_on.extend(first..first + patches.len() as u32);
         acted_on.extend(of_batches.iter().flat_map(OfBatch::attracted_by));

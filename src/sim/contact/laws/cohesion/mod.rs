@@ -17,6 +17,9 @@ mod pairs;
 mod patch;
 mod points;
 mod search;
+mod slope;
+#[cfg(test)]
+mod slope_tests;
 mod surroundings;
 mod table;
 #[cfg(test)]
@@ -33,6 +36,7 @@ use self::closed::PatchBonds;
 pub use self::facing::{Faced, Facing, area_between, number_of};
 use self::patch::Patch;
 use self::search::{Around, Seen, UNKNOWN};
+use self::slope::Slope;
 use self::surroundings::Surroundings;
 pub use self::table::{CohesionTable, Cohesive};
 use self::turnover::Turnover;
@@ -60,6 +64,8 @@ pub struct CohesionScratch {
     change: Vec<Vec3>,
     /// What parts of some batches do.
     acting: Acting,
+    /// How what they do changes as they move; where the step answers that, one for each part.
+    slopes: Vec<Vec<Option<Slope>>>,
 }
 
 impl CohesionScratch {
@@ -76,6 +82,7 @@ impl CohesionScratch {
         self.facing.clear();
         self.bonds.clear();
         self.change.clear();
+        self.slopes.clear();
     }
 
     /// Lets bonds close and open in a step that ends at these positions, eq. (adhesion.25); `shear` is what each bears along the surface, pN,
@@ -169,7 +176,32 @@ impl CohesionTable {
         noted: Option<&mut ContactTractions>,
     ) {
         let CohesionScratch { patches, acting, .. } = found;
-        acting::add_forces(scene, patches, acting, now, force, noted);
+        acting::add_forces(scene, patches, acting, |_, _, patch| patch.pull(scene, now), force, noted);
+    }
+
+    /// Finds how what all parts do changes as they move from where the atoms are now.
+    pub(super) fn find_slopes(scene: &Scene, found: &mut CohesionScratch, now: &[Vec3]) {
+        let CohesionScratch { patches, slopes, .. } = found;
+        slopes.resize_with(patches.len(), Vec::new);
+        slopes.par_iter_mut().zip(&*patches).for_each(|(slopes, patches)| {
+            slopes.clear();
+            slopes.extend(patches.iter().map(|patch| patch.slope(scene, now)));
+        });
+    }
+
+    /// Adds what parts do, beyond what they do where the atoms were, where these are moved so (µm), so many times, and notes it.
+    pub(super) fn answer(
+        scene: &Scene,
+        found: &mut CohesionScratch,
+        (times, moved): (f64, &[Vec3]),
+        force: &mut [Vec3],
+        noted: Option<&mut ContactTractions>,
+    ) {
+        let CohesionScratch { patches, acting, slopes, .. } = found;
+        let answer = |batch: usize, number: usize, patch: &Patch| {
+            slopes[batch][number].as_ref().map(|slope| slope.answer(patch, times, moved))
+        };
+        acting::add_forces(scene, patches, acting, answer, force, noted);
     }
 
     /// How many bonds are closed of what was found, where the atoms are now.

@@ -31,9 +31,19 @@ pub enum Partner {
     Plane(u32),
 }
 
+impl Partner {
+    /// The atoms of a facet.
+    pub fn atoms(&self) -> Option<[u32; 3]> {
+        match self {
+            Self::Facet(atoms, _) => Some(*atoms),
+            Self::Plane(_) => None,
+        }
+    }
+}
+
 /// Traction over the strength at an opening over the range: a tent, eq. (adhesion.17). What touches is not drawn: contact alone holds it
 /// apart.
-fn traction(t: f64) -> f64 {
+pub fn traction(t: f64) -> f64 {
     2.0 * t.min(1.0 - t).max(0.0)
 }
 
@@ -80,7 +90,7 @@ pub struct PatchPull {
 
 impl Patch {
     /// Its opening where the atoms are now, with the vector product of two sides of its facet, these, and its unit normal.
-    fn opening(&self, scene: &Scene, now: &[Vec3]) -> Option<(Opening, Vec3, [Vec3; 2], Vec3)> {
+    pub fn opening(&self, scene: &Scene, now: &[Vec3]) -> Option<(Opening, Vec3, [Vec3; 2], Vec3)> {
         let [a, b, c] = gather_corners(now, self.own);
         let sides = [b - a, c - a];
         let twice = sides[0].cross(&sides[1]);

@@ -104,6 +104,12 @@ impl CohesionTable {
         self.between.iter().chain(&self.on_planes).map(Cohesive::range).fold(0.0, f64::max)
     }
 
+    /// The most that a pull on an area grows with its opening, over 2, pN/µm³: as much as strength over range.
+    pub(in super::super) fn steepest(&self) -> f64 {
+        let sticking = self.between.iter().chain(&self.on_planes).filter(|cohesive| cohesive.range() > 0.0);
+        sticking.map(|cohesive| cohesive.strength / cohesive.range()).fold(0.0, f64::max)
+    }
+
     /// At how many points of its facets, on all sides, it is looked what attracts a body.
     pub fn points_of(&self, scene: &Scene, body: u32) -> usize {
         let of_facet = points_of_facet(self.points[scene.bodies[body as usize].shape as usize]).len();

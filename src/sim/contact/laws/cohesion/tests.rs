@@ -10,7 +10,11 @@ use crate::random::{Purpose, Stream};
 const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
 
 /// Bodies of one kind each, all of which stick to each other and to planes alike.
-fn scene(surfaces: &[(Surface, Sides)], planes: Vec<Plane>, cohesive: Cohesive) -> (CohesionTable, Scene, Vec<Vec3>) {
+pub(super) fn scene(
+    surfaces: &[(Surface, Sides)],
+    planes: Vec<Plane>,
+    cohesive: Cohesive,
+) -> (CohesionTable, Scene, Vec<Vec3>) {
     let shapes: Vec<Shape> = surfaces.iter().map(|(rest, sides)| Shape::new(rest, *sides, 0.15)).collect();
     let mut table = CohesionTable::new(shapes.len(), planes.len());
     table.between.fill(cohesive);
@@ -20,25 +24,25 @@ fn scene(surfaces: &[(Surface, Sides)], planes: Vec<Plane>, cohesive: Cohesive) 
     (table, Scene::new(shapes, &(0..surfaces.len()).collect::<Vec<_>>(), planes, REACH), positions)
 }
 
-fn moved(mut surface: Surface, by: Vec3) -> Surface {
+pub(super) fn moved(mut surface: Surface, by: Vec3) -> Surface {
     surface.positions.iter_mut().for_each(|x| *x += by);
     surface
 }
 
-fn found(table: &CohesionTable, scene: &Scene, positions: &[Vec3]) -> CohesionScratch {
+pub(super) fn found(table: &CohesionTable, scene: &Scene, positions: &[Vec3]) -> CohesionScratch {
     let mut found = CohesionScratch::default();
     table.find(scene, &Controls::default(), NONE, positions, &mut found);
     found
 }
 
-fn floor() -> Plane {
+pub(super) fn floor() -> Plane {
     Plane { point: Vec3::zeros(), normal: Vec3::z() }
 }
 
 /// No bonds from before.
 const NONE: Earlier = Earlier { bonds: &[], time: 0.0 };
 
-const GLUE: Cohesive = Cohesive { strength: 3.0, work: 1.2, friction: 0.0, bonds: None };
+pub(super) const GLUE: Cohesive = Cohesive { strength: 3.0, work: 1.2, friction: 0.0, bonds: None };
 
 #[test]
 fn forces_are_the_gradient_of_the_energy_and_have_neither_sum_nor_torque() {
