@@ -34,7 +34,7 @@ pub fn begin_coupling(model: &Model, (dt, order): (f64, Order), from: &State, ws
     let couples = are_steep(model, dt, ws.kinds.iter().map(|w| w.stiffening));
     for ((kind, now), w) in model.kinds.iter().zip(&from.kinds).zip(&mut ws.kinds) {
         let size = if couples { now.positions.len() } else { 0 };
-        w.coupled.suit(size, if couples { now.blocks(kind) } else { 0 });
+        w.coupled.suit(size, if couples { now.blocks(kind) } else { 0 }, model.keeps_tractions);
         w.coupled.solver = couples.then(|| w.solver(kind, dt, gamma(kind, order)));
     }
     if couples {
@@ -56,8 +56,13 @@ pub fn couple(model: &Model, order: Order, stage: Stage, from: &State, to: &mut 
         combine(increments, change, |y, change| y + change);
     }
     if model.keeps_tractions {
-        let moved = kinds.iter_mut().map(|w| &*w.increments_of(stage).0);
-        answer(model, (OF_SLOPES, share_of_stage(order)), from, moved, contact);
+        for w in &mut *kinds {
+            // What slopes have made of the increments, but for what they leave.
+            let KindScratch { increments, coupled: Coupled { second, left, .. }, .. } = w;
+            let increments = if stage == Stage::First { increments } else { second };
+            combine(left, increments, |left, moved| moved - left);
+        }
+        answer(model, (OF_SLOPES, share_of_stage(order)), from, kinds.iter().map(|w| &w.coupled.left[..]), contact);
     }
     if stage == Stage::First || !matches!(model.integrator.size, StepSize::Adaptive { .. }) {
         return 0.0;
@@ -70,6 +75,13 @@ impl KindScratch {
     fn increments_of(&mut self, stage: Stage) -> (&mut [f64], &[f64]) {
         let Self { increments, coupled: Coupled { second, change, .. }, .. } = self;
         (if stage == Stage::First { increments } else { second }, change)
+    }
+
+    /// Where tractions are kept, takes the increments of a stage for what slopes make the first residual of.
+    fn keep_left(&mut self, stage: Stage) {
+        let Self { increments, coupled: Coupled { second, left, pushes, .. }, .. } = self;
+        let increments = if stage == Stage::First { increments } else { second };
+        [left, pushes].into_iter().for_each(|array| combine(array, increments, |_, moved| moved));
     }
 }
 
@@ -114,6 +126,7 @@ impl Cells<'_> {
             take_answer(part.kind, part.now, contact, &mut w.coupled.residual);
             w.coupled.change.fill(0.0);
             squared += part.answer_alone(w);
+            w.keep_left(stage);
             w.coupled.direction.copy_from_slice(&w.coupled.spare);
             w.coupled.pushed.copy_from_slice(&w.coupled.residual);
         }
@@ -134,14 +147,17 @@ impl Cells<'_> {
             let (step, before) = (squared / along, squared);
             squared = 0.0;
             for (part, w) in self.parts(kinds) {
-                let Coupled { change, direction, residual, spare, .. } = &mut w.coupled;
+                let Coupled { change, direction, residual, spare, left, pushes, .. } = &mut w.coupled;
+                combine(left, pushes, |left, pushes| left - step * pushes);
+                combine(left, direction, |left, direction| left + step * direction);
                 combine(change, direction, |change, direction| change + step * direction);
                 combine(residual, spare, |residual, answered| residual - step * answered);
                 squared += part.answer_alone(w);
             }
             let kept = squared / before;
             for w in &mut *kinds {
-                let Coupled { direction, spare, pushed, residual, .. } = &mut w.coupled;
+                let Coupled { direction, spare, pushed, residual, left, pushes, .. } = &mut w.coupled;
+                combine(pushes, left, |pushes, left| left + kept * pushes);
                 combine(direction, spare, |direction, moved| moved + kept * direction);
                 combine(pushed, residual, |pushed, residual| residual + kept * pushed);
             }

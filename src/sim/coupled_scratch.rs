@@ -24,6 +24,9 @@ pub struct Coupled {
     pub pushed: Vec<f64>,
     /// What the increments become more, µm.
     pub change: Vec<f64>,
+    /// What moves so that slopes make of it what is not answered yet, and what pushes in that direction, µm; empty where tractions are not kept.
+    pub left: Vec<f64>,
+    pub pushes: Vec<f64>,
     /// Sums over each block.
     pub sums: Vec<f64>,
 }
@@ -34,9 +37,12 @@ impl Coupled {
         !self.change.is_empty()
     }
 
-    /// Makes arrays of so many numbers, and sums of so many blocks; none where nothing couples the cells.
-    pub fn suit(&mut self, size: usize, blocks: usize) {
+    /// Makes arrays of so many numbers, and sums of so many blocks; none where nothing couples the cells. Those are left out that only
+    /// tractions need if they are not kept.
+    pub fn suit(&mut self, size: usize, blocks: usize, keeps_tractions: bool) {
         self.arrays().into_iter().for_each(|array| array.resize(size, 0.0));
+        let size = if keeps_tractions { size } else { 0 };
+        [&mut self.left, &mut self.pushes].into_iter().for_each(|array| array.resize(size, 0.0));
         self.sums.resize(blocks, 0.0);
     }
 
@@ -48,6 +54,7 @@ impl Coupled {
     /// Writes NaN over all numbers.
     pub fn poison(&mut self) {
         self.arrays().into_iter().for_each(|array| array.fill(f64::NAN));
+        [&mut self.left, &mut self.pushes].into_iter().for_each(|array| array.fill(f64::NAN));
         self.sums.fill(f64::NAN);
         self.solver = None;
     }

@@ -31,8 +31,9 @@ fn pair(order: Order, dt: f64, own: bool) -> (Model, State) {
     // What says whether steps are coupled: here all are.
     kind.largest_stiffness = f64::MIN;
     let kind = kind.for_cells(2);
-    let place = |cell: usize| kind.rest.positions.iter().map(|x| x + Vec3::new(10.2 * cell as f64, 0.1, 0.0)).collect();
-    let positions = vec![(0..2).map(place).collect()];
+    let beside =
+        |cell: usize| kind.rest.positions.iter().map(|x| x + Vec3::new(10.2 * cell as f64, 0.1, 0.0)).collect();
+    let positions = vec![(0..2).map(beside).collect()];
     let integrator = Integrator { method: Method::Implicit { order }, size: StepSize::Fixed(dt) };
     let mut model = Model::of(vec![kind], integrator, 1.0);
     let mut table = CohesionTable::new(1, 0);

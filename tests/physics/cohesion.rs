@@ -64,6 +64,9 @@ fn drops_that_merely_touch_spread_to_the_angle_of_young_and_dupre() {
         let volume = series(&simulation, "volume")[0];
         let angle = angle_of(half_distance(&simulation), volume);
         assert!((angle - theory).abs() < 3.0, "{angle} where theory has {theory}");
+        // Steps that the growth of the pull limited were a thousandth of a second long at most, at rest, too.
+        let steps = simulation.steps();
+        assert!(steps < 1500, "{steps} steps");
     }
 }
 

@@ -157,6 +157,30 @@ fn the_forces_on_a_crawling_cell_add_up_to_nothing() {
 }
 
 #[test]
+fn what_drops_that_stick_firmly_do_to_each_other_adds_up_to_their_drag() {
+    let drop = |name: &str, x: f64| {
+        format!(
+            "[cells.{name}]\nmesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 1 }}\nplacement = {{ at = [[\"{x} um\", \"0.1 um\", \"0 um\"]] }}\n\
+             [cells.{name}.mechanics]\ndrag = \"200 pN s/um\"\n\
+             membrane = {{ law = \"neo_hookean\", shear = \"0 uN/m\", area = \"0 uN/m\", tension = \"100 uN/m\", ordering = \"2 uN/m\" }}\n"
+        )
+    };
+    // Their steps are coupled, and what conjugate gradients leave of that counts for nobody.
+    for integrator in ["max_step = \"0.1 s\"", "order = 1, step = \"0.0015 s\""] {
+        let text = format!(
+            "title = \"two drops\"\n[run]\nuntil = \"10 s\"\nintegrator = {{ {integrator} }}\n[output]\nevery = \"5 s\"\ntractions = true\n{}{}\
+             [contact]\nstrength = \"200 pN/um^2\"\nshear_strength = \"0 Pa\"\nenergy = \"150 uN/m\"\n",
+            drop("left", -5.02),
+            drop("right", 5.02)
+        );
+        let most = run(&text, 0.5);
+        println!("{most:?}");
+        assert!(most.left < LEFT && most.unanswered < LEFT, "{integrator}: {most:?}");
+        assert!(most.on_cells > 100.0, "{integrator}: {most:?}");
+    }
+}
+
+#[test]
 fn a_cell_at_rest_presses_the_plane_with_its_weight() {
     for contact in ["", "[contact]\n"] {
         let text = pair(contact, "max_step = \"1 s\"").replace("force = \"20 pN\"", "force = \"0 pN\"");

@@ -104,9 +104,9 @@ impl CohesionTable {
         self.between.iter().chain(&self.on_planes).map(Cohesive::range).fold(0.0, f64::max)
     }
 
-    /// The most that a pull on an area grows with its opening, over 2, pN/µm³: as much as strength over range.
+    /// The most that a pull between cells on an area grows with its opening, over 2, pN/µm³: as much as strength over range.
     pub(in super::super) fn steepest(&self) -> f64 {
-        let sticking = self.between.iter().chain(&self.on_planes).filter(|cohesive| cohesive.range() > 0.0);
+        let sticking = self.between.iter().filter(|cohesive| cohesive.range() > 0.0);
         sticking.map(|cohesive| cohesive.strength / cohesive.range()).fold(0.0, f64::max)
     }
 
