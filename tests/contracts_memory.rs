@@ -10,6 +10,7 @@ use pseudopod::cell::Behaviour;
 use pseudopod::cell::motility::{BrownianMotility, Space};
 use pseudopod::equations::eml;
 use pseudopod::error::Source;
+use pseudopod::experiment::{Compiled, Document, compile};
 use pseudopod::field::{FieldSystem, Grid, Stepping};
 use pseudopod::geometry::{Topology, icosphere};
 use pseudopod::mechanics::Force;
@@ -20,6 +21,7 @@ use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::sim::{Kind, Model, Plane, State, Workspace, step};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -195,6 +197,42 @@ fn taking_of_transport() -> usize {
     })
 }
 
+/// Steps of two drops that stick so firmly that the matrix of the step reaches from one to the other, eq. (step.12).
+fn taking_of_drops() -> Taking {
+    let drop = |name: &str, x: f64| {
+        format!(
+            "[cells.{name}]\nmesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 1 }}\nplacement = {{ at = [[\"{x} um\", \"0.1 um\", \"0 um\"]] }}\n\
+             mechanics = {{ drag = \"200 pN s/um\", membrane = {{ law = \"neo_hookean\", shear = \"0 uN/m\", area = \"0 uN/m\", tension = \"100 uN/m\", ordering = \"2 uN/m\" }} }}\n"
+        )
+    };
+    let text = format!(
+        "title = \"two drops\"\n[run]\nuntil = \"1 h\"\nintegrator = {{ max_step = \"0.02 s\" }}\n[output]\nevery = \"1 h\"\n{}{}\
+         [contact]\nstrength = \"200 pN/um^2\"\nshear_strength = \"0 Pa\"\nenergy = \"150 uN/m\"\n",
+        drop("left", -5.02),
+        drop("right", 5.02)
+    );
+    let document = Document::parse("drops.toml", &text, Path::new("."), &[]).unwrap();
+    let Compiled { model, mut state, .. } = compile(&document).unwrap();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .start_handler(|_| WORKS.set(true))
+        .exit_handler(|_| WORKS.set(false))
+        .build()
+        .unwrap();
+    let mut ws = Workspace::new(&model);
+    pool.install(|| {
+        let mut all = Taking::default();
+        for number in 0..500 {
+            let before = CALLS.load(Ordering::Relaxed);
+            step(&model, &mut state, &mut ws).unwrap();
+            if number >= 300 {
+                all.count(CALLS.load(Ordering::Relaxed) - before);
+            }
+        }
+        all
+    })
+}
+
 #[test]
 fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
     let methods = [
@@ -221,6 +259,10 @@ fn steps_allocate_nothing_and_an_atom_costs_few_bytes() {
     println!("where there is everything: {all:?}, with events {with_events:?}");
     assert!(20 * all.taking <= all.steps, "{all:?}");
     assert!(with_events.steps >= 10 && 4 * with_events.taking <= with_events.steps, "{with_events:?}");
+    // Solvers of steps of new lengths are made now and then.
+    let drops = taking_of_drops();
+    println!("drops: {drops:?}");
+    assert!(10 * drops.taking <= drops.steps, "{drops:?}");
     let before = BYTES.load(Ordering::Relaxed);
     let model = scene(Method::Implicit { order: Order::Second }, Acting::Elastic, 100_000);
     let positions = vec![model.kinds[0].rest.positions.clone(); 100_000];
