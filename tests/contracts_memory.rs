@@ -99,14 +99,19 @@ fn pull(direction: Vec3, atom: u32) -> Force {
     Force::Load(Load::new("pull", vec![(atom, 1.0)], direction, Course::constant(1.0)))
 }
 
-/// Allocations of twenty steps, after a few that may size scratch for what they meet.
-fn allocations(method: Method, acting: Acting, threads: usize) -> usize {
-    let pool = rayon::ThreadPoolBuilder::new()
+/// Threads whose allocations count.
+fn pool(threads: usize) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .start_handler(|_| WORKS.set(true))
         .exit_handler(|_| WORKS.set(false))
         .build()
-        .unwrap();
+        .unwrap()
+}
+
+/// Allocations of twenty steps, after a few that may size scratch for what they meet.
+fn allocations(method: Method, acting: Acting, threads: usize) -> usize {
+    let pool = pool(threads);
     let model = scene(method, acting, 20);
     let positions = vec![model.kinds[0].rest.positions.clone(); 20];
     let (mut state, mut ws) = (State::new(&model, &[positions]), Workspace::new(&model));
@@ -142,12 +147,7 @@ impl Taking {
 /// Steps in the scene that has everything: contacts, walks, fields, systems with events, links; all of them, and those in which events are
 /// executed. Walks do not turn, for each run that ends is kept for the result.
 fn taking_of_everything() -> [Taking; 2] {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .start_handler(|_| WORKS.set(true))
-        .exit_handler(|_| WORKS.set(false))
-        .build()
-        .unwrap();
+    let pool = pool(1);
     let (model, start) = everything(Some("0.05 s"), "1000 h");
     pool.install(|| {
         // Until the cells lie where they stay and their bonds are as many as they become.
@@ -213,12 +213,7 @@ fn taking_of_drops() -> Taking {
     );
     let document = Document::parse("drops.toml", &text, Path::new("."), &[]).unwrap();
     let Compiled { model, mut state, .. } = compile(&document).unwrap();
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .start_handler(|_| WORKS.set(true))
-        .exit_handler(|_| WORKS.set(false))
-        .build()
-        .unwrap();
+    let pool = pool(1);
     let mut ws = Workspace::new(&model);
     pool.install(|| {
         let mut all = Taking::default();

@@ -58,9 +58,7 @@ pub fn couple(model: &Model, order: Order, stage: Stage, from: &State, to: &mut 
     if model.keeps_tractions {
         for w in &mut *kinds {
             // What slopes have made of the increments, but for what they leave.
-            let KindScratch { increments, coupled: Coupled { second, left, .. }, .. } = w;
-            let increments = if stage == Stage::First { increments } else { second };
-            combine(left, increments, |left, moved| moved - left);
+            w.combine_left(stage, |left, moved| moved - left);
         }
         answer(model, (OF_SLOPES, share_of_stage(order)), from, kinds.iter().map(|w| &w.coupled.left[..]), contact);
     }
@@ -77,11 +75,10 @@ impl KindScratch {
         (if stage == Stage::First { increments } else { second }, change)
     }
 
-    /// Where tractions are kept, takes the increments of a stage for what slopes make the first residual of.
-    fn keep_left(&mut self, stage: Stage) {
-        let Self { increments, coupled: Coupled { second, left, pushes, .. }, .. } = self;
-        let increments = if stage == Stage::First { increments } else { second };
-        [left, pushes].into_iter().for_each(|array| combine(array, increments, |_, moved| moved));
+    /// Where tractions are kept, makes of what slopes have left and the increments of a stage what `by` says.
+    fn combine_left(&mut self, stage: Stage, by: impl Fn(f64, f64) -> f64 + Sync) {
+        let Self { increments, coupled: Coupled { second, left, .. }, .. } = self;
+        combine(left, if stage == Stage::First { increments } else { second }, by);
     }
 }
 
@@ -126,7 +123,9 @@ impl Cells<'_> {
             take_answer(part.kind, part.now, contact, &mut w.coupled.residual);
             w.coupled.change.fill(0.0);
             squared += part.answer_alone(w);
-            w.keep_left(stage);
+            // The first residual is what slopes make of all that the stage has moved.
+            w.combine_left(stage, |_, moved| moved);
+            w.coupled.pushes.copy_from_slice(&w.coupled.left);
             w.coupled.direction.copy_from_slice(&w.coupled.spare);
             w.coupled.pushed.copy_from_slice(&w.coupled.residual);
         }

@@ -49,11 +49,16 @@ impl Check<'_> {
         if let Some(every) = &experiment.output.every
             && experiment.run.until.value() > MOST_FRAMES * every.value()
         {
-            let [every, until] =
-                [every.value(), experiment.run.until.value()].map(|time| pretty(time, Dimension::TIME));
+            let until = experiment.run.until.value();
+            // Two digits of it, rounded up, so that what is advised is enough.
+            let digit = 10.0_f64.powf((until / MOST_FRAMES).log10().floor() - 1.0);
+            let least = (until / MOST_FRAMES / digit - 1e-9).ceil() * digit;
+            let [every, until, least] = [every.value(), until, least].map(|time| pretty(time, Dimension::TIME));
             let message =
                 format!("`output.every` is {every}, so that a run of {until} has more than ten million frames");
-            let help = "make `output.every` longer, or record what is of interest alone, at `output.times`";
+            let help = format!(
+                "make `output.every` {least} or longer, or record what is of interest alone, at `output.times`"
+            );
             self.fault("output.every", "too short for this run", message, help);
         }
         if let When::At(time) = experiment.picture.time {

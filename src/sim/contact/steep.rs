@@ -8,7 +8,7 @@ use crate::sim::model::Model;
 use crate::sim::state::{KindState, State};
 
 /// What a pull on an atom grows with an opening, over what its drag and the stiffest shape of its cell answer, from which on the step answers
-/// it, too: two drops are unstable at 0.25 without.
+/// it, too. Two drops under tension, whose shapes answer little, are unstable without from 0.27 of what drag answers on.
 const BESIDE_SHAPES: f64 = 0.2;
 
 /// The same over what drag alone answers: shapes do not hold cells that move as a whole.
