@@ -1,6 +1,7 @@
 //! What is done to some atoms of a cell: holding, pulling, linking. What documents say of it, and what it means.
 
 use super::compile::{Builder, course, unit};
+use super::moved::Moved;
 use super::selection::{Linked, Selection};
 use super::semantics::Check;
 use crate::geometry;
@@ -18,6 +19,9 @@ pub struct Applied {
     /// Atoms that are held where they start, along some axes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fixed: Vec<Fixed>,
+    /// Atoms that are moved on a course, whatever acts on them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub moved: Vec<Moved>,
     /// Forces applied to some atoms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<Load>,
@@ -198,6 +202,7 @@ impl Check<'_> {
     pub(super) fn applied(&mut self, path: &str, applied: &Applied) {
         self.links(path, applied);
         self.fibres(path, applied);
+        self.moved(path, &applied.moved);
         self.loads(path, applied);
     }
 

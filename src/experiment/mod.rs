@@ -42,6 +42,7 @@ mod loads;
 mod mechanics;
 mod membrane;
 mod motility;
+mod moved;
 mod pictures;
 mod placement;
 mod population;
@@ -71,6 +72,7 @@ pub use loads::{Applied, Fibre, Fixed, Link, Load, Rest, Spread};
 pub use mechanics::{Barrier, Form, Mechanics, Reaction, ShapeMemory, ShapeStrength, Springs};
 pub use membrane::{BendingRest, Law, Membrane};
 pub use motility::{Attraction, Brownian, Motility, Space};
+pub use moved::Moved;
 pub use pictures::{FieldLine, MeasureCurve, Picture, Plot, PlotKind, PlotTable, View};
 pub use placement::Placement;
 pub use population::{Added, Removed};
@@ -138,7 +140,12 @@ impl Experiment {
     /// What is recorded of cells that not all runs have.
     pub(crate) fn on_demand(&self) -> OnDemand {
         let fibres = self.cells.values().any(|cell| cell.fibre_budget() > 0);
-        OnDemand { tractions: self.output.tractions, fibres }
+        OnDemand { tractions: self.keeps_tractions(), fibres }
+    }
+
+    /// Whether tractions are recorded: where they are asked for, and where atoms are moved, whose forces are among them.
+    pub(crate) fn keeps_tractions(&self) -> bool {
+        self.output.tractions || self.cells.values().any(|cell| !cell.applied.moved.is_empty())
     }
 
     /// An experiment that lasts `until`, still without cells, with the defaults everywhere else.

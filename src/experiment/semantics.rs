@@ -36,6 +36,7 @@ pub(super) fn check(document: &Document) -> (Vec<Fault>, Vec<Late>) {
         check.remembering_atoms(&path, cell);
         check.pseudopods(&path, cell);
         check.applied(&path, &cell.applied);
+        check.moved_by_scheme(&path, cell);
         if let Some(turn) = &cell.orientation {
             check.direction(&format!("{path}.orientation.axis"), turn.axis);
         }
@@ -122,8 +123,8 @@ impl Check<'_> {
         let with = self.document.experiment.on_demand();
         let (pairs, of_cells) = (self.series_of_pairs(), cell_series(with).collect::<Vec<String>>());
         let cells = self.document.experiment.cells.values();
-        let loads: Vec<String> =
-            cells.flat_map(|cell| &cell.applied.loads).map(|load| format!("load.{}", load.name)).collect();
+        let loads = cells.flat_map(|cell| &cell.applied.loads).map(|load| format!("load.{}", load.name));
+        let loads: Vec<String> = loads.chain(self.document.experiment.series_of_moved()).collect();
         let contact = self.document.experiment.contact.as_ref();
         let contacts = contact.is_some();
         let of_model = contact.into_iter().flat_map(|contact| contact_quantities(contact.recorded()));
@@ -169,7 +170,8 @@ impl Check<'_> {
         let stored = text.strip_prefix("chemistry.").unwrap_or(text);
         let systems = &self.document.experiment.chemistry;
         let is_own = |word: &str| {
-            words::meant(word, ["load"]).is_some() || contacts && words::meant(word, ["contact"]).is_some()
+            words::meant(word, ["load", "displacement", "force"]).is_some()
+                || contacts && words::meant(word, ["contact"]).is_some()
         };
         if let Some((system, _)) =
             stored.split_once('.').filter(|(word, _)| systems.contains_key(*word) || !is_own(word))

@@ -19,6 +19,7 @@ pub mod lanes;
 pub mod load;
 pub mod membrane;
 pub mod modes;
+pub mod moved;
 pub mod ordering;
 pub mod rigid;
 pub mod shape_memory;

@@ -283,11 +283,13 @@ pub const TRACTION: &[Entry] = &[
     row("/VTKHDF/PointData/drag", "pN", "atom of all frames, 3", Atoms(|f| &f.tractions.drag), "Drag of the medium on the atoms."),
     row("/VTKHDF/PointData/outer_force", "pN", "atom of all frames, 3", Atoms(|f| &f.tractions.outer), "Loads, gravity, attraction and what drives a walk, on the atoms."),
     row("/VTKHDF/PointData/inertia", "pN", "atom of all frames, 3", Atoms(|f| &f.tractions.inertia), "Mass times acceleration of the atoms; 0 in over-damped runs."),
+    row("/VTKHDF/PointData/holding_force", "pN", "atom of all frames, 3", Atoms(|f| &f.tractions.held), "What holds the atoms that are fixed, or moves those that go on a course."),
     row("/VTKHDF/Steps/PointDataOffsets/traction", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/traction."),
     row("/VTKHDF/Steps/PointDataOffsets/traction_of_cells", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/traction_of_cells."),
     row("/VTKHDF/Steps/PointDataOffsets/drag", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/drag."),
     row("/VTKHDF/Steps/PointDataOffsets/outer_force", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/outer_force."),
     row("/VTKHDF/Steps/PointDataOffsets/inertia", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/inertia."),
+    row("/VTKHDF/Steps/PointDataOffsets/holding_force", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/holding_force."),
 ];
 
 /// The datasets of the quantities of cells in a run that records these.

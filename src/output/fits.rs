@@ -14,9 +14,9 @@ pub(super) fn misfit(layout: &Layout, forces: bool, frame: &Frame) -> Option<Str
     if found != expected {
         return Some("positions, forces, cells and scene values of a frame must fit the layout".into());
     }
-    let Tractions { traction, of_cells, drag, outer, inertia } = &frame.tractions;
+    let Tractions { traction, of_cells, drag, outer, inertia, held } = &frame.tractions;
     let kept = if layout.tractions { atoms } else { 0 };
-    if [traction, of_cells, drag, outer, inertia].iter().any(|list| list.len() != kept) {
+    if [traction, of_cells, drag, outer, inertia, held].iter().any(|list| list.len() != kept) {
         return Some("tractions of a frame must fit the layout".into());
     }
     if !layout.fibres && !frame.fibres.is_empty() {

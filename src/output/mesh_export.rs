@@ -139,7 +139,7 @@ fn quantities_of_atoms(result: &ResultFile, frame: usize) -> Result<Vec<Quantity
         all.push(Quantity::vector("force", "pN", &forces));
     }
     if let Some(found) = result.tractions(frame)? {
-        let values = [found.traction, found.of_cells, found.drag, found.outer, found.inertia];
+        let values = [found.traction, found.of_cells, found.drag, found.outer, found.inertia, found.held];
         // The names are those of the datasets, whose order that of the values is.
         for (entry, values) in catalogue::TRACTION.iter().zip(&values) {
             all.push(Quantity::vector(entry.path.rsplit('/').next().unwrap_or_default(), entry.unit, values));

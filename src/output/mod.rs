@@ -122,6 +122,8 @@ pub struct Tractions {
     pub outer: Vec<[f64; 3]>,
     /// Mass times acceleration; 0 in over-damped runs.
     pub inertia: Vec<[f64; 3]>,
+    /// What holds or moves atoms that are fixed or go on a course, on the atom.
+    pub held: Vec<[f64; 3]>,
 }
 
 /// A fibre of a cell that was made at run time.

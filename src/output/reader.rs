@@ -176,7 +176,12 @@ impl ResultFile {
         }
         let of = |number: usize| self.atom_vectors(TRACTION[number].path, frame);
         let (traction, of_cells, drag) = (of(0)?, of(1)?, of(2)?);
-        Ok(Some(Tractions { traction, of_cells, drag, outer: of(3)?, inertia: of(4)? }))
+        // Results of versions that moved no atoms do not have it.
+        let held = match self.file.dataset(TRACTION[5].path).is_ok() {
+            true => of(5)?,
+            false => vec![[0.0; 3]; traction.len()],
+        };
+        Ok(Some(Tractions { traction, of_cells, drag, outer: of(3)?, inertia: of(4)?, held }))
     }
 
     /// Density of a substance on membranes, `SYSTEM.VARIABLE`, at all atoms in a frame: NaN on cells without the system; `None` if the

@@ -15,6 +15,8 @@ pub struct TractionRecord {
     pub outer: [f64; 3],
     /// Mass times acceleration, pN; 0 in over-damped runs.
     pub inertia: [f64; 3],
+    /// What holds or moves atoms of the cell that are fixed or go on a course, on the cell, pN.
+    pub held: [f64; 3],
     /// Sum of the sizes of the forces of its atoms on planes, pN.
     pub total: f64,
     /// Trace of the first moment of these forces along the first plane, pN·µm, below 0 where the cell draws what it stands on together.

@@ -101,6 +101,15 @@ impl Forces<'_> {
         add_to_atoms(kind, cells, block, &controls.atom_forces, spare);
         outer.iter_mut().zip(spare).for_each(|(outer, force)| *outer += share * *force);
     }
+
+    /// Adds a share of the forces `f` on the atoms of a block, pN, without what contacts have of them, to `sum`. `spare` is scratch of that size.
+    pub fn add_without_contacts(&self, block: usize, share: f64, f: &[f64], sum: &mut [f64], spare: &mut [f64]) {
+        spare.fill(0.0);
+        add_contact_forces(self.kind, self.cells, block, self.acting.contact, spare);
+        sum.iter_mut()
+            .zip(f.iter().zip(spare))
+            .for_each(|(sum, (all, of_contacts))| *sum += share * (all - *of_contacts));
+    }
 }
 
 /// Sets `force` of every kind to the sum of all forces at time `time` (pN), and `energy` to the energy of every cell. What contacts

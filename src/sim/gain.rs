@@ -22,7 +22,7 @@ const LEFT: f64 = 1e-5;
 const VOLUME_OFF: f64 = 1e-9;
 
 /// The energy where a step begins, pN·µm; none where something may do work on the cells: loads that are not zero, forces that a program exerts,
-/// gravity, motility, chemistry, the energy that contacts release, volumes that change, elastic forces without an energy.
+/// gravity, motility, chemistry, grips that move, the energy that contacts release, volumes that change, elastic forces without an energy.
 pub fn energy_before(model: &Model, state: &State, ws: &mut Workspace) -> Option<f64> {
     is_left_alone(model, state).then(|| {
         measure_energy(model, state.time, &state.chemistry.controls, &state.kinds, ws);
@@ -56,7 +56,8 @@ fn is_left_alone(model: &Model, state: &State) -> bool {
     let is_alone = |(kind, now): (&Kind, &KindState)| {
         let steady = kind.volume.course().is_none_or(|course| course.kinks().next().is_none());
         let is_quiet = |force: &Force| force.is_elastic() && force.is_conservative() || is_idle(force);
-        steady && !now.is_driven(kind) && now.fibres.is_empty() && kind.forces.iter().all(is_quiet)
+        let rests = kind.moved.iter().all(|moved| moved.rests_from(state.time));
+        steady && rests && !now.is_driven(kind) && now.fibres.is_empty() && kind.forces.iter().all(is_quiet)
     };
     matches!(model.integrator.method, Method::Implicit { .. } | Method::Explicit)
         && model.contact.as_ref().is_some_and(sticks_only)

@@ -7,6 +7,7 @@ use crate::mechanics::course::Course;
 use crate::mechanics::fibres::Fibres;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::load::Load;
+use crate::mechanics::moved::Moved;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::sum::stiffness;
 use crate::mechanics::tangent::Tangent;
@@ -36,6 +37,8 @@ pub struct Kind {
     pub mass: f64,
     /// One factor an atom and axis, 0 where held; empty when nothing is held.
     pub held: Vec<f64>,
+    /// What of that is moved on courses.
+    pub moved: Vec<Moved>,
     /// What the volume does.
     pub volume: VolumeRule,
     /// Pairs of atoms whose links and fibres are drawn.
@@ -95,6 +98,7 @@ impl Kind {
             drag: 1.0,
             mass: 1.0,
             held: Vec::new(),
+            moved: Vec::new(),
             volume: if closed { VolumeRule::Exact(Course::constant(1.0)) } else { VolumeRule::Free },
             drawn_links: Vec::new(),
             behaviours: Vec::new(),
@@ -213,7 +217,8 @@ impl Kind {
 pub fn kinks(kinds: &[Kind]) -> Vec<f64> {
     let of_kind = |kind: &Kind| -> Vec<f64> {
         let volume = kind.volume.course().into_iter().flat_map(Course::kinks);
-        kind.forces.iter().flat_map(Force::kinks).chain(volume).collect()
+        let moved = kind.moved.iter().flat_map(|moved| moved.displacement.kinks());
+        kind.forces.iter().flat_map(Force::kinks).chain(volume).chain(moved).collect()
     };
     let mut kinks: Vec<f64> = kinds.iter().flat_map(of_kind).filter(|kink| *kink > 0.0).collect();
     kinks.sort_by(f64::total_cmp);

@@ -30,6 +30,27 @@ pub fn carry_pressure(kind: &Kind, x: &[f64], pressure: &[f64], f: &mut [f64], g
     }
 }
 
+/// Adds a share of what pressure does to held atoms, pN, which it does not move, to what is added up of the forces on them.
+pub fn add_pressure_on_held(
+    kind: &Kind,
+    x: &[f64],
+    (pressure, share): (&[f64], f64),
+    on_held: &mut [f64],
+    gradient: &mut [f64],
+) {
+    if kind.volume == VolumeRule::Free {
+        return;
+    }
+    let lanes = kind.lanes;
+    let mut volumes = [0.0; LANES];
+    volume::measure_block(&kind.rest.facets, x, &[], gradient, &mut volumes[..lanes]);
+    for (sum, g) in on_held.chunks_exact_mut(lanes).zip(gradient.chunks_exact(lanes)) {
+        for lane in 0..lanes {
+            sum[lane] += share * pressure[lane] * g[lane];
+        }
+    }
+}
+
 /// Adds the pressure's part to the increments of a block, eq. (step.5), so that volumes change as wanted; `factor` are the multipliers.
 pub fn constrain(
     kind: &Kind,

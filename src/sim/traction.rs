@@ -19,14 +19,17 @@ pub fn begin_tractions(model: &Model, from: &State, ws: &mut Workspace) {
     if !model.keeps_tractions {
         ws.contact.tractions.end();
         ws.kinds.iter_mut().for_each(|w| w.outer.clear());
+        ws.kinds.iter_mut().for_each(|w| w.on_held.clear());
         return;
     }
     ws.contact.tractions.begin(from.atoms(model));
     // They carry what they carried also where nothing is swept.
     ws.contact.law.adhesives.begin();
-    for (now, w) in from.kinds.iter().zip(&mut ws.kinds) {
+    for ((kind, now), w) in model.kinds.iter().zip(&from.kinds).zip(&mut ws.kinds) {
         w.outer.clear();
         w.outer.resize(now.positions.len(), 0.0);
+        w.on_held.clear();
+        w.on_held.resize(if kind.is_held() { now.positions.len() } else { 0 }, 0.0);
         w.touch.iter_mut().for_each(|touch| touch.reactions.clear());
         w.project.iter_mut().for_each(|project| project.pushed.clear());
     }
@@ -52,6 +55,7 @@ pub fn keep_tractions(model: &Model, dt: f64, from: &State, to: &mut State, ws: 
                 let number = cell * kind.atoms() + atom;
                 *slot = made.of_atom(cell, atom, (contacts.0[number], contacts.1[number]));
             }
+            share_what_is_left(kind, own);
         });
         to.balance = balance;
     }
@@ -89,12 +93,38 @@ impl Made<'_> {
             true => kind.mass * (vector(&to.velocities) - vector(&from.velocities)) / dt,
             false => Vec3::zeros(),
         };
+        let (traction, drag) = (on_planes - reaction, -kind.drag * velocity);
+        // What holds an atom, or moves it on a course, bears all that acts on it.
+        let held = match w.on_held.is_empty() {
+            true => Vec3::zeros(),
+            false => (traction + on_cells + inertia - drag - vector(&w.on_held)).component_mul(&holds(kind, atom)),
+        };
         AtomBalance {
-            traction: (on_planes - reaction).into(),
+            traction: traction.into(),
             of_cells: on_cells.into(),
-            drag: (-kind.drag * velocity).into(),
+            drag: drag.into(),
             outer: vector(&w.outer).into(),
+            held: held.into(),
             inertia: inertia.into(),
         }
+    }
+}
+
+/// One along each axis along which an atom is held, and else nothing.
+fn holds(kind: &Kind, atom: usize) -> Vec3 {
+    Vec3::from_fn(|axis, _| 1.0 - kind.held.get(3 * atom + axis).copied().unwrap_or(1.0))
+}
+
+/// Shares among the atoms that hold a cell what is left of its sum: that of a step is exact, and that of the forces at single atoms as good as
+/// the scheme.
+fn share_what_is_left(kind: &Kind, own: &mut [AtomBalance]) {
+    if !kind.is_held() {
+        return;
+    }
+    let left: Vec3 = own.iter().map(AtomBalance::left).sum();
+    let holding: Vec3 = (0..kind.atoms()).map(|atom| holds(kind, atom)).sum();
+    for (atom, slot) in own.iter_mut().enumerate() {
+        let share = holds(kind, atom).zip_map(&holding, |holds, all| if all > 0.0 { holds / all } else { 0.0 });
+        slot.held = (Vec3::from(slot.held) - left.component_mul(&share)).into();
     }
 }

@@ -49,6 +49,8 @@ pub struct KindScratch {
     pub force: Vec<f64>,
     /// Forces from outside in the mean over the attempt, pN, where tractions are kept; else empty.
     pub outer: Vec<f64>,
+    /// All forces on held atoms in the mean over the attempt, pN, where tractions are kept and some are held; else empty.
+    pub on_held: Vec<f64>,
     /// Increments of the first stage, µm, where the second is made after it and not block by block; else empty.
     pub increments: Vec<f64>,
     /// Positions to which the atoms went freely, µm (inertial schemes); else empty.
@@ -97,6 +99,7 @@ impl KindScratch {
         Self {
             force: Vec::new(),
             outer: Vec::new(),
+            on_held: Vec::new(),
             increments: Vec::new(),
             free: Vec::new(),
             rates: Vec::new(),
@@ -171,6 +174,7 @@ impl KindScratch {
         for array in [
             &mut self.force,
             &mut self.outer,
+            &mut self.on_held,
             &mut self.increments,
             &mut self.free,
             &mut self.rates,

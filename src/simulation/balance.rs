@@ -30,23 +30,25 @@ pub fn record_tractions(model: &Model, state: &State, frame: &mut Frame) {
 
 impl Tractions {
     fn push(&mut self, atom: &AtomBalance) {
-        let AtomBalance { traction, of_cells, drag, outer, inertia } = *atom;
+        let AtomBalance { traction, of_cells, drag, outer, inertia, held } = *atom;
         self.traction.push(traction);
         self.of_cells.push(of_cells);
         self.drag.push(drag);
         self.outer.push(outer);
         self.inertia.push(inertia);
+        self.held.push(held);
     }
 
-    fn cut(&self, atoms: std::ops::Range<usize>) -> [&[[f64; 3]]; 5] {
-        [&self.traction, &self.of_cells, &self.drag, &self.outer, &self.inertia].map(|list| &list[atoms.clone()])
+    fn cut(&self, atoms: std::ops::Range<usize>) -> [&[[f64; 3]]; 6] {
+        let Self { traction, of_cells, drag, outer, inertia, held } = self;
+        [traction, of_cells, drag, outer, inertia, held].map(|list| &list[atoms.clone()])
     }
 }
 
 /// Sums of the forces of the atoms of a cell, and the moment of its traction along what it stands on, whose normal is `up`, eq.
 /// (traction.2).
 fn of_cell(
-    [traction, of_cells, drag, outer, inertia]: [&[[f64; 3]]; 5],
+    [traction, of_cells, drag, outer, inertia, held]: [&[[f64; 3]]; 6],
     positions: &[[f64; 3]],
     up: Option<Vec3>,
 ) -> TractionRecord {
@@ -61,6 +63,7 @@ fn of_cell(
         drag: sum(drag),
         outer: sum(outer),
         inertia: sum(inertia),
+        held: sum(held),
         total,
         ..TractionRecord::default()
     };
@@ -89,14 +92,14 @@ mod tests {
         let traction = [[pull, 0.0, 0.0], [-pull, 0.0, 0.0], [0.0; 3]];
         let positions = [[-2.0, 1.0, 0.0], [-2.0 + apart, 1.0, 0.0], [0.0, 9.0, 5.0]];
         let none = [[0.0; 3]; 3];
-        let record = of_cell([&traction, &none, &none, &none, &none], &positions, None);
+        let record = of_cell([&traction, &none, &none, &none, &none, &none], &positions, None);
         assert_eq!((record.total, record.dipole, record.traction), (2.0 * pull, -pull * apart, [0.0; 3]));
         assert_eq!((record.moment, record.axis), ([-pull * apart, 0.0, 0.0], [1.0, 0.0, 0.0]));
         // Along a plane what presses on it counts in the total alone.
         let pressed = [[pull, 0.0, -4.0], [-pull, 0.0, 4.0], [0.0; 3]];
-        let on_plane = of_cell([&pressed, &none, &none, &none, &none], &positions, Some(Vec3::z()));
+        let on_plane = of_cell([&pressed, &none, &none, &none, &none, &none], &positions, Some(Vec3::z()));
         assert_eq!((on_plane.total, on_plane.dipole), (10.0, -pull * apart));
-        let still = of_cell([&none, &none, &none, &none, &none], &positions, Some(Vec3::z()));
+        let still = of_cell([&none, &none, &none, &none, &none, &none], &positions, Some(Vec3::z()));
         assert_eq!(still, TractionRecord::default());
     }
 }

@@ -39,6 +39,7 @@ mod fits;
 mod forces;
 mod history;
 mod id;
+mod moved;
 mod population;
 mod record;
 mod series;

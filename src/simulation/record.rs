@@ -1,6 +1,7 @@
 //! Looks at the state and writes down what the result file keeps. Observers never change the state.
 
 use super::balance::record_tractions;
+use super::moved;
 use super::touch::Touch;
 use crate::cell::pseudopods::EndedPseudopod;
 use crate::output::{
@@ -28,7 +29,8 @@ pub fn layout_of(model: &Model) -> Layout {
 pub fn outline_of(model: &Model) -> Layout {
     let kind = |kind: &Kind| CellType { name: kind.name.clone(), atoms: kind.atoms() as u32, ..CellType::default() };
     let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
-    layout.scene_series = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned())).collect();
+    let loads = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned()));
+    layout.scene_series = loads.chain(moved::names(model)).collect();
     layout.contacts = model.contact.is_some();
     layout.tractions = model.keeps_tractions;
     layout.fibres = model.kinds.iter().any(|kind| kind.fibre_budget > 0);
@@ -193,6 +195,7 @@ impl Recorder {
         let mut frame = frame_of(model, state);
         let at = |&(_, kind, number): &(String, usize, usize)| model.kinds[kind].loads().nth(number);
         frame.scene = self.loads.iter().filter_map(at).map(|load| load.force.at(state.time)).collect();
+        moved::record(model, state, &mut frame.scene);
         if let Some(contact) = &model.contact {
             self.touch.look(model, &contact.scene_of(&state.kinds), state, ws, dt, &mut frame);
         }

@@ -119,7 +119,14 @@ fn recorded(path: &Path, tractions: bool) -> ResultFile {
             records: [time, 0.0, 0.0].map(|x| CellRecord { position: [x, 0.0, 0.0], ..CellRecord::default() }).to_vec(),
             fields: vec![vec![vec![3.0; 12]], vec![vec![3.0; 8]]],
             systems: vec![vec![vec![time, 2.0, f64::NAN]], vec![vec![time]]],
-            tractions: Tractions { traction: none(), of_cells: none(), drag: none(), outer: none(), inertia: none() },
+            tractions: Tractions {
+                traction: none(),
+                of_cells: none(),
+                drag: none(),
+                outer: none(),
+                inertia: none(),
+                held: none(),
+            },
             ..Frame::default()
         };
         writer.append(&frame).expect("a frame");

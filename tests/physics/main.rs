@@ -23,6 +23,7 @@ mod made_fibres;
 mod membranes;
 mod modulus;
 mod motility;
+mod moved;
 mod neighbours;
 mod noise;
 mod ordering;

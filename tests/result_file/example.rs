@@ -182,6 +182,7 @@ pub fn frame_with_fields(cells: &[Cell], number: usize) -> Frame {
             drag: of_atoms(3.0),
             outer: of_atoms(4.0),
             inertia: of_atoms(5.0),
+            held: of_atoms(6.0),
         },
         membranes: (0..layout.membranes.len()).map(of_membrane).collect(),
         fields: layout.fields.iter().map(of_field).collect(),

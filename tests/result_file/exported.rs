@@ -105,6 +105,7 @@ fn a_mesh_has_every_number_of_its_atoms_and_cells() {
         assert_eq!(floats(&document, "PointData", "force"), frame.forces.as_flattened());
         assert_eq!(floats(&document, "PointData", "traction"), frame.tractions.traction.as_flattened());
         assert_eq!(floats(&document, "PointData", "inertia"), frame.tractions.inertia.as_flattened());
+        assert_eq!(floats(&document, "PointData", "holding_force"), frame.tractions.held.as_flattened());
         assert!(same(&floats(&document, "PointData", "brain.a"), &frame.membranes[1]));
         // Of cells, for each of the eight facets.
         let of_facets = |of: &dyn Fn(usize) -> Vec<f64>| -> Vec<f64> {

@@ -122,9 +122,10 @@ impl Traction {
 
 /// What is left of the sum of all forces on a cell, over the sum of their sizes, eq. (traction.1); not a number where there are none.
 fn left_over(forces: &Tractions, atoms: std::ops::Range<usize>) -> f64 {
-    let Tractions { traction, of_cells, drag, outer, inertia } = forces;
+    let Tractions { traction, of_cells, drag, outer, inertia, held } = forces;
     let (mut left, mut size) = (Vec3::zeros(), 0.0);
-    for (list, sign) in [(outer, 1.0), (drag, 1.0), (traction, -1.0), (of_cells, -1.0), (inertia, -1.0)] {
+    let parts = [(outer, 1.0), (held, 1.0), (drag, 1.0), (traction, -1.0), (of_cells, -1.0), (inertia, -1.0)];
+    for (list, sign) in parts {
         for force in list[atoms.clone()].iter().map(|force| Vec3::from(*force)) {
             left += sign * force;
             size += force.norm();

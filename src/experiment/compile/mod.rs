@@ -34,6 +34,7 @@ use crate::error::{Error, Fault, Result};
 use crate::field::Fields;
 use crate::geometry::{self, Surface};
 use crate::mechanics::course::Course;
+use crate::mechanics::moved::Moved;
 use crate::sim::chemistry::ChemistryState;
 use crate::sim::kind::kinks;
 use crate::sim::{Kind, Model, Plane, State, VolumeRule};
@@ -132,7 +133,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     if contact.as_ref().is_none_or(|contact| contact.law.moves_as_steps()) {
         kinds.iter_mut().for_each(Kind::use_tangent);
     }
-    let keeps_tractions = experiment.output.tractions || chemistry.reads_tractions();
+    let keeps_tractions = experiment.keeps_tractions() || chemistry.reads_tractions();
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),
@@ -161,6 +162,7 @@ fn compile_kind(document: &Document, name: &str, cell: &CellType, surface: Built
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
     far::check(document, &key, cell, &kind.rest, kind.closed, faults);
     kind.held = held(document, &key, cell, &kind.rest, faults);
+    kind.moved = moved(document, &key, cell, &mut kind.held, &kind.rest, faults);
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
     kind.behaviours = cell.motility.behaviours();
     let pods = pseudopods::pseudopods(document, &key, cell, &kind, faults);
@@ -182,6 +184,32 @@ fn held(document: &Document, key: &str, cell: &CellType, rest: &Surface, faults:
         }
     }
     factors
+}
+
+/// What is moved on courses; its atoms are held in all other ways.
+fn moved(
+    document: &Document,
+    key: &str,
+    cell: &CellType,
+    held: &mut Vec<f64>,
+    rest: &Surface,
+    faults: &mut Vec<Fault>,
+) -> Vec<Moved> {
+    let mut all = Vec::new();
+    for (i, moved) in cell.applied.moved.iter().enumerate() {
+        let path = format!("{key}.moved[{i}]");
+        let atoms = select::atoms(document, &path, &moved.selection, rest, faults);
+        held.resize(3 * rest.positions.len(), 1.0);
+        let is_held = |atom: &&u32| held[3 * **atom as usize..][..3].contains(&0.0);
+        if let Some(atom) = atoms.iter().find(is_held) {
+            let fault = Fault::new(format!("`{path}` moves atom {atom}, which `{key}` holds or moves already"))
+                .help("let what is fixed and what is moved be different atoms");
+            faults.push(document.location(&path, "has atoms of others").into_iter().fold(fault, Fault::at));
+        }
+        atoms.iter().for_each(|&atom| held[3 * atom as usize..][..3].fill(0.0));
+        all.push(moved.of_atoms(atoms));
+    }
+    all
 }
 
 fn volume_rule(document: &Document, key: &str, cell: &CellType, kind: &Kind, faults: &mut Vec<Fault>) -> VolumeRule {

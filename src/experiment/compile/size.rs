@@ -72,7 +72,7 @@ impl Size {
         let experiment = &document.experiment;
         let recorded = ATOM_RECORDED
             + if experiment.output.forces { FORCE_RECORDED } else { 0.0 }
-            + if experiment.output.tractions { TRACTIONS_RECORDED } else { 0.0 };
+            + if experiment.keeps_tractions() { TRACTIONS_RECORDED } else { 0.0 };
         for cell in experiment.cells.values() {
             let ([atoms, facets], cells) = (of_mesh(document, &cell.mesh), most(cell));
             size.cells += cells;

@@ -1,7 +1,7 @@
 //! What must hold within a type of cells.
 
 use super::Check;
-use crate::experiment::{CellType, Course, Linked, Placement, Selection, VolumeRule};
+use crate::experiment::{CellType, Course, Linked, Method, Placement, Selection, VolumeRule};
 use std::collections::HashSet;
 
 impl Check<'_> {
@@ -24,6 +24,16 @@ impl Check<'_> {
                 message,
                 "add `mass = \"1 mg\"`: the mass of the whole cell",
             );
+        }
+    }
+
+    /// Only the implicit scheme moves atoms on courses.
+    pub(super) fn moved_by_scheme(&mut self, path: &str, cell: &CellType) {
+        let method = self.document.experiment.run.integrator.method;
+        if !cell.applied.moved.is_empty() && method != Method::Implicit {
+            let message = format!("`{path}.moved` needs the implicit scheme");
+            let help = "remove run.integrator.method; in other schemes atoms can be fixed, and pulled by loads";
+            self.fault("run.integrator.method", "moves no atoms on courses", message, help);
         }
     }
 

@@ -37,7 +37,7 @@ impl Declared for InDocument<'_, '_> {
     }
 
     fn records_tractions(&self) -> bool {
-        self.check.document.experiment.output.tractions
+        self.check.document.experiment.keeps_tractions()
     }
 
     fn has_pseudopods(&self, kind: Option<&str>) -> bool {

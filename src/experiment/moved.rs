@@ -1,0 +1,77 @@
+//! Atoms that go on a course, whatever acts on them. What documents say of it, and what it means.
+
+use super::compile::{course, unit};
+use super::selection::Selection;
+use super::semantics::Check;
+use super::{CellType, Experiment};
+use crate::mechanics::moved;
+use crate::units::Length;
+use crate::values::Course;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Atoms that are moved on a course, as by a grip, or as all of a rigid tool.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("unevaluatedProperties" = false))]
+pub struct Moved {
+    /// Names the series `displacement.NAME` and `force.NAME` in the result; with the name of the type in between where several types have
+    /// one of this name.
+    #[schemars(extend("x-text" = "name"))]
+    pub name: String,
+    /// The atoms that are moved; they do not move in any other way.
+    #[serde(flatten)]
+    pub selection: Selection,
+    /// The direction in which they go; its length does not matter.
+    pub direction: [f64; 3],
+    /// How far they are from where they began, in the course of time: 0 at the start.
+    pub displacement: Course<Length>,
+}
+
+impl Moved {
+    /// What it means for these atoms.
+    pub(super) fn of_atoms(&self, mut atoms: Vec<u32>) -> moved::Moved {
+        atoms.sort_unstable();
+        let (direction, displacement) = (unit(self.direction), course(self.displacement.points()));
+        moved::Moved { name: self.name.clone(), atoms, direction, displacement }
+    }
+}
+
+impl Experiment {
+    /// Names of the series of what is moved.
+    pub(super) fn series_of_moved(&self) -> Vec<String> {
+        let named = |cell: &CellType, name: &str| cell.applied.moved.iter().any(|moved| moved.name == name);
+        let mut names = Vec::new();
+        for (kind, cell) in &self.cells {
+            for moved in &cell.applied.moved {
+                let shared = self.cells.values().filter(|cell| named(cell, &moved.name)).count() > 1;
+                let owner = if shared { format!("{kind}.") } else { String::new() };
+                names.extend(["displacement", "force"].map(|word| format!("{word}.{owner}{}", moved.name)));
+            }
+        }
+        names
+    }
+}
+
+impl Check<'_> {
+    /// What must hold of what is moved of a type.
+    pub(super) fn moved(&mut self, path: &str, list: &[Moved]) {
+        for (index, moved) in list.iter().enumerate() {
+            let path = format!("{path}.moved[{index}]");
+            self.selection(&path, &moved.selection);
+            self.direction(&format!("{path}.direction"), moved.direction);
+            let (key, points) = (format!("{path}.displacement"), moved.displacement.points());
+            self.course(&key, &points);
+            let begins = points.first().map_or(0.0, |_| course(points.clone()).at(0.0));
+            if begins != 0.0 {
+                let message = format!("`{key}` is {begins} um at 0 s");
+                let help = "atoms begin where they are: let it begin with [\"0 s\", \"0 um\"]";
+                self.fault(&key, "not 0 at the start", message, help);
+            }
+            if let Some(other) = list[..index].iter().position(|other| other.name == moved.name) {
+                let message = format!("`{path}.name` is the name of moved atoms {other} too");
+                let help = "names of moved atoms differ within a type of cells";
+                self.fault(&format!("{path}.name"), "taken", message, help);
+            }
+        }
+    }
+}

@@ -1,0 +1,233 @@
+//! The stages of the implicit step for a block of cells: its forces, and the increments that they cause.
+
+use super::forces::Forces;
+use super::kind::{Kind, VolumeRule};
+use super::model::Model;
+use super::moved::Ways;
+use super::planes::{self, TouchScratch};
+use super::pressure::{add_pressure_on_held, carry_pressure, constrain};
+use super::scheme::{gamma, root_mean_square, share_of_stage};
+use super::solver::{Solver, Stage, System, solve_block};
+use super::targets::Targets;
+use crate::mechanics::integrator::{Order, StepSize};
+use crate::mechanics::lanes::LANES;
+use crate::mechanics::tangent::Scales;
+
+/// What the stages of a step need of a kind.
+pub struct Step<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// The kind.
+    pub kind: &'a Kind,
+    /// The forces on its cells.
+    pub forces: Forces<'a>,
+    /// Their linear system, or where their own come from.
+    pub solver: &'a Solver,
+    /// What volumes are to be; none where nothing keeps them.
+    pub targets: Option<Targets<'a>>,
+    /// Where moved atoms go; none where no atom is moved on a course.
+    pub ways: Option<Ways<'a>>,
+    /// The order of the scheme.
+    pub order: Order,
+    /// When it begins, s.
+    pub start: f64,
+    /// How long it is, s.
+    pub dt: f64,
+}
+
+/// A block of cells in a step.
+pub struct Block<'a> {
+    /// Its number.
+    pub number: usize,
+    /// Positions after the stages that were made.
+    pub x: &'a mut [f64],
+    /// Rest volumes of its cells.
+    pub rest: &'a [f64],
+    /// Positions where the step begins.
+    pub start: &'a [f64],
+    /// Volumes there.
+    pub volume: &'a mut [f64],
+    /// What they are to be.
+    pub target: &'a mut [f64],
+    /// Energies.
+    pub energy: &'a mut [f64],
+    /// Pressures of the stage made last.
+    pub pressure: &'a mut [f64],
+    /// Where forces from outside are added up, if somebody asks.
+    pub outer: Option<&'a mut [f64]>,
+    /// Where all forces on held atoms are added up then, those of pressure included.
+    pub on_held: Option<&'a mut [f64]>,
+    /// Where the gradients of volumes and what a unit of pressure moves are kept, where cells are coupled to others.
+    pub swelling: Option<(&'a mut [f64], &'a mut [f64])>,
+    /// Where the increments of the second stage are kept then.
+    pub second: Option<&'a mut [f64]>,
+    /// Contact with planes.
+    pub touch: &'a mut TouchScratch,
+}
+
+impl Step<'_> {
+    /// The linear system of the cells of a block; `factor` takes one of their own, or has it from the first stage.
+    pub fn system<'b>(&'b self, block: &Block, factor: &'b mut [f64], has_factor: bool) -> System<'b> {
+        let (kind, dt) = (self.kind, self.dt);
+        let Some(tangent) = &kind.tangent else { return System::Shared(self.solver) };
+        let mobility = dt / kind.drag;
+        if !self.solver.own.is_empty() {
+            return System::Own { mobility, tangent, factor: &self.solver.own, lanes: 1 };
+        }
+        let elastic = self.forces.elastic_factors(block.number);
+        let scales = Scales {
+            diagonal: kind.drag / dt,
+            gamma: gamma(kind, self.order),
+            elastic: &elastic[..kind.lanes],
+            held: &kind.held,
+        };
+        let factor = &mut factor[..tangent.len(kind.lanes)];
+        if !has_factor {
+            tangent.factor(&kind.forces, kind.lanes, block.start, scales, factor);
+        }
+        System::Own { mobility, tangent, factor, lanes: kind.lanes }
+    }
+
+    /// Whether the step is as long as its error allows: one of a fixed size needs no estimate, which costs another solution.
+    fn asks_for_error(&self) -> bool {
+        matches!(self.model.integrator.size, StepSize::Adaptive { .. })
+    }
+
+    /// Takes a block through stages of the step. The increments of the first are `kept` where stages are made one by one. Returns the
+    /// largest error estimate, µm.
+    pub fn advance(
+        &self,
+        block: &mut Block,
+        system: &System,
+        stages: &[Stage],
+        mut kept: Option<&mut [f64]>,
+        [y, first, gradient, swell, spare, spare2]: [&mut [f64]; 6],
+    ) -> f64 {
+        let kind = self.kind;
+        self.swell(block, system, gradient, swell, [&mut *spare, &mut *spare2]);
+        let mut error = 0.0;
+        for &stage in stages {
+            if let (Stage::Second, Some(kept)) = (stage, &kept) {
+                first.copy_from_slice(kept);
+            }
+            self.push(block, stage, y, [&mut *spare, &mut *spare2]);
+            self.solve(system, block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
+            block.go_on(stage, y, first);
+            if let (Stage::Second, Some(kept)) = (stage, &mut block.second) {
+                kept.copy_from_slice(y);
+            } else if stage == Stage::Second && self.asks_for_error() {
+                first.iter_mut().zip(&*y).for_each(|(first, y)| *first = 0.5 * (*first + y));
+                system.filter(kind, block.start, first, spare, spare2);
+                error = root_mean_square(kind, first);
+            }
+            if let (Stage::First, Some(kept)) = (stage, &mut kept) {
+                kept.copy_from_slice(first);
+            }
+        }
+        error
+    }
+
+    /// Measures volumes, and finds the displacement that a unit of pressure causes, eq. (step.5). What moved atoms make of volumes by going is
+    /// in them.
+    fn swell(
+        &self,
+        block: &mut Block,
+        system: &System,
+        gradient: &mut [f64],
+        swell: &mut [f64],
+        [spare, spare2]: [&mut [f64]; 2],
+    ) {
+        let Some(targets) = &self.targets else { return };
+        let x = match &self.ways {
+            Some(ways) => {
+                spare.copy_from_slice(block.start);
+                ways.put_to_end(spare);
+                &*spare
+            }
+            None => block.start,
+        };
+        targets.on_block(x, block.rest, gradient, block.volume, block.target);
+        swell.copy_from_slice(gradient);
+        solve_block(self.kind, self.kind.lanes, system, block.start, swell, spare, spare2);
+        if let Some(kept) = &mut block.swelling {
+            kept.0.copy_from_slice(gradient);
+            kept.1.copy_from_slice(swell);
+        }
+    }
+
+    /// Writes the forces of a stage to `y`.
+    fn push(&self, block: &mut Block, stage: Stage, y: &mut [f64], [spare, spare2]: [&mut [f64]; 2]) {
+        let (kind, share) = (self.kind, share_of_stage(self.order));
+        let time = if stage == Stage::First { self.start } else { self.start + self.dt };
+        let x = match (&self.ways, stage) {
+            (None, Stage::First) => block.start,
+            (None, Stage::Second) => &*block.x,
+            (Some(ways), _) => {
+                spare2.copy_from_slice(if stage == Stage::First { block.start } else { block.x });
+                ways.put_to_stage(stage, spare2);
+                &*spare2
+            }
+        };
+        self.forces.on_block(block.number, time, (x, block.rest), (&mut *y, &mut *block.energy), spare);
+        if let Some(outer) = &mut block.outer {
+            self.forces.add_outer(block.number, (time, share), x, outer, spare);
+        }
+        if let Some(on_held) = &mut block.on_held {
+            self.forces.add_without_contacts(block.number, share, y, on_held, spare);
+        }
+        if stage == Stage::Second {
+            carry_pressure(kind, block.x, block.pressure, y, spare);
+            if let (Some(on_held), VolumeRule::Exact(_)) = (&mut block.on_held, &kind.volume) {
+                add_pressure_on_held(kind, block.x, (block.pressure, share), on_held, spare);
+            }
+        }
+    }
+
+    /// Turns forces into the increments of a stage, in place.
+    fn solve(
+        &self,
+        system: &System,
+        block: &mut Block,
+        stage: Stage,
+        y: &mut [f64],
+        first: &[f64],
+        (gradient, swell): (&[f64], &[f64]),
+        [spare, spare2]: [&mut [f64]; 2],
+    ) {
+        let &Self { model, kind, order, .. } = self;
+        let Block { start, volume, target, pressure, touch, .. } = block;
+        if stage == Stage::Second {
+            let back = 2.0 / system.mobility();
+            y.iter_mut().zip(first).for_each(|(y, k)| *y -= back * k);
+        }
+        solve_block(kind, kind.lanes, system, start, y, spare, spare2);
+        let mut wanted = [0.0; LANES];
+        for lane in 0..kind.lanes {
+            let missing = target[lane] - volume[lane];
+            wanted[lane] = if stage == Stage::First { missing } else { -missing };
+        }
+        let gamma = gamma(kind, order);
+        constrain(kind, gamma, gradient, swell, &wanted[..kind.lanes], target, y, pressure);
+        let scene = planes::Scene { model, kind, system: *system, stage, gamma, share: share_of_stage(order) };
+        planes::correct_block(&scene, start, first, gradient, swell, target, y, pressure, touch);
+        if let Some(ways) = &self.ways {
+            ways.set_increments(stage, y);
+        }
+        if let Some(on_held) = &mut block.on_held {
+            add_pressure_on_held(kind, block.start, (block.pressure, share_of_stage(order)), on_held, spare);
+        }
+    }
+}
+
+impl Block<'_> {
+    /// Moves atoms by the increments of a stage, and keeps those of the first.
+    fn go_on(&mut self, stage: Stage, y: &[f64], first: &mut [f64]) {
+        let starts = self.x.iter_mut().zip(self.start).zip(y);
+        if stage == Stage::First {
+            starts.for_each(|((x, start), y)| *x = start + y);
+            first.copy_from_slice(y);
+        } else {
+            starts.zip(first).for_each(|(((x, start), y2), y1)| *x = start + 1.5 * *y1 + 0.5 * y2);
+        }
+    }
+}
