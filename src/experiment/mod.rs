@@ -148,6 +148,20 @@ impl Experiment {
         self.output.tractions || self.cells.values().any(|cell| !cell.applied.moved.is_empty())
     }
 
+    /// Names of the series of what is moved.
+    pub(super) fn series_of_moved(&self) -> Vec<String> {
+        let named = |cell: &CellType, name: &str| cell.applied.moved.iter().any(|moved| moved.name == name);
+        let mut names = Vec::new();
+        for (kind, cell) in &self.cells {
+            for moved in &cell.applied.moved {
+                let shared = self.cells.values().filter(|cell| named(cell, &moved.name)).count() > 1;
+                let owner = if shared { format!("{kind}.") } else { String::new() };
+                names.extend(["displacement", "force"].map(|word| format!("{word}.{owner}{}", moved.name)));
+            }
+        }
+        names
+    }
+
     /// An experiment that lasts `until`, still without cells, with the defaults everywhere else.
     pub fn new(title: impl Into<String>, until: Time) -> Self {
         Self {

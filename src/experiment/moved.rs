@@ -3,7 +3,6 @@
 use super::compile::{course, unit};
 use super::selection::Selection;
 use super::semantics::Check;
-use super::{CellType, Experiment};
 use crate::mechanics::moved;
 use crate::units::Length;
 use crate::values::Course;
@@ -33,22 +32,6 @@ impl Moved {
         atoms.sort_unstable();
         let (direction, displacement) = (unit(self.direction), course(self.displacement.points()));
         moved::Moved { name: self.name.clone(), atoms, direction, displacement }
-    }
-}
-
-impl Experiment {
-    /// Names of the series of what is moved.
-    pub(super) fn series_of_moved(&self) -> Vec<String> {
-        let named = |cell: &CellType, name: &str| cell.applied.moved.iter().any(|moved| moved.name == name);
-        let mut names = Vec::new();
-        for (kind, cell) in &self.cells {
-            for moved in &cell.applied.moved {
-                let shared = self.cells.values().filter(|cell| named(cell, &moved.name)).count() > 1;
-                let owner = if shared { format!("{kind}.") } else { String::new() };
-                names.extend(["displacement", "force"].map(|word| format!("{word}.{owner}{}", moved.name)));
-            }
-        }
-        names
     }
 }
 

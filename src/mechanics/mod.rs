@@ -21,6 +21,7 @@ pub mod membrane;
 pub mod modes;
 pub mod moved;
 pub mod ordering;
+pub mod restoring;
 pub mod rigid;
 pub mod shape_memory;
 pub mod shape_modulus;

@@ -75,9 +75,18 @@ impl<T: Real> RigidFrame<T> {
     }
 }
 
-/// Splits `field` of a block: what stays in it is the deforming part; its rigid part, scaled, goes to `rigid`.
-pub fn split_block(lanes: usize, atoms: usize, x: &[f64], field: &mut [f64], rigid: &mut [f64], scale: f64) {
-    dispatch(lanes, Split { atoms, x, field, rigid, scale });
+/// Splits `field` of a block: what stays in it is the deforming part; its rigid part, scaled, goes to `rigid`. `turning` is what becomes of its
+/// rotation there, a matrix for each cell as a block has three atoms, or empty where nothing does.
+pub fn split_block(
+    lanes: usize,
+    atoms: usize,
+    x: &[f64],
+    field: &mut [f64],
+    rigid: &mut [f64],
+    scale: f64,
+    turning: &[f64],
+) {
+    dispatch(lanes, Split { atoms, x, field, rigid, scale, turning });
 }
 
 struct Split<'a> {
@@ -86,6 +95,7 @@ struct Split<'a> {
     field: &'a mut [f64],
     rigid: &'a mut [f64],
     scale: f64,
+    turning: &'a [f64],
 }
 
 impl BlockWork for Split<'_> {
@@ -106,6 +116,13 @@ impl BlockWork for Split<'_> {
                 let moved = frame.at(x.get(atom), mean, spin);
                 field.sub(atom, moved);
                 rigid.set(atom, moved.scaled(self.scale));
+            }
+            if !self.turning.is_empty() {
+                let rows = Vectors::<T>::new(token, T::view(token, self.turning), stride, part);
+                let spin = V3 { x: rows.get(0).dot(spin), y: rows.get(1).dot(spin), z: rows.get(2).dot(spin) };
+                for atom in 0..self.atoms {
+                    rigid.set(atom, frame.at(x.get(atom), mean, spin).scaled(self.scale));
+                }
             }
         }
     }

@@ -231,7 +231,7 @@ impl Part<'_> {
         let blocks = error.par_chunks_exact_mut(length).zip(self.now.positions.par_chunks_exact(length));
         blocks.enumerate().for_each(|(block, (error, x))| {
             self.buffers.enter(length, |[spare, spare2, ..]| {
-                self.system((solver, own_factors), block).filter(kind, x, error, spare, spare2);
+                self.system((solver, own_factors), block).filter(kind, (x, &[]), error, spare, spare2);
             });
         });
         self.largest(error)

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::acting_fibres::ActingFibres;
@@ -16,6 +17,7 @@ use super::workspace::{KindScratch, Workspace};
 use crate::Vec3;
 use crate::mechanics::control::Context;
 use crate::mechanics::lanes::LANES;
+use crate::mechanics::restoring::restoring;
 use crate::mechanics::sum::{measure_elastic, measure_forces, measure_outer};
 use crate::mechanics::volume;
 
@@ -100,6 +102,12 @@ impl Forces<'_> {
         }
         add_to_atoms(kind, cells, block, &controls.atom_forces, spare);
         outer.iter_mut().zip(spare).for_each(|(outer, force)| *outer += share * *force);
+    }
+
+    /// How loads turn the cell of a lane of a block at `x` back at a time, pN·µm, eq. (step.13).
+    pub fn restoring(&self, block: usize, lane: usize, time: f64, x: &[f64]) -> Matrix3<f64> {
+        let context = context(self.kind, self.controls, self.cells.numbers_of_block(self.kind, block), time);
+        restoring(&self.kind.forces, &context, (self.kind.lanes, lane), x)
     }
 
     /// Adds a share of the forces `f` on the atoms of a block, pN, without what contacts have of them, to `sum`. `spare` is scratch of that size.

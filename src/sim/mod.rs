@@ -47,6 +47,7 @@ mod targets;
 mod thread_buffers;
 mod traction;
 pub mod trouble;
+mod turning;
 mod velocity;
 mod within;
 pub mod workspace;

@@ -40,7 +40,7 @@ impl<'a> Ways<'a> {
         self.each(|at, way| x[at] += share * way);
     }
 
-    /// Tells the place and the way of each number of a block.
+    /// Tells each number of a block that is one of a moved atom, and its way.
     fn each(&self, mut work: impl FnMut(usize, f64)) {
         let lanes = self.kind.lanes;
         for moved in &self.kind.moved {

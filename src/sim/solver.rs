@@ -102,18 +102,26 @@ impl<'a> System<'a> {
     }
 
     /// Takes out of an error what the stiff shapes of a cell have by being stiff, eq. (step.9); scratch has the same size.
-    pub fn filter(&self, kind: &Kind, x: &[f64], error: &mut [f64], rigid: &mut [f64], scratch: &mut [f64]) {
+    /// `turning` as in [`solve_turning`].
+    pub fn filter(
+        &self,
+        kind: &Kind,
+        (x, turning): (&[f64], &[f64]),
+        error: &mut [f64],
+        rigid: &mut [f64],
+        scratch: &mut [f64],
+    ) {
         let mobility = self.mobility();
         match *self {
             Self::Shared(solver) if solver.filters.is_empty() => {}
             Self::Shared(solver) => {
                 error.iter_mut().for_each(|error| *error /= mobility);
                 let solve = |y: &mut [f64], scratch: &mut [f64]| solve_axes(&solver.filters, kind.lanes, y, scratch);
-                solve_with(solve, kind, (kind.lanes, mobility), x, error, rigid, scratch);
+                solve_with(solve, kind, (kind.lanes, mobility), (x, turning), error, rigid, scratch);
             }
             Self::Own { .. } => {
                 error.iter_mut().for_each(|error| *error /= mobility);
-                solve_block(kind, kind.lanes, self, x, error, rigid, scratch);
+                solve_turning(kind, kind.lanes, self, (x, turning), error, rigid, scratch);
             }
         }
     }
@@ -147,20 +155,34 @@ pub fn solve_block(
     spare: &mut [f64],
     spare2: &mut [f64],
 ) {
+    solve_turning(kind, lanes, system, (x, &[]), y, spare, spare2);
+}
+
+/// The same for cells that loads hold in a direction: `turning` is what [`Turning`](super::turning::Turning) makes of rotations, empty where
+/// cells turn freely.
+pub fn solve_turning(
+    kind: &Kind,
+    lanes: usize,
+    system: &System,
+    (x, turning): (&[f64], &[f64]),
+    y: &mut [f64],
+    spare: &mut [f64],
+    spare2: &mut [f64],
+) {
     let solve = |y: &mut [f64], scratch: &mut [f64]| match *system {
         System::Shared(solver) => solve_axes(&solver.factors, lanes, y, scratch),
         // Several right sides of a cell that stands alone.
         System::Own { tangent, factor, lanes: 1, .. } if lanes > 1 => tangent.solve_columns(factor, y),
         System::Own { tangent, factor, lanes: all, .. } => tangent.solve(all, factor, y),
     };
-    solve_with(solve, kind, (lanes, system.mobility()), x, y, spare, spare2);
+    solve_with(solve, kind, (lanes, system.mobility()), (x, turning), y, spare, spare2);
 }
 
 fn solve_with(
     solve: impl Fn(&mut [f64], &mut [f64]),
     kind: &Kind,
     (lanes, mobility): (usize, f64),
-    x: &[f64],
+    (x, turning): (&[f64], &[f64]),
     y: &mut [f64],
     spare: &mut [f64],
     spare2: &mut [f64],
@@ -169,7 +191,7 @@ fn solve_with(
         volume::hold(lanes, &kind.held, y);
         solve(y, spare);
     } else {
-        rigid::split_block(lanes, kind.atoms(), x, y, spare, mobility);
+        rigid::split_block(lanes, kind.atoms(), x, y, spare, mobility, turning);
         solve(y, spare2);
         rigid::join_block(lanes, kind.atoms(), x, y, spare);
     }

@@ -7,8 +7,9 @@ use super::moved::Ways;
 use super::planes::{self, TouchScratch};
 use super::pressure::{add_pressure_on_held, carry_pressure, constrain};
 use super::scheme::{gamma, root_mean_square, share_of_stage};
-use super::solver::{Solver, Stage, System, solve_block};
+use super::solver::{Solver, Stage, System, solve_block, solve_turning};
 use super::targets::Targets;
+use super::turning::Turning;
 use crate::mechanics::integrator::{Order, StepSize};
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::tangent::Scales;
@@ -104,6 +105,9 @@ impl Step<'_> {
         [y, first, gradient, swell, spare, spare2]: [&mut [f64]; 6],
     ) -> f64 {
         let kind = self.kind;
+        let (loaded, end) = ((&self.forces, block.number), self.start + self.dt);
+        let scheme = (system.mobility(), gamma(kind, self.order));
+        let turning = Turning::of(self.model, loaded, end, block.start, scheme);
         self.swell(block, system, gradient, swell, [&mut *spare, &mut *spare2]);
         let mut error = 0.0;
         for &stage in stages {
@@ -111,13 +115,14 @@ impl Step<'_> {
                 first.copy_from_slice(kept);
             }
             self.push(block, stage, y, [&mut *spare, &mut *spare2]);
-            self.solve(system, block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
+            let solved = (system, turning.rows());
+            self.solve(solved, block, stage, y, first, (&*gradient, &*swell), [&mut *spare, &mut *spare2]);
             block.go_on(stage, y, first);
             if let (Stage::Second, Some(kept)) = (stage, &mut block.second) {
                 kept.copy_from_slice(y);
             } else if stage == Stage::Second && self.asks_for_error() {
                 first.iter_mut().zip(&*y).for_each(|(first, y)| *first = 0.5 * (*first + y));
-                system.filter(kind, block.start, first, spare, spare2);
+                system.filter(kind, (block.start, turning.rows()), first, spare, spare2);
                 error = root_mean_square(kind, first);
             }
             if let (Stage::First, Some(kept)) = (stage, &mut kept) {
@@ -186,7 +191,7 @@ impl Step<'_> {
     /// Turns forces into the increments of a stage, in place.
     fn solve(
         &self,
-        system: &System,
+        (system, turning): (&System, &[f64]),
         block: &mut Block,
         stage: Stage,
         y: &mut [f64],
@@ -200,7 +205,7 @@ impl Step<'_> {
             let back = 2.0 / system.mobility();
             y.iter_mut().zip(first).for_each(|(y, k)| *y -= back * k);
         }
-        solve_block(kind, kind.lanes, system, start, y, spare, spare2);
+        solve_turning(kind, kind.lanes, system, (start, turning), y, spare, spare2);
         let mut wanted = [0.0; LANES];
         for lane in 0..kind.lanes {
             let missing = target[lane] - volume[lane];

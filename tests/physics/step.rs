@@ -1,5 +1,6 @@
 //! Claims about the step: exact volume, rigid motion, order of convergence, threads, scratch.
 
+use nalgebra::Rotation3;
 use pseudopod::Vec3;
 use pseudopod::geometry::{self, Topology, icosphere};
 use pseudopod::mechanics::Force;
@@ -234,4 +235,52 @@ fn a_driven_volume_is_followed_exactly() {
     let before = geometry::volume(&surface);
     surface.positions = state.kinds[0].cell(&model.kinds[0], 0);
     assert!((geometry::volume(&surface) / before - 1.5).abs() < 1e-10);
+}
+
+/// A cell that two pulls hold along z, begun askew; the loads are at atoms that are opposite each other.
+fn held_askew(method: Method, size: StepSize, until: f64) -> (Model, State, Workspace) {
+    let mut kind = sphere_kind(1, 10.0);
+    let x = kind.rest.positions.clone();
+    let top = (0..x.len()).max_by(|a, b| (x[*a].z + 0.4 * x[*a].x).total_cmp(&(x[*b].z + 0.4 * x[*b].x))).unwrap();
+    let bottom = (0..x.len()).find(|atom| (x[*atom] + x[top]).norm() < 1e-9).unwrap();
+    for (atom, direction) in [(top, Vec3::z()), (bottom, -Vec3::z())] {
+        let load = Load::new("pull", vec![(atom as u32, 1.0)], direction, Course::constant(40.0));
+        kind.forces.push(Force::Load(load));
+    }
+    let askew = Rotation3::from_axis_angle(&Vec3::y_axis(), 0.5);
+    let positions = x.iter().map(|x| askew * x).collect();
+    let model = model_of(kind, method, size, until);
+    let (state, ws) = start(&model, vec![positions]);
+    (model, state, ws)
+}
+
+#[test]
+fn a_cell_turns_into_the_line_of_its_pulls_with_the_order_of_the_scheme() {
+    let after = |method: Method, dt: f64| {
+        let (model, mut state, mut ws) = held_askew(method, StepSize::Fixed(dt), 0.3);
+        run_until_end(&model, &mut state, &mut ws);
+        state.kinds[0].cell(&model.kinds[0], 0)
+    };
+    let exact = after(SECOND, 0.3 / 4096.0);
+    for (method, order) in [(FIRST, 1.0), (SECOND, 2.0)] {
+        let [coarse, fine] = [128.0, 256.0].map(|steps| distance(&after(method, 0.3 / steps), &exact));
+        let measured = (coarse / fine).log2();
+        println!("{method:?}: order {measured:.2}, error {fine:.1e}");
+        assert!((measured - order).abs() < 0.25, "{method:?} {measured}");
+    }
+}
+
+#[test]
+fn a_cell_that_pulls_hold_at_rest_takes_the_longest_steps() {
+    let (model, mut state, mut ws) = held_askew(SECOND, StepSize::Adaptive { tolerance: 1e-3, largest: 100.0 }, 3000.0);
+    while state.time < 1000.0 {
+        step(&model, &mut state, &mut ws).unwrap();
+    }
+    let mut steps = 0;
+    while state.time < model.until {
+        step(&model, &mut state, &mut ws).unwrap();
+        steps += 1;
+    }
+    // Without (step.13) the pulls turn it to and fro in steps of more than 2 zeta sum r^2 / (F L), here some 3 s.
+    assert!(steps <= 21, "{steps} steps for 2000 s of rest");
 }
