@@ -18,7 +18,7 @@ pub struct Moved {
 
 impl Moved {
     /// How far atoms go from one time (s) to another, µm. A course is straight between its bends, over which no step runs.
-    pub fn way(&self, [start, end]: [f64; 2]) -> Vec3 {
+    pub fn displaced(&self, [start, end]: [f64; 2]) -> Vec3 {
         (self.displacement.at(end) - self.displacement.at(start)) * self.direction
     }
 
@@ -38,8 +38,8 @@ mod tests {
         let displacement = Course::through(vec![(1.0, 0.0), (3.0, 4.0), (5.0, 4.0), (6.0, 1.0)]);
         let displacement = displacement.expect("times rise");
         let moved = Moved { name: "grip".into(), atoms: vec![0], direction: -Vec3::y(), displacement };
-        assert_eq!(moved.way([0.0, 2.0]), Vec3::new(0.0, -2.0, 0.0));
-        assert_eq!(moved.way([5.0, 6.0]), Vec3::new(0.0, 3.0, 0.0));
+        assert_eq!(moved.displaced([0.0, 2.0]), Vec3::new(0.0, -2.0, 0.0));
+        assert_eq!(moved.displaced([5.0, 6.0]), Vec3::new(0.0, 3.0, 0.0));
         let rests = [0.0, 0.5, 1.0, 2.0, 3.0, 4.9, 5.0, 6.0, 9.0].map(|time| moved.rests_from(time));
         assert_eq!(rests, [true, true, false, false, true, true, false, true, true]);
     }

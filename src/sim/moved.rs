@@ -5,7 +5,7 @@ use super::solver::Stage;
 
 /// A step as moved atoms have it.
 #[derive(Clone, Copy)]
-pub struct Ways<'a> {
+pub struct Displacements<'a> {
     kind: &'a Kind,
     /// When it begins and ends, s.
     times: [f64; 2],
@@ -13,7 +13,7 @@ pub struct Ways<'a> {
     gamma: f64,
 }
 
-impl<'a> Ways<'a> {
+impl<'a> Displacements<'a> {
     /// Those of a step; none where no atom is moved on a course.
     pub fn of(kind: &'a Kind, times: [f64; 2], gamma: f64) -> Option<Self> {
         (!kind.moved.is_empty()).then_some(Self { kind, times, gamma })
@@ -25,30 +25,30 @@ impl<'a> Ways<'a> {
     }
 
     /// Puts moved atoms of a block, which stand where the others do, to where these feel them in a stage: the forces of the first stage are those
-    /// of a share γ of the way, those of the second of what is left of it.
+    /// of a share γ of their displacement, those of the second of what is left of it.
     pub fn put_to_stage(&self, stage: Stage, x: &mut [f64]) {
         self.go(if stage == Stage::First { self.gamma } else { -self.gamma }, x);
     }
 
-    /// Writes the increments of moved atoms over those of a stage: the whole way, and back by it in the second, so that 3/2 and 1/2 of them are it.
+    /// Writes the increments of moved atoms over those of a stage: the whole displacement, and back by it in the second, so that 3/2 and 1/2 of them are it.
     pub fn set_increments(&self, stage: Stage, y: &mut [f64]) {
         let share = if stage == Stage::First { 1.0 } else { -1.0 };
-        self.each(|at, way| y[at] = share * way);
+        self.each(|at, displacement| y[at] = share * displacement);
     }
 
     fn go(&self, share: f64, x: &mut [f64]) {
-        self.each(|at, way| x[at] += share * way);
+        self.each(|at, displacement| x[at] += share * displacement);
     }
 
-    /// Tells each number of a block that is one of a moved atom, and its way.
+    /// Tells each number of a block that is one of a moved atom, and its displacement.
     fn each(&self, mut work: impl FnMut(usize, f64)) {
         let lanes = self.kind.lanes;
         for moved in &self.kind.moved {
-            let way = moved.way(self.times);
+            let displacement = moved.displaced(self.times);
             for atom in &moved.atoms {
                 for axis in 0..3 {
                     let first = (3 * *atom as usize + axis) * lanes;
-                    (first..first + lanes).for_each(|at| work(at, way[axis]));
+                    (first..first + lanes).for_each(|at| work(at, displacement[axis]));
                 }
             }
         }

@@ -3,7 +3,7 @@
 use super::forces::Forces;
 use super::kind::{Kind, VolumeRule};
 use super::model::Model;
-use super::moved::Ways;
+use super::moved::Displacements;
 use super::planes::{self, TouchScratch};
 use super::pressure::{add_pressure_on_held, carry_pressure, constrain};
 use super::scheme::{gamma, root_mean_square, share_of_stage};
@@ -27,7 +27,7 @@ pub struct Step<'a> {
     /// What volumes are to be; none where nothing keeps them.
     pub targets: Option<Targets<'a>>,
     /// Where moved atoms go; none where no atom is moved on a course.
-    pub ways: Option<Ways<'a>>,
+    pub displacements: Option<Displacements<'a>>,
     /// The order of the scheme.
     pub order: Order,
     /// When it begins, s.
@@ -143,10 +143,10 @@ impl Step<'_> {
         [spare, spare2]: [&mut [f64]; 2],
     ) {
         let Some(targets) = &self.targets else { return };
-        let x = match &self.ways {
-            Some(ways) => {
+        let x = match &self.displacements {
+            Some(displacements) => {
                 spare.copy_from_slice(block.start);
-                ways.put_to_end(spare);
+                displacements.put_to_end(spare);
                 &*spare
             }
             None => block.start,
@@ -164,12 +164,12 @@ impl Step<'_> {
     fn push(&self, block: &mut Block, stage: Stage, y: &mut [f64], [spare, spare2]: [&mut [f64]; 2]) {
         let (kind, share) = (self.kind, share_of_stage(self.order));
         let time = if stage == Stage::First { self.start } else { self.start + self.dt };
-        let x = match (&self.ways, stage) {
+        let x = match (&self.displacements, stage) {
             (None, Stage::First) => block.start,
             (None, Stage::Second) => &*block.x,
-            (Some(ways), _) => {
+            (Some(displacements), _) => {
                 spare2.copy_from_slice(if stage == Stage::First { block.start } else { block.x });
-                ways.put_to_stage(stage, spare2);
+                displacements.put_to_stage(stage, spare2);
                 &*spare2
             }
         };
@@ -215,8 +215,8 @@ impl Step<'_> {
         constrain(kind, gamma, gradient, swell, &wanted[..kind.lanes], target, y, pressure);
         let scene = planes::Scene { model, kind, system: *system, stage, gamma, share: share_of_stage(order) };
         planes::correct_block(&scene, start, first, gradient, swell, target, y, pressure, touch);
-        if let Some(ways) = &self.ways {
-            ways.set_increments(stage, y);
+        if let Some(displacements) = &self.displacements {
+            displacements.set_increments(stage, y);
         }
         if let Some(on_held) = &mut block.on_held {
             add_pressure_on_held(kind, block.start, (block.pressure, share_of_stage(order)), on_held, spare);
