@@ -27,6 +27,7 @@ pub mod mechanics;
 pub mod membrane;
 pub mod ode;
 pub mod output;
+pub mod physical_model;
 #[cfg(feature = "pictures")]
 pub mod picture;
 pub mod random;

@@ -1,6 +1,7 @@
 //! `pseudopod export`: frames of a result as meshes or as the values of a field, or its numbers as a table.
 
 mod args;
+mod model;
 mod what;
 
 pub use args::{ExportArgs, TableKind};
@@ -9,6 +10,7 @@ use super::files::{Named, refuse_existing, refuse_existing_folder, refuse_same};
 use super::report::Report;
 use crate::Vec3;
 use crate::analysis::aggregates::table_of_changes;
+use crate::error::words::all_of;
 use crate::error::{Error, Fault, Result};
 use crate::experiment::When;
 use crate::geometry::{Surface, export_surface};
@@ -17,7 +19,8 @@ use crate::output::{
     Cell, FieldLayout, ResultFile, Table, series_file, series_folder, write_field_image, write_field_series,
     write_field_table, write_field_tiff, write_mesh, write_mesh_series, write_table, write_text,
 };
-use std::path::PathBuf;
+use model::{write_loads, write_model};
+use std::path::{Path, PathBuf};
 use what::What;
 
 /// Runs the command.
@@ -25,56 +28,80 @@ use what::What;
 /// # Errors
 /// A result, frame, cell or series that is not there; a file that exists, has an unknown ending or cannot be written.
 pub fn run(args: &ExportArgs) -> Result<Report> {
-    let what = What::of(args)?;
+    let what = args.output.as_deref().map(|output| What::of(args, output)).transpose()?;
     let result = ResultFile::open(&args.result)?;
-    refuse_same(&[&args.result, &args.output])?;
-    refuse_existing(&args.output, args.force, Named::ByUser)?;
-    let output = &args.output;
+    let named = [&args.output, &args.pml, &args.lml].map(Option::as_deref);
+    let named: Vec<&Path> = named.into_iter().flatten().collect();
+    refuse_same(&[&[args.result.as_path()], named.as_slice()].concat())?;
+    named.iter().try_for_each(|path| refuse_existing(path, args.force, Named::ByUser))?;
+    let mut files: Vec<PathBuf> = [&args.pml, &args.lml].into_iter().flatten().cloned().collect();
+    if let Some(path) = &args.pml {
+        write_model(&result, args.frame.of(&result, When::Last)?, args.cell, path)?;
+    }
+    let untold = match &args.lml {
+        Some(path) => write_loads(&result, args.frame.of(&result, When::Last)?, args.cell, path)?,
+        None => Vec::new(),
+    };
+    if let (Some(what), Some(output)) = (what, &args.output) {
+        files.extend(write(args, &result, what, output)?);
+    }
+    let mut report = Report::of_files(&args.result, &files);
+    if !untold.is_empty() {
+        report.words += &format!("LML has no words for {}: they were left out\n", all_of(untold));
+    }
+    Ok(report)
+}
+
+/// Writes one file, and what goes with it.
+fn write(args: &ExportArgs, result: &ResultFile, what: What, output: &Path) -> Result<Vec<PathBuf>> {
     match what {
         What::Table => match table_of(args) {
-            Some(table) => write_table(&result, &table, output)?,
-            None => write_text(&table_of_changes(&result)?, output)?,
+            Some(table) => write_table(result, &table, output)?,
+            None => write_text(&table_of_changes(result)?, output)?,
         },
-        What::Package => return Ok(Report::of_files(&args.result, &write_biotracks(&result, output)?)),
+        What::Package => return write_biotracks(result, output),
         What::Surface => {
-            let frame = args.frame.of(&result, When::Last)?;
-            let (surface, [cell, kind]) = surface_of(&result, frame, args.cell)?;
+            let frame = args.frame.of(result, When::Last)?;
+            let (surface, [cell, kind]) = surface_of(result, frame, args.cell)?;
             export_surface(&surface, &[("cell", cell), ("type", kind)], output)?;
         }
+        What::Model => {
+            write_model(result, args.frame.of(result, When::Last)?, args.cell, output)?;
+        }
         What::Mesh => {
-            let frame = args.frame.of(&result, When::Last)?;
+            let frame = args.frame.of(result, When::Last)?;
             if let Some(id) = args.cell {
-                index_of(&result, frame, id)?;
+                index_of(result, frame, id)?;
             }
-            write_mesh(&result, frame, args.cell, output)?;
+            write_mesh(result, frame, args.cell, output)?;
         }
         What::MeshSeries => {
-            let frames = frames_with(&result, every(&result, args), args.cell)?;
-            let folder = refuse_series(args, &frames, "vtu")?;
-            write_mesh_series(&result, &frames, args.cell, output)?;
-            return Ok(Report::of_files(&args.result, &[output.clone(), folder]));
+            let frames = frames_with(result, every(result, args), args.cell)?;
+            let folder = refuse_series(args, output, &frames, "vtu")?;
+            write_mesh_series(result, &frames, args.cell, output)?;
+            return Ok(vec![output.to_path_buf(), folder]);
         }
         What::FieldSeries => {
-            let (field, species) = field_of(args, &result)?;
-            let frames = every(&result, args);
-            let folder = refuse_series(args, &frames, "vti")?;
-            write_field_series(&result, field, &species, &frames, output)?;
-            return Ok(Report::of_files(&args.result, &[output.clone(), folder]));
+            let (field, species) = field_of(args, result)?;
+            let frames = every(result, args);
+            let folder = refuse_series(args, output, &frames, "vti")?;
+            write_field_series(result, field, &species, &frames, output)?;
+            return Ok(vec![output.to_path_buf(), folder]);
         }
         What::FieldStack => {
-            let (field, species) = field_of(args, &result)?;
+            let (field, species) = field_of(args, result)?;
             let one = args.frame.frame.is_some() || args.frame.time.is_some();
-            let frames = if one { vec![args.frame.of(&result, When::Last)?] } else { every(&result, args) };
-            write_field_tiff(&result, field, &species, &frames, output)?;
+            let frames = if one { vec![args.frame.of(result, When::Last)?] } else { every(result, args) };
+            write_field_tiff(result, field, &species, &frames, output)?;
         }
         What::FieldTable | What::FieldImage => {
-            let (field, species) = field_of(args, &result)?;
-            let frame = args.frame.of(&result, When::Last)?;
+            let (field, species) = field_of(args, result)?;
+            let frame = args.frame.of(result, When::Last)?;
             let write = if what == What::FieldImage { write_field_image } else { write_field_table };
-            write(&result, field, &species, frame, output)?;
+            write(result, field, &species, frame, output)?;
         }
     }
-    Ok(Report::of_files(&args.result, std::slice::from_ref(output)))
+    Ok(vec![output.to_path_buf()])
 }
 
 /// The field that is asked for, and which of its species.
@@ -117,11 +144,11 @@ fn frames_with(result: &ResultFile, frames: Vec<usize>, cell: Option<u64>) -> Re
 }
 
 /// The folder of a series; refused where it exists, unless it is to be replaced, and where one of its files is the result.
-fn refuse_series(args: &ExportArgs, frames: &[usize], ending: &str) -> Result<PathBuf> {
-    let folder = series_folder(&args.output);
+fn refuse_series(args: &ExportArgs, output: &Path, frames: &[usize], ending: &str) -> Result<PathBuf> {
+    let folder = series_folder(output);
     refuse_existing_folder(&folder, args.force)?;
     for frame in frames {
-        refuse_same(&[&args.result, &series_file(&args.output, *frame, ending)])?;
+        refuse_same(&[&args.result, &series_file(output, *frame, ending)])?;
     }
     Ok(folder)
 }

@@ -7,7 +7,7 @@ use super::placement::Placement;
 use super::population::{Added, Removed};
 use super::pseudopods::Pseudopods;
 use crate::units::{Angle, Length};
-use crate::values::{Colour, LengthUnit};
+use crate::values::{Colour, LengthUnit, OneOrMany};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -151,14 +151,17 @@ pub enum Mesh {
         #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
         side: Length,
     },
-    /// A surface from a file: OBJ, STL or PLY.
+    /// A surface from a file: OBJ, STL, PLY or PML.
     File {
         /// The file, relative to the document.
         #[schemars(extend("x-text" = "file"))]
         path: PathBuf,
-        /// The length that a coordinate of 1 stands for.
+        /// The length that a coordinate of 1 stands for. Of a PML file that is what its property `lengthUnit` says when absent, or else 1 mm.
         #[serde(default)]
         unit: LengthUnit,
+        /// The component of a PML file whose facets are meant, or several; the one that is a closed surface when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        component: Option<OneOrMany<String>>,
     },
 }
 

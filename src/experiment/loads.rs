@@ -12,6 +12,7 @@ use crate::units::{Force, Length, LineStiffness};
 use crate::values::{Axis, Course};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// What is done to some atoms of every cell of a type.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -25,6 +26,11 @@ pub struct Applied {
     /// Forces applied to some atoms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<Load>,
+    /// A file of loads in LML, relative to the document, that act and hold besides. Its atoms are those of the PML file that the mesh is of, or the
+    /// atoms of the mesh by number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-text" = "file"))]
+    pub loads_file: Option<PathBuf>,
     /// Internal springs between atoms of the same cell.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub links: Vec<Link>,

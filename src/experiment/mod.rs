@@ -31,6 +31,7 @@
 //! ```
 
 mod along;
+mod as_lml;
 mod cells;
 mod check;
 mod chemistry;
@@ -58,6 +59,7 @@ mod volume;
 pub use crate::analysis::measures::{self, Measure, MeasureKind};
 pub use crate::values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};
 pub use along::Checked;
+pub use as_lml::loads_as_lml;
 pub use cells::{CellType, Mesh, Orientation};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{

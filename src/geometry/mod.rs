@@ -7,6 +7,7 @@ mod export;
 mod import;
 mod measure;
 mod occupied;
+mod orient;
 mod principal;
 mod red_cell;
 mod sheet;
@@ -25,6 +26,7 @@ pub use measure::{
     mean_edge_length, smallest_angle, volume, volume_gradient,
 };
 pub use occupied::{Occupied, point_in_box};
+pub use orient::orient_outwards;
 pub use principal::{PrincipalAxes, principal_axes, principal_extents};
 pub use red_cell::{RED_CELL_DIAMETER, red_cell, red_cell_area, red_cell_half_thickness, red_cell_volume};
 pub use sheet::sheet;

@@ -127,6 +127,16 @@ impl<'a> Namespaces<'a> {
         }
     }
 
+    /// The prefixes that the open element at a depth declares, with the names that they stand for.
+    pub(super) fn declared_at(&self, depth: usize) -> impl Iterator<Item = (&'a str, &str)> {
+        let first = self.declared.partition_point(|(own, _)| *own < depth);
+        let own = self.declared[first..].iter().take_while(move |(own, _)| *own == depth);
+        own.map(|(_, prefix)| {
+            let bound = if prefix.is_empty() { self.default() } else { self.of(prefix) };
+            (*prefix, bound.map_or("", |namespace| self.names[namespace.index()].as_ref()))
+        })
+    }
+
     /// The namespace of elements without a prefix.
     pub(super) fn default(&self) -> Option<Namespace> {
         self.default.last().and_then(|(_, namespace)| *namespace)

@@ -104,6 +104,17 @@ impl<'a> Reader<'a> {
         &self.attributes
     }
 
+    /// The namespaces that the element that began last declares: prefixes, empty for elements without one, and names.
+    pub fn declarations(&self) -> impl Iterator<Item = (&'a str, &str)> {
+        let depth = self.open.len();
+        self.namespaces.declared_at(depth)
+    }
+
+    /// The name of the namespace that a prefix stands for in the element that began last.
+    pub fn bound(&self, prefix: &str) -> Option<&str> {
+        self.namespaces.of(prefix).map(|namespace| self.namespace(namespace))
+    }
+
     /// The name of a namespace.
     pub fn namespace(&self, namespace: Namespace) -> &str {
         &self.namespaces.names[namespace.index()]

@@ -8,6 +8,7 @@ mod experiments;
 mod fields;
 mod kept;
 mod meshes;
+mod physical_models;
 mod runs;
 mod sbml;
 mod studies;

@@ -3,16 +3,22 @@
 use crate::cli::frames::FrameArgs;
 use std::path::PathBuf;
 
-/// Writes the cells of a frame as OBJ, PLY, STL or VTU, in um, or of all frames as PVD, a field as VTI, PVD, OME-TIFF or
+/// Writes the cells of a frame as OBJ, PLY, STL, VTU or PML, in um, or of all frames as PVD, a field as VTI, PVD, OME-TIFF or
 /// CSV, or series, tracks and measures as CSV.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ExportArgs {
     /// The result file.
     pub result: PathBuf,
-    /// The file; its ending says what is written: .obj, .ply, .stl, .vtu a mesh, .pvd all frames of it, .vti, .ome.tiff a field, .csv
+    /// The file; its ending says what is written: .obj, .ply, .stl, .vtu, .pml a mesh, .pvd all frames of it, .vti, .ome.tiff a field, .csv
     /// a table. A folder for --table biotracks.
-    #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["pml", "lml"])]
+    pub output: Option<PathBuf>,
+    /// Writes the cells of a frame as a physical model, in um: their atoms, neighbourhoods and facets.
+    #[arg(long, value_name = "FILE")]
+    pub pml: Option<PathBuf>,
+    /// Writes the loads of the experiment and the atoms that are held, by the atoms of that model.
+    #[arg(long, value_name = "FILE")]
+    pub lml: Option<PathBuf>,
     /// Which frame a mesh or a field shows; the last when absent, all in an .ome.tiff.
     #[command(flatten)]
     pub frame: FrameArgs,

@@ -9,6 +9,8 @@ use std::path::Path;
 pub enum What {
     /// The surface of cells in a frame.
     Surface,
+    /// The same as a physical model.
+    Model,
     /// The same for VTK, with quantities of atoms and cells.
     Mesh,
     /// All frames of it.
@@ -28,12 +30,12 @@ pub enum What {
 }
 
 impl What {
-    /// What the arguments ask for.
+    /// What the arguments ask for in a file.
     ///
     /// # Errors
     /// [`Error::Input`] for a name that does not tell it, and for options that say nothing about it.
-    pub fn of(args: &ExportArgs) -> Result<Self> {
-        let ending = args.output.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    pub fn of(args: &ExportArgs, output: &Path) -> Result<Self> {
+        let ending = output.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         let what = match ending.as_deref() {
             _ if args.table == Some(TableKind::Biotracks) => Self::Package,
             Some("csv") if args.field.is_some() => Self::FieldTable,
@@ -42,23 +44,24 @@ impl What {
             Some("vtu") => Self::Mesh,
             Some("pvd") if args.field.is_some() => Self::FieldSeries,
             Some("pvd") => Self::MeshSeries,
-            Some("tif" | "tiff") if has_ome(&args.output) => Self::FieldStack,
+            Some("tif" | "tiff") if has_ome(output) => Self::FieldStack,
             Some("obj" | "ply" | "stl") => Self::Surface,
+            Some("pml") => Self::Model,
             _ => {
-                let name = args.output.display();
+                let name = output.display();
                 let fault = Fault::new(format!("cannot tell from its name what to write to {name}"));
                 return Err(Error::input(fault.help(
-                    "let the name end in .obj, .ply, .stl or .vtu for a mesh, .pvd for all frames of it, .vti or .ome.tiff \
+                    "let the name end in .obj, .ply, .stl, .vtu or .pml for a mesh, .pvd for all frames of it, .vti or .ome.tiff \
                      for a field, .csv for a table",
                 )));
             }
         };
-        what.refuse_unused(args)?;
+        what.refuse_unused(args, output)?;
         Ok(what)
     }
 
     /// Options that say nothing about what is written are a mistake that the user wants to know of.
-    fn refuse_unused(self, args: &ExportArgs) -> Result<()> {
+    fn refuse_unused(self, args: &ExportArgs, output: &Path) -> Result<()> {
         use What::*;
         let table = matches!(self, Table | Package);
         let field = matches!(self, FieldTable | FieldImage | FieldSeries | FieldStack);
@@ -67,15 +70,15 @@ impl What {
             () if !one_frame && args.frame.frame.is_some() => "--frame",
             () if !one_frame && args.frame.time.is_some() => "--time",
             () if args.every.is_some() && !matches!(self, MeshSeries | FieldSeries | FieldStack) => "--every",
-            () if args.cell.is_some() && !matches!(self, Surface | Mesh | MeshSeries) => "--cell",
+            () if args.cell.is_some() && !matches!(self, Surface | Model | Mesh | MeshSeries) => "--cell",
             () if !table && args.table.is_some() => "--table",
             () if !table && !args.series.is_empty() => "--series",
             () if !args.series.is_empty() && args.table.is_some_and(|kind| kind != TableKind::Series) => "--series",
             () if !field && args.field.is_some() => "--field",
             () => return Ok(()),
         };
-        let fault = Fault::new(format!("{unused} has no meaning for {}", args.output.display())).help(
-            "--frame and --time belong to one frame of a mesh (.obj, .ply, .stl, .vtu) or of a field (.vti, .ome.tiff, or \
+        let fault = Fault::new(format!("{unused} has no meaning for {}", output.display())).help(
+            "--frame and --time belong to one frame of a mesh (.obj, .ply, .stl, .vtu, .pml) or of a field (.vti, .ome.tiff, or \
              .csv with --field), --every to all frames (.pvd, .ome.tiff), --cell to a mesh, --field to a field, --table and \
              --series to a table (.csv)",
         );

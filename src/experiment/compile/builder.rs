@@ -2,6 +2,7 @@
 
 use super::super::Document;
 use super::super::selection::{LinkPattern, Linked, Selection};
+use super::model::FromModel;
 use super::select::{self, mirrored};
 use crate::Vec3;
 use crate::error::Fault;
@@ -14,6 +15,8 @@ pub struct Built {
     pub plain: Surface,
     /// Turned.
     pub turned: Surface,
+    /// The physical model that it came from, if it did.
+    pub model: Option<FromModel>,
 }
 
 /// Makes the forces on a type of cells.

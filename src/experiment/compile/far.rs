@@ -1,6 +1,7 @@
 //! Cells so far from the origin that the numbers of their positions no longer tell their shape.
 
 use super::super::{CellType, Document, Mesh, Placement};
+use super::model::written_unit;
 use super::notices::unit_advice;
 use super::positions::default_grid;
 use crate::error::{Fault, short};
@@ -68,7 +69,7 @@ pub const WIDTHS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
 /// Tells of a mesh from a file that is wider or narrower than any cell; the schema bounds the others.
 pub fn check_width(document: &Document, key: &str, mesh: &Mesh, rest: &Surface, faults: &mut Vec<Fault>) {
-    let Mesh::File { unit, .. } = mesh else { return };
+    let Mesh::File { path, unit, .. } = mesh else { return };
     let width = bounding_box(&rest.positions).map_or(0.0, |(low, high)| (high - low).max());
     if WIDTHS.contains(&width) {
         return;
@@ -80,7 +81,7 @@ pub fn check_width(document: &Document, key: &str, mesh: &Mesh, rest: &Surface, 
         told(*WIDTHS.start()),
         told(*WIDTHS.end())
     );
-    let help = unit_advice(*unit, width);
+    let help = unit_advice(written_unit(document, &format!("{key}.mesh"), path, *unit), width);
     let location = document.location(&format!("{key}.mesh.path"), "this file");
     faults.push(location.into_iter().fold(Fault::new(message).help(help), Fault::at));
 }

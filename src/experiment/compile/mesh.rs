@@ -3,6 +3,7 @@
 use super::super::{CellType, Document, Mesh, VolumeRule};
 use super::builder::Built;
 use super::far;
+use super::model::{self, is_model};
 use super::numbers::unit;
 use crate::Vec3;
 use crate::error::{Error, Fault};
@@ -11,6 +12,7 @@ use nalgebra::{Unit, UnitQuaternion};
 
 /// The surface of a type, or nothing and a fault.
 pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Vec<Fault>) -> Option<Built> {
+    let mut from_model = None;
     let plain = match &cell.mesh {
         Mesh::RedCell { diameter, level } => geometry::red_cell(diameter.value(), u32::from(*level)),
         Mesh::Icosphere { radius, level } => geometry::icosphere(radius.value(), u32::from(*level)),
@@ -20,13 +22,24 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
             geometry::sheet(size[0].value(), size[1].value(), divisions[0], divisions[1])
         }
         Mesh::Triangle { side } => triangle(side.value()),
-        Mesh::File { path, unit } => {
+        Mesh::File { path, unit, component } => {
             let free = cell.mechanics.volume.rule == Some(VolumeRule::Free);
             let rules = if free { &SurfaceRules::SHEET } else { &SurfaceRules::CELL };
-            match geometry::read_checked_surface(&document.resolve(path), unit.micrometres(), rules) {
+            let key = format!("cells.{name}.mesh");
+            let file = document.resolve(path);
+            let outcome = if is_model(path) {
+                let told = document.says(&format!("{key}.unit")).then_some(*unit);
+                model::surface(&file, told, component.as_ref(), rules).map(|(surface, read)| {
+                    from_model = Some(read);
+                    surface
+                })
+            } else {
+                geometry::read_checked_surface(&file, unit.micrometres(), rules)
+            };
+            match outcome {
                 Ok(surface) => surface,
                 Err(Error::Input(found)) => {
-                    let key = format!("cells.{name}.mesh.path");
+                    let key = format!("{key}.path");
                     let located = |fault: Fault| match (&fault.location, document.location(&key, "this file")) {
                         (None, Some(location)) => fault.at(location),
                         _ => fault,
@@ -51,7 +64,7 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
         let axis = Unit::new_unchecked(unit(orientation.axis));
         geometry::rotate(&mut turned, &UnitQuaternion::from_axis_angle(&axis, orientation.angle.value()));
     }
-    Some(Built { plain, turned })
+    Some(Built { plain, turned, model: from_model })
 }
 
 /// One equilateral facet in the plane z = 0: atoms 0 and 1 on its base, atom 2 above it along y.

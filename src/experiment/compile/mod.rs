@@ -6,7 +6,9 @@ mod chemistry;
 mod contact;
 mod far;
 mod forces;
+mod load_file;
 mod mesh;
+mod model;
 mod notices;
 mod numbers;
 mod overlap;
@@ -33,6 +35,7 @@ use crate::Vec3;
 use crate::error::{Error, Fault, Result};
 use crate::field::Fields;
 use crate::geometry::{self, Surface};
+use crate::mechanics::Force;
 use crate::mechanics::course::Course;
 use crate::mechanics::moved::Moved;
 use crate::sim::chemistry::ChemistryState;
@@ -152,16 +155,18 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
 
 fn compile_kind(document: &Document, name: &str, cell: &CellType, surface: Built, faults: &mut Vec<Fault>) -> Kind {
     let key = format!("cells.{name}");
+    let from_file = load_file::read(document, &key, cell, &surface, faults);
     let mut builder = Builder::new(document, &key, &surface, faults);
     forces::add_forces(cell, &document.experiment.environment, &mut builder);
-    let Builder { forces, drawn, .. } = builder;
+    let Builder { mut forces, drawn, .. } = builder;
+    forces.extend(from_file.loads.into_iter().map(Force::Load));
     let atoms = surface.turned.positions.len() as f64;
     let mut kind = Kind::new(name, surface.turned, forces);
     kind.drawn_links = drawn;
     kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
     far::check(document, &key, cell, &kind.rest, kind.closed, faults);
-    kind.held = held(document, &key, cell, &kind.rest, faults);
+    kind.held = held(document, &key, cell, &kind.rest, &from_file.held, faults);
     kind.moved = moved(document, &key, cell, &mut kind.held, &kind.rest, faults);
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
     kind.behaviours = cell.motility.behaviours();
@@ -171,12 +176,20 @@ fn compile_kind(document: &Document, name: &str, cell: &CellType, surface: Built
     kind
 }
 
-/// Factors of the atoms that are held: 0 held, 1 free; empty when none is.
-fn held(document: &Document, key: &str, cell: &CellType, rest: &Surface, faults: &mut Vec<Fault>) -> Vec<f64> {
-    if cell.applied.fixed.is_empty() {
+/// Factors of the atoms that are held: 0 held, 1 free; empty when none is. `more` are atoms and axes that a file of loads holds.
+fn held(
+    document: &Document,
+    key: &str,
+    cell: &CellType,
+    rest: &Surface,
+    more: &[(u32, usize)],
+    faults: &mut Vec<Fault>,
+) -> Vec<f64> {
+    if cell.applied.fixed.is_empty() && more.is_empty() {
         return Vec::new();
     }
     let mut factors = vec![1.0; 3 * rest.positions.len()];
+    more.iter().for_each(|(atom, axis)| factors[3 * *atom as usize + axis] = 0.0);
     for (i, fixed) in cell.applied.fixed.iter().enumerate() {
         let atoms = select::atoms(document, &format!("{key}.fixed[{i}]"), &fixed.selection, rest, faults);
         for atom in atoms {

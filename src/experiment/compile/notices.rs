@@ -1,6 +1,7 @@
 //! What is worth a word before a run though nothing is wrong: sizes that no cell has, cells that nothing keeps apart.
 
 use super::super::{CellType, Document, LengthUnit, Mesh};
+use super::model::written_unit;
 use super::size::{Size, bytes};
 use super::{Prepared, Schedule, bonds};
 use crate::Vec3;
@@ -135,7 +136,9 @@ fn unusual_width(document: &Document, kind: &Kind) -> Option<String> {
         return None;
     }
     let advice = match &document.experiment.cells.get(&kind.name)?.mesh {
-        Mesh::File { unit, .. } => unit_advice(*unit, width),
+        Mesh::File { path, unit, .. } => {
+            unit_advice(written_unit(document, &format!("cells.{}.mesh", kind.name), path, *unit), width)
+        }
         _ => "check the sizes of its mesh and their units".to_owned(),
     };
     let told = |length: f64| pretty(length, Dimension::LENGTH);

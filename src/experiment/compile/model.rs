@@ -1,0 +1,101 @@
+//! A physical model in place of a mesh.
+
+use super::super::Document;
+use crate::error::{Error, Fault, Result};
+use crate::geometry::{Surface, SurfaceRules, check_surface};
+use crate::physical_model::pml::{Component, LENGTH_UNIT, PhysicalModel, Wanted};
+use crate::values::{LengthUnit, OneOrMany};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// The unit of models that tell none.
+const USUAL_UNIT: LengthUnit = LengthUnit::of_micrometres(1e3);
+
+/// What of a physical model is still known of the mesh that was made of it: what its atoms are called there.
+#[derive(Debug)]
+pub struct FromModel {
+    /// The numbers of atoms of the mesh by their indices in the model.
+    pub numbers: BTreeMap<u32, u32>,
+    /// All indices of the model.
+    pub indices: BTreeSet<u32>,
+    /// The indices of atoms by the names of components, cells and atoms.
+    pub named: BTreeMap<String, BTreeSet<u32>>,
+}
+
+/// Whether a mesh file is a physical model.
+pub fn is_model(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pml"))
+}
+
+/// The unit that a mesh file at a key is taken in where that can be known without reading it.
+pub fn written_unit(document: &Document, key: &str, path: &Path, unit: LengthUnit) -> LengthUnit {
+    if is_model(path) && !document.says(&format!("{key}.unit")) { USUAL_UNIT } else { unit }
+}
+
+/// The surface of a model, µm, as all cells of a type have it at rest.
+///
+/// # Errors
+/// As [`PhysicalModel::open`] and [`PhysicalModel::surface`], a unit in the model that is none, and every fault of the surface.
+pub fn surface(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    component: Option<&OneOrMany<String>>,
+    rules: &SurfaceRules,
+) -> Result<(Surface, FromModel)> {
+    let model = PhysicalModel::open(path)?.document;
+    let file = path.display().to_string();
+    let wanted = component.map_or(Wanted::TheOnly, |names| Wanted::Named(names.as_slice()));
+    let mut chosen = model.surface(&file, wanted).map_err(Error::input)?;
+    let unit = match (unit, model.properties.get(LENGTH_UNIT)) {
+        (Some(unit), _) => unit,
+        (None, None) => USUAL_UNIT,
+        (None, Some(text)) => text.parse::<LengthUnit>().map_err(|error| {
+            let message = format!("`{LENGTH_UNIT}` of PML file `{file}` is no unit of length: {}", error.message);
+            Error::input(Fault::new(message).help("give the `unit` beside the path"))
+        })?,
+    };
+    chosen.surface.positions.iter_mut().for_each(|position| *position *= unit.micrometres());
+    let mesh = format!("the surface in PML file `{file}`");
+    check_surface(&chosen.surface, rules)
+        .map_err(|faults| Error::Input(faults.into_iter().map(|fault| fault.into_fault(&mesh)).collect()))?;
+    let numbers = chosen.indices.iter().copied().zip(0..).collect();
+    Ok((
+        chosen.surface,
+        FromModel { numbers, indices: model.all_atoms().map(|atom| atom.index).collect(), named: named(&model) },
+    ))
+}
+
+/// The atoms of all that has a name; blanks at the ends of names do not count.
+fn named(model: &PhysicalModel) -> BTreeMap<String, BTreeSet<u32>> {
+    let mut named: BTreeMap<String, BTreeSet<u32>> = BTreeMap::new();
+    let mut add = |name: &str, atoms: &BTreeSet<u32>| named.entry(name.trim().to_owned()).or_default().extend(atoms);
+    for component in model.all_components() {
+        if let Some(name) = component.name() {
+            add(name, &atoms_of(component));
+        }
+        if let Component::Structural(own) = component {
+            for cell in &own.cells {
+                if let Some(name) = &cell.name {
+                    add(name, &cell.references.atoms.iter().copied().collect());
+                }
+            }
+        }
+    }
+    for atom in model.all_atoms() {
+        if let Some(name) = &atom.name {
+            add(name, &BTreeSet::from([atom.index]));
+        }
+    }
+    named
+}
+
+fn atoms_of(component: &Component) -> BTreeSet<u32> {
+    match component {
+        Component::Foreign(_) => BTreeSet::new(),
+        Component::Multi(multi) => multi.components.iter().flat_map(atoms_of).collect(),
+        Component::Structural(own) => {
+            let of_cells = own.cells.iter().flat_map(|cell| cell.references.atoms.iter());
+            own.references.atoms.iter().chain(of_cells).copied().collect()
+        }
+    }
+}

@@ -1,0 +1,2 @@
+solid cell
+facet normal 0 0 1
