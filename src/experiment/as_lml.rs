@@ -44,8 +44,8 @@ fn forces(own: &load::Load, first: u32, loads: &mut Vec<Load>) {
         let points = own.force.points().iter().map(|(time, force)| (*time, force * f64::from_bits(share)));
         let mut points: Vec<(f64, f64)> = points.collect();
         // A course is constant before its first point, and in LML nothing.
-        if let Some((time, value)) = points.first().copied().filter(|(time, value)| *time > 0.0 && *value != 0.0) {
-            points.insert(0, (0.0_f64.min(time), value));
+        if let Some((_, value)) = points.first().copied().filter(|(time, value)| *time > 0.0 && *value != 0.0) {
+            points.insert(0, (0.0, value));
         }
         loads.push(made(LoadKind::Force, targets(&atoms), Some(direction(own.direction)), points, "pN"));
     }

@@ -315,3 +315,53 @@ fn quadrilaterals_are_cut_the_same_whatever_corner_they_begin_with() {
         assert_eq!(cut(corners), expected, "{corners:?}");
     }
 }
+
+/// The most memory that the process has held so far, bytes.
+#[cfg(target_os = "linux")]
+fn most_memory() -> usize {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find(|line| line.starts_with("VmHWM:")).unwrap();
+    1024 * line.split_whitespace().nth(1).unwrap().parse::<usize>().unwrap()
+}
+
+/// Atoms with a property, and cells: what takes the most memory for its bytes. Run alone: other tests count as well.
+#[cfg(target_os = "linux")]
+#[test]
+#[ignore = "slow: 20 s without optimisation"]
+fn a_file_of_100_mb_takes_no_more_than_four_times_its_bytes() {
+    use std::io::Write as _;
+    let path = tempfile::tempdir().unwrap().keep().join("large.pml");
+    let mut out = std::io::BufWriter::new(std::fs::File::create(&path).unwrap());
+    let atoms = 450_000;
+    writeln!(out, "<physicalModel nrOfAtoms=\"4000000000\">\n<atoms><structuralComponent name=\"atoms\">").unwrap();
+    for index in 0..atoms {
+        let x = f64::from(index) * 0.125;
+        writeln!(
+            out,
+            "<atom><atomProperties index=\"{index}\" x=\"{x}\" y=\"-0.25\" z=\"{}\" mass=\"100\"/></atom>",
+            -x
+        )
+        .unwrap();
+    }
+    writeln!(out, "</structuralComponent></atoms>\n<exclusiveComponents><multiComponent><structuralComponent>")
+        .unwrap();
+    for index in 0..atoms {
+        writeln!(out, "<cell><cellProperties index=\"{index}\" type=\"TRIANGLE\"/><nrOfStructures value=\"3\"/>")
+            .unwrap();
+        for atom in [index, (index + 1) % atoms, (index + 2) % atoms] {
+            writeln!(out, "<atomRef index=\"{atom}\"/>").unwrap();
+        }
+        writeln!(out, "</cell>").unwrap();
+    }
+    writeln!(out, "</structuralComponent></multiComponent></exclusiveComponents></physicalModel>").unwrap();
+    out.flush().unwrap();
+    let (size, before, began) =
+        (std::fs::metadata(&path).unwrap().len() as usize, most_memory(), std::time::Instant::now());
+    let read = PhysicalModel::open(&path).unwrap();
+    let (taken, seconds) = (most_memory() - before, began.elapsed().as_secs_f64());
+    std::fs::remove_dir_all(path.parent().unwrap()).unwrap();
+    println!("{size} bytes: {taken} bytes of memory, {seconds} s");
+    assert!(size > 100_000_000, "{size}");
+    assert_eq!(read.document.all_atoms().count(), atoms as usize);
+    assert!(taken < 4 * size, "{taken}");
+}

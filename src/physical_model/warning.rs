@@ -41,6 +41,17 @@ impl Warnings {
         }
     }
 
+    /// A sentence that tells the first ones of a file; none where there is nothing to tell.
+    pub fn in_a_sentence(&self, file: &str) -> Option<String> {
+        const TOLD: usize = 3;
+        let more = (self.list.len() + self.left_out).saturating_sub(TOLD);
+        let mut parts: Vec<String> = self.list.iter().take(TOLD).map(ToString::to_string).collect();
+        if more > 0 {
+            parts.push(format!("and so {more} times more"));
+        }
+        (!parts.is_empty()).then(|| format!("{file} breaks the rules: {}", parts.join("; ")))
+    }
+
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()

@@ -6,6 +6,7 @@ mod frame_times;
 mod kept_state;
 mod meaning;
 mod named_files;
+mod physical_models;
 mod population;
 mod random_scenes;
 mod shipped;

@@ -21,6 +21,8 @@ pub struct FromFile {
     pub loads: Vec<Load>,
     /// Atoms that are held, and the axes along which they are.
     pub held: Vec<(u32, usize)>,
+    /// What was found in the file though it could be read, in a sentence.
+    pub notice: Option<String>,
 }
 
 /// A jump of a course takes this share of the time at which it is: a step ends before it and another behind it.
@@ -34,8 +36,8 @@ pub fn read(document: &Document, key: &str, cell: &CellType, built: &Built, faul
         (None, Some(location)) => fault.at(location),
         _ => fault,
     };
-    let loads = match Loads::open(&file) {
-        Ok(read) => read.document.loads,
+    let (loads, notice) = match Loads::open(&file) {
+        Ok(read) => (read.document.loads, read.warnings.in_a_sentence(&file.display().to_string())),
         Err(Error::Input(found)) => {
             faults.extend(found.into_iter().map(located));
             return FromFile::default();
@@ -45,8 +47,8 @@ pub fn read(document: &Document, key: &str, cell: &CellType, built: &Built, faul
             return FromFile::default();
         }
     };
-    let mut target =
-        On { file: &file, cell, built, areas: geometry::atom_areas(&built.turned), done: FromFile::default() };
+    let done = FromFile { notice, ..FromFile::default() };
+    let mut target = On { file: &file, cell, built, areas: geometry::atom_areas(&built.turned), done };
     for (number, load) in loads.iter().enumerate() {
         if let Err(fault) = target.apply(number, load) {
             faults.push(located(fault));
@@ -67,6 +69,14 @@ struct On<'a> {
 
 impl On<'_> {
     fn apply(&mut self, number: usize, load: &lml::Load) -> Result<(), Fault> {
+        match load.kind {
+            LoadKind::Other(_) => {
+                let help = "loads are Translation, Rotation, Force, Pressure and Acceleration";
+                return Err(self.fault(load, "is of no known kind", help));
+            }
+            LoadKind::Rotation => return Err(self.moves(load)),
+            _ => {}
+        }
         let atoms = self.atoms(load)?;
         let components = load.direction.as_ref().map_or([Component::Free; 3], |direction| direction.components);
         if load.direction.as_ref().is_some_and(|direction| direction.toward.is_some()) {
@@ -104,10 +114,14 @@ impl On<'_> {
                 Err(self.fault(load, "has no direction, and a pressure along the normals is not there", help))
             }
             _ if !acts => Ok(()),
-            LoadKind::Force => self.push(number, load, &atoms, along * unit, |_| 1.0),
+            LoadKind::Force => {
+                self.push(number, load, &atoms, along * unit, |_| 1.0);
+                Ok(())
+            }
             LoadKind::Pressure => {
                 let areas = self.areas.clone();
-                self.push(number, load, &atoms, along * unit, |atom| areas[atom as usize])
+                self.push(number, load, &atoms, along * unit, |atom| areas[atom as usize]);
+                Ok(())
             }
             LoadKind::Acceleration => {
                 let Some(mass) = self.cell.mechanics.mass else {
@@ -115,17 +129,10 @@ impl On<'_> {
                     return Err(self.fault(load, "accelerates cells that have no mass", help));
                 };
                 let of_atom = mass.value() / self.built.turned.positions.len() as f64;
-                self.push(number, load, &atoms, along * unit * of_atom, |_| 1.0)
+                self.push(number, load, &atoms, along * unit * of_atom, |_| 1.0);
+                Ok(())
             }
-            LoadKind::Translation | LoadKind::Rotation => {
-                let help =
-                    "atoms can be held (NULL, or a value of 0) and pulled by forces, but not moved along a course";
-                Err(self.fault(load, "moves atoms, which is not there", help))
-            }
-            LoadKind::Other(_) => {
-                let help = "loads are Translation, Rotation, Force, Pressure and Acceleration";
-                Err(self.fault(load, "is of no known kind", help))
-            }
+            LoadKind::Translation | LoadKind::Rotation | LoadKind::Other(_) => Err(self.moves(load)),
         }
     }
 
@@ -137,13 +144,12 @@ impl On<'_> {
         atoms: &BTreeSet<u32>,
         along: Vec3,
         weight: impl Fn(u32) -> f64,
-    ) -> Result<(), Fault> {
+    ) {
         let total: f64 = atoms.iter().map(|atom| weight(*atom)).sum();
         let shares = atoms.iter().map(|atom| (*atom, weight(*atom) / total)).collect();
         let points = course_of(load).into_iter().map(|(date, value)| (date, value * total * along.norm())).collect();
         let name = format!("lml{}", number + 1);
         self.done.loads.push(Load::new(&name, shares, along.normalize(), course(points)));
-        Ok(())
     }
 
     /// The atoms of the mesh that a load acts on. Those of a physical model that are not on its surface are left out.
@@ -203,6 +209,12 @@ impl On<'_> {
             ));
         };
         Ok(indices.iter().filter_map(|index| model.numbers.get(index)).copied().collect())
+    }
+
+    /// The fault of a load that moves atoms.
+    fn moves(&self, load: &lml::Load) -> Fault {
+        let help = "atoms can be held (NULL, or a value of 0) and pulled by forces, but not moved along a course";
+        self.fault(load, "moves atoms, which is not there", help)
     }
 
     fn fault(&self, load: &lml::Load, what: &str, help: &str) -> Fault {

@@ -67,6 +67,8 @@ pub struct Prepared {
     pub centres: Vec<Vec<Vec3>>,
     /// How large it is, by an estimate.
     pub size: Size,
+    /// What was found in models and loads of other programs, a sentence a file.
+    pub(crate) told: Vec<String>,
     /// Where the fields start.
     fields: Vec<Fields>,
 }
@@ -100,11 +102,11 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let experiment = &document.experiment;
     let mut size = size::of_cells(document)?;
     let (mut kinds, mut faults) = (Vec::new(), Vec::new());
-    let mut counts = Vec::new();
+    let (mut counts, mut told) = (Vec::new(), Vec::new());
     for (name, cell) in &experiment.cells {
         let before = faults.len();
         let Some(surface) = mesh::surface(document, name, cell, &mut faults) else { continue };
-        let kind = compile_kind(document, name, cell, surface, &mut faults);
+        let kind = compile_kind(document, name, cell, surface, &mut told, &mut faults);
         if faults.len() > before {
             continue;
         }
@@ -150,12 +152,21 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         keeps_tractions,
     };
     let schedule = schedule::schedule(document);
-    Ok(Prepared { model, schedule, centres, size, fields })
+    Ok(Prepared { model, schedule, centres, size, told, fields })
 }
 
-fn compile_kind(document: &Document, name: &str, cell: &CellType, surface: Built, faults: &mut Vec<Fault>) -> Kind {
+fn compile_kind(
+    document: &Document,
+    name: &str,
+    cell: &CellType,
+    surface: Built,
+    told: &mut Vec<String>,
+    faults: &mut Vec<Fault>,
+) -> Kind {
     let key = format!("cells.{name}");
     let from_file = load_file::read(document, &key, cell, &surface, faults);
+    told.extend(surface.model.as_ref().and_then(|model| model.notice.clone()));
+    told.extend(from_file.notice);
     let mut builder = Builder::new(document, &key, &surface, faults);
     forces::add_forces(cell, &document.experiment.environment, &mut builder);
     let Builder { mut forces, drawn, .. } = builder;

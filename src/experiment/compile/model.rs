@@ -20,6 +20,8 @@ pub struct FromModel {
     pub indices: BTreeSet<u32>,
     /// The indices of atoms by the names of components, cells and atoms.
     pub named: BTreeMap<String, BTreeSet<u32>>,
+    /// What was found in its file though it could be read, in a sentence.
+    pub notice: Option<String>,
 }
 
 /// Whether a mesh file is a physical model.
@@ -42,7 +44,8 @@ pub fn surface(
     component: Option<&OneOrMany<String>>,
     rules: &SurfaceRules,
 ) -> Result<(Surface, FromModel)> {
-    let model = PhysicalModel::open(path)?.document;
+    let read = PhysicalModel::open(path)?;
+    let model = read.document;
     let file = path.display().to_string();
     let wanted = component.map_or(Wanted::TheOnly, |names| Wanted::Named(names.as_slice()));
     let mut chosen = model.surface(&file, wanted).map_err(Error::input)?;
@@ -59,10 +62,13 @@ pub fn surface(
     check_surface(&chosen.surface, rules)
         .map_err(|faults| Error::Input(faults.into_iter().map(|fault| fault.into_fault(&mesh)).collect()))?;
     let numbers = chosen.indices.iter().copied().zip(0..).collect();
-    Ok((
-        chosen.surface,
-        FromModel { numbers, indices: model.all_atoms().map(|atom| atom.index).collect(), named: named(&model) },
-    ))
+    let from = FromModel {
+        numbers,
+        indices: model.all_atoms().map(|atom| atom.index).collect(),
+        named: named(&model),
+        notice: read.warnings.in_a_sentence(&file),
+    };
+    Ok((chosen.surface, from))
 }
 
 /// The atoms of all that has a name; blanks at the ends of names do not count.

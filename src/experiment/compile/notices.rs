@@ -31,6 +31,7 @@ const KEPT_IN_ORDER: f64 = 0.3;
 pub fn notices(document: &Document, prepared: &Prepared) -> Vec<String> {
     let Prepared { model, centres, .. } = prepared;
     let mut notices: Vec<String> = model.kinds.iter().filter_map(|kind| unusual_width(document, kind)).collect();
+    notices.extend(prepared.told.iter().cloned());
     notices.extend(large_result(&prepared.size));
     notices.extend(document.what_is_left_out());
     notices.extend(late_frames(&prepared.schedule, model.until));

@@ -6,7 +6,9 @@
 
 mod make;
 mod read;
+mod read_structures;
 mod references;
+mod seen;
 mod surface;
 mod types;
 mod write;

@@ -3,7 +3,7 @@
 use super::super::Warnings;
 use super::super::cursor::{Cursor, faults_of};
 use super::super::page::Page;
-use super::read::Seen;
+use super::seen::Seen;
 use super::{Component, PhysicalModel, References};
 use crate::error::{Error, Result};
 
