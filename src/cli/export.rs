@@ -20,6 +20,7 @@ use crate::output::{
     write_field_table, write_field_tiff, write_mesh, write_mesh_series, write_table, write_text,
 };
 use model::{write_loads, write_model};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use what::What;
 
@@ -29,6 +30,9 @@ use what::What;
 /// A result, frame, cell or series that is not there; a file that exists, has an unknown ending or cannot be written.
 pub fn run(args: &ExportArgs) -> Result<Report> {
     let what = args.output.as_deref().map(|output| What::of(args, output)).transpose()?;
+    if let (None, Some(path)) = (&args.output, args.pml.as_ref().or(args.lml.as_ref())) {
+        What::Model.refuse_unused(args, path)?;
+    }
     let result = ResultFile::open(&args.result)?;
     let named = [&args.output, &args.pml, &args.lml].map(Option::as_deref);
     let named: Vec<&Path> = named.into_iter().flatten().collect();
@@ -36,10 +40,14 @@ pub fn run(args: &ExportArgs) -> Result<Report> {
     named.iter().try_for_each(|path| refuse_existing(path, args.force, Named::ByUser))?;
     let mut files: Vec<PathBuf> = [&args.pml, &args.lml].into_iter().flatten().cloned().collect();
     if let Some(path) = &args.pml {
-        write_model(&result, args.frame.of(&result, When::Last)?, args.cell, path)?;
+        let frame = args.frame.of(&result, When::Last)?;
+        write_model(&result, frame, shown(&result, frame, args.cell)?, path)?;
     }
     let untold = match &args.lml {
-        Some(path) => write_loads(&result, args.frame.of(&result, When::Last)?, args.cell, path)?,
+        Some(path) => {
+            let frame = args.frame.of(&result, When::Last)?;
+            write_loads(&result, frame, shown(&result, frame, args.cell)?, path)?
+        }
         None => Vec::new(),
     };
     if let (Some(what), Some(output)) = (what, &args.output) {
@@ -66,7 +74,8 @@ fn write(args: &ExportArgs, result: &ResultFile, what: What, output: &Path) -> R
             export_surface(&surface, &[("cell", cell), ("type", kind)], output)?;
         }
         What::Model => {
-            write_model(result, args.frame.of(result, When::Last)?, args.cell, output)?;
+            let frame = args.frame.of(result, When::Last)?;
+            write_model(result, frame, shown(result, frame, args.cell)?, output)?;
         }
         What::Mesh => {
             let frame = args.frame.of(result, When::Last)?;
@@ -169,10 +178,7 @@ fn table_of(args: &ExportArgs) -> Option<Table> {
 /// The surface of one cell, by its id, or of all cells in a frame; of each atom the id of its cell, and the number of its type.
 fn surface_of(result: &ResultFile, frame: usize, cell: Option<u64>) -> Result<(Surface, [Vec<f64>; 2])> {
     let (layout, cells) = (result.layout(), result.cells(frame));
-    let shown = match cell {
-        None => 0..cells.len(),
-        Some(id) => index_of(result, frame, id).map(|index| index..index + 1)?,
-    };
+    let shown = shown(result, frame, cell)?;
     let (before, shown) = (&cells[..shown.start], &cells[shown]);
     let positions = result.positions(frame)?.into_iter().map(Vec3::from);
     let positions = positions.skip(layout.atoms(before)).take(layout.atoms(shown)).collect();
@@ -182,6 +188,14 @@ fn surface_of(result: &ResultFile, frame: usize, cell: Option<u64>) -> Result<(S
     };
     let owners = [of_atoms(|cell| cell.id as f64), of_atoms(|cell| f64::from(cell.kind))];
     Ok((Surface { positions, facets: layout.facets_of(shown).collect() }, owners))
+}
+
+/// Which of the cells of a frame are shown: the one with an id, or all.
+fn shown(result: &ResultFile, frame: usize, cell: Option<u64>) -> Result<Range<usize>> {
+    match cell {
+        None => Ok(0..result.cells(frame).len()),
+        Some(id) => index_of(result, frame, id).map(|index| index..index + 1),
+    }
 }
 
 /// Which of the cells of a frame the one with an id is.

@@ -70,7 +70,7 @@ exit 2
 "#);
     insta::assert_snapshot!(say(&["export", "made_up.vtkhdf", "-o", "a.obj", "--field", "medium"]), @r#"
   × --field has no meaning for a.obj
-  help: --frame and --time belong to one frame of a mesh (.obj, .ply, .stl, .vtu) or of a field
+  help: --frame and --time belong to one frame of a mesh (.obj, .ply, .stl, .vtu, .pml) or of a field
         (.vti, .ome.tiff, or .csv with --field), --every to all frames (.pvd, .ome.tiff), --cell to a mesh,
         --field to a field, --table and --series to a table (.csv)
 

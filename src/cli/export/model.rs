@@ -1,6 +1,5 @@
 //! Cells of a frame as a physical model, and the loads on them.
 
-use super::index_of;
 use crate::Vec3;
 use crate::error::{Error, Result};
 use crate::experiment::{loads_as_lml, prepare};
@@ -10,17 +9,17 @@ use crate::physical_model::pml::model_of_surfaces;
 use crate::run::document_of;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
+use std::ops::Range;
 use std::path::Path;
 
-/// Writes the cells of a frame, or one of them, as PML in µm.
+/// Writes some of the cells of a frame as PML in µm.
 ///
 /// # Errors
-/// A cell that is not there, a file that cannot be written, or a result that cannot be read.
-pub fn write_model(result: &ResultFile, frame: usize, cell: Option<u64>, path: &Path) -> Result<()> {
+/// A file that cannot be written, or a result that cannot be read.
+pub fn write_model(result: &ResultFile, frame: usize, shown: Range<usize>, path: &Path) -> Result<()> {
     let (layout, cells) = (result.layout(), result.cells(frame));
-    let shown = shown(result, frame, cell)?;
     let positions: Vec<Vec3> = result.positions(frame)?.into_iter().map(Vec3::from).collect();
-    let own = |(cell, atoms): (&Cell, std::ops::Range<usize>)| {
+    let own = |(cell, atoms): (&Cell, Range<usize>)| {
         let kind = &layout.types[cell.kind as usize];
         (
             format!("{} {}", kind.name, cell.id),
@@ -37,9 +36,8 @@ pub fn write_model(result: &ResultFile, frame: usize, cell: Option<u64>, path: &
 ///
 /// # Errors
 /// As [`write_model`], and those of the experiment where it can no longer be compiled.
-pub fn write_loads(result: &ResultFile, frame: usize, cell: Option<u64>, path: &Path) -> Result<Vec<&'static str>> {
+pub fn write_loads(result: &ResultFile, frame: usize, shown: Range<usize>, path: &Path) -> Result<Vec<&'static str>> {
     let (layout, cells) = (result.layout(), result.cells(frame));
-    let shown = shown(result, frame, cell)?;
     let model = prepare(&document_of(result.header(), result.path())?)?.model;
     let cells = &cells[shown];
     let first = layout.atoms_of(cells).map(|atoms| atoms.start as u32);
@@ -47,13 +45,6 @@ pub fn write_loads(result: &ResultFile, frame: usize, cell: Option<u64>, path: &
     let (loads, untold) = loads_as_lml(&model, &listed);
     save(path, |out| loads.write(out))?;
     Ok(untold)
-}
-
-fn shown(result: &ResultFile, frame: usize, cell: Option<u64>) -> Result<std::ops::Range<usize>> {
-    match cell {
-        None => Ok(0..result.cells(frame).len()),
-        Some(id) => index_of(result, frame, id).map(|index| index..index + 1),
-    }
 }
 
 fn save(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {

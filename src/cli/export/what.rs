@@ -61,7 +61,10 @@ impl What {
     }
 
     /// Options that say nothing about what is written are a mistake that the user wants to know of.
-    fn refuse_unused(self, args: &ExportArgs, output: &Path) -> Result<()> {
+    ///
+    /// # Errors
+    /// [`Error::Input`] for such an option.
+    pub fn refuse_unused(self, args: &ExportArgs, output: &Path) -> Result<()> {
         use What::*;
         let table = matches!(self, Table | Package);
         let field = matches!(self, FieldTable | FieldImage | FieldSeries | FieldStack);
