@@ -13,6 +13,10 @@ use pseudopod::equations;
 use pseudopod::error::{Error, Paint, Source, render};
 use pseudopod::experiment::Document;
 use pseudopod::geometry::read_surface;
+use pseudopod::physical_model::Read;
+use pseudopod::physical_model::lml::Loads;
+use pseudopod::physical_model::mml::Monitoring;
+use pseudopod::physical_model::pml::{PhysicalModel, Wanted};
 use pseudopod::study::{
     PLAN_FILE, Plan, RUNS_FILE, Replaces, StudyDocument, charts, collect, look_over, points, sensitivities,
 };
@@ -72,6 +76,30 @@ fn read_mesh(text: &str, path: &Path) -> Result<(), Error> {
     let file = folder.path().join(path.file_name().unwrap());
     std::fs::write(&file, text).unwrap();
     read_surface(&file, 1.0).map(|_| ())
+}
+
+/// Physical models, loads and monitoring: what is still read is written and reads as the same.
+fn read_physical_model(text: &str, path: &Path) -> Result<(), Error> {
+    fn again<T: PartialEq>(
+        text: &str,
+        read: fn(&str, Vec<u8>) -> Result<Read<T>, Error>,
+        write: fn(&T, &mut Vec<u8>) -> std::io::Result<()>,
+    ) -> Result<T, Error> {
+        let first = read("damaged", text.into())?.document;
+        let mut written = Vec::new();
+        write(&first, &mut written).unwrap();
+        let second = read("written", written.clone()).unwrap_or_else(|error| panic!("{error} in {written:?}"));
+        assert!(first == second.document, "{}", String::from_utf8_lossy(&written));
+        Ok(first)
+    }
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("pml") => {
+            let model = again(text, PhysicalModel::read, |model, out| model.write(out))?;
+            model.surface("damaged", Wanted::TheOnly).map(|_| ()).map_err(Error::input)
+        }
+        Some("lml") => again(text, Loads::read, |loads, out| loads.write(out)).map(|_| ()),
+        _ => again(text, Monitoring::read, |monitoring, out| monitoring.write(out)).map(|_| ()),
+    }
 }
 
 fn read_table(text: &str, _: &Path) -> Result<(), Error> {
@@ -155,6 +183,15 @@ fn all(times: u32) {
     }
     read_damaged("package", &parts, times / 4, read_package);
     read_damaged("table", &files(root, "csv", &["experiments", "tests"]), times / 2, read_table);
+}
+
+#[test]
+fn damaged_physical_models_that_are_read_are_written_so_that_they_read_as_the_same() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for ending in ["pml", "lml", "mml"] {
+        let models = files(root, ending, &["fuzz/corpus/models", "tests/messages/models"]);
+        read_damaged("physical model", &models, 1000, read_physical_model);
+    }
 }
 
 #[test]

@@ -153,6 +153,28 @@ fn a_pressure_is_a_traction_and_an_acceleration_is_a_force_by_mass() {
 }
 
 #[test]
+fn a_load_on_atoms_that_the_surface_does_not_have_is_left_out_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    write_model(folder.path(), |_| ());
+    let inside =
+        [load("Force", "3-5", "z=\"1\"", &[(0.0, 1.0)], "pN"), load("Force", "11-12", "z=\"1\"", &[(0.0, 1.0)], "pN")];
+    let text = format!(
+        "<loads xmlns=\"http://www-timc.imag.fr/load\" xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\">{}</loads>",
+        inside.concat()
+    );
+    std::fs::write(folder.path().join("own.lml"), text).unwrap();
+    let text = document_text(B, "loads_file = \"own.lml\"");
+    let document = Document::parse("model.toml", &text, folder.path(), &[]).unwrap();
+    let prepared = prepare(&document).unwrap();
+    let loads = prepared.model.kinds[0].forces.iter();
+    let loads: Vec<&Load> =
+        loads.filter_map(|force| if let Force::Load(load) = force { Some(load) } else { None }).collect();
+    assert_eq!((loads.len(), loads[0].atoms.as_slice()), (1, &[(0, 1.0)][..]));
+    let told = notices(&document, &prepared).join("\n");
+    assert!(told.contains("own.lml:1: the load (Force) acts on no atom of the surface and is left out"), "{told}");
+}
+
+#[test]
 fn what_cannot_be_done_is_refused_with_the_line_of_the_load() {
     for (text, told) in [
         (load("Translation", "12", "z=\"1\"", &[(0.0, 0.0), (1.0, 2.0)], "mm"), "the load (Translation) moves atoms"),
@@ -160,7 +182,6 @@ fn what_cannot_be_done_is_refused_with_the_line_of_the_load() {
         (load("Force", "12", "toward=\"13\"", &[(0.0, 1.0)], "N"), "acts toward an atom"),
         (load("Force", "12", "z=\"1\"", &[(0.0, 1.0)], "mm"), "has the unit \"mm\""),
         (load("Force", "30", "z=\"1\"", &[(0.0, 1.0)], "pN"), "acts on atom 30, which is not there"),
-        (load("Force", "3", "z=\"1\"", &[(0.0, 1.0)], "pN"), "acts on no atom of the surface"),
         (load("Force", "top", "z=\"1\"", &[(0.0, 1.0)], "pN"), "acts on `top`, which the PML file"),
         (load("Torque", "12", "z=\"1\"", &[(0.0, 1.0)], "pN"), "the load (Torque) is of no known kind"),
     ] {

@@ -21,8 +21,8 @@ pub struct FromFile {
     pub loads: Vec<Load>,
     /// Atoms that are held, and the axes along which they are.
     pub held: Vec<(u32, usize)>,
-    /// What was found in the file though it could be read, in a sentence.
-    pub notice: Option<String>,
+    /// What was found in the file though it could be read, a sentence each.
+    pub notices: Vec<String>,
 }
 
 /// A jump of a course takes this share of the time at which it is: a step ends before it and another behind it.
@@ -47,7 +47,7 @@ pub fn read(document: &Document, key: &str, cell: &CellType, built: &Built, faul
             return FromFile::default();
         }
     };
-    let done = FromFile { notice, ..FromFile::default() };
+    let done = FromFile { notices: notice.into_iter().collect(), ..FromFile::default() };
     let mut target = On { file: &file, cell, built, areas: geometry::atom_areas(&built.turned), done };
     for (number, load) in loads.iter().enumerate() {
         if let Err(fault) = target.apply(number, load) {
@@ -78,6 +78,12 @@ impl On<'_> {
             _ => {}
         }
         let atoms = self.atoms(load)?;
+        if atoms.is_empty() {
+            let (file, line, kind) = (self.file.display(), load.line.0, load.kind.word());
+            let words = format!("{file}:{line}: the load ({kind}) acts on no atom of the surface and is left out");
+            self.done.notices.push(words);
+            return Ok(());
+        }
         let components = load.direction.as_ref().map_or([Component::Free; 3], |direction| direction.components);
         if load.direction.as_ref().is_some_and(|direction| direction.toward.is_some()) {
             let help = "give a direction by x, y and z, or draw atoms together by `fibres` of the document";
@@ -184,10 +190,6 @@ impl On<'_> {
                     chosen.extend(model.numbers.range(first..=last).map(|(_, number)| *number));
                 }
             }
-        }
-        if chosen.is_empty() {
-            let help = "a cell is its surface here: choose atoms of the facets, or another `component` of the mesh";
-            return Err(self.fault(load, "acts on no atom of the surface", help));
         }
         Ok(chosen)
     }

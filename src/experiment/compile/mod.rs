@@ -67,7 +67,7 @@ pub struct Prepared {
     pub centres: Vec<Vec<Vec3>>,
     /// How large it is, by an estimate.
     pub size: Size,
-    /// What was found in models and loads of other programs, a sentence a file.
+    /// What was found in models and loads of other programs, a sentence each.
     pub(crate) told: Vec<String>,
     /// Where the fields start.
     fields: Vec<Fields>,
@@ -166,7 +166,7 @@ fn compile_kind(
     let key = format!("cells.{name}");
     let from_file = load_file::read(document, &key, cell, &surface, faults);
     told.extend(surface.model.as_ref().and_then(|model| model.notice.clone()));
-    told.extend(from_file.notice);
+    told.extend(from_file.notices);
     let mut builder = Builder::new(document, &key, &surface, faults);
     forces::add_forces(cell, &document.experiment.environment, &mut builder);
     let Builder { mut forces, drawn, .. } = builder;
