@@ -12,6 +12,9 @@ use std::ops::Range;
 /// The namespace of the attribute `type` that tells kinds of elements apart.
 pub(super) const INSTANCE: &str = "http://www.w3.org/2001/XMLSchema-instance";
 
+/// So many prefixes are looked after: each costs time at every element, and no document has a tenth of them.
+const MOST_LOST: usize = 50;
+
 /// The beginning of an element.
 #[derive(Debug, Clone)]
 pub(super) struct Tag<'a> {
@@ -252,10 +255,11 @@ impl<'a> Cursor<'a> {
 
     /// Tells of attributes that have nowhere to be kept.
     pub fn no_more(&mut self, tag: &Tag) {
-        let declared = self.reader.declarations().map(|(prefix, _)| prefix).filter(|prefix| !prefix.is_empty());
-        self.lost.extend(declared.collect::<Vec<_>>());
-        self.lost.sort_unstable();
-        self.lost.dedup();
+        for (prefix, _) in self.reader.declarations().filter(|(prefix, _)| !prefix.is_empty()) {
+            if self.lost.len() < MOST_LOST && !self.lost.contains(&prefix) {
+                self.lost.push(prefix);
+            }
+        }
         if let Some(first) = self.attributes.first().map(|attribute| attribute.name) {
             let name = tag.name;
             self.warn(tag.start, || (format!("<{name}> has an attribute `{first}`"), "it was left out"));

@@ -94,6 +94,16 @@ fn files_that_break_the_rules_are_told_before_the_run() {
 }
 
 #[test]
+fn a_component_of_a_file_that_has_none_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    pseudopod::geometry::export_surface(&icosphere(2.0, 0), &[], &folder.path().join("two.obj")).unwrap();
+    let text = document_text(", component = \"a\"", "").replace("two.pml", "two.obj");
+    let document = Document::parse("model.toml", &text, folder.path(), &[]).unwrap();
+    let Err(Error::Input(faults)) = compile(&document) else { panic!("it is taken") };
+    assert_eq!(faults[0].message, "`cells.a.mesh.component` has no meaning for `two.obj`");
+}
+
+#[test]
 fn several_surfaces_are_listed_with_the_key_that_chooses() {
     let folder = tempfile::tempdir().unwrap();
     write_model(folder.path(), |_| ());

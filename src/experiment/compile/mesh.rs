@@ -27,6 +27,14 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
             let rules = if free { &SurfaceRules::SHEET } else { &SurfaceRules::CELL };
             let key = format!("cells.{name}.mesh");
             let file = document.resolve(path);
+            if component.is_some() && !is_model(path) {
+                let message = format!("`{key}.component` has no meaning for `{}`", path.display());
+                let fault =
+                    Fault::new(message).help("only PML files, which end in .pml, have components: leave it out");
+                let location = document.location(&format!("{key}.component"), "not of this file");
+                faults.push(location.into_iter().fold(fault, Fault::at));
+                return None;
+            }
             let outcome = if is_model(path) {
                 let told = document.says(&format!("{key}.unit")).then_some(*unit);
                 model::surface(&file, told, component.as_ref(), rules).map(|(surface, read)| {

@@ -39,7 +39,9 @@ pub fn read_surface(path: &Path, scale_to_um: f64) -> Result<Surface> {
         let found =
             if format.is_empty() { "has no extension".into() } else { format!("has the extension `.{format}`") };
         let fault = Fault::new(format!("mesh file `{name}` {found}, which names no format that can be read"));
-        return Err(Error::input(fault.help("mesh files end in .obj, .ply or .stl")));
+        return Err(Error::input(
+            fault.help("mesh files end in .obj, .ply or .stl, or in .pml for a physical model in an experiment"),
+        ));
     }
     let bytes = crate::files::read(path).map_err(|failure| Error::input(not_readable(path, &failure)))?;
     let mut surface = match format {
