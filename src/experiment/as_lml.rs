@@ -51,19 +51,29 @@ fn forces(own: &load::Load, first: u32, loads: &mut Vec<Load>) {
     }
 }
 
-/// Atoms that are held: one load for each set of axes.
+/// Atoms that are held or moved: one load for each set of axes and course.
 fn held(kind: &Kind, first: u32, loads: &mut Vec<Load>) {
-    let mut by_axes: BTreeMap<[bool; 3], Vec<u32>> = BTreeMap::new();
-    for (atom, factors) in kind.held.as_chunks::<3>().0.iter().enumerate() {
+    let mut by_axes: BTreeMap<(Option<usize>, [bool; 3]), Vec<u32>> = BTreeMap::new();
+    for (atom, factors) in (0..).zip(kind.held.as_chunks::<3>().0) {
         let axes = factors.map(|factor| factor == 0.0);
         if axes != [false; 3] {
-            by_axes.entry(axes).or_default().push(first + atom as u32);
+            let course = kind.moved.iter().position(|moved| moved.atoms.binary_search(&atom).is_ok());
+            by_axes.entry((course, axes)).or_default().push(first + atom);
         }
     }
-    for (axes, atoms) in by_axes {
-        let components = axes.map(|held| if held { Component::Null } else { Component::Free });
-        let directed = Some(Direction { components, ..Direction::default() });
-        loads.push(made(LoadKind::Translation, targets(&atoms), directed, vec![(0.0, 1.0)], "mm"));
+    for ((course, axes), atoms) in by_axes {
+        let moved = course.map(|number| &kind.moved[number]);
+        let along = |axis: usize| match moved.map_or(0.0, |moved| moved.direction[axis]) {
+            _ if !axes[axis] => Component::Free,
+            0.0 => Component::Null,
+            along => Component::Number(along),
+        };
+        let directed = Some(Direction { components: [0, 1, 2].map(along), ..Direction::default() });
+        let (points, unit) = match moved {
+            Some(moved) => (moved.displacement.points().to_vec(), "micron"),
+            None => (vec![(0.0, 1.0)], "mm"),
+        };
+        loads.push(made(LoadKind::Translation, targets(&atoms), directed, points, unit));
     }
 }
 

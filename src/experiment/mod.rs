@@ -150,6 +150,13 @@ impl Experiment {
         self.output.tractions || self.cells.values().any(|cell| !cell.applied.moved.is_empty())
     }
 
+    /// Whether a series may be of a load in a file, which is read later: `load.lml1` and its like.
+    pub(super) fn may_be_of_load_file(&self, series: &str) -> bool {
+        let number = ["load.lml", "displacement.lml", "force.lml"].iter().find_map(|word| series.strip_prefix(word));
+        number.is_some_and(|number| number.parse::<u32>().is_ok())
+            && self.cells.values().any(|cell| cell.applied.loads_file.is_some())
+    }
+
     /// Names of the series of what is moved.
     pub(super) fn series_of_moved(&self) -> Vec<String> {
         let named = |cell: &CellType, name: &str| cell.applied.moved.iter().any(|moved| moved.name == name);

@@ -134,7 +134,7 @@ impl Check<'_> {
             let own = of_cells.iter().map(String::as_str).chain(of_contacts.iter().copied()).chain(["time"]);
             own.chain(loads.iter().chain(of_pairs.clone()).map(String::as_str))
         };
-        if known().any(|name| name == text) {
+        if known().any(|name| name == text) || self.document.experiment.may_be_of_load_file(text) {
             return;
         }
         if cell_series(OnDemand { tractions: false, ..OnDemand::ALL }).any(|name| name == text) {

@@ -3,7 +3,8 @@
 use super::course::Course;
 use crate::Vec3;
 
-/// Atoms of every cell of a kind that go along a direction on a course. They are held along all axes but for that.
+/// Atoms of every cell of a kind that go along a direction on a course. Along the axes along which they are held nothing else moves them; the
+/// direction is one of these.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moved {
     /// Its name; the series are `displacement.<name>` and `force.<name>`.

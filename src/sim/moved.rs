@@ -47,8 +47,10 @@ impl<'a> Displacements<'a> {
             let displacement = moved.displaced(self.times);
             for atom in &moved.atoms {
                 for axis in 0..3 {
-                    let first = (3 * *atom as usize + axis) * lanes;
-                    (first..first + lanes).for_each(|at| work(at, displacement[axis]));
+                    let number = 3 * *atom as usize + axis;
+                    if self.kind.held[number] == 0.0 {
+                        (number * lanes..(number + 1) * lanes).for_each(|at| work(at, displacement[axis]));
+                    }
                 }
             }
         }

@@ -153,6 +153,29 @@ fn names_mean_the_atoms_of_components_and_null_holds_them() {
 }
 
 #[test]
+fn a_displacement_moves_atoms_on_its_course_and_leaves_them_free_where_it_says_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    write_model(folder.path(), |_| ());
+    let slips = load("Translation", "12-13", "x=\"NULL\" z=\"-0.5\"", &[(1.0, 0.0), (3.0, 4.0)], "micron");
+    let held = load("Translation", "14", "x=\"0\" y=\"2\" z=\"NULL\"", &[(0.0, 0.0), (1.0, 1.0)], "nm");
+    let text = format!(
+        "<loads xmlns=\"http://www-timc.imag.fr/load\" xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\">{slips}{held}</loads>"
+    );
+    std::fs::write(folder.path().join("own.lml"), text).unwrap();
+    let plot = "loads_file = \"own.lml\"\n[[plot]]\nname = \"force\"\nkind = \"curve\"\nx = \"displacement.lml1\"\ny = \"force.lml1\"";
+    let kind = compiled(folder.path(), B, plot).unwrap().model.kinds.remove(0);
+    let [slips, held] = &kind.moved[..] else { panic!("{:?}", kind.moved) };
+    assert_eq!((slips.name.as_str(), slips.atoms.as_slice()), ("lml1", &[0, 1][..]));
+    assert_eq!(slips.displaced([0.0, 2.0]), pseudopod::Vec3::new(0.0, 0.0, -1.0));
+    assert_eq!(held.displaced([0.0, 5.0]), pseudopod::Vec3::new(0.0, 2e-3, 0.0));
+    assert_eq!(kind.held[..9], [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+    assert!(kind.held[9..].iter().all(|factor| *factor == 1.0));
+    let twice = [load("Translation", "12", "z=\"1\"", &[(0.0, 0.0), (1.0, 1.0)], "mm"); 2].concat();
+    let message = loads_of(&twice).unwrap_err();
+    assert_eq!(message, "`cells.a.loads_file` moves atom 0, which `cells.a` holds or moves already");
+}
+
+#[test]
 fn a_pressure_is_a_traction_and_an_acceleration_is_a_force_by_mass() {
     let (loads, _) = loads_of(&load("Pressure", "12-23", "y=\"2\"", &[(0.0, 3.0)], "Pa")).unwrap();
     let area = pseudopod::geometry::area(&icosphere(3.0, 0));
@@ -187,8 +210,8 @@ fn a_load_on_atoms_that_the_surface_does_not_have_is_left_out_and_told() {
 #[test]
 fn what_cannot_be_done_is_refused_with_the_line_of_the_load() {
     for (text, told) in [
-        (load("Translation", "12", "z=\"1\"", &[(0.0, 0.0), (1.0, 2.0)], "mm"), "the load (Translation) moves atoms"),
-        (load("Rotation", "12", "z=\"1\"", &[(0.0, 1.0)], "radian"), "the load (Rotation) moves atoms"),
+        (load("Translation", "12", "z=\"1\"", &[(0.0, 1.0), (1.0, 2.0)], "mm"), "has moved atoms already at the start"),
+        (load("Rotation", "12", "z=\"1\"", &[(0.0, 1.0)], "radian"), "the load (Rotation) turns atoms"),
         (load("Force", "12", "toward=\"13\"", &[(0.0, 1.0)], "N"), "acts toward an atom"),
         (load("Force", "12", "z=\"1\"", &[(0.0, 1.0)], "mm"), "has the unit \"mm\""),
         (load("Force", "30", "z=\"1\"", &[(0.0, 1.0)], "pN"), "acts on atom 30, which is not there"),
@@ -205,7 +228,8 @@ fn loads_that_are_told_in_lml_are_read_as_the_same_loads() {
     let folder = tempfile::tempdir().unwrap();
     write_model(folder.path(), |_| ());
     let applied = "loads = [{ name = \"pull\", cap = { direction = [0, 0, 1], number = 4 }, direction = [0, 3, 4], spread = \"tapered\", \
-                   force = [[\"0.1 s\", \"3 pN\"], [\"0.5 s\", \"8 pN\"]] }]\nfixed = [{ atoms = [0, 1, 2, 7], axes = [\"x\", \"z\"] }]";
+                   force = [[\"0.1 s\", \"3 pN\"], [\"0.5 s\", \"8 pN\"]] }]\nfixed = [{ atoms = [0, 1, 2, 7], axes = [\"x\", \"z\"] }]\n\
+                   moved = [{ name = \"grip\", atoms = [3, 7, 9], axes = [\"y\"], direction = [0, -2, 0], displacement = [[\"0 s\", \"0 um\"], [\"0.5 s\", \"0.7 um\"]] }]";
     let told = compiled(folder.path(), B, applied).unwrap();
     let (loads, untold) = loads_as_lml(&told.model, &[(0, 12)]);
     assert!(untold.is_empty());
@@ -216,6 +240,13 @@ fn loads_that_are_told_in_lml_are_read_as_the_same_loads() {
     let read = compiled(folder.path(), B, "loads_file = \"told.lml\"").unwrap();
     let [told, read] = [&told, &read].map(|compiled| &compiled.model.kinds[0]);
     assert_eq!(told.held, read.held);
+    let displaced = |kind: &pseudopod::sim::Kind, atom: u32| -> pseudopod::Vec3 {
+        let own = kind.moved.iter().filter(|moved| moved.atoms.contains(&atom));
+        own.map(|moved| moved.displaced([0.0, 0.3])).sum()
+    };
+    for atom in 0..12 {
+        assert!((displaced(told, atom) - displaced(read, atom)).norm() < 1e-15, "{atom}");
+    }
     let on = |kind: &pseudopod::sim::Kind, atom: u32, time: f64| -> [f64; 3] {
         let of = |force: &Force| match force {
             Force::Load(load) => {

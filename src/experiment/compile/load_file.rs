@@ -1,4 +1,4 @@
-//! Loads of a file in LML on the cells of a type: forces and held atoms.
+//! Loads of a file in LML on the cells of a type: forces, and atoms that are held or moved.
 //!
 //! A load acts with its value on each of its atoms, whereas a load of a document is shared by them: the total is the value
 //! times the number of atoms, or, for a pressure, times their area at rest.
@@ -10,6 +10,7 @@ use crate::Vec3;
 use crate::error::{Error, Fault};
 use crate::geometry;
 use crate::mechanics::load::Load;
+use crate::mechanics::moved::Moved;
 use crate::physical_model::lml::{self, Component, LoadKind, Loads, Target};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -21,6 +22,8 @@ pub struct FromFile {
     pub loads: Vec<Load>,
     /// Atoms that are held, and the axes along which they are.
     pub held: Vec<(u32, usize)>,
+    /// Atoms that are moved on courses, and the axes along which nothing else moves them.
+    pub moved: Vec<(Moved, Vec<usize>)>,
     /// What was found in the file though it could be read, a sentence each.
     pub notices: Vec<String>,
 }
@@ -74,7 +77,10 @@ impl On<'_> {
                 let help = "loads are Translation, Rotation, Force, Pressure and Acceleration";
                 return Err(self.fault(load, "is of no known kind", help));
             }
-            LoadKind::Rotation => return Err(self.moves(load)),
+            LoadKind::Rotation => {
+                let help = "displacements are along straight lines; turn the mesh at the start by `orientation`";
+                return Err(self.fault(load, "turns atoms, which no load here can", help));
+            }
             _ => {}
         }
         let atoms = self.atoms(load)?;
@@ -105,14 +111,17 @@ impl On<'_> {
             }
             Component::Free => false,
         };
-        for axis in (0..3).filter(|axis| held(&components[*axis])) {
-            self.done.held.extend(atoms.iter().map(|atom| (*atom, axis)));
-        }
         let along = Vec3::from(components.map(|component| match component {
             Component::Number(number) => number,
             _ => 0.0,
         }));
         let acts = along != Vec3::zeros() && load.events.iter().any(|event| event.value != 0.0);
+        if acts && load.kind == LoadKind::Translation {
+            return self.displace(number, load, &atoms, (along * unit, components));
+        }
+        for axis in (0..3).filter(|axis| held(&components[*axis])) {
+            self.done.held.extend(atoms.iter().map(|atom| (*atom, axis)));
+        }
         match load.kind {
             LoadKind::Pressure if load.direction.is_none() => {
                 let help =
@@ -138,8 +147,30 @@ impl On<'_> {
                 self.push(number, load, &atoms, along * unit * of_atom, |_| 1.0);
                 Ok(())
             }
-            LoadKind::Translation | LoadKind::Rotation | LoadKind::Other(_) => Err(self.moves(load)),
+            // Displacements that act are made above, and the others are refused there.
+            LoadKind::Translation | LoadKind::Rotation | LoadKind::Other(_) => Ok(()),
         }
+    }
+
+    /// Moves atoms along a direction on the course of a load; along axes that it leaves free they are free.
+    fn displace(
+        &mut self,
+        number: usize,
+        load: &lml::Load,
+        atoms: &BTreeSet<u32>,
+        (along, components): (Vec3, [Component; 3]),
+    ) -> Result<(), Fault> {
+        let points: Vec<(f64, f64)> =
+            course_of(load).into_iter().map(|(date, value)| (date, value * along.norm())).collect();
+        let displacement = course(points);
+        if displacement.at(0.0) != 0.0 {
+            let help = "atoms begin where the mesh has them: let the value be 0 at the date 0, and rise from there";
+            return Err(self.fault(load, "has moved atoms already at the start", help));
+        }
+        let (name, atoms) = (format!("lml{}", number + 1), atoms.iter().copied().collect());
+        let axes = (0..3).filter(|axis| components[*axis] != Component::Free).collect();
+        self.done.moved.push((Moved { name, atoms, direction: along.normalize(), displacement }, axes));
+        Ok(())
     }
 
     /// Adds a force; `weight` is what an atom has of it.
@@ -211,12 +242,6 @@ impl On<'_> {
             ));
         };
         Ok(indices.iter().filter_map(|index| model.numbers.get(index)).copied().collect())
-    }
-
-    /// The fault of a load that moves atoms.
-    fn moves(&self, load: &lml::Load) -> Fault {
-        let help = "atoms can be held (NULL, or a value of 0) and pulled by forces, but not moved along a course";
-        self.fault(load, "moves atoms, which is not there", help)
     }
 
     fn fault(&self, load: &lml::Load, what: &str, help: &str) -> Fault {

@@ -6,6 +6,7 @@ mod chemistry;
 mod contact;
 mod far;
 mod forces;
+mod held;
 mod load_file;
 mod mesh;
 mod model;
@@ -34,10 +35,9 @@ use super::{CellType, Document, Experiment, VolumeRule as Rule};
 use crate::Vec3;
 use crate::error::{Error, Fault, Result};
 use crate::field::Fields;
-use crate::geometry::{self, Surface};
+use crate::geometry;
 use crate::mechanics::Force;
 use crate::mechanics::course::Course;
-use crate::mechanics::moved::Moved;
 use crate::sim::chemistry::ChemistryState;
 use crate::sim::kind::kinks;
 use crate::sim::{Kind, Model, Plane, State, VolumeRule};
@@ -177,63 +177,13 @@ fn compile_kind(
     kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
     far::check(document, &key, cell, &kind.rest, kind.closed, faults);
-    kind.held = held(document, &key, cell, &kind.rest, &from_file.held, faults);
-    kind.moved = moved(document, &key, cell, &mut kind.held, &kind.rest, faults);
+    (kind.held, kind.moved) = held::held(document, &key, cell, &kind.rest, (&from_file.held, from_file.moved), faults);
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
     kind.behaviours = cell.motility.behaviours();
     let pods = pseudopods::pseudopods(document, &key, cell, &kind, faults);
     kind.behaviours.extend(pods);
     kind.fibre_budget = cell.fibre_budget();
     kind
-}
-
-/// Factors of the atoms that are held: 0 held, 1 free; empty when none is. `more` are atoms and axes that a file of loads holds.
-fn held(
-    document: &Document,
-    key: &str,
-    cell: &CellType,
-    rest: &Surface,
-    more: &[(u32, usize)],
-    faults: &mut Vec<Fault>,
-) -> Vec<f64> {
-    if cell.applied.fixed.is_empty() && more.is_empty() {
-        return Vec::new();
-    }
-    let mut factors = vec![1.0; 3 * rest.positions.len()];
-    more.iter().for_each(|(atom, axis)| factors[3 * *atom as usize + axis] = 0.0);
-    for (i, fixed) in cell.applied.fixed.iter().enumerate() {
-        let atoms = select::atoms(document, &format!("{key}.fixed[{i}]"), &fixed.selection, rest, faults);
-        for atom in atoms {
-            fixed.axes.iter().for_each(|axis| factors[3 * atom as usize + *axis as usize] = 0.0);
-        }
-    }
-    factors
-}
-
-/// What is moved on courses; its atoms are held in all other ways.
-fn moved(
-    document: &Document,
-    key: &str,
-    cell: &CellType,
-    held: &mut Vec<f64>,
-    rest: &Surface,
-    faults: &mut Vec<Fault>,
-) -> Vec<Moved> {
-    let mut all = Vec::new();
-    for (i, moved) in cell.applied.moved.iter().enumerate() {
-        let path = format!("{key}.moved[{i}]");
-        let atoms = select::atoms(document, &path, &moved.selection, rest, faults);
-        held.resize(3 * rest.positions.len(), 1.0);
-        let is_held = |atom: &&u32| held[3 * **atom as usize..][..3].contains(&0.0);
-        if let Some(atom) = atoms.iter().find(is_held) {
-            let fault = Fault::new(format!("`{path}` moves atom {atom}, which `{key}` holds or moves already"))
-                .help("let what is fixed and what is moved be different atoms");
-            faults.push(document.location(&path, "has atoms of others").into_iter().fold(fault, Fault::at));
-        }
-        atoms.iter().for_each(|&atom| held[3 * atom as usize..][..3].fill(0.0));
-        all.push(moved.of_atoms(atoms));
-    }
-    all
 }
 
 fn volume_rule(document: &Document, key: &str, cell: &CellType, kind: &Kind, faults: &mut Vec<Fault>) -> VolumeRule {
