@@ -106,7 +106,7 @@ fn lists_of_atoms(cursor: &mut Cursor, tag: Tag, model: &mut PhysicalModel, seen
 /// The exclusive or the informative components.
 fn part(cursor: &mut Cursor, tag: Tag, components: &mut Vec<Component>, seen: &mut Seen) -> Result<()> {
     cursor.no_more(&tag);
-    add_components(cursor, tag.name == "exclusiveComponents", components, seen)?;
+    add_components(cursor, components, seen)?;
     if !matches!(components.as_slice(), [Component::Multi(_)]) {
         let found = || format!("<{}> has not exactly one multiComponent", tag.name);
         cursor.warn(tag.start, || (found(), "what is in it is kept"));
@@ -114,18 +114,13 @@ fn part(cursor: &mut Cursor, tag: Tag, components: &mut Vec<Component>, seen: &m
     Ok(())
 }
 
-fn add_components(
-    cursor: &mut Cursor,
-    exclusive: bool,
-    components: &mut Vec<Component>,
-    seen: &mut Seen,
-) -> Result<()> {
+fn add_components(cursor: &mut Cursor, components: &mut Vec<Component>, seen: &mut Seen) -> Result<()> {
     cursor.each(|cursor, tag| {
         components.push(match tag.name {
             "multiComponent" => {
                 let (name, properties) = (cursor.take_text("name"), cursor.rest());
                 let mut multi = MultiComponent { name, properties, components: Vec::new() };
-                add_components(cursor, exclusive, &mut multi.components, seen)?;
+                add_components(cursor, &mut multi.components, seen)?;
                 Component::Multi(multi)
             }
             "structuralComponent" => Component::Structural(structural(cursor, tag, false, seen)?),
