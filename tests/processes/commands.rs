@@ -1,5 +1,6 @@
 //! What the commands make of fields, and what they say when there is no such field.
 
+use pseudopod::physical_model::pml::{Atom, CellType, PhysicalModel};
 use std::path::Path;
 use std::process::Command;
 
@@ -125,6 +126,21 @@ fn the_commands_make_what_they_are_asked_for() {
     for name in ["made_up.png", "made_up.kymograph-attractant-inhibitor.svg", "made_up.profile-oxygen.png"] {
         assert!(made(name).exists() || path.with_extension("").join(name).exists(), "{name}");
     }
+    say(&["export", "made_up.vtkhdf", "--pml", "cells.pml", "-o", "cells.obj"]);
+    let model = PhysicalModel::open(&made("cells.pml")).unwrap().document;
+    let vertices = |atom: &Atom| format!("v {} {} {}", atom.position[0], atom.position[1], atom.position[2]);
+    let obj = std::fs::read_to_string(made("cells.obj")).unwrap();
+    let expected: Vec<&str> = obj.lines().filter(|line| line.starts_with("v ")).collect();
+    assert_eq!(model.all_atoms().map(vertices).collect::<Vec<_>>(), expected, "the same atoms with all digits");
+    let facets = model
+        .structural_components()
+        .into_iter()
+        .flat_map(|own| &own.cells)
+        .filter(|own| own.kind == CellType::Triangle);
+    let facets = facets
+        .map(|own| own.references.atoms.iter().fold("f".to_owned(), |line, atom| line + &format!(" {}", atom + 1)));
+    let expected: Vec<&str> = obj.lines().filter(|line| line.starts_with("f ")).collect();
+    assert!(!expected.is_empty() && facets.eq(expected), "the same facets");
     let table = std::fs::read_to_string(made("flat.csv")).unwrap();
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("x (um),y (um),attractant (uM),inhibitor (1/um^2)"));
