@@ -15,7 +15,8 @@ use pseudopod_fuzz::mutate::mutate;
 use pseudopod_fuzz::shipped::Shipped;
 use pseudopod_fuzz::xml::change;
 
-static SHIPPED: LazyLock<Shipped> = LazyLock::new(|| Shipped::read("pml", &["tests/messages/models", "fuzz/corpus/models"]));
+static SHIPPED: LazyLock<Shipped> =
+    LazyLock::new(|| Shipped::read("pml", &["tests/messages/models", "fuzz/corpus/models"]));
 
 /// Reads, writes and reads again.
 fn there_and_back<T: PartialEq>(
