@@ -27,7 +27,8 @@ pub fn all_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 fn joined<'a>(words: impl IntoIterator<Item = &'a str>, last: &str) -> String {
-    const MOST: usize = 16;
+    // As many as a table of a document has keys.
+    const MOST: usize = 20;
     let words: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
     if words.len() > MOST {
         return format!("{} …", words[..MOST].join(", "));
