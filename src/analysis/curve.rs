@@ -75,7 +75,11 @@ impl Curve {
         Ok(found)
     }
 
-    fn at(&self, abscissa: f64) -> Result<f64> {
+    /// The curve at an x, between its points along straight lines.
+    ///
+    /// # Errors
+    /// When x lies outside of the curve.
+    pub fn at(&self, abscissa: f64) -> Result<f64> {
         let last = self.x.len().saturating_sub(1);
         // Rounded time courses may end short of the last measured point by a few units in the last digit.
         let slack = self.slack();

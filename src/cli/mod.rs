@@ -7,6 +7,7 @@ pub mod demo;
 pub mod eml;
 pub mod export;
 pub mod files;
+pub mod fit;
 pub mod frames;
 pub mod info;
 pub mod measure;
@@ -69,6 +70,8 @@ pub enum Command {
     Eml(eml::EmlArgs),
     /// Runs an experiment with many values of its parameters and collects what came out.
     Sweep(sweep::SweepArgs),
+    /// Fits parameters of an experiment to data, with their intervals.
+    Fit(fit::FitArgs),
     /// Prints the JSON schema of experiment documents.
     Schema(schema::SchemaArgs),
 }
@@ -90,6 +93,7 @@ impl Command {
             Self::Export(args) => ("export", args.json),
             Self::Eml(args) => args.command.manner(),
             Self::Sweep(args) => args.command.manner(),
+            Self::Fit(args) => ("fit", args.json),
             Self::Schema(_) => ("schema", false),
         };
         (name, if json { Form::Json } else { Form::Words })
@@ -134,6 +138,7 @@ fn act(command: Command, name: &str, form: Form) -> Result<Report> {
         Command::Export(args) => crash::told_as_damage(name, form, &args.result, || export::run(&args)),
         Command::Eml(args) => eml::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Fit(args) => fit::run(&args),
         Command::Schema(args) => schema::run(&args),
     }
 }

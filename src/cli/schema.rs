@@ -11,6 +11,9 @@ pub struct SchemaArgs {
     /// That of studies instead.
     #[arg(long)]
     pub study: bool,
+    /// That of fits instead.
+    #[arg(long, conflicts_with = "study")]
+    pub fit: bool,
     /// Writes to this file instead of the terminal.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -29,12 +32,21 @@ pub fn study_text() -> String {
     format!("{:#}\n", crate::study::schema())
 }
 
+/// The schema of fits, the same as in `docs/fit.schema.json`.
+pub fn fit_text() -> String {
+    format!("{:#}\n", crate::study::fit::schema())
+}
+
 /// Runs the command.
 ///
 /// # Errors
 /// The file exists or cannot be written.
 pub fn run(args: &SchemaArgs) -> Result<Report> {
-    let words = if args.study { study_text() } else { text() };
+    let words = match args {
+        SchemaArgs { study: true, .. } => study_text(),
+        SchemaArgs { fit: true, .. } => fit_text(),
+        _ => text(),
+    };
     let Some(path) = &args.output else { return Ok(Report { words, ..Report::default() }) };
     refuse_existing(path, args.force, Named::ByUser)?;
     std::fs::write(path, words).map_err(|error| Error::Machine {

@@ -22,7 +22,7 @@ pub(crate) mod text;
 pub mod ticks;
 pub mod track_plots;
 
-pub use chart::{Axis, Chart, Heat, Range, Scale, Series, Shading, save_chart};
+pub use chart::{Axis, Chart, Heat, Range, Scale, Series, Shading, save_chart, save_stacked};
 pub use colour::{Colour, ColourMap};
 pub use from_file::{default_files, make_defaults};
 pub use image::Image;

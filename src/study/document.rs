@@ -3,6 +3,7 @@
 use crate::error::{Error, Fault, Location, Result, Source};
 use crate::experiment::{Checked, schema_of};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -186,10 +187,23 @@ impl StudyDocument {
     /// # Errors
     /// [`Error::Input`] with all faults of the text in its order.
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<Self> {
+        Ok(Self::parse_as(name, text, folder, &schema(), Study::clone)?.1)
+    }
+
+    /// The same of a text that says more than a study, along a schema of its own: all that it says, and the study in it, whose keys stand
+    /// where a study has them.
+    pub(super) fn parse_as<T: DeserializeOwned>(
+        name: &str,
+        text: &str,
+        folder: &Path,
+        schema: &serde_json::Value,
+        study: impl FnOnce(&T) -> Study,
+    ) -> Result<(T, Self)> {
         let source = Arc::new(Source { name: name.to_owned(), text: text.to_owned() });
-        let checked = Checked::read(&source, &schema())?;
-        let study = checked.to()?;
-        Ok(Self { source, folder: folder.to_owned(), study, checked })
+        let checked = Checked::read(&source, schema)?;
+        let said: T = checked.to()?;
+        let study = study(&said);
+        Ok((said, Self { source, folder: folder.to_owned(), study, checked }))
     }
 
     /// Where the value of a key stands: `parameter[0].values[1]`.

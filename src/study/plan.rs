@@ -8,6 +8,7 @@ use super::runs_table::{parse, table};
 use crate::error::{Error, Fault, Result};
 use crate::experiment::Document;
 use std::collections::BTreeMap;
+use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
 /// The table of runs in the folder of a study.
@@ -155,6 +156,27 @@ impl Plan {
             faults.push(fault.help("put it back as it was, or plan the study again in another folder"));
         }
         if faults.is_empty() { Ok(()) } else { Err(Error::Input(faults)) }
+    }
+
+    /// Makes sure that nobody else makes the runs of the folder, for as long as the file is open. `command` is who does.
+    ///
+    /// # Errors
+    /// [`Error::Input`] while somebody else does; [`Error::Machine`] when the disk refuses.
+    pub fn claim(&self, command: &str) -> Result<File> {
+        let path = self.folder.join(PLAN_FILE);
+        let file = File::open(&path).map_err(|error| refused(&path, &error))?;
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => {
+                let name = self.folder.display();
+                let fault = Fault::new(format!("the runs of {name} are being made by another `{command}`"));
+                Err(Error::input(
+                    fault
+                        .help("wait until it has ended, or stop it with Ctrl-C: its runs go on from their checkpoints"),
+                ))
+            }
+            // A file system without locks is trusted.
+            Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+        }
     }
 
     /// The experiment document as the system can open it from anywhere.

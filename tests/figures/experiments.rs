@@ -55,6 +55,11 @@ fn a_red_cell_stretches_as_mills_measured() {
 }
 
 #[test]
+fn a_red_cell_with_the_modulus_that_was_fitted_stretches_as_mills_measured() {
+    experiment_keeps_its_word("red_cell_fit", "experiment.toml");
+}
+
+#[test]
 fn a_spherical_membrane_stretches_as_henon_derived() {
     experiment_keeps_its_word("optical_tweezers", "sphere.toml");
 }

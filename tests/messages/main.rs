@@ -6,6 +6,7 @@ mod documents;
 mod eml;
 mod experiments;
 mod fields;
+mod fits;
 mod kept;
 mod meshes;
 mod physical_models;

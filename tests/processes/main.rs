@@ -5,6 +5,7 @@ mod crowd;
 mod damaged;
 #[cfg(target_os = "linux")]
 mod every_write;
+mod fit;
 mod kill;
 mod killed_runs;
 mod python;

@@ -4,11 +4,10 @@ use super::children::{Ended, Running, start};
 use super::runs_told::RunsTold;
 use crate::cli::report::{Report, path_text};
 use crate::cli::run::cancelled_by_signals;
-use crate::error::{Error, Fault, Result};
+use crate::error::{Error, Result};
 use crate::simulation::CancelToken;
-use crate::study::{Collected, Files, PLAN_FILE, Plan, Run, Status, collect, refused};
+use crate::study::{Collected, Files, Plan, Run, Status, collect, refused};
 use std::collections::VecDeque;
-use std::fs::{File, TryLockError};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -42,7 +41,7 @@ const LOOK: Duration = Duration::from_millis(20);
 pub fn run(args: &SweepRunArgs) -> Result<Report> {
     let plan = Plan::read(&args.folder)?;
     plan.check_files()?;
-    let _alone = claim(&args.folder)?;
+    let _alone = plan.claim("sweep run")?;
     let logs = args.folder.join("logs");
     std::fs::create_dir_all(&logs).map_err(|error| refused(&logs, &error))?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -71,22 +70,6 @@ pub fn run(args: &SweepRunArgs) -> Result<Report> {
     };
     let report = Report { words, ..Report::default() }.fact("folder", path_text(&args.folder));
     Ok(report.fact("runs", all).fact("made", made).fact("complete_before", skipped))
-}
-
-/// Makes sure that nobody else makes the runs of a folder, for as long as the file is open.
-fn claim(folder: &std::path::Path) -> Result<File> {
-    let path = folder.join(PLAN_FILE);
-    let file = File::open(&path).map_err(|error| refused(&path, &error))?;
-    match file.try_lock() {
-        Err(TryLockError::WouldBlock) => {
-            let fault = Fault::new(format!("the runs of {} are being made by another `sweep run`", folder.display()));
-            Err(Error::input(
-                fault.help("wait until it has ended, or stop it with Ctrl-C: its runs go on from their checkpoints"),
-            ))
-        }
-        // A file system without locks is trusted.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
-    }
 }
 
 /// Says which runs are not complete though all ended, and why.

@@ -7,7 +7,7 @@ use super::frame::{FINE_GRID_COLOUR, FRAME_COLOUR, FittedAxis, Frame, GRID_COLOU
 use super::heat::Heat;
 use super::legend::{self, Box};
 use super::series::{write_points, write_series};
-use super::{Chart, Ground, Legend, Series, polar, svg_to_png};
+use super::{Chart, Ground, Legend, Series, polar, svg_to_image};
 use crate::error::Result;
 use crate::picture::Image;
 use crate::picture::colour::Colour;
@@ -20,9 +20,9 @@ pub fn to_svg(chart: &Chart, width: f64, height: f64) -> String {
     compose(chart, width, height, Page::Whole).0
 }
 
-/// The bytes of a PNG picture of a chart whose SVG is known, `scale` pixels for each of its units.
-pub(super) fn to_png(chart: &Chart, svg: &str, [width, height]: [f64; 2], scale: f64) -> Result<Vec<u8>> {
-    let Some(heat) = &chart.heat else { return svg_to_png(svg, scale as f32) };
+/// The pixels of a chart whose SVG is known, `scale` of them for each of its units.
+pub(super) fn to_image(chart: &Chart, svg: &str, [width, height]: [f64; 2], scale: f64) -> Result<Image> {
+    let Some(heat) = &chart.heat else { return svg_to_image(svg, scale as f32) };
     // Our own drawing of SVG knows no pictures inside: the heat is painted first, the rest laid over it.
     let (svg, frame) = compose(chart, width, height, Page::Lines);
     let mut pixels = svg_to_pixels(&svg, scale as f32)?;
@@ -35,7 +35,7 @@ pub(super) fn to_png(chart: &Chart, svg: &str, [width, height]: [f64; 2], scale:
         image.rgb[start..start + colours.len()].copy_from_slice(colours);
     }
     image.lay_over(pixels.data_mut());
-    image.to_png()
+    Ok(image)
 }
 
 /// What is written.

@@ -11,6 +11,7 @@ mod heat;
 mod legend;
 mod polar;
 mod series;
+mod stacked;
 #[cfg(test)]
 mod tests;
 
@@ -23,6 +24,7 @@ use crate::error::Result;
 
 pub use draw::to_svg;
 pub use heat::{Heat, Shading};
+pub use stacked::save_stacked;
 
 /// One chart.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -303,10 +305,15 @@ impl Series {
 /// # Errors
 /// When the text is not SVG or its size is zero or enormous.
 pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>> {
+    svg_to_image(svg, scale)?.to_png()
+}
+
+/// The same as pixels.
+fn svg_to_image(svg: &str, scale: f32) -> Result<super::Image> {
     let mut pixels = svg_to_pixels(svg, scale)?;
     let mut image = super::Image::filled(pixels.width() as usize, pixels.height() as usize, Colour([255; 3]));
     image.lay_over(pixels.data_mut());
-    image.to_png()
+    Ok(image)
 }
 
 /// Writes the chart as `path.svg` and `path.png` (720 × 480, the PNG with twice as many pixels; square charts for equal
@@ -329,6 +336,6 @@ pub fn save_chart(chart: &Chart, path_without_extension: &Path) -> Result<Vec<Pa
     };
     let paths = vec![with(".svg"), with(".png")];
     write_file(&paths[0], svg.as_bytes())?;
-    write_file(&paths[1], &draw::to_png(chart, &svg, [width, height], 2.0)?)?;
+    write_file(&paths[1], &draw::to_image(chart, &svg, [width, height], 2.0)?.to_png()?)?;
     Ok(paths)
 }
