@@ -150,6 +150,11 @@ impl Experiment {
         self.output.tractions || self.cells.values().any(|cell| !cell.applied.moved.is_empty())
     }
 
+    /// Whether a series is of what is moved, or may be of a load in a file.
+    pub(super) fn is_of_what_is_moved(&self, series: &str) -> bool {
+        self.may_be_of_load_file(series) || self.series_of_moved().iter().any(|name| name == series)
+    }
+
     /// Whether a series may be of a load in a file, which is read later: `load.lml1` and its like.
     pub(super) fn may_be_of_load_file(&self, series: &str) -> bool {
         let number = ["load.lml", "displacement.lml", "force.lml"].iter().find_map(|word| series.strip_prefix(word));

@@ -275,7 +275,11 @@ impl ResultFile {
     pub fn label(&self, name: &str) -> String {
         let recorded = || CONTACTS.iter().find(|row| row.name == name).map(|row| row.label.to_owned());
         let known = cell_label(name).map(str::to_owned).or_else(recorded);
-        known.or_else(|| contacts::label(&self.layout, name)).unwrap_or_else(|| name.replace("load.", "load "))
+        let known = known.or_else(|| contacts::label(&self.layout, name));
+        known.unwrap_or_else(|| match name.split_once('.') {
+            Some((word @ ("load" | "displacement" | "force"), of)) => format!("{word} {of}"),
+            _ => name.to_owned(),
+        })
     }
 
     /// Motility runs that ended up to the last frame.

@@ -170,6 +170,11 @@ fn a_displacement_moves_atoms_on_its_course_and_leaves_them_free_where_it_says_n
     assert_eq!(held.displaced([0.0, 5.0]), pseudopod::Vec3::new(0.0, 2e-3, 0.0));
     assert_eq!(kind.held[..9], [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
     assert!(kind.held[9..].iter().all(|factor| *factor == 1.0));
+    let own = plot.replace(
+        "loads_file = \"own.lml\"",
+        "moved = [{ name = \"lml1\", atoms = [3], direction = [1, 0, 0], displacement = \"0 um\" }]",
+    );
+    assert!(compiled(folder.path(), B, &own).is_ok(), "what a document moves has the same series");
     let twice = load("Translation", "12", "z=\"1\"", &[(0.0, 0.0), (1.0, 1.0)], "mm").repeat(2);
     let message = loads_of(&twice).unwrap_err();
     assert_eq!(message, "`cells.a.loads_file` moves atom 0, which `cells.a` holds or moves already");

@@ -12,6 +12,7 @@ pub(super) fn check(document: &Document, chemistry: &Chemistry, faults: &mut Vec
         let fault = match reference.kind.as_str() {
             // Their names were checked with the document.
             "series" if document.experiment.contact.is_some() && text.starts_with("contact.") => None,
+            "series" if document.experiment.is_of_what_is_moved(text) => None,
             "series" => series(chemistry, path, text),
             // What a picture has that shows no field.
             "field" if path == "picture.field" && text == "none" => None,
