@@ -67,14 +67,18 @@ fn spoken(series: &str) -> String {
     series.replace(['_', '.'], " ")
 }
 
+/// So many series are named on an axis.
+const MOST_NAMES: usize = 3;
+
 fn overlay(group: &[&Compared], title: &str) -> Chart {
     let name = |of: &Observed| match &of.beside {
         Beside::Curve { y, .. } => spoken(y),
         Beside::Measure(name) => spoken(name),
     };
     let first = &group[0].observed;
-    let label =
-        if group.iter().all(|one| name(&one.observed) == name(first)) { name(first) } else { "fitted".to_owned() };
+    let mut names: Vec<String> = group.iter().map(|one| name(&one.observed)).collect();
+    names.dedup();
+    let label = if names.len() <= MOST_NAMES { names.join(", ") } else { "fitted".to_owned() };
     let mut chart = Chart { title: title.to_owned(), x: x_axis(first), ..Chart::default() };
     chart.y = Axis::linear(with_unit(&label, &first.units[1]));
     for (index, one) in group.iter().enumerate() {
