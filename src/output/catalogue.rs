@@ -275,6 +275,9 @@ pub const FORCE: &[Entry] = &[
     row("/VTKHDF/Steps/PointDataOffsets/force", "1", "frame", Link("/VTKHDF/Steps/PointOffsets"), "First row of a frame in PointData/force."),
 ];
 
+/// What results of earlier versions lack, which did not tell what holds atoms: it is nothing there.
+pub const CAME_LATER: [&str; 2] = ["/cells/holding_force", "/VTKHDF/PointData/holding_force"];
+
 /// The datasets of what atoms do to what is around them, which exist in a run that records tractions.
 #[rustfmt::skip]
 pub const TRACTION: &[Entry] = &[

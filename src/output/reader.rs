@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use hdf5::{Dataset, File};
 
-use super::catalogue::{FORCE, List, Run, TRACTION};
+use super::catalogue::{CAME_LATER, FORCE, List, Run, TRACTION};
 use super::census::Census;
 use super::contacts;
 use super::container::{self, Access, damaged, text};
@@ -176,11 +176,7 @@ impl ResultFile {
         }
         let of = |number: usize| self.atom_vectors(TRACTION[number].path, frame);
         let (traction, of_cells, drag) = (of(0)?, of(1)?, of(2)?);
-        // Results of versions that moved no atoms do not have it.
-        let held = match self.file.dataset(TRACTION[5].path).is_ok() {
-            true => of(5)?,
-            false => vec![[0.0; 3]; traction.len()],
-        };
+        let held = if self.has(CAME_LATER[1]) { of(5)? } else { vec![[0.0; 3]; traction.len()] };
         Ok(Some(Tractions { traction, of_cells, drag, outer: of(3)?, inertia: of(4)?, held }))
     }
 
@@ -269,6 +265,11 @@ impl ResultFile {
         }
         let known = self.series_names().iter().any(|known| known == name) || name == SPEED;
         cell_unit(name).filter(|_| known).map(str::to_owned).ok_or_else(|| self.unknown(name))
+    }
+
+    /// Whether there is such a dataset.
+    pub(super) fn has(&self, path: &str) -> bool {
+        self.file.dataset(path).is_ok()
     }
 
     /// What a chart calls a series, without its unit.

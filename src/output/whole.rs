@@ -3,7 +3,7 @@
 use hdf5::{Dataset, File};
 use ndarray::s;
 
-use super::catalogue::{CATALOGUE, CONTACT, FIBRE, FORCE, Filled, List, TRACTION, cell_entries};
+use super::catalogue::{CAME_LATER, CATALOGUE, CONTACT, FIBRE, FORCE, Filled, List, TRACTION, cell_entries};
 use super::pieces::has_frames;
 use super::population::{OfShared, Part, Population, Shared};
 use super::{Cell, Layout};
@@ -190,10 +190,13 @@ impl Datasets {
                 _ => {}
             }
         }
-        for entry in TRACTION.iter().filter(|entry| layout.tractions && matches!(entry.filled, Filled::Atoms(_))) {
+        // Results of earlier versions do not have all of them.
+        let is_told = |path: &str| !CAME_LATER.contains(&path) || file.dataset(path).is_ok();
+        let of_atoms = TRACTION.iter().filter(|entry| layout.tractions && matches!(entry.filled, Filled::Atoms(_)));
+        for entry in of_atoms.filter(|entry| is_told(entry.path)) {
             found.atoms.push(file.dataset(entry.path)?);
         }
-        for (path, _) in of_cells {
+        for (path, _) in of_cells.filter(|(path, _)| is_told(path)) {
             found.cells.push(file.dataset(path)?);
         }
         for membrane in &layout.membranes {

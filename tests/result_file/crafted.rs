@@ -56,6 +56,21 @@ fn what_leads_out_of_the_file_is_refused() {
 }
 
 #[test]
+fn results_of_versions_that_did_not_tell_what_holds_atoms_are_read_as_if_nothing_did() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = crafted(folder.path(), |file| {
+        file.unlink("/cells/holding_force").unwrap();
+        file.unlink("/VTKHDF/PointData/holding_force").unwrap();
+    });
+    let result = ResultFile::open(&path).unwrap();
+    assert_eq!(result.frames(), 4);
+    let tractions = result.tractions(3).unwrap().unwrap();
+    assert!(tractions.held.len() == tractions.drag.len() && tractions.held.iter().all(|held| *held == [0.0; 3]));
+    assert_eq!(result.cell_values("holding_force_x", 2).unwrap(), [0.0; 3]);
+    assert_eq!(result.cell_series("holding_force_z").unwrap().sum(), 0.0);
+}
+
+#[test]
 fn datasets_of_another_shape_or_type_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |change: fn(&File)| refusal(&crafted(folder.path(), change));

@@ -85,7 +85,7 @@ mesh = { shape = "icosphere", radius = "4 um", level = 1 }
 placement = { at = [["9 um", "9 um", "4.02 um"]] }
 mechanics = { drag = "15 pN s/um", shape_memory = { shape_modulus = "10 pN/um" }, membrane = { law = "neo_hookean", shear = "4 pN/um", area = "4 pN/um" } }
 pseudopods = { pressure = "0.3 Pa", contraction = "1 pN", pause = "0.1 s", protrusion = "0.3 s", retraction = "0.3 s" }
-moved = [{ name = "lift", atoms = [7], direction = [0.1, 0, 1], displacement = [["0 s", "0 um"], ["1.03 s", "0.05 um"], ["3 s", "0.02 um"]] }]
+moved = [{ name = "lift", atoms = [7], axes = ["z"], direction = [0, 0, 1], displacement = [["0 s", "0 um"], ["1.03 s", "0.05 um"], ["3 s", "0.02 um"]] }]
 loads = [{ name = "press", all = true, direction = [-0.7, -0.7, -0.2], force = [["0 s", "8 pN"], ["3.05 s", "9 pN"]] }]
 chemistry = ["pin", "skin"]
 
