@@ -87,11 +87,10 @@ fn found(folder: &Path, output: &str, jobs: usize) -> Outcome {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-#[test]
-fn known_parameters_are_within_their_own_intervals_in_nineteen_of_twenty_trials() {
-    // Intervals by profile and by covariance that hold the truth, of both parameters together.
+/// How many of the intervals of so many trials hold the truth, by profile and by covariance, of both parameters together.
+fn holding(trials: u32) -> [usize; 2] {
     let mut within = [0; 2];
-    for trial in 0..20 {
+    for trial in 0..trials {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path(), PARAMETERS, "", trial);
         let outcome = found(folder.path(), "out", 2);
@@ -101,7 +100,20 @@ fn known_parameters_are_within_their_own_intervals_in_nineteen_of_twenty_trials(
             within[1] += usize::from((one.covariance[0]..=one.covariance[1]).contains(&TRUTH[index]));
         }
     }
-    // Two parameters in twenty trials: that so few intervals in the long run hold more or less is held by `coverage_tests.rs` with a thousand.
+    within
+}
+
+#[test]
+fn known_parameters_are_within_their_own_intervals() {
+    // Of four intervals that hold a truth in 95 of 100 trials three do in all but one of 70.
+    assert!(holding(2).iter().all(|times| *times >= 3), "of 4 intervals");
+}
+
+#[test]
+#[ignore = "slow: some hundred runs a trial, two to five minutes"]
+fn known_parameters_are_within_their_own_intervals_in_nineteen_of_twenty_trials() {
+    let within = holding(20);
+    // Two parameters in twenty trials: that so many intervals in the long run hold the truth is held by `coverage_tests.rs` with a thousand.
     assert!(within.iter().all(|times| *times >= 38), "of 40 intervals, by profile and covariance: {within:?}");
 }
 
