@@ -84,7 +84,7 @@ pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use volume::{VolumeControl, VolumeRule};
 
-use crate::recorded::OnDemand;
+use crate::recorded::{OnDemand, names_by_type, series_of_moved};
 use crate::units::Time;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -157,23 +157,28 @@ impl Experiment {
 
     /// Whether a series may be of a load in a file, which is read later: `load.lml1` and its like.
     pub(super) fn may_be_of_load_file(&self, series: &str) -> bool {
-        let number = ["load.lml", "displacement.lml", "force.lml"].iter().find_map(|word| series.strip_prefix(word));
-        number.is_some_and(|number| number.parse::<u32>().is_ok())
+        let (word, name) = series.split_once('.').unwrap_or_default();
+        // With the name of the type before it where several types have such files.
+        let number = name.rsplit('.').next().and_then(|name| name.strip_prefix("lml"));
+        ["load", "displacement", "force"].contains(&word)
+            && number.is_some_and(|number| number.parse::<u32>().is_ok())
             && self.cells.values().any(|cell| cell.applied.loads_file.is_some())
     }
 
     /// Names of the series of what is moved.
     pub(super) fn series_of_moved(&self) -> Vec<String> {
-        let named = |cell: &CellType, name: &str| cell.applied.moved.iter().any(|moved| moved.name == name);
-        let mut names = Vec::new();
-        for (kind, cell) in &self.cells {
-            for moved in &cell.applied.moved {
-                let shared = self.cells.values().filter(|cell| named(cell, &moved.name)).count() > 1;
-                let owner = if shared { format!("{kind}.") } else { String::new() };
-                names.extend(["displacement", "force"].map(|word| format!("{word}.{owner}{}", moved.name)));
-            }
-        }
-        names
+        let own = |cell: &CellType| cell.applied.moved.iter().map(|moved| moved.name.clone()).collect();
+        let types: Vec<(&str, Vec<String>)> =
+            self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
+        series_of_moved(&types).into_iter().map(|(name, _)| name).collect()
+    }
+
+    /// Names of the series of loads.
+    pub(super) fn series_of_loads(&self) -> Vec<String> {
+        let own = |cell: &CellType| cell.applied.loads.iter().map(|load| load.name.clone()).collect();
+        let types: Vec<(&str, Vec<String>)> =
+            self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
+        names_by_type(&types).into_iter().map(|name| format!("load.{name}")).collect()
     }
 
     /// An experiment that lasts `until`, still without cells, with the defaults everywhere else.

@@ -122,9 +122,8 @@ impl Check<'_> {
     fn series(&mut self, path: &str, text: &str) {
         let with = self.document.experiment.on_demand();
         let (pairs, of_cells) = (self.series_of_pairs(), cell_series(with).collect::<Vec<String>>());
-        let cells = self.document.experiment.cells.values();
-        let loads = cells.flat_map(|cell| &cell.applied.loads).map(|load| format!("load.{}", load.name));
-        let loads: Vec<String> = loads.chain(self.document.experiment.series_of_moved()).collect();
+        let experiment = &self.document.experiment;
+        let loads = [experiment.series_of_loads(), experiment.series_of_moved()].concat();
         let contact = self.document.experiment.contact.as_ref();
         let contacts = contact.is_some();
         let of_model = contact.into_iter().flat_map(|contact| contact_quantities(contact.recorded()));

@@ -1,7 +1,7 @@
 //! How loads hold a cell in its direction: the torque with which they turn it back, eq. (step.13).
 
-use super::Force;
 use super::control::Context;
+use super::{CONTROLLED, Force};
 use crate::Vec3;
 use nalgebra::{Matrix3, SymmetricEigen};
 
@@ -11,11 +11,13 @@ use nalgebra::{Matrix3, SymmetricEigen};
 pub fn restoring(forces: &[Force], context: &Context, (lanes, lane): (usize, usize), x: &[f64]) -> Matrix3<f64> {
     let mut sum = Matrix3::zeros();
     let at = |atom: usize| Vec3::from_fn(|axis, _| x[(3 * atom + axis) * lanes + lane]);
-    let loads = forces.iter().filter_map(|force| if let Force::Load(load) = force { Some(load) } else { None });
     let atoms = x.len() / (3 * lanes);
-    let mut centre = None;
-    for (number, load) in loads.enumerate() {
-        let force = load.strength(context.time, &context.control(0, number, super::load::HANDLE.unset))[lane];
+    let (mut centre, mut number) = (None, 0);
+    for force in forces {
+        let (Force::Load(load), Some((handle, _))) = (force, force.handle()) else { continue };
+        let set = context.control(handle, number, CONTROLLED[handle].unset);
+        number += 1;
+        let force = load.strength(context.time, &set)[lane];
         if force == 0.0 {
             continue;
         }

@@ -17,6 +17,7 @@ pub mod pml;
 #[cfg(test)]
 mod tests;
 mod warning;
+mod words;
 mod writer;
 
 pub use kept::{Attributes, Foreign};

@@ -1,9 +1,10 @@
 //! The text of a document, and the faults that point into it.
 
 use super::warning::{Warning, Warnings};
-use crate::error::{Error, Fault, Location, Source};
+use crate::error::{Error, Fault, Location, Result, Source};
 use crate::xml::{Limits, Trouble, What};
 use std::ops::Range;
+use std::path::Path;
 use std::sync::Arc;
 
 /// How a language is called, and what its documents are.
@@ -13,6 +14,21 @@ pub(super) struct Language {
     pub name: &'static str,
     /// The root elements that its documents can have.
     pub roots: &'static [&'static str],
+}
+
+impl Language {
+    /// The name and the bytes of a file of the language.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a file that cannot be read.
+    pub fn open(&self, path: &Path) -> Result<(String, Vec<u8>)> {
+        let name = path.display().to_string();
+        let bytes = crate::files::read(path).map_err(|failure| {
+            let fault = Fault::new(format!("{} file `{name}` cannot be read: {failure}", self.name));
+            Error::input(fault.help("give a file that exists and that you may read"))
+        })?;
+        Ok((name, bytes))
+    }
 }
 
 /// Most bytes that are read of a document: ten times what a large model takes.

@@ -24,6 +24,11 @@ impl<'a> Displacements<'a> {
         self.go(1.0, x);
     }
 
+    /// Puts moved atoms of a block, which stand where they end the step, back to where it begins.
+    pub fn put_to_start(&self, x: &mut [f64]) {
+        self.go(-1.0, x);
+    }
+
     /// Puts moved atoms of a block, which stand where the others do, to where these feel them in a stage: the forces of the first stage are those
     /// of a share γ of their displacement, those of the second of what is left of it.
     pub fn put_to_stage(&self, stage: Stage, x: &mut [f64]) {

@@ -181,7 +181,16 @@ impl Step<'_> {
             self.forces.add_without_contacts(block.number, share, y, on_held, spare);
         }
         if stage == Stage::Second {
-            carry_pressure(kind, block.x, block.pressure, y, spare);
+            // The gradient of the first stage is the one with moved atoms where they end: in the mean of both they are half way.
+            let x = match &self.displacements {
+                None => &*block.x,
+                Some(displacements) => {
+                    spare2.copy_from_slice(block.x);
+                    displacements.put_to_start(spare2);
+                    &*spare2
+                }
+            };
+            carry_pressure(kind, x, block.pressure, y, spare);
             if let (Some(on_held), VolumeRule::Exact(_)) = (&mut block.on_held, &kind.volume) {
                 add_pressure_on_held(kind, block.x, (block.pressure, share), on_held, spare);
             }

@@ -2,31 +2,24 @@
 
 use crate::Vec3;
 use crate::mechanics::moved::Moved;
+use crate::recorded::series_of_moved;
 use crate::sim::{Kind, KindState, Model, State};
 
-/// Names and units of their series: `displacement.NAME` and `force.NAME`, with the name of the type in between where several types have one of
-/// this name.
-pub fn names(model: &Model) -> impl Iterator<Item = (String, String)> {
-    let has = |kind: &Kind, name: &str| kind.moved.iter().any(|moved| moved.name == name);
-    each(model).flat_map(move |(number, moved)| {
-        let shared = model.kinds.iter().filter(|kind| has(kind, &moved.name)).count() > 1;
-        let owner = if shared { format!("{}.", model.kinds[number].name) } else { String::new() };
-        let series = |(word, unit): (&str, &str)| (format!("{word}.{owner}{}", moved.name), unit.to_owned());
-        [("displacement", "um"), ("force", "pN")].map(series)
-    })
+/// Names and units of their series.
+pub fn names(model: &Model) -> Vec<(String, String)> {
+    let own = |kind: &Kind| kind.moved.iter().map(|moved| moved.name.clone()).collect();
+    let types: Vec<(&str, Vec<String>)> = model.kinds.iter().map(|kind| (kind.name.as_str(), own(kind))).collect();
+    series_of_moved(&types).into_iter().map(|(name, unit)| (name, unit.to_owned())).collect()
 }
 
 /// Adds their values at this instant; the force is that on the atoms of all cells of the type together, along the direction, in the mean over
 /// the last step.
 pub fn record(model: &Model, state: &State, values: &mut Vec<f64>) {
-    for (number, moved) in each(model) {
-        let force = force_on(&model.kinds[number], &state.kinds[number], moved);
-        values.extend([moved.displacement.at(state.time), force]);
+    for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+        for moved in &kind.moved {
+            values.extend([moved.displacement.at(state.time), force_on(kind, now, moved)]);
+        }
     }
-}
-
-fn each(model: &Model) -> impl Iterator<Item = (usize, &Moved)> {
-    model.kinds.iter().enumerate().flat_map(|(number, kind)| kind.moved.iter().map(move |moved| (number, moved)))
 }
 
 fn force_on(kind: &Kind, now: &KindState, moved: &Moved) -> f64 {

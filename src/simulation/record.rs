@@ -8,7 +8,7 @@ use crate::output::{
     Cell, CellRecord, CellType, FibreRow, FieldLayout, Frame, Layout, MembraneLayout, PseudopodEvent, SystemLayout,
     SystemScope,
 };
-use crate::recorded::{FibresRecord, TractionRecord, contact_quantities};
+use crate::recorded::{FibresRecord, TractionRecord, contact_quantities, names_by_type};
 use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::find_contacts;
 use crate::sim::kind::Kind;
@@ -136,15 +136,11 @@ fn record_fibres(model: &Model, state: &State, frame: &mut Frame) {
 
 /// Series name, kind and number of every load: `load.NAME`, or `load.TYPE.NAME` where several types share the name.
 fn load_names(model: &Model) -> Vec<(String, usize, usize)> {
-    let owners = |name: &str| model.kinds.iter().filter(|kind| kind.loads().any(|load| load.name == name)).count();
-    let mut names: Vec<(String, usize, usize)> = Vec::new();
-    for (k, kind) in model.kinds.iter().enumerate() {
-        for (l, load) in kind.loads().enumerate() {
-            let owner = if owners(&load.name) > 1 { format!("{}.", kind.name) } else { String::new() };
-            names.push((format!("load.{owner}{}", load.name), k, l));
-        }
-    }
-    names
+    let own = |kind: &Kind| kind.loads().map(|load| load.name.clone()).collect();
+    let types: Vec<(&str, Vec<String>)> = model.kinds.iter().map(|kind| (kind.name.as_str(), own(kind))).collect();
+    let numbers = types.iter().enumerate().flat_map(|(kind, (_, own))| (0..own.len()).map(move |load| (kind, load)));
+    let names = names_by_type(&types).into_iter().zip(numbers);
+    names.map(|(name, (kind, load))| (format!("load.{name}"), kind, load)).collect()
 }
 
 /// Makes frames; has scratch of its own, so that looking changes nothing.

@@ -36,7 +36,7 @@ pub use design::{MOST_RUNS, Points, points, run_seed};
 pub use document::{Anything, Design, Parameter, Spacing, Study, StudyDocument, schema};
 pub use facts::{Facts, Measured, Run};
 pub use one::{Complete, Done, Files, OneOptions, run_one};
-pub use paths::{absolute, refused, relative};
+pub use paths::{absolute, refused, relative, write_all};
 pub use plan::{PLAN_FILE, Plan, RUNS_FILE, Replaces};
 pub use probe::{Probe, probe, told};
 pub use sensitivity::{Sensitivity, sensitivities, sensitivity, sensitivity_columns};

@@ -1,7 +1,7 @@
 //! Paths and fingerprints of the files that a study reads.
 
 use crate::elementary::{FNV_START, fnv1a};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use std::path::{Component, Path, PathBuf};
 
 pub use crate::files::tidy;
@@ -17,6 +17,22 @@ pub fn refused(path: &Path, error: &std::io::Error) -> Error {
         message: format!("{} could not be written: {error}", path.display()),
         help: "make the folder of the study writable, or free some space".into(),
     }
+}
+
+/// Writes files with these names into a folder; their paths.
+///
+/// # Errors
+/// As [`refused`].
+pub fn write_all<N: AsRef<Path>, B: AsRef<[u8]>>(
+    files: impl IntoIterator<Item = (N, B)>,
+    folder: &Path,
+) -> Result<Vec<PathBuf>> {
+    let write = |(name, bytes): (N, B)| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).map_err(|error| refused(&path, &error))?;
+        Ok(path)
+    };
+    files.into_iter().map(write).collect()
 }
 
 /// A path from the root, without links where it leads somewhere.

@@ -181,6 +181,36 @@ fn a_displacement_moves_atoms_on_its_course_and_leaves_them_free_where_it_says_n
 }
 
 #[test]
+fn the_force_that_a_displacement_of_a_file_takes_is_told_and_other_schemes_refuse_it() {
+    let folder = tempfile::tempdir().unwrap();
+    write_model(folder.path(), |_| ());
+    let lift = load("Translation", "12", "x=\"NULL\" y=\"NULL\" z=\"1\"", &[(0.0, 0.0), (0.5, 0.2)], "micron");
+    let still = load("Translation", "13-23", "x=\"NULL\" y=\"NULL\" z=\"NULL\"", &[(0.0, 1.0)], "micron");
+    let text = format!(
+        "<loads xmlns=\"http://www-timc.imag.fr/load\" xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\">{lift}{still}</loads>"
+    );
+    std::fs::write(folder.path().join("own.lml"), text).unwrap();
+    let text = document_text(B, "loads_file = \"own.lml\"");
+    let document = Document::parse("model.toml", &text, folder.path(), &[]).unwrap();
+    let mut simulation = pseudopod::simulation::Simulation::from_document(&document).unwrap();
+    simulation.run_until(1.0).unwrap();
+    assert_eq!(simulation.series("displacement.lml1").unwrap(), [0.2]);
+    let force = simulation.series("force.lml1").unwrap()[0];
+    let held = simulation.series("holding_force_z").unwrap()[0];
+    assert!(
+        force.abs() > 0.1 && held.abs() < 1e-6 * force.abs(),
+        "{force} pN lift one atom, the others hold against it: {held}"
+    );
+    let explicit = text.replace("until = \"1 s\"", "until = \"1 s\", integrator = { method = \"explicit\" }");
+    let document = Document::parse("model.toml", &explicit, folder.path(), &[]).unwrap();
+    let Err(Error::Input(faults)) = compile(&document) else { panic!("it is taken") };
+    assert!(
+        faults[0].message.ends_with("the load (Translation) moves atoms, which only the implicit scheme does"),
+        "{faults:?}"
+    );
+}
+
+#[test]
 fn a_pressure_is_a_traction_and_an_acceleration_is_a_force_by_mass() {
     let (loads, _) = loads_of(&load("Pressure", "12-23", "y=\"2\"", &[(0.0, 3.0)], "Pa")).unwrap();
     let area = pseudopod::geometry::area(&icosphere(3.0, 0));

@@ -5,7 +5,7 @@ use crate::error::{Result, say};
 use crate::picture::save_chart;
 use crate::study::table::csv_text;
 use crate::study::{
-    Collected, Plan, Sensitivity, Status, charts, collect, refused, sensitivities, sensitivity_columns,
+    Collected, Plan, Sensitivity, Status, charts, collect, refused, sensitivities, sensitivity_columns, write_all,
 };
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -68,11 +68,5 @@ fn write_tables(collected: &Collected, found: &[Sensitivity], folder: &Path) -> 
     if !found.is_empty() {
         tables.push(("sensitivity.csv", csv_text(&sensitivity_columns(collected, found)).into_bytes()));
     }
-    let mut written = Vec::new();
-    for (name, bytes) in tables {
-        let path = folder.join(name);
-        std::fs::write(&path, bytes).map_err(|error| refused(&path, &error))?;
-        written.push(path);
-    }
-    Ok(written)
+    write_all(tables, folder)
 }

@@ -3,7 +3,7 @@
 //! A load acts with its value on each of its atoms, whereas a load of a document is shared by them: the total is the value
 //! times the number of atoms, or, for a pressure, times their area at rest.
 
-use super::super::{CellType, Document};
+use super::super::{CellType, Document, Method};
 use super::builder::Built;
 use super::numbers::course;
 use crate::Vec3;
@@ -51,7 +51,8 @@ pub fn read(document: &Document, key: &str, cell: &CellType, built: &Built, faul
         }
     };
     let done = FromFile { notices: notice.into_iter().collect(), ..FromFile::default() };
-    let mut target = On { file: &file, cell, built, areas: geometry::atom_areas(&built.turned), done };
+    let method = document.experiment.run.integrator.method;
+    let mut target = On { file: &file, cell, built, method, areas: geometry::atom_areas(&built.turned), done };
     for (number, load) in loads.iter().enumerate() {
         if let Err(fault) = target.apply(number, load) {
             faults.push(located(fault));
@@ -65,6 +66,7 @@ struct On<'a> {
     file: &'a Path,
     cell: &'a CellType,
     built: &'a Built,
+    method: Method,
     /// The area around each atom at rest, µm².
     areas: Vec<f64>,
     done: FromFile,
@@ -160,6 +162,10 @@ impl On<'_> {
         atoms: &BTreeSet<u32>,
         (along, components): (Vec3, [Component; 3]),
     ) -> Result<(), Fault> {
+        if self.method != Method::Implicit {
+            let help = "remove run.integrator.method; in other schemes atoms can be held, and pulled by forces";
+            return Err(self.fault(load, "moves atoms, which only the implicit scheme does", help));
+        }
         let points: Vec<(f64, f64)> =
             course_of(load).into_iter().map(|(date, value)| (date, value * along.norm())).collect();
         let displacement = course(points);

@@ -138,7 +138,9 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     if contact.as_ref().is_none_or(|contact| contact.law.moves_as_steps()) {
         kinds.iter_mut().for_each(Kind::use_tangent);
     }
-    let keeps_tractions = experiment.keeps_tractions() || chemistry.reads_tractions();
+    // What a file of loads moves is not in the document.
+    let are_moved = kinds.iter().any(|kind| !kind.moved.is_empty());
+    let keeps_tractions = experiment.keeps_tractions() || are_moved || chemistry.reads_tractions();
     let model = Model {
         seed: experiment.seed,
         kinks: kinks(&kinds),

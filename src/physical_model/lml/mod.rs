@@ -11,6 +11,7 @@ mod write;
 
 pub use targets::Target;
 
+use super::words::{meaning, word_for};
 use super::{Attributes, Foreign};
 
 /// The namespace of the language.
@@ -87,15 +88,14 @@ const KINDS: [(&str, LoadKind); 5] = [
 impl LoadKind {
     /// What a word means.
     pub fn of(word: &str) -> Self {
-        let known = KINDS.iter().find(|(own, _)| *own == word);
-        known.map_or_else(|| Self::Other(word.into()), |(_, kind)| kind.clone())
+        meaning(&KINDS, word).unwrap_or_else(|| Self::Other(word.into()))
     }
 
     /// Its word.
     pub fn word(&self) -> &str {
         match self {
             Self::Other(word) => word,
-            known => KINDS.iter().find(|(_, kind)| kind == known).map_or("Translation", |(word, _)| word),
+            known => word_for(&KINDS, known),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::super::cursor::{Cursor, INSTANCE, Tag, shown};
 use super::super::page::{Language, Page};
 use super::super::{Attributes, Read, Warnings};
 use super::{Component, Direction, KINDS, Line, Load, LoadKind, Loads, NAMESPACE, Target, ValueEvent, units};
-use crate::error::{Error, Fault, Result, words};
+use crate::error::{Result, words};
 use std::path::Path;
 
 const LANGUAGE: Language = Language { name: "LML", roots: &["loads"] };
@@ -13,20 +13,16 @@ impl Loads {
     /// Reads a file.
     ///
     /// # Errors
-    /// As [`Self::read`], and [`Error::Input`] for a file that cannot be read.
+    /// As [`Self::read`], and [`Error::Input`](crate::error::Error::Input) for a file that cannot be read.
     pub fn open(path: &Path) -> Result<Read<Self>> {
-        let name = path.display().to_string();
-        let bytes = crate::files::read(path).map_err(|failure| {
-            let fault = Fault::new(format!("LML file `{name}` cannot be read: {failure}"));
-            Error::input(fault.help("give a file that exists and that you may read"))
-        })?;
+        let (name, bytes) = LANGUAGE.open(path)?;
         Self::read(&name, bytes)
     }
 
     /// Reads the bytes of a file called `name`.
     ///
     /// # Errors
-    /// [`Error::Input`] with line and column: the text is no XML or no LML, declares a document type, goes beyond the
+    /// [`Error::Input`](crate::error::Error::Input) with line and column: the text is no XML or no LML, declares a document type, goes beyond the
     /// limits, or has a load without a type, without anything that it acts on or without an event, or a number that is none.
     pub fn read(name: &str, bytes: Vec<u8>) -> Result<Read<Self>> {
         let mut warnings = Warnings::default();

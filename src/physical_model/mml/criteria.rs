@@ -1,5 +1,6 @@
 //! When a simulation stops.
 
+use super::super::words::{meaning, word_for};
 use super::super::{Attributes, Foreign};
 
 /// When to stop.
@@ -86,15 +87,14 @@ pub(super) const KINDS: [(&str, CriterionKind); 5] = [
 impl CriterionKind {
     /// What a word means.
     pub fn of(word: &str) -> Self {
-        let known = KINDS.iter().find(|(own, _)| *own == word);
-        known.map_or_else(|| Self::Other(word.into()), |(_, kind)| kind.clone())
+        meaning(&KINDS, word).unwrap_or_else(|| Self::Other(word.into()))
     }
 
     /// Its word.
     pub fn word(&self) -> &str {
         match self {
             Self::Other(word) => word,
-            known => KINDS.iter().find(|(_, kind)| kind == known).map_or("Time", |(word, _)| word),
+            known => word_for(&KINDS, known),
         }
     }
 }
@@ -148,10 +148,6 @@ pub(super) const SCOPES: [(&str, Scope); 3] = [("Any", Scope::Any), ("Average", 
 impl Scope {
     /// Its word.
     pub fn word(self) -> &'static str {
-        match self {
-            Self::Any => "Any",
-            Self::Average => "Average",
-            Self::Sum => "Sum",
-        }
+        word_for(&SCOPES, &self)
     }
 }

@@ -8,7 +8,7 @@ use super::{
     Criterion, CriterionKind, MONITOR_TYPES, Method, MethodKind, Monitor, Monitoring, MonitoringIn, MonitoringOut,
     Operator, Reference, SingleCriterion, TIME_UNITS, TimeParameter, TimeStep,
 };
-use crate::error::{Error, Fault, Result, words};
+use crate::error::{Error, Result, words};
 use std::path::Path;
 
 const LANGUAGE: Language = Language { name: "MML", roots: &["monitoringIn", "monitoringOut"] };
@@ -19,11 +19,7 @@ impl Monitoring {
     /// # Errors
     /// As [`Self::read`], and [`Error::Input`] for a file that cannot be read.
     pub fn open(path: &Path) -> Result<Read<Self>> {
-        let name = path.display().to_string();
-        let bytes = crate::files::read(path).map_err(|failure| {
-            let fault = Fault::new(format!("MML file `{name}` cannot be read: {failure}"));
-            Error::input(fault.help("give a file that exists and that you may read"))
-        })?;
+        let (name, bytes) = LANGUAGE.open(path)?;
         Self::read(&name, bytes)
     }
 

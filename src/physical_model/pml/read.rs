@@ -7,7 +7,7 @@ use super::read_structures::{Listed, atom, cell, check_number, colour, number_of
 use super::references::check_references;
 use super::seen::Seen;
 use super::{Component, Mode, MultiComponent, PhysicalModel, StructuralComponent};
-use crate::error::{Error, Fault, Result};
+use crate::error::Result;
 use std::path::Path;
 
 pub(super) const LANGUAGE: Language = Language { name: "PML", roots: &["physicalModel"] };
@@ -16,20 +16,16 @@ impl PhysicalModel {
     /// Reads a file.
     ///
     /// # Errors
-    /// As [`Self::read`], and [`Error::Input`] for a file that cannot be read.
+    /// As [`Self::read`], and [`Error::Input`](crate::error::Error::Input) for a file that cannot be read.
     pub fn open(path: &Path) -> Result<Read<Self>> {
-        let name = path.display().to_string();
-        let bytes = crate::files::read(path).map_err(|failure| {
-            let fault = Fault::new(format!("PML file `{name}` cannot be read: {failure}"));
-            Error::input(fault.help("give a file that exists and that you may read"))
-        })?;
+        let (name, bytes) = LANGUAGE.open(path)?;
         Self::read(&name, bytes)
     }
 
     /// Reads the bytes of a file called `name`.
     ///
     /// # Errors
-    /// [`Error::Input`] with line and column: the text is no XML or no PML, declares a document type, goes beyond the
+    /// [`Error::Input`](crate::error::Error::Input) with line and column: the text is no XML or no PML, declares a document type, goes beyond the
     /// limits (1 GiB, elements 200 deep), has no atoms, an atom twice or a number that is none, or names atoms that it
     /// does not have.
     pub fn read(name: &str, bytes: Vec<u8>) -> Result<Read<Self>> {

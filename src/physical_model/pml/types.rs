@@ -1,5 +1,7 @@
 //! The words of the language for what cells are and how components are shown.
 
+use super::super::words::{meaning, word_for};
+
 /// What the atoms of a cell make.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CellType {
@@ -29,44 +31,51 @@ pub enum CellType {
     Other(Box<str>),
 }
 
-/// The words, and how many atoms a cell has, if that is fixed.
-const CELL_TYPES: [(&str, CellType, Option<usize>); 11] = [
-    ("INVALID", CellType::Invalid, None),
-    ("ATOM", CellType::Atom, Some(1)),
-    ("LINE", CellType::Line, Some(2)),
-    ("TRIANGLE", CellType::Triangle, Some(3)),
-    ("QUAD", CellType::Quad, Some(4)),
-    ("TETRAHEDRON", CellType::Tetrahedron, Some(4)),
-    ("WEDGE", CellType::Wedge, Some(6)),
-    ("PYRAMID", CellType::Pyramid, Some(5)),
-    ("HEXAHEDRON", CellType::Hexahedron, Some(8)),
-    ("POLY_LINE", CellType::PolyLine, None),
-    ("POLY_VERTEX", CellType::PolyVertex, None),
+const CELL_TYPES: [(&str, CellType); 11] = [
+    ("INVALID", CellType::Invalid),
+    ("ATOM", CellType::Atom),
+    ("LINE", CellType::Line),
+    ("TRIANGLE", CellType::Triangle),
+    ("QUAD", CellType::Quad),
+    ("TETRAHEDRON", CellType::Tetrahedron),
+    ("WEDGE", CellType::Wedge),
+    ("PYRAMID", CellType::Pyramid),
+    ("HEXAHEDRON", CellType::Hexahedron),
+    ("POLY_LINE", CellType::PolyLine),
+    ("POLY_VERTEX", CellType::PolyVertex),
 ];
 
 impl CellType {
     /// The words of the language.
     pub fn words() -> impl Iterator<Item = &'static str> {
-        CELL_TYPES.iter().map(|(word, ..)| *word)
+        CELL_TYPES.iter().map(|(word, _)| *word)
     }
 
     /// What a word means.
     pub fn of(word: &str) -> Self {
-        let known = CELL_TYPES.iter().find(|(own, ..)| *own == word);
-        known.map_or_else(|| Self::Other(word.into()), |(_, kind, _)| kind.clone())
+        meaning(&CELL_TYPES, word).unwrap_or_else(|| Self::Other(word.into()))
     }
 
     /// Its word.
     pub fn word(&self) -> &str {
         match self {
             Self::Other(word) => word,
-            known => CELL_TYPES.iter().find(|(_, kind, _)| kind == known).map_or("INVALID", |(word, ..)| word),
+            known => word_for(&CELL_TYPES, known),
         }
     }
 
     /// How many atoms such a cell has, if that is fixed.
     pub fn atoms(&self) -> Option<usize> {
-        CELL_TYPES.iter().find(|(_, kind, _)| kind == self).and_then(|(.., atoms)| *atoms)
+        match self {
+            Self::Atom => Some(1),
+            Self::Line => Some(2),
+            Self::Triangle => Some(3),
+            Self::Quad | Self::Tetrahedron => Some(4),
+            Self::Pyramid => Some(5),
+            Self::Wedge => Some(6),
+            Self::Hexahedron => Some(8),
+            Self::Invalid | Self::PolyLine | Self::PolyVertex | Self::Other(_) => None,
+        }
     }
 }
 
@@ -107,15 +116,14 @@ const MODES: [(&str, Mode); 8] = [
 impl Mode {
     /// What a word means.
     pub fn of(word: &str) -> Self {
-        let known = MODES.iter().find(|(own, _)| *own == word);
-        known.map_or_else(|| Self::Other(word.into()), |(_, mode)| mode.clone())
+        meaning(&MODES, word).unwrap_or_else(|| Self::Other(word.into()))
     }
 
     /// Its word.
     pub fn word(&self) -> &str {
         match self {
             Self::Other(word) => word,
-            known => MODES.iter().find(|(_, mode)| mode == known).map_or("NONE", |(word, _)| word),
+            known => word_for(&MODES, known),
         }
     }
 }

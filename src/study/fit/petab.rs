@@ -8,7 +8,7 @@ use super::observed::{Beside, Observed};
 use super::space::Space;
 use crate::error::Result;
 use crate::study::document::Spacing;
-use crate::study::paths::refused;
+use crate::study::paths::{refused, write_all};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -47,13 +47,7 @@ pub fn write_petab(
         (measurements, table(&measurement_rows(observed, &observable_ids))),
         (mapping, table(&names)),
     ];
-    let mut written = Vec::new();
-    for (name, text) in texts {
-        let path = folder.join(name);
-        std::fs::write(&path, text).map_err(|error| refused(&path, &error))?;
-        written.push(path);
-    }
-    Ok(written)
+    write_all(texts, folder)
 }
 
 /// Names as PEtab takes them, each once: letters, digits and underscores, no digit first.

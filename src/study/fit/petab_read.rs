@@ -3,7 +3,7 @@
 use super::petab::TABLES;
 use super::yaml::{Yaml, parse};
 use crate::error::{Error, Fault, Result, words};
-use crate::study::paths::{absolute, refused, relative};
+use crate::study::paths::{absolute, refused, relative, write_all};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -25,13 +25,7 @@ pub fn read_petab(problem: &Path, folder: &Path) -> Result<Vec<PathBuf>> {
     };
     let (fit, tables) = reader.fit(folder)?;
     std::fs::create_dir_all(folder).map_err(|error| refused(folder, &error))?;
-    let mut written = Vec::new();
-    for (name, text) in [("fit.toml".to_owned(), fit)].into_iter().chain(tables) {
-        let path = folder.join(name);
-        std::fs::write(&path, text).map_err(|error| refused(&path, &error))?;
-        written.push(path);
-    }
-    Ok(written)
+    write_all([("fit.toml".to_owned(), fit)].into_iter().chain(tables), folder)
 }
 
 /// A row of a table by the titles of its columns.

@@ -3,7 +3,7 @@
 use super::document::FitDocument;
 use super::observed::{Observed, observed};
 use super::space::Space;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::study::check::look_over;
 use crate::study::plan::Plan;
 use std::path::Path;
@@ -34,9 +34,17 @@ impl Prepared {
     pub fn new(document: FitDocument, folder: &Path, memory: Option<u64>) -> Result<Self> {
         let space = Space::of(&document)?;
         let starts = space.starts(document.fit.starts, document.fit.seed);
-        let looked = look_over(&document.study, &space.points(&space.to_be_tried(&starts)), memory)?;
+        let looked = look_over(&document.study, &space.points(&space.to_be_tried(&starts)), memory);
+        let looked = looked.map_err(told_once)?;
         let observed = observed(&document, &looked.some[0])?;
         let plan = Plan::new(&document.study, space.points(&starts), &looked.some[0], &looked.files, folder);
         Ok(Self { document, space, observed, starts, plan })
     }
+}
+
+/// What both bounds of a parameter are refused for alike is told at the first.
+fn told_once(error: Error) -> Error {
+    let Error::Input(mut faults) = error else { return error };
+    faults.dedup_by(|next, last| next.message == last.message);
+    Error::Input(faults)
 }

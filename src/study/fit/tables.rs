@@ -4,7 +4,7 @@ use super::identifiable::verdicts;
 use super::observed::Beside;
 use super::outcome::{Compared, Outcome};
 use crate::error::Result;
-use crate::study::paths::refused;
+use crate::study::paths::write_all;
 use crate::study::table::{Cells, TableColumn, csv_text};
 use crate::study::variation::titled;
 use serde_json::{Value, json};
@@ -24,13 +24,7 @@ pub fn write_tables(outcome: &Outcome, folder: &Path) -> Result<Vec<PathBuf>> {
     if outcome.parameters.iter().any(|one| one.profile.is_some()) {
         texts.push(("profiles.csv", csv_text(&profiles(outcome))));
     }
-    let mut written = Vec::new();
-    for (name, text) in texts {
-        let path = folder.join(name);
-        std::fs::write(&path, text).map_err(|error| refused(&path, &error))?;
-        written.push(path);
-    }
-    Ok(written)
+    write_all(texts, folder)
 }
 
 /// What was found, for programs.
