@@ -4,6 +4,7 @@
 //! eight cells at a time: a solve works on rows of 24 numbers. Small meshes keep the dense inverse (one product, no
 //! chains of dependent operations); larger ones an envelope Cholesky factor after a reverse Cuthill–McKee ordering.
 
+use super::envelope::{Envelope, products};
 use super::lanes::{BlockWork, LANES, Real, dispatch};
 use super::stiffness::StiffnessMatrix;
 
@@ -22,17 +23,6 @@ enum Method {
     /// Row-major inverse; rows and columns of held atoms are zero.
     Dense(Vec<f64>),
     Envelope(Envelope),
-}
-
-/// L of A = L Lᵀ in rows that start at their first non-zero column, in the order `order`.
-#[derive(Debug, Clone)]
-struct Envelope {
-    order: Vec<u32>,
-    first: Vec<u32>,
-    start: Vec<u32>,
-    /// Row i: columns first[i]..i, then one over the diagonal.
-    values: Vec<f64>,
-    held: Vec<u32>,
 }
 
 impl Factor {
@@ -55,22 +45,44 @@ impl Factor {
     pub fn solve(&self, width: usize, values: &mut [f64], scratch: &mut [f64]) {
         debug_assert_eq!(values.len(), width * self.atoms);
         match &self.method {
-            Method::Envelope(envelope) if width == 3 * LANES => {
-                dispatch(LANES, WideEnvelope { envelope, values, scratch });
-            }
             Method::Envelope(envelope) => envelope.solve(width, values, scratch),
             Method::Dense(inverse) if width == 3 * LANES => {
                 scratch.copy_from_slice(values);
                 dispatch(LANES, WideProduct { atoms: self.atoms, inverse, from: scratch, to: values });
             }
             Method::Dense(inverse) => {
-                scratch.copy_from_slice(values);
-                for (row, to) in inverse.chunks_exact(self.atoms).zip(values.chunks_exact_mut(width)) {
-                    to.fill(0.0);
-                    for (entry, from) in row.iter().zip(scratch.chunks_exact(width)) {
-                        to.iter_mut().zip(from).for_each(|(t, s)| *t += entry * s);
-                    }
-                }
+                dispatch(LANES, NarrowProduct { atoms: self.atoms, width, inverse, values, columns: scratch });
+            }
+        }
+    }
+}
+
+/// The product for a few right sides, each made a column.
+struct NarrowProduct<'a> {
+    atoms: usize,
+    width: usize,
+    inverse: &'a [f64],
+    values: &'a mut [f64],
+    columns: &'a mut [f64],
+}
+
+impl BlockWork for NarrowProduct<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<T: Real>(self, _: T::Token, _: usize) {
+        let Self { atoms, width, inverse, values, columns } = self;
+        for (atom, row) in values.chunks_exact(width).enumerate() {
+            row.iter().enumerate().for_each(|(c, value)| columns[c * atoms + atom] = *value);
+        }
+        for (row, to) in inverse.chunks_exact(atoms).zip(values.chunks_exact_mut(width)) {
+            let mut done = 0;
+            while done + 3 <= width {
+                let column = |c: usize| &columns[(done + c) * atoms..][..atoms];
+                to[done..done + 3].copy_from_slice(&products(row, [column(0), column(1), column(2)]));
+                done += 3;
+            }
+            for c in done..width {
+                [to[c]] = products(row, [&columns[c * atoms..][..atoms]]);
             }
         }
     }
@@ -110,188 +122,6 @@ impl BlockWork for WideProduct<'_> {
             }
         }
     }
-}
-
-struct WideEnvelope<'a> {
-    envelope: &'a Envelope,
-    values: &'a mut [f64],
-    scratch: &'a mut [f64],
-}
-
-impl BlockWork for WideEnvelope<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<T: Real>(self, token: T::Token, stride: usize) {
-        let width = 3 * stride;
-        let (values, scratch) = (T::view_mut(token, self.values), T::view_mut(token, self.scratch));
-        let e = self.envelope;
-        for (row, &atom) in e.order.iter().enumerate() {
-            let from = atom as usize * width;
-            scratch[row * width..(row + 1) * width].copy_from_slice(&values[from..from + width]);
-        }
-        for i in 0..e.order.len() {
-            let (row, inverse) = e.row(i);
-            let first = e.first[i] as usize;
-            for c in 0..width {
-                let mut sum = T::load(token, scratch[i * width + c]);
-                for (k, &l) in row.iter().enumerate() {
-                    sum -= T::load(token, scratch[(first + k) * width + c]) * l;
-                }
-                scratch[i * width + c] = (sum * inverse).raw();
-            }
-        }
-        for i in (0..e.order.len()).rev() {
-            let (row, inverse) = e.row(i);
-            let first = e.first[i] as usize;
-            for c in 0..width {
-                let value = T::load(token, scratch[i * width + c]) * inverse;
-                scratch[i * width + c] = value.raw();
-                for (k, &l) in row.iter().enumerate() {
-                    let at = (first + k) * width + c;
-                    scratch[at] = (T::load(token, scratch[at]) - value * l).raw();
-                }
-            }
-        }
-        values.fill(T::constant(token, 0.0).raw());
-        for (row, &atom) in e.order.iter().enumerate() {
-            let to = atom as usize * width;
-            values[to..to + width].copy_from_slice(&scratch[row * width..(row + 1) * width]);
-        }
-    }
-}
-
-impl Envelope {
-    fn new(stiffness: &StiffnessMatrix, diagonal: f64, scale: f64, held: &[bool]) -> Self {
-        let order = reverse_cuthill_mckee(stiffness, held);
-        let mut row_of = vec![u32::MAX; stiffness.atoms()];
-        for (row, &atom) in order.iter().enumerate() {
-            row_of[atom as usize] = row as u32;
-        }
-        let (mut first, mut start, mut values) = (Vec::new(), vec![0u32], Vec::new());
-        for (i, &atom) in order.iter().enumerate() {
-            let entries: Vec<(usize, f64)> = stiffness
-                .row(atom as usize)
-                .filter(|&(j, _)| row_of[j] != u32::MAX && row_of[j] as usize <= i)
-                .map(|(j, value)| (row_of[j] as usize, scale * value))
-                .collect();
-            let low = entries.iter().map(|&(j, _)| j).min().unwrap_or(i).min(i);
-            let at = values.len();
-            values.resize(at + i - low + 1, 0.0);
-            entries.iter().for_each(|&(j, value)| values[at + j - low] += value);
-            *values.last_mut().expect("a row has its diagonal") += diagonal;
-            first.push(low as u32);
-            start.push(values.len() as u32);
-        }
-        let held = (0..stiffness.atoms() as u32).filter(|&atom| held[atom as usize]).collect();
-        let mut envelope = Self { order, first, start, values, held };
-        envelope.factor();
-        envelope
-    }
-
-    /// Row i without its diagonal, and one over the diagonal.
-    #[inline(always)]
-    fn row(&self, i: usize) -> (&[f64], f64) {
-        let row = &self.values[self.start[i] as usize..self.start[i + 1] as usize];
-        (&row[..row.len() - 1], row[row.len() - 1])
-    }
-
-    /// Cholesky in place, the diagonal kept as its inverse.
-    fn factor(&mut self) {
-        for i in 0..self.order.len() {
-            let (done, rest) = self.values.split_at_mut(self.start[i] as usize);
-            let row = &mut rest[..(self.start[i + 1] - self.start[i]) as usize];
-            let low = self.first[i] as usize;
-            for j in low..i {
-                let other = &done[self.start[j] as usize..self.start[j + 1] as usize];
-                let from = low.max(self.first[j] as usize);
-                let mine = &row[from - low..j - low];
-                let theirs = &other[from - self.first[j] as usize..j - self.first[j] as usize];
-                let dot: f64 = mine.iter().zip(theirs).map(|(a, b)| a * b).sum();
-                row[j - low] = (row[j - low] - dot) * other[other.len() - 1];
-            }
-            let last = row.len() - 1;
-            let rest: f64 = row[..last].iter().map(|l| l * l).sum();
-            row[last] = 1.0 / (row[last] - rest).sqrt();
-        }
-    }
-
-    fn solve(&self, width: usize, values: &mut [f64], scratch: &mut [f64]) {
-        for (row, &atom) in self.order.iter().enumerate() {
-            let from = atom as usize * width;
-            scratch[row * width..(row + 1) * width].copy_from_slice(&values[from..from + width]);
-        }
-        for i in 0..self.order.len() {
-            let (row, inverse) = self.row(i);
-            let first = self.first[i] as usize;
-            let (before, rest) = scratch.split_at_mut(i * width);
-            let mine = &mut rest[..width];
-            for (l, theirs) in row.iter().zip(before[first * width..].chunks_exact(width)) {
-                mine.iter_mut().zip(theirs).for_each(|(a, b)| *a -= l * b);
-            }
-            mine.iter_mut().for_each(|a| *a *= inverse);
-        }
-        for i in (0..self.order.len()).rev() {
-            let (row, inverse) = self.row(i);
-            let first = self.first[i] as usize;
-            let (before, rest) = scratch.split_at_mut(i * width);
-            let mine = &mut rest[..width];
-            mine.iter_mut().for_each(|a| *a *= inverse);
-            for (l, theirs) in row.iter().zip(before[first * width..].chunks_exact_mut(width)) {
-                theirs.iter_mut().zip(mine.iter()).for_each(|(a, b)| *a -= l * b);
-            }
-        }
-        for (row, &atom) in self.order.iter().enumerate() {
-            let to = atom as usize * width;
-            values[to..to + width].copy_from_slice(&scratch[row * width..(row + 1) * width]);
-        }
-        for &atom in &self.held {
-            values[atom as usize * width..(atom as usize + 1) * width].fill(0.0);
-        }
-    }
-}
-
-/// An order of the free atoms that keeps neighbours close, so that the factor's rows are short.
-fn reverse_cuthill_mckee(stiffness: &StiffnessMatrix, held: &[bool]) -> Vec<u32> {
-    let atoms = stiffness.atoms();
-    let degree: Vec<usize> = (0..atoms).map(|i| stiffness.row(i).count()).collect();
-    let mut order: Vec<u32> = Vec::with_capacity(atoms);
-    let mut seen: Vec<bool> = held.to_vec();
-    while let Some(seed) = (0..atoms).filter(|&i| !seen[i]).min_by_key(|&i| (degree[i], i)) {
-        let start = farthest(stiffness, &seen, farthest(stiffness, &seen, seed));
-        let mut next = order.len();
-        order.push(start as u32);
-        seen[start] = true;
-        while next < order.len() {
-            let mut around: Vec<usize> =
-                stiffness.row(order[next] as usize).map(|(j, _)| j).filter(|&j| !seen[j]).collect();
-            around.sort_by_key(|&j| (degree[j], j));
-            for j in around {
-                seen[j] = true;
-                order.push(j as u32);
-            }
-            next += 1;
-        }
-    }
-    order.reverse();
-    order
-}
-
-/// The atom reached last by a breadth-first walk from `from`.
-fn farthest(stiffness: &StiffnessMatrix, barred: &[bool], from: usize) -> usize {
-    let mut seen = barred.to_vec();
-    let mut queue = std::collections::VecDeque::from([from]);
-    seen[from] = true;
-    let mut last = from;
-    while let Some(atom) = queue.pop_front() {
-        last = atom;
-        for (j, _) in stiffness.row(atom) {
-            if !seen[j] {
-                seen[j] = true;
-                queue.push_back(j);
-            }
-        }
-    }
-    last
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ pub mod barrier;
 pub mod bending;
 pub mod control;
 pub mod course;
+mod envelope;
 pub mod fibres;
 pub mod gravity;
 mod hinge;

@@ -5,7 +5,9 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
+use super::envelope::products;
 use super::implicit::Factor;
+use super::lanes::{BlockWork, LANES, Real, dispatch};
 use super::stiffness::StiffnessMatrix;
 
 /// Modes kept of a mesh.
@@ -104,13 +106,36 @@ fn softest(stiffness: &StiffnessMatrix, held: &[bool], free: &[usize]) -> Vec<Pa
 
 /// Gram and Schmidt, twice, over rows of `width` numbers an atom.
 fn orthonormalise(values: &mut [f64], width: usize) {
-    for column in 0..width {
-        for before in (0..column).chain(0..column) {
-            let along: f64 = values.chunks_exact(width).map(|row| row[column] * row[before]).sum();
-            values.chunks_exact_mut(width).for_each(|row| row[column] -= along * row[before]);
+    let atoms = values.len() / width;
+    let mut columns: Vec<f64> = (0..values.len()).map(|i| values[i % atoms * width + i / atoms]).collect();
+    dispatch(LANES, GramSchmidt { atoms, columns: &mut columns });
+    for (atom, row) in values.chunks_exact_mut(width).enumerate() {
+        row.iter_mut().enumerate().for_each(|(c, value)| *value = columns[c * atoms + atom]);
+    }
+}
+
+struct GramSchmidt<'a> {
+    atoms: usize,
+    columns: &'a mut [f64],
+}
+
+impl BlockWork for GramSchmidt<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<T: Real>(self, _: T::Token, _: usize) {
+        for start in (0..self.columns.len()).step_by(self.atoms) {
+            let (before, rest) = self.columns.split_at_mut(start);
+            let column = &mut rest[..self.atoms];
+            for _ in 0..2 {
+                for other in before.chunks_exact(self.atoms) {
+                    let [along] = products(column, [other]);
+                    column.iter_mut().zip(other).for_each(|(a, b)| *a -= along * b);
+                }
+            }
+            let [squares] = products(column, [&*column]);
+            let size = squares.sqrt();
+            column.iter_mut().for_each(|a| *a /= size);
         }
-        let size = values.chunks_exact(width).map(|row| row[column] * row[column]).sum::<f64>().sqrt();
-        values.chunks_exact_mut(width).for_each(|row| row[column] /= size);
     }
 }
 

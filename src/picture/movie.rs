@@ -133,9 +133,9 @@ impl Movie {
                 }
                 std::fs::create_dir_all(&*folder).map_err(|error| unwritable(folder, &error))?;
                 if let Some(first) = waiting.take() {
-                    first.save_frame(&folder.join("00001.png"))?;
+                    first.save_png(&folder.join("00001.png"))?;
                 }
-                image.save_frame(&folder.join(format!("{:05}.png", self.frames)))
+                image.save_png(&folder.join(format!("{:05}.png", self.frames)))
             }
         }
     }
