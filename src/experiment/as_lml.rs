@@ -14,6 +14,9 @@ pub fn loads_as_lml(model: &Model, cells: &[(usize, u32)]) -> (Loads, Vec<&'stat
     let (mut loads, mut untold) = (Vec::new(), Vec::new());
     for (kind, first) in cells.iter().filter_map(|(kind, first)| Some((model.kinds.get(*kind)?, *first))) {
         held(kind, first, &mut loads);
+        if kind.moved.iter().any(|moved| moved.rotation.is_some()) {
+            untold.push("atoms that turn");
+        }
         for force in &kind.forces {
             match force {
                 Force::Load(own) => forces(own, first, &mut loads),
@@ -51,26 +54,28 @@ fn forces(own: &load::Load, first: u32, loads: &mut Vec<Load>) {
     }
 }
 
-/// Atoms that are held or moved: one load for each set of axes and course.
+/// Atoms that are held or moved, but for those that turn: one load for each set of axes and course.
 fn held(kind: &Kind, first: u32, loads: &mut Vec<Load>) {
     let mut by_axes: BTreeMap<(Option<usize>, [bool; 3]), Vec<u32>> = BTreeMap::new();
     for (atom, factors) in (0..).zip(kind.held.as_chunks::<3>().0) {
         let axes = factors.map(|factor| factor == 0.0);
-        if axes != [false; 3] {
-            let course = kind.moved.iter().position(|moved| moved.atoms.binary_search(&atom).is_ok());
+        let of_atom = kind.moved.iter().find(|moved| moved.atoms.binary_search(&atom).is_ok());
+        let turns = of_atom.is_some_and(|moved| moved.rotation.is_some());
+        if axes != [false; 3] && !turns {
+            let course = kind.moved.iter().position(|moved| Some(moved) == of_atom);
             by_axes.entry((course, axes)).or_default().push(first + atom);
         }
     }
     for ((course, axes), atoms) in by_axes {
-        let moved = course.map(|number| &kind.moved[number]);
-        let along = |axis: usize| match moved.map_or(0.0, |moved| moved.direction[axis]) {
+        let line = course.and_then(|number| kind.moved[number].translation.as_ref());
+        let along = |axis: usize| match line.map_or(0.0, |line| line.direction[axis]) {
             _ if !axes[axis] => Component::Free,
             0.0 => Component::Null,
             along => Component::Number(along),
         };
         let directed = Some(Direction { components: [0, 1, 2].map(along), ..Direction::default() });
-        let (points, unit) = match moved {
-            Some(moved) => (moved.displacement.points().to_vec(), "micron"),
+        let (points, unit) = match line {
+            Some(line) => (line.displacement.points().to_vec(), "micron"),
             None => (vec![(0.0, 1.0)], "mm"),
         };
         loads.push(made(LoadKind::Translation, targets(&atoms), directed, points, unit));

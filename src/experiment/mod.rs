@@ -74,7 +74,7 @@ pub use loads::{Applied, Fibre, Fixed, Link, Load, Rest, Spread};
 pub use mechanics::{Barrier, Form, Mechanics, Reaction, ShapeMemory, ShapeStrength, Springs};
 pub use membrane::{BendingRest, Law, Membrane};
 pub use motility::{Attraction, Brownian, Motility, Space};
-pub use moved::Moved;
+pub use moved::{Moved, Rotation};
 pub use pictures::{FieldLine, MeasureCurve, Picture, Plot, PlotKind, PlotTable, View};
 pub use placement::Placement;
 pub use population::{Added, Removed};
@@ -84,7 +84,7 @@ pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use volume::{VolumeControl, VolumeRule};
 
-use crate::recorded::{OnDemand, names_by_type, series_of_moved};
+use crate::recorded::{Motion, OnDemand, names_by_type, series_of_moved};
 use crate::units::Time;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -160,15 +160,15 @@ impl Experiment {
         let (word, name) = series.split_once('.').unwrap_or_default();
         // With the name of the type before it where several types have such files.
         let number = name.rsplit('.').next().and_then(|name| name.strip_prefix("lml"));
-        ["load", "displacement", "force"].contains(&word)
+        ["load", "displacement", "force", "angle", "torque"].contains(&word)
             && number.is_some_and(|number| number.parse::<u32>().is_ok())
             && self.cells.values().any(|cell| cell.applied.loads_file.is_some())
     }
 
     /// Names of the series of what is moved.
     pub(super) fn series_of_moved(&self) -> Vec<String> {
-        let own = |cell: &CellType| cell.applied.moved.iter().map(|moved| moved.name.clone()).collect();
-        let types: Vec<(&str, Vec<String>)> =
+        let own = |cell: &CellType| cell.applied.moved.iter().map(Moved::motion).collect();
+        let types: Vec<(&str, Vec<Motion>)> =
             self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
         series_of_moved(&types).into_iter().map(|(name, _)| name).collect()
     }

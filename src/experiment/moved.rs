@@ -3,9 +3,12 @@
 use super::compile::{course, unit};
 use super::selection::Selection;
 use super::semantics::Check;
+use crate::Vec3;
 use crate::mechanics::moved;
-use crate::units::Length;
+use crate::recorded::Motion;
+use crate::units::{Angle, Length};
 use crate::values::{Axis, Course};
+use nalgebra::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +16,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("unevaluatedProperties" = false))]
 pub struct Moved {
-    /// Names the series `displacement.NAME` and `force.NAME` in the result; with the name of the type in between where several types have
+    /// Names the series `displacement.NAME` and `force.NAME` (`angle.NAME` and `torque.NAME`) in the result; with the name of the type in between where several types have
     /// one of this name.
     #[schemars(extend("x-text" = "name"))]
     pub name: String,
@@ -21,13 +24,30 @@ pub struct Moved {
     #[serde(flatten)]
     pub selection: Selection,
     /// The direction in which they go; its length does not matter.
-    pub direction: [f64; 3],
-    /// How far they are from where they began, in the course of time: 0 at the start.
-    pub displacement: Course<Length>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub direction: Option<[f64; 3]>,
+    /// How far they are from where they began, in the course of time: 0 at the start. None where they only turn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<Course<Length>>,
+    /// How they turn about an axis meanwhile; the series are `angle.NAME` and `torque.NAME`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<Rotation>,
     /// The axes along which nothing else moves them; along others they are free.
     #[serde(default = "all_axes")]
     #[schemars(length(min = 1))]
     pub axes: Vec<Axis>,
+}
+
+/// A turn about an axis, which goes where the atoms go.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// The axis; its length does not matter.
+    pub axis: [f64; 3],
+    /// A point of the scene that the axis goes through at the start.
+    pub through: [Length; 3],
+    /// By how much they have turned, right-handed, in the course of time: 0 at the start.
+    pub angle: Course<Angle>,
 }
 
 fn all_axes() -> Vec<Axis> {
@@ -38,8 +58,20 @@ impl Moved {
     /// What it means for these atoms.
     pub(super) fn of_atoms(&self, mut atoms: Vec<u32>) -> moved::Moved {
         atoms.sort_unstable();
-        let (direction, displacement) = (unit(self.direction), course(self.displacement.points()));
-        moved::Moved { name: self.name.clone(), atoms, direction, displacement }
+        let translation = self.direction.zip(self.displacement.as_ref()).map(|(along, displacement)| {
+            moved::Translation { direction: unit(along), displacement: course(displacement.points()) }
+        });
+        let rotation = self.rotation.as_ref().map(|turn| moved::Rotation {
+            axis: Unit::new_normalize(unit(turn.axis)),
+            through: Vec3::from(turn.through.map(|length| length.value())),
+            angle: course(turn.angle.points()),
+        });
+        moved::Moved { name: self.name.clone(), atoms, translation, rotation }
+    }
+
+    /// What of it is recorded.
+    pub(super) fn motion(&self) -> Motion {
+        Motion { name: self.name.clone(), goes: self.displacement.is_some(), turns: self.rotation.is_some() }
     }
 }
 
@@ -49,15 +81,9 @@ impl Check<'_> {
         for (index, moved) in list.iter().enumerate() {
             let path = format!("{path}.moved[{index}]");
             self.selection(&path, &moved.selection);
-            self.direction(&format!("{path}.direction"), moved.direction);
-            let (key, points) = (format!("{path}.displacement"), moved.displacement.points());
-            self.course(&key, &points);
-            self.along_axes(&path, moved);
-            let begins = points.first().map_or(0.0, |_| course(points.clone()).at(0.0));
-            if begins != 0.0 {
-                let message = format!("`{key}` is {begins} um at 0 s");
-                let help = "atoms begin where they are: let it begin with [\"0 s\", \"0 um\"]";
-                self.fault(&key, "not 0 at the start", message, help);
+            self.goes(&path, moved);
+            if let Some(turn) = &moved.rotation {
+                self.turns(&path, moved, turn);
             }
             if let Some(other) = list[..index].iter().position(|other| other.name == moved.name) {
                 let message = format!("`{path}.name` is the name of moved atoms {other} too");
@@ -67,10 +93,58 @@ impl Check<'_> {
         }
     }
 
+    /// What goes has a direction and a course, and what has neither turns.
+    fn goes(&mut self, path: &str, moved: &Moved) {
+        match (moved.direction, &moved.displacement) {
+            (Some(along), Some(displacement)) => {
+                self.direction(&format!("{path}.direction"), along);
+                self.along_axes(path, moved, along);
+                self.begins_at_zero(&format!("{path}.displacement"), displacement.points(), "um");
+            }
+            (None, None) if moved.rotation.is_some() => {}
+            (None, None) => {
+                let message = format!("`{path}` neither goes nor turns");
+                let help = "give `direction` and `displacement`, or `rotation`; atoms that rest are `fixed`";
+                self.fault(path, "moves nothing", message, help);
+            }
+            (along, _) => {
+                let (has, lacks) =
+                    if along.is_some() { ("direction", "displacement") } else { ("displacement", "direction") };
+                let message = format!("`{path}` has `{has}` and no `{lacks}`");
+                self.fault(
+                    &format!("{path}.{has}"),
+                    "lacks its other half",
+                    message,
+                    &format!("give `{lacks}` too, or leave `{has}` out"),
+                );
+            }
+        }
+    }
+
+    fn turns(&mut self, path: &str, moved: &Moved, turn: &Rotation) {
+        self.direction(&format!("{path}.rotation.axis"), turn.axis);
+        self.begins_at_zero(&format!("{path}.rotation.angle"), turn.angle.points(), "rad");
+        if all_axes().iter().any(|axis| !moved.axes.contains(axis)) {
+            let message = format!("`{path}` turns atoms that `axes` leaves free along an axis");
+            let help = "leave `axes` out: what turns is moved along all of them";
+            self.fault(&format!("{path}.axes"), "lacks an axis", message, help);
+        }
+    }
+
+    fn begins_at_zero(&mut self, key: &str, points: Vec<(f64, f64)>, unit: &str) {
+        self.course(key, &points);
+        let begins = points.first().map_or(0.0, |_| course(points.clone()).at(0.0));
+        if begins != 0.0 {
+            let message = format!("`{key}` is {begins} {unit} at 0 s");
+            let help = format!("atoms begin where they are: let it begin with [\"0 s\", \"0 {unit}\"]");
+            self.fault(key, "not 0 at the start", message, &help);
+        }
+    }
+
     /// What is free along an axis cannot be moved along it.
-    fn along_axes(&mut self, path: &str, moved: &Moved) {
+    fn along_axes(&mut self, path: &str, moved: &Moved, along: [f64; 3]) {
         for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y"), (Axis::Z, "z")] {
-            if moved.direction[axis as usize] != 0.0 && !moved.axes.contains(&axis) {
+            if along[axis as usize] != 0.0 && !moved.axes.contains(&axis) {
                 let message = format!("`{path}.direction` goes along {name}, along which `axes` leaves the atoms free");
                 let help = format!("add \"{name}\" to the axes, or let the direction be 0 along it");
                 self.fault(&format!("{path}.axes"), "lacks an axis", message, help);

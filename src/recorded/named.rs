@@ -8,12 +8,29 @@ pub fn names_by_type(types: &[(&str, Vec<String>)]) -> Vec<String> {
     all.map(|(kind, name)| if owners(name) > 1 { format!("{kind}.{name}") } else { name.clone() }).collect()
 }
 
-/// Names and units of the series of what is moved, `displacement.NAME` and `force.NAME`; of each type its name and the names of what is moved
-/// of it.
-pub fn series_of_moved(types: &[(&str, Vec<String>)]) -> Vec<(String, &'static str)> {
-    let series =
-        |name: String| [("displacement", "um"), ("force", "pN")].map(|(word, unit)| (format!("{word}.{name}"), unit));
-    names_by_type(types).into_iter().flat_map(series).collect()
+/// Atoms that are moved on courses, as the names of their series follow from them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Motion {
+    /// Their name.
+    pub name: String,
+    /// Whether they go along a direction.
+    pub goes: bool,
+    /// Whether they turn about an axis.
+    pub turns: bool,
+}
+
+/// Names and units of the series of what is moved: `displacement.NAME` and `force.NAME` of what goes, `angle.NAME` and `torque.NAME` of what
+/// turns. Of each type its name and what is moved of it.
+pub fn series_of_moved(types: &[(&str, Vec<Motion>)]) -> Vec<(String, &'static str)> {
+    let own = |motions: &[Motion]| motions.iter().map(|motion| motion.name.clone()).collect();
+    let names: Vec<(&str, Vec<String>)> = types.iter().map(|(kind, motions)| (*kind, own(motions))).collect();
+    let motions = types.iter().flat_map(|(_, motions)| motions);
+    let series = |(name, motion): (String, &Motion)| {
+        let going = [("displacement", "um"), ("force", "pN")].into_iter().filter(|_| motion.goes);
+        let turning = [("angle", "rad"), ("torque", "pN um")].into_iter().filter(|_| motion.turns);
+        going.chain(turning).map(|(word, unit)| (format!("{word}.{name}"), unit)).collect::<Vec<_>>()
+    };
+    names_by_type(&names).into_iter().zip(motions).flat_map(series).collect()
 }
 
 #[cfg(test)]
@@ -25,8 +42,11 @@ mod tests {
         let own = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
         let types = [("plate", own(&["down", "hold"])), ("cell", own(&["hold"]))];
         assert_eq!(names_by_type(&types), ["down", "plate.hold", "cell.hold"]);
+        let motion = |name: &str, turns: bool| Motion { name: name.to_owned(), goes: !turns, turns };
+        let types =
+            [("plate", vec![motion("down", false), motion("hold", false)]), ("cell", vec![motion("hold", true)])];
         let series = series_of_moved(&types);
         assert_eq!(series[..2], [("displacement.down".to_owned(), "um"), ("force.down".to_owned(), "pN")]);
-        assert_eq!(series[5], ("force.cell.hold".to_owned(), "pN"));
+        assert_eq!(series[4..], [("angle.cell.hold".to_owned(), "rad"), ("torque.cell.hold".to_owned(), "pN um")]);
     }
 }

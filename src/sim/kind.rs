@@ -217,7 +217,7 @@ impl Kind {
 pub fn kinks(kinds: &[Kind]) -> Vec<f64> {
     let of_kind = |kind: &Kind| -> Vec<f64> {
         let volume = kind.volume.course().into_iter().flat_map(Course::kinks);
-        let moved = kind.moved.iter().flat_map(|moved| moved.displacement.kinks());
+        let moved = kind.moved.iter().flat_map(Moved::courses).flat_map(Course::kinks);
         kind.forces.iter().flat_map(Force::kinks).chain(volume).chain(moved).collect()
     };
     let mut kinks: Vec<f64> = kinds.iter().flat_map(of_kind).filter(|kink| *kink > 0.0).collect();

@@ -225,7 +225,7 @@ impl Step<'_> {
         let scene = planes::Scene { model, kind, system: *system, stage, gamma, share: share_of_stage(order) };
         planes::correct_block(&scene, start, first, gradient, swell, target, y, pressure, touch);
         if let Some(displacements) = &self.displacements {
-            displacements.set_increments(stage, y);
+            displacements.set_increments(stage, start, y);
         }
         if let Some(on_held) = &mut block.on_held {
             add_pressure_on_held(kind, block.start, (block.pressure, share_of_stage(order)), on_held, spare);

@@ -4,6 +4,7 @@ use super::chemistry::{ChemistryState, advance_systems_to};
 use super::constraints::enforce_constraints;
 use super::model::Model;
 use super::motility::advance_behaviours;
+use super::moved::Displacements;
 use super::state::{KindState, State};
 use super::targets::measure_volumes;
 use super::trouble::Trouble;
@@ -26,6 +27,7 @@ pub fn state_within(model: &Model, to: &mut State, time: f64, ws: &mut Workspace
     let share = (time - from.time) / (to.time - from.time);
     let mut within = State { time, ..to.clone() };
     within.kinds.iter_mut().zip(&from.kinds).for_each(|(now, from)| now.go_back_to(from, share));
+    put_on_courses(model, &from, &mut within);
     within.chemistry.go_back_to(&from.chemistry, share);
     follow_walks(model, (&from, to.time), &mut within, ws);
     advance_systems_to(model, (&from.chemistry, &to.chemistry), &mut within, &mut ws.chemistry);
@@ -35,6 +37,17 @@ pub fn state_within(model: &Model, to: &mut State, time: f64, ws: &mut Workspace
     measure_volumes(model, time, &within, ws);
     enforce_constraints(model, time, &mut within, ws)?;
     Ok(within)
+}
+
+/// Atoms that are moved are on their courses, which leave the line between the ends of the step where they turn.
+fn put_on_courses(model: &Model, from: &State, within: &mut State) {
+    let times = [from.time, within.time];
+    for ((kind, from), now) in model.kinds.iter().zip(&from.kinds).zip(&mut within.kinds) {
+        let Some(displacements) = Displacements::of(kind, times, 1.0) else { continue };
+        let blocks =
+            from.positions.chunks_exact(kind.block_len()).zip(now.positions.chunks_exact_mut(kind.block_len()));
+        blocks.for_each(|(start, x)| displacements.put_from(start, x));
+    }
 }
 
 /// Moves cells from the line between the ends of the step to where their walks have led them: where nothing is in their way they go by what

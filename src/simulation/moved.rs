@@ -2,30 +2,44 @@
 
 use crate::Vec3;
 use crate::mechanics::moved::Moved;
-use crate::recorded::series_of_moved;
+use crate::recorded::{Motion, series_of_moved};
 use crate::sim::{Kind, KindState, Model, State};
 
 /// Names and units of their series.
 pub fn names(model: &Model) -> Vec<(String, String)> {
-    let own = |kind: &Kind| kind.moved.iter().map(|moved| moved.name.clone()).collect();
-    let types: Vec<(&str, Vec<String>)> = model.kinds.iter().map(|kind| (kind.name.as_str(), own(kind))).collect();
+    let own = |kind: &Kind| kind.moved.iter().map(motion).collect();
+    let types: Vec<(&str, Vec<Motion>)> = model.kinds.iter().map(|kind| (kind.name.as_str(), own(kind))).collect();
     series_of_moved(&types).into_iter().map(|(name, unit)| (name, unit.to_owned())).collect()
 }
 
-/// Adds their values at this instant; the force is that on the atoms of all cells of the type together, along the direction, in the mean over
-/// the last step.
+fn motion(moved: &Moved) -> Motion {
+    Motion { name: moved.name.clone(), goes: moved.translation.is_some(), turns: moved.rotation.is_some() }
+}
+
+/// Adds their values at this instant: how far they have gone and turned, and the force along the direction and the torque about the axis that this
+/// takes, in the mean over the last step on the atoms of all cells of the type together.
 pub fn record(model: &Model, state: &State, values: &mut Vec<f64>) {
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
         for moved in &kind.moved {
-            values.extend([moved.displacement.at(state.time), force_on(kind, now, moved)]);
+            let (force, torque) = force_and_torque(kind, now, moved, state.time);
+            if let Some(line) = &moved.translation {
+                values.extend([line.displacement.at(state.time), force.dot(&line.direction)]);
+            }
+            if let Some(turn) = &moved.rotation {
+                values.extend([turn.angle.at(state.time), torque.dot(&turn.axis)]);
+            }
         }
     }
 }
 
-fn force_on(kind: &Kind, now: &KindState, moved: &Moved) -> f64 {
-    let of_cell = |cell: usize| {
-        let own = now.balance.get(cell * kind.atoms()..(cell + 1) * kind.atoms()).unwrap_or_default();
-        moved.atoms.iter().filter_map(|atom| own.get(*atom as usize)).map(|atom| Vec3::from(atom.held)).sum::<Vec3>()
+/// Force (pN) on the atoms, and torque (pN·µm) about a point of the axis where it is now.
+fn force_and_torque(kind: &Kind, now: &KindState, moved: &Moved, time: f64) -> (Vec3, Vec3) {
+    let centre = moved.centre(time);
+    let of_atom = |cell: usize, atom: usize| {
+        let held = Vec3::from(now.balance.get(cell * kind.atoms() + atom)?.held);
+        Some((held, (now.position(kind, cell, atom) - centre).cross(&held)))
     };
-    (0..now.cells()).map(of_cell).sum::<Vec3>().dot(&moved.direction)
+    let all = (0..now.cells()).flat_map(|cell| moved.atoms.iter().map(move |atom| (cell, *atom as usize)));
+    all.filter_map(|(cell, atom)| of_atom(cell, atom))
+        .fold((Vec3::zeros(), Vec3::zeros()), |(force, torque), own| (force + own.0, torque + own.1))
 }

@@ -10,7 +10,7 @@ use crate::Vec3;
 use crate::error::{Error, Fault};
 use crate::geometry;
 use crate::mechanics::load::Load;
-use crate::mechanics::moved::Moved;
+use crate::mechanics::moved::{Moved, Translation};
 use crate::physical_model::lml::{self, Component, LoadKind, Loads, Target};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -80,8 +80,8 @@ impl On<'_> {
                 return Err(self.fault(load, "is of no known kind", help));
             }
             LoadKind::Rotation => {
-                let help = "displacements are along straight lines; turn the mesh at the start by `orientation`";
-                return Err(self.fault(load, "turns atoms, which no load here can", help));
+                let help = "turn them by `moved` with a `rotation` in the document, which says about which axis; turn the mesh at the start by `orientation`";
+                return Err(self.fault(load, "turns atoms, and does not say about which point", help));
             }
             _ => {}
         }
@@ -175,7 +175,8 @@ impl On<'_> {
         }
         let (name, atoms) = (format!("lml{}", number + 1), atoms.iter().copied().collect());
         let axes = (0..3).filter(|axis| components[*axis] != Component::Free).collect();
-        self.done.moved.push((Moved { name, atoms, direction: along.normalize(), displacement }, axes));
+        let translation = Some(Translation { direction: along.normalize(), displacement });
+        self.done.moved.push((Moved { name, atoms, translation, rotation: None }, axes));
         Ok(())
     }
 
