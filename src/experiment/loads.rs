@@ -2,6 +2,7 @@
 
 use super::compile::{Builder, course, unit};
 use super::moved::Moved;
+use super::rigid::Trap;
 use super::selection::{Linked, Selection};
 use super::semantics::Check;
 use crate::geometry;
@@ -26,6 +27,9 @@ pub struct Applied {
     /// Forces applied to some atoms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<Load>,
+    /// Springs that draw the bodies of a rigid type to points.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub traps: Vec<Trap>,
     /// A file of loads in LML, relative to the document, that act and hold besides. Its atoms are those of the PML file that the mesh is of, or the
     /// atoms of the mesh by number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -193,6 +197,7 @@ impl Applied {
             let load = load::Load::new(&load.name, shares, direction, course(load.force.points()));
             to.forces.push(mechanics::Force::Load(load));
         }
+        to.forces.extend(self.traps.iter().map(|trap| mechanics::Force::Trap(trap.compiled())));
         for (i, fibre) in self.fibres.iter().enumerate() {
             let pairs = to.pairs(&format!("fibres[{i}]"), &fibre.linked);
             to.drawn.extend(&pairs);

@@ -2,6 +2,7 @@
 
 use super::compile::Builder;
 use super::membrane::Membrane;
+use super::rigid::Rigid;
 use super::selection::Selection;
 use super::volume::VolumeControl;
 use crate::geometry;
@@ -34,6 +35,9 @@ pub struct Mechanics {
     /// A spring on every edge of the mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub springs: Option<Springs>,
+    /// The cell never changes its shape: a tool, or a bead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rigid: Option<Rigid>,
     /// Keeps facets from collapsing and folding; does nothing in ordinary deformation.
     pub barrier: Barrier,
     /// What happens to the enclosed volume.

@@ -49,6 +49,7 @@ mod placement;
 mod population;
 mod pseudopods;
 mod read;
+mod rigid;
 mod scene;
 mod schema;
 mod selection;
@@ -79,12 +80,13 @@ pub use pictures::{FieldLine, MeasureCurve, Picture, Plot, PlotKind, PlotTable, 
 pub use placement::Placement;
 pub use population::{Added, Removed};
 pub use pseudopods::{ContactInhibition, InhibitedBy, PodFibres, Pseudopods};
+pub use rigid::{Rigid, Trap};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
 pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use volume::{VolumeControl, VolumeRule};
 
-use crate::recorded::{Motion, OnDemand, names_by_type, series_of_moved};
+use crate::recorded::{Motion, OnDemand, names_by_type, series_of_moved, series_of_traps};
 use crate::units::Time;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -171,6 +173,14 @@ impl Experiment {
         let types: Vec<(&str, Vec<Motion>)> =
             self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
         series_of_moved(&types).into_iter().map(|(name, _)| name).collect()
+    }
+
+    /// Names of the series of traps.
+    pub(super) fn series_of_traps(&self) -> Vec<String> {
+        let own = |cell: &CellType| cell.applied.traps.iter().map(|trap| trap.name.clone()).collect();
+        let types: Vec<(&str, Vec<String>)> =
+            self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
+        series_of_traps(&types)
     }
 
     /// Names of the series of loads.

@@ -107,16 +107,8 @@ impl Check<'_> {
                 let help = "give `direction` and `displacement`, or `rotation`; atoms that rest are `fixed`";
                 self.fault(path, "moves nothing", message, help);
             }
-            (along, _) => {
-                let (has, lacks) =
-                    if along.is_some() { ("direction", "displacement") } else { ("displacement", "direction") };
-                let message = format!("`{path}` has `{has}` and no `{lacks}`");
-                self.fault(
-                    &format!("{path}.{has}"),
-                    "lacks its other half",
-                    message,
-                    &format!("give `{lacks}` too, or leave `{has}` out"),
-                );
+            (along, displacement) => {
+                self.both(path, [("direction", along.is_some()), ("displacement", displacement.is_some())]);
             }
         }
     }

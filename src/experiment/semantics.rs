@@ -37,6 +37,7 @@ pub(super) fn check(document: &Document) -> (Vec<Fault>, Vec<Late>) {
         check.pseudopods(&path, cell);
         check.applied(&path, &cell.applied);
         check.moved_by_scheme(&path, cell);
+        check.rigid(&path, cell, &document.experiment);
         if let Some(turn) = &cell.orientation {
             check.direction(&format!("{path}.orientation.axis"), turn.axis);
         }
@@ -123,7 +124,7 @@ impl Check<'_> {
         let with = self.document.experiment.on_demand();
         let (pairs, of_cells) = (self.series_of_pairs(), cell_series(with).collect::<Vec<String>>());
         let experiment = &self.document.experiment;
-        let loads = [experiment.series_of_loads(), experiment.series_of_moved()].concat();
+        let loads = [experiment.series_of_loads(), experiment.series_of_moved(), experiment.series_of_traps()].concat();
         let contact = self.document.experiment.contact.as_ref();
         let contacts = contact.is_some();
         let of_model = contact.into_iter().flat_map(|contact| contact_quantities(contact.recorded()));

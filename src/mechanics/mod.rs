@@ -32,6 +32,7 @@ pub mod stiffness;
 pub mod sum;
 pub mod tangent;
 pub mod tension;
+pub mod trap;
 pub mod volume;
 
 use crate::Vec3;
@@ -68,6 +69,8 @@ pub enum Force {
     Gravity(gravity::Gravity),
     /// A pull of every atom to a point.
     Attraction(attraction::Attraction),
+    /// A spring from the centre of a rigid body to a point.
+    Trap(trap::Trap),
 }
 
 /// The kinds of forces that chemistry or a program may set, in the order in which messages list them.
@@ -80,14 +83,14 @@ impl Force {
         match self {
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => true,
             Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) => true,
-            Self::Load(_) | Self::Fibres(_) | Self::Gravity(_) | Self::Attraction(_) => false,
+            Self::Load(_) | Self::Fibres(_) | Self::Gravity(_) | Self::Attraction(_) | Self::Trap(_) => false,
         }
     }
 
     /// Whether something outside of the cell exerts it: what a cell does to itself has neither sum nor torque.
     pub fn is_outer(&self) -> bool {
         match self {
-            Self::Load(_) | Self::Gravity(_) | Self::Attraction(_) => true,
+            Self::Load(_) | Self::Gravity(_) | Self::Attraction(_) | Self::Trap(_) => true,
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) | Self::Ordering(_) => false,
             Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) | Self::Fibres(_) => false,
         }
@@ -108,6 +111,7 @@ impl Force {
         match self {
             Self::Load(force) => Some(&force.force),
             Self::Fibres(force) => Some(&force.activation),
+            Self::Trap(force) => force.course(),
             _ => None,
         }
     }
@@ -139,7 +143,8 @@ impl Force {
             Self::Barrier(force) => force.add_stiffness(matrix),
             Self::Fibres(force) => force.add_stiffness(matrix),
             Self::Attraction(force) => force.add_stiffness(matrix),
-            Self::Load(_) | Self::Gravity(_) => {}
+            // What a trap does to a body as a whole is in the step beside K, eq. (rigid.4).
+            Self::Load(_) | Self::Gravity(_) | Self::Trap(_) => {}
         }
     }
 
@@ -169,7 +174,7 @@ impl Force {
         match self {
             Self::Fibres(force) => Some(force.largest_stiffness()),
             Self::Attraction(force) => Some(force.stiffness),
-            Self::Load(_) | Self::Gravity(_) => Some(0.0),
+            Self::Load(_) | Self::Gravity(_) | Self::Trap(_) => Some(0.0),
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => None,
             Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) => None,
         }
@@ -181,6 +186,7 @@ impl Force {
             Self::Load(force) => force.strength(context.time, set),
             Self::Fibres(force) => force.activation(context.time, set),
             Self::Gravity(_) => [context.mass; LANES],
+            Self::Trap(force) => [force.gone(context.time); LANES],
             _ => [1.0; LANES],
         }
     }
@@ -202,6 +208,7 @@ impl Force {
             Self::Fibres(force) => force.add_forces(strength, x, f),
             Self::Gravity(force) => force.add_forces(strength, x, f),
             Self::Attraction(force) => force.add_forces(x, f),
+            Self::Trap(force) => force.add_forces(strength, x, f),
         }
     }
 }

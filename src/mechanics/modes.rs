@@ -57,6 +57,15 @@ impl Modes {
     }
 }
 
+impl Modes {
+    /// Those of a rigid body: it moves as a whole, held by springs of this stiffness an atom (pN/µm), and in no other shape.
+    pub fn rigid(atoms: usize, stiffness: f64) -> Self {
+        let whole = std::array::from_fn(|number| if number == 0 { 1.0 / (atoms as f64).sqrt() } else { 0.0 });
+        let stiffness = std::array::from_fn(|number| if number == 0 { stiffness } else { 0.0 });
+        Self { shapes: vec![whole; atoms], stiffness, rest: None }
+    }
+}
+
 /// Stiffness and shape of a mode over the free atoms.
 type Pair = (f64, Vec<f64>);
 

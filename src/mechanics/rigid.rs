@@ -75,18 +75,29 @@ impl<T: Real> RigidFrame<T> {
     }
 }
 
-/// Splits `field` of a block: what stays in it is the deforming part; its rigid part, scaled, goes to `rigid`. `turning` is what becomes of its
-/// rotation there, a matrix for each cell as a block has three atoms, or empty where nothing does.
-pub fn split_block(
-    lanes: usize,
-    atoms: usize,
-    x: &[f64],
-    field: &mut [f64],
-    rigid: &mut [f64],
-    scale: f64,
-    turning: &[f64],
-) {
-    dispatch(lanes, Split { atoms, x, field, rigid, scale, turning });
+/// How cells give way as a whole.
+#[derive(Debug, Clone, Copy)]
+pub struct Whole<'a> {
+    /// What becomes of a field that moves them as a whole.
+    pub mobility: f64,
+    /// What is left of its mean before that.
+    pub going: f64,
+    /// What is left of its rotation.
+    pub turning: f64,
+    /// What becomes of its rotation, a matrix for each cell as a block has three atoms, or empty where nothing does.
+    pub turned: &'a [f64],
+}
+
+impl Whole<'_> {
+    /// As drag alone lets cells go and turn.
+    pub fn free(mobility: f64) -> Self {
+        Self { mobility, going: 1.0, turning: 1.0, turned: &[] }
+    }
+}
+
+/// Splits `field` of a block: what stays in it is the deforming part; its rigid part, scaled, goes to `rigid`.
+pub fn split_block(lanes: usize, atoms: usize, x: &[f64], field: &mut [f64], rigid: &mut [f64], whole: Whole) {
+    dispatch(lanes, Split { atoms, x, field, rigid, whole });
 }
 
 struct Split<'a> {
@@ -94,8 +105,7 @@ struct Split<'a> {
     x: &'a [f64],
     field: &'a mut [f64],
     rigid: &'a mut [f64],
-    scale: f64,
-    turning: &'a [f64],
+    whole: Whole<'a>,
 }
 
 impl BlockWork for Split<'_> {
@@ -112,17 +122,15 @@ impl BlockWork for Split<'_> {
             };
             let mut field = VectorsMut::<T>::new(token, T::view_mut(token, self.field), stride, part);
             let mut rigid = VectorsMut::<T>::new(token, T::view_mut(token, self.rigid), stride, part);
-            for atom in 0..self.atoms {
-                let moved = frame.at(x.get(atom), mean, spin);
-                field.sub(atom, moved);
-                rigid.set(atom, moved.scaled(self.scale));
+            (0..self.atoms).for_each(|atom| field.sub(atom, frame.at(x.get(atom), mean, spin)));
+            let mut spin = spin;
+            if !self.whole.turned.is_empty() {
+                let rows = Vectors::<T>::new(token, T::view(token, self.whole.turned), stride, part);
+                spin = V3 { x: rows.get(0).dot(spin), y: rows.get(1).dot(spin), z: rows.get(2).dot(spin) };
             }
-            if !self.turning.is_empty() {
-                let rows = Vectors::<T>::new(token, T::view(token, self.turning), stride, part);
-                let spin = V3 { x: rows.get(0).dot(spin), y: rows.get(1).dot(spin), z: rows.get(2).dot(spin) };
-                for atom in 0..self.atoms {
-                    rigid.set(atom, frame.at(x.get(atom), mean, spin).scaled(self.scale));
-                }
+            let (mean, spin) = (mean.scaled(self.whole.going), spin.scaled(self.whole.turning));
+            for atom in 0..self.atoms {
+                rigid.set(atom, frame.at(x.get(atom), mean, spin).scaled(self.whole.mobility));
             }
         }
     }

@@ -33,6 +33,12 @@ pub fn series_of_moved(types: &[(&str, Vec<Motion>)]) -> Vec<(String, &'static s
     names_by_type(&names).into_iter().zip(motions).flat_map(series).collect()
 }
 
+/// Names of the series of traps, in pN: `trap_x.NAME`, `trap_y.NAME` and `trap_z.NAME`. Of each type its name and the names of its traps.
+pub fn series_of_traps(types: &[(&str, Vec<String>)]) -> Vec<String> {
+    let series = |name: String| ["x", "y", "z"].map(|axis| format!("trap_{axis}.{name}"));
+    names_by_type(types).into_iter().flat_map(series).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

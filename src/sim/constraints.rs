@@ -1,5 +1,5 @@
 //! The stage that makes constraints exact after the atoms moved: planes, the shapes of virtual adhesives, and the volume of
-//! every cell, which comes last.
+//! every cell, which comes last. Rigid bodies get back their shape.
 
 use rayon::prelude::*;
 
@@ -7,6 +7,7 @@ use super::contact::settle_adhesives;
 use super::kind::VolumeRule;
 use super::model::Model;
 use super::projection::{ProjectScratch, project_cell};
+use super::rigid::make_rigid;
 use super::state::State;
 use super::trouble::Trouble;
 use super::workspace::{KindScratch, Workspace};
@@ -32,13 +33,17 @@ pub fn make_exact(model: &Model, time: f64, from: &State, to: &mut State, ws: &m
     enforce_constraints(model, time, to, ws)
 }
 
-/// Puts atoms back outside the planes and every exact volume back on its target.
+/// Puts atoms back outside the planes, every exact volume back on its target, and rigid bodies back to their shape.
 ///
 /// # Errors
 /// As [`make_exact`].
 pub fn enforce_constraints(model: &Model, time: f64, to: &mut State, ws: &mut Workspace) -> Result<(), Trouble> {
     let Workspace { kinds, buffers, .. } = ws;
     for ((kind, now), w) in model.kinds.iter().zip(&mut to.kinds).zip(kinds) {
+        if kind.rigid.is_some() {
+            now.positions.par_chunks_exact_mut(kind.block_len()).for_each(|x| make_rigid(model, kind, x));
+            continue;
+        }
         let exact = matches!(kind.volume, VolumeRule::Exact(_));
         if !exact && model.planes.is_empty() {
             continue;

@@ -11,6 +11,7 @@ use crate::mechanics::moved::Moved;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::sum::stiffness;
 use crate::mechanics::tangent::Tangent;
+use crate::mechanics::trap::Trap;
 
 /// The cells that share a mesh and a material.
 #[derive(Debug, Clone)]
@@ -39,6 +40,8 @@ pub struct Kind {
     pub held: Vec<f64>,
     /// What of that is moved on courses.
     pub moved: Vec<Moved>,
+    /// How its bodies move, where they never change their shape.
+    pub rigid: Option<Rigid>,
     /// What the volume does.
     pub volume: VolumeRule,
     /// Pairs of atoms whose links and fibres are drawn.
@@ -53,6 +56,13 @@ pub struct Kind {
     pub lanes: usize,
     /// Mean edge length at rest, µm.
     pub edge: f64,
+}
+
+/// How bodies move that never change their shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rigid {
+    /// Whether they turn; else they only go.
+    pub turns: bool,
 }
 
 /// What the volume of a closed cell does.
@@ -99,6 +109,7 @@ impl Kind {
             mass: 1.0,
             held: Vec::new(),
             moved: Vec::new(),
+            rigid: None,
             volume: if closed { VolumeRule::Exact(Course::constant(1.0)) } else { VolumeRule::Free },
             drawn_links: Vec::new(),
             behaviours: Vec::new(),
@@ -167,6 +178,24 @@ impl Kind {
             Force::Load(load) => Some(load),
             _ => None,
         })
+    }
+
+    /// Its traps.
+    pub fn traps(&self) -> impl Iterator<Item = &Trap> {
+        self.forces.iter().filter_map(|force| match force {
+            Force::Trap(trap) => Some(trap),
+            _ => None,
+        })
+    }
+
+    /// How stiffly traps draw its bodies as a whole, pN/µm.
+    pub fn drawn(&self) -> f64 {
+        self.traps().map(|trap| trap.stiffness).sum()
+    }
+
+    /// Whether its bodies turn where something turns them.
+    pub fn may_turn(&self) -> bool {
+        !self.is_held() && self.rigid.is_none_or(|rigid| rigid.turns)
     }
 
     /// Its fibres.

@@ -94,7 +94,7 @@ impl Kind {
                 next.iter_mut().zip(&before).for_each(|(next, v)| *next = LARGEST_RATIO * v - *next);
             }
             if !self.is_held() {
-                rigid::split_block(1, self.atoms(), &x, next, &mut rigid, 1.0, &[]);
+                rigid::split_block(1, self.atoms(), &x, next, &mut rigid, rigid::Whole::free(1.0));
             }
             let size = next.iter().map(|a| a * a).sum::<f64>().sqrt();
             before = next.iter().map(|a| a / size).collect();

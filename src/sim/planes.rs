@@ -31,6 +31,9 @@ pub struct Scene<'a> {
 /// An atom closer to a plane than this part of an edge touches it: far below any deformation, far above round-off.
 pub const TOUCH: f64 = 1e-9;
 
+/// By how much of what a whole rigid body gives way each of its atoms does by itself.
+const YIELDING: f64 = 1e-9;
+
 /// Rounds of the active-set method; it ends in two or three, a cycle is cut here and the projection does the rest.
 const ROUNDS: usize = 12;
 
@@ -249,6 +252,10 @@ fn solve_reactions(scene: &Scene, s: &mut TouchScratch) -> bool {
             // 3/2 Y₁ + 1/2 Y₂ closes the gap.
             Stage::Second => -2.0 * gap - 3.0 * vector_of(&s.cell.first, atom).dot(&plane.normal),
         };
+        if scene.kind.rigid.is_some() {
+            // More atoms than a rigid body has motions share what holds it: as if each gave way a little.
+            s.system[i * width + i] *= 1.0 + YIELDING;
+        }
         s.system[i * width + rows] = already - vector_of(&s.cell.free, atom).dot(&plane.normal);
     }
     eliminate(rows, &mut s.system)

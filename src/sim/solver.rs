@@ -3,6 +3,7 @@
 
 use super::kind::Kind;
 use crate::mechanics::implicit::Factor;
+use crate::mechanics::rigid::Whole;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::tangent::{Scales, Tangent};
 use crate::mechanics::{rigid, volume};
@@ -21,6 +22,8 @@ pub enum Stage {
 pub struct Solver {
     /// Step over drag, µm/pN: the free mobility.
     pub mobility: f64,
+    /// What is left of the mean of forces on a cell as traps answer within the step, eq. (rigid.4).
+    going: f64,
     /// One factor, or three where atoms are held along some axes only.
     factors: Vec<Factor>,
     /// The same with the least that K may overestimate; none where it tells nothing.
@@ -38,11 +41,16 @@ impl Solver {
         let masks = [held(0), held(1), held(2)];
         let same = masks[0] == masks[1] && masks[1] == masks[2];
         let axes = if same { 1 } else { 3 };
+        let mobility = dt / kind.drag;
+        let going = 1.0 / (1.0 + gamma * mobility * kind.drawn() / kind.atoms() as f64);
+        if kind.rigid.is_some() {
+            return Self { mobility, going, factors: Vec::new(), filters: Vec::new(), own: Vec::new() };
+        }
         let of = |scale: f64| -> Vec<Factor> {
             masks[..axes].iter().map(|mask| Factor::new(stiffness, kind.drag / dt, scale, mask)).collect()
         };
         let filters = if kind.is_told() { of(gamma * kind.softest_ratio) } else { Vec::new() };
-        Self { mobility: dt / kind.drag, factors: of(gamma), filters, own: Vec::new() }
+        Self { mobility, going, factors: of(gamma), filters, own: Vec::new() }
     }
 
     /// Factors ζ/dt + γJ for the cell of a kind that stands alone, with its tangent stiffness J in this shape (µm), elastic forces so
@@ -54,7 +62,7 @@ impl Solver {
             let scales = Scales { diagonal: kind.drag / dt, gamma, elastic: &[elastic], held: &kind.held };
             tangent.factor(&kind.forces, 1, shape, scales, &mut own);
         }
-        Self { mobility: dt / kind.drag, factors: Vec::new(), filters: Vec::new(), own }
+        Self { mobility: dt / kind.drag, going: 1.0, factors: Vec::new(), filters: Vec::new(), own }
     }
 }
 
@@ -83,6 +91,13 @@ impl<'a> System<'a> {
             Self::Shared(solver) => solver.mobility,
             Self::Own { mobility, .. } => mobility,
         }
+    }
+
+    /// How the cells give way as a whole; `turned` as in [`solve_turning`].
+    fn whole<'b>(&self, kind: &Kind, turned: &'b [f64]) -> Whole<'b> {
+        let going = if let Self::Shared(solver) = *self { solver.going } else { 1.0 };
+        let turning = if kind.rigid.is_none_or(|rigid| rigid.turns) { 1.0 } else { 0.0 };
+        Whole { mobility: self.mobility(), going, turning, turned }
     }
 
     /// The same for one cell of the block alone, whose factor is gathered into `kept`: a lane is solved as fast as a cell that stands alone
@@ -117,7 +132,7 @@ impl<'a> System<'a> {
             Self::Shared(solver) => {
                 error.iter_mut().for_each(|error| *error /= mobility);
                 let solve = |y: &mut [f64], scratch: &mut [f64]| solve_axes(&solver.filters, kind.lanes, y, scratch);
-                solve_with(solve, kind, (kind.lanes, mobility), (x, turning), error, rigid, scratch);
+                solve_with(solve, kind, kind.lanes, (x, self.whole(kind, turning)), error, rigid, scratch);
             }
             Self::Own { .. } => {
                 error.iter_mut().for_each(|error| *error /= mobility);
@@ -175,14 +190,14 @@ pub fn solve_turning(
         System::Own { tangent, factor, lanes: 1, .. } if lanes > 1 => tangent.solve_columns(factor, y),
         System::Own { tangent, factor, lanes: all, .. } => tangent.solve(all, factor, y),
     };
-    solve_with(solve, kind, (lanes, system.mobility()), (x, turning), y, spare, spare2);
+    solve_with(solve, kind, lanes, (x, system.whole(kind, turning)), y, spare, spare2);
 }
 
 fn solve_with(
     solve: impl Fn(&mut [f64], &mut [f64]),
     kind: &Kind,
-    (lanes, mobility): (usize, f64),
-    (x, turning): (&[f64], &[f64]),
+    lanes: usize,
+    (x, whole): (&[f64], Whole),
     y: &mut [f64],
     spare: &mut [f64],
     spare2: &mut [f64],
@@ -191,7 +206,10 @@ fn solve_with(
         volume::hold(lanes, &kind.held, y);
         solve(y, spare);
     } else {
-        rigid::split_block(lanes, kind.atoms(), x, y, spare, mobility, turning);
+        rigid::split_block(lanes, kind.atoms(), x, y, spare, whole);
+        if kind.rigid.is_some() {
+            return y.copy_from_slice(spare);
+        }
         solve(y, spare2);
         rigid::join_block(lanes, kind.atoms(), x, y, spare);
     }

@@ -209,12 +209,14 @@ impl Step<'_> {
         [spare, spare2]: [&mut [f64]; 2],
     ) {
         let &Self { model, kind, order, .. } = self;
-        let Block { start, volume, target, pressure, touch, .. } = block;
+        let Block { x, start, volume, target, pressure, touch, .. } = block;
         if stage == Stage::Second {
             let back = 2.0 / system.mobility();
             y.iter_mut().zip(first).for_each(|(y, k)| *y -= back * k);
         }
-        solve_turning(kind, kind.lanes, system, (start, turning), y, spare, spare2);
+        // All that is left of forces on a rigid body is how they turn it where it is then.
+        let frame = if kind.rigid.is_some() && stage == Stage::Second { &**x } else { &**start };
+        solve_turning(kind, kind.lanes, system, (frame, turning), y, spare, spare2);
         let mut wanted = [0.0; LANES];
         for lane in 0..kind.lanes {
             let missing = target[lane] - volume[lane];

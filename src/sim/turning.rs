@@ -25,7 +25,7 @@ impl Turning {
     ) -> Self {
         let kind = forces.kind;
         let mut turning = Self { rows: [0.0; 9 * LANES], lanes: 0 };
-        let may_turn = model.contact.is_none() && model.planes.is_empty() && !kind.is_held();
+        let may_turn = model.contact.is_none() && model.planes.is_empty() && kind.may_turn();
         if !may_turn || kind.loads().next().is_none() {
             return turning;
         }

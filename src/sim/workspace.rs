@@ -163,6 +163,10 @@ impl KindScratch {
     /// The softest modes of K; none where atoms are held along some axes only.
     pub fn modes(&mut self, kind: &Kind) -> Option<Arc<Modes>> {
         let stiffness = self.stiffness.as_ref().unwrap_or(&kind.stiffness);
+        let rigid = || Arc::new(Modes::rigid(kind.atoms(), kind.drawn() / kind.atoms() as f64));
+        if kind.rigid.is_some() {
+            return self.modes.get_or_insert_with(|| Some(rigid())).clone();
+        }
         let make = || Some(Arc::new(Modes::new(stiffness, &kind.held_alike()?)));
         self.modes.get_or_insert_with(make).clone()
     }

@@ -47,7 +47,7 @@ pub fn fingerprint(model: &Model) -> u64 {
 fn add_kind(hash: &mut Fnv, kind: &Kind) {
     hash.value(&(&kind.name, kind.lanes, &kind.rest.positions, &kind.rest.facets));
     hash.value(&kind.forces);
-    hash.value(&(kind.drag, kind.mass, &kind.held, &kind.moved, &kind.volume));
+    hash.value(&(kind.drag, kind.mass, &kind.held, &kind.moved, &kind.rigid, &kind.volume));
     kind.behaviours.iter().for_each(|behaviour| hash.value(behaviour));
     hash.value(&(kind.fibre_budget, kind.fibre_limit));
 }

@@ -1,8 +1,8 @@
-//! What is recorded of atoms that are moved on courses: how far they are, and the force that it takes.
+//! What is recorded of atoms that are moved on courses, how far they are and the force that it takes, and of traps.
 
 use crate::Vec3;
 use crate::mechanics::moved::Moved;
-use crate::recorded::{Motion, series_of_moved};
+use crate::recorded::{Motion, series_of_moved, series_of_traps};
 use crate::sim::{Kind, KindState, Model, State};
 
 /// Names and units of their series.
@@ -42,4 +42,22 @@ fn force_and_torque(kind: &Kind, now: &KindState, moved: &Moved, time: f64) -> (
     let all = (0..now.cells()).flat_map(|cell| moved.atoms.iter().map(move |atom| (cell, *atom as usize)));
     all.filter_map(|(cell, atom)| of_atom(cell, atom))
         .fold((Vec3::zeros(), Vec3::zeros()), |(force, torque), own| (force + own.0, torque + own.1))
+}
+
+/// Names and units of the series of traps.
+pub fn names_of_traps(model: &Model) -> Vec<(String, String)> {
+    let own = |kind: &Kind| kind.traps().map(|trap| trap.name.clone()).collect();
+    let types: Vec<(&str, Vec<String>)> = model.kinds.iter().map(|kind| (kind.name.as_str(), own(kind))).collect();
+    series_of_traps(&types).into_iter().map(|name| (name, "pN".to_owned())).collect()
+}
+
+/// Adds the forces of traps at this instant, on all bodies of the type together.
+pub fn record_traps(model: &Model, state: &State, values: &mut Vec<f64>) {
+    for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+        for trap in kind.traps() {
+            let centre = |cell: usize| now.cell(kind, cell).iter().sum::<Vec3>() / kind.atoms() as f64;
+            let force: Vec3 = (0..now.cells()).map(|cell| trap.force(state.time, centre(cell))).sum();
+            values.extend(force.iter());
+        }
+    }
 }

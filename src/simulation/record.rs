@@ -30,7 +30,7 @@ pub fn outline_of(model: &Model) -> Layout {
     let kind = |kind: &Kind| CellType { name: kind.name.clone(), atoms: kind.atoms() as u32, ..CellType::default() };
     let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     let loads = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned()));
-    layout.scene_series = loads.chain(moved::names(model)).collect();
+    layout.scene_series = loads.chain(moved::names(model)).chain(moved::names_of_traps(model)).collect();
     layout.contacts = model.contact.is_some();
     layout.tractions = model.keeps_tractions;
     layout.fibres = model.kinds.iter().any(|kind| kind.fibre_budget > 0);
@@ -192,6 +192,7 @@ impl Recorder {
         let at = |&(_, kind, number): &(String, usize, usize)| model.kinds[kind].loads().nth(number);
         frame.scene = self.loads.iter().filter_map(at).map(|load| load.force.at(state.time)).collect();
         moved::record(model, state, &mut frame.scene);
+        moved::record_traps(model, state, &mut frame.scene);
         if let Some(contact) = &model.contact {
             self.touch.look(model, &contact.scene_of(&state.kinds), state, ws, dt, &mut frame);
         }

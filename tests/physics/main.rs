@@ -32,6 +32,7 @@ mod own_stiffness_touching;
 mod population;
 mod pseudopods;
 mod receptors;
+mod rigid;
 mod sensing;
 mod soft_cells;
 mod sphere;

@@ -12,7 +12,9 @@ pub fn add_forces(cell: &CellType, environment: &Environment, to: &mut Builder) 
     cell.mechanics.add_elastic(to);
     cell.applied.add_links(to);
     // As strong as what it guards.
-    cell.mechanics.barrier.add(to);
+    if cell.mechanics.rigid.is_none() {
+        cell.mechanics.barrier.add(to);
+    }
     cell.applied.add_driven(to);
     let gravity = environment.gravity.map_or([0.0; 3], |g| g.map(|a| a.value()));
     if gravity != [0.0; 3] {

@@ -180,6 +180,7 @@ fn compile_kind(
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
     far::check(document, &key, cell, &kind.rest, kind.closed, faults);
     (kind.held, kind.moved) = held::held(document, &key, cell, &kind.rest, (&from_file.held, from_file.moved), faults);
+    kind.rigid = cell.mechanics.rigid.map(|rigid| rigid.compiled());
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
     kind.behaviours = cell.motility.behaviours();
     let pods = pseudopods::pseudopods(document, &key, cell, &kind, faults);
@@ -199,7 +200,7 @@ fn volume_rule(document: &Document, key: &str, cell: &CellType, kind: &Kind, fau
         return VolumeRule::Free;
     }
     // What cannot move keeps its volume by itself, and has no gradient along which it could be restored.
-    if kind.is_held() && kind.held.iter().all(|factor| *factor == 0.0) {
+    if kind.rigid.is_some() || kind.is_held() && kind.held.iter().all(|factor| *factor == 0.0) {
         return VolumeRule::Free;
     }
     let rest = geometry::volume(&kind.rest);

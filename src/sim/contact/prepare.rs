@@ -52,7 +52,7 @@ pub fn prepare(
     s.volume_modes.clear();
     s.held.clear();
     let as_steps = contact.law.moves_as_steps();
-    let stiff = |(kind, w): (&Kind, &KindScratch)| as_steps && is_stiff(model, dt, kind, w);
+    let stiff = |(kind, w): (&Kind, &KindScratch)| as_steps && (kind.rigid.is_some() || is_stiff(model, dt, kind, w));
     s.mobility.clear(model.kinds.iter().zip(&*kinds).any(|both| both.0.tangent.is_none() && stiff(both)));
     s.mobility.columns.begin(model.kinds.iter().zip(&*kinds).map(|both| both.0.tangent.is_some() && stiff(both)));
     let cells = from.kinds.iter().zip(&to.kinds);
@@ -76,7 +76,7 @@ pub fn prepare(
             s.mobility.add_kind(modes.as_deref(), &response, kind.atoms());
             for cell in 0..now.cells() {
                 let x = (0..kind.atoms()).map(|atom| vector(kind, &now.positions, cell, atom));
-                let turns = modes.is_some() && !kind.is_held();
+                let turns = modes.is_some() && kind.may_turn();
                 s.mobility.add_cell(range.start + cell * kind.atoms(), &response, !turns, x);
             }
         }

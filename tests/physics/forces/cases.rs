@@ -17,12 +17,14 @@ use pseudopod::mechanics::gravity::Gravity;
 use pseudopod::mechanics::lanes::LANES;
 use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
+use pseudopod::mechanics::moved::Translation;
 use pseudopod::mechanics::ordering::Ordering;
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::mechanics::springs::{Spring, Springs};
 use pseudopod::mechanics::stiffness::StiffnessMatrix;
 use pseudopod::mechanics::sum::measure_forces;
 use pseudopod::mechanics::tension::Tension;
+use pseudopod::mechanics::trap::Trap;
 use pseudopod::mechanics::{CONTROLLED, Force};
 
 /// A force, and what is known of it.
@@ -46,7 +48,7 @@ pub struct Case {
 pub const EDGE: f64 = 1.75;
 
 /// How many forces there are.
-pub const FORCES: usize = 12;
+pub const FORCES: usize = 13;
 
 /// A number below [`FORCES`] for each force: one that is new must be named here, counted above and given a case below.
 pub fn number(force: &Force) -> usize {
@@ -63,6 +65,7 @@ pub fn number(force: &Force) -> usize {
         Force::Fibres(_) => 9,
         Force::Gravity(_) => 10,
         Force::Attraction(_) => 11,
+        Force::Trap(_) => 12,
     }
 }
 
@@ -194,6 +197,9 @@ fn driven() -> Vec<Case> {
     let fibres = Force::Fibres(Fibres::new("trunk", pairs, 3.0, course()));
     let gravity = Force::Gravity(Gravity { acceleration: Vec3::new(0.3, -0.2, -9.0) });
     let attraction = Force::Attraction(Attraction { to: Vec3::new(4.0, -1.0, 0.5), stiffness: 0.6 });
+    let displacement = Course::through(vec![(-1.0, 0.0), (3.0, 4.0)]).expect("times rise");
+    let translation = Some(Translation { direction: Vec3::new(0.0, 0.6, 0.8), displacement });
+    let trap = Force::Trap(Trap { name: "trap".into(), stiffness: 3.0, at: Vec3::new(1.0, 2.0, -0.5), translation });
     let outer = |name, force, bounded| Case {
         internal: false,
         turns_nothing: false,
@@ -206,5 +212,6 @@ fn driven() -> Vec<Case> {
         outer("load", load, false),
         outer("gravity", gravity, false),
         outer("attraction", attraction, true),
+        outer("trap", trap, false),
     ]
 }

@@ -237,6 +237,9 @@ impl Ends<'_, '_> {
                 Setting::Atom(..) if matches!(whose, Whose::Cell(_)) && self.counts[number] > 1 => {
                     ("has other cells whose atom would be held with it", "make the cell a type of its own")
                 }
+                Setting::Atom(..) if kind.rigid.is_some() => {
+                    ("is rigid, so that its atoms move only together", "set an atom of a cell that deforms")
+                }
                 Setting::Atom(atom, _) if kind.moved.iter().any(|moved| moved.atoms.contains(&(*atom as u32))) => {
                     ("moves that atom on a course", "leave the atom out of `moved`, or set another one")
                 }
