@@ -86,7 +86,7 @@ pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use volume::{VolumeControl, VolumeRule};
 
-use crate::recorded::{Motion, OnDemand, names_by_type, series_of_moved, series_of_traps};
+use crate::recorded::{Motion, NAMED, OnDemand, names_by_type, series_of_moved, series_of_traps};
 use crate::units::Time;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -152,9 +152,10 @@ impl Experiment {
         self.output.tractions || self.cells.values().any(|cell| !cell.applied.moved.is_empty())
     }
 
-    /// Whether a series is of what is moved, or may be of a load in a file.
+    /// Whether a series is of what is moved or of a trap, or may be of a load in a file.
     pub(super) fn is_of_what_is_moved(&self, series: &str) -> bool {
-        self.may_be_of_load_file(series) || self.series_of_moved().iter().any(|name| name == series)
+        let own = [self.series_of_moved(), self.series_of_traps()].concat();
+        self.may_be_of_load_file(series) || own.iter().any(|name| name == series)
     }
 
     /// Whether a series may be of a load in a file, which is read later: `load.lml1` and its like.
@@ -162,7 +163,7 @@ impl Experiment {
         let (word, name) = series.split_once('.').unwrap_or_default();
         // With the name of the type before it where several types have such files.
         let number = name.rsplit('.').next().and_then(|name| name.strip_prefix("lml"));
-        ["load", "displacement", "force", "angle", "torque"].contains(&word)
+        NAMED.iter().any(|known| known.0 == word)
             && number.is_some_and(|number| number.parse::<u32>().is_ok())
             && self.cells.values().any(|cell| cell.applied.loads_file.is_some())
     }

@@ -5,7 +5,7 @@ use super::cut_short::Late;
 use super::document::{Document, near_file};
 use crate::error::Fault;
 use crate::error::words;
-use crate::recorded::{CONTACTS, ContactQuantity, OnDemand, Recorded, Touch, cell_series, contact_quantities};
+use crate::recorded::{CONTACTS, ContactQuantity, NAMED, OnDemand, Recorded, Touch, cell_series, contact_quantities};
 use std::path::Path;
 
 mod cells;
@@ -170,7 +170,7 @@ impl Check<'_> {
         let stored = text.strip_prefix("chemistry.").unwrap_or(text);
         let systems = &self.document.experiment.chemistry;
         let is_own = |word: &str| {
-            words::meant(word, ["load", "displacement", "force"]).is_some()
+            words::meant(word, NAMED.map(|(word, _)| word)).is_some()
                 || contacts && words::meant(word, ["contact"]).is_some()
         };
         if let Some((system, _)) =

@@ -18,7 +18,7 @@ use super::systems::SystemScope;
 use super::whole::whole_frames;
 use super::{Cell, FibreRow, Layout, PseudopodEvent, Tractions};
 use crate::error::{Error, Fault, Result};
-use crate::recorded::{CONTACTS, SPEED, cell_label, cell_series, cell_unit};
+use crate::recorded::{CONTACTS, NAMED, SPEED, cell_label, cell_series, cell_unit};
 
 /// A result file opened for reading. Arrays are read when they are asked for.
 pub struct ResultFile {
@@ -277,10 +277,9 @@ impl ResultFile {
         let recorded = || CONTACTS.iter().find(|row| row.name == name).map(|row| row.label.to_owned());
         let known = cell_label(name).map(str::to_owned).or_else(recorded);
         let known = known.or_else(|| contacts::label(&self.layout, name));
-        known.unwrap_or_else(|| match name.split_once('.') {
-            Some((word @ ("load" | "displacement" | "force"), of)) => format!("{word} {of}"),
-            _ => name.to_owned(),
-        })
+        let of_something =
+            |(word, of)| NAMED.iter().find(|known| known.0 == word).map(|known| format!("{} {of}", known.1));
+        known.or_else(|| name.split_once('.').and_then(of_something)).unwrap_or_else(|| name.to_owned())
     }
 
     /// Motility runs that ended up to the last frame.

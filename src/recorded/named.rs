@@ -1,5 +1,17 @@
 //! Series of what types of cells have by names: loads, and atoms that are moved on courses.
 
+/// What the series of things with names begin with, and what a chart calls them: `load.NAME` and its like.
+pub const NAMED: [(&str, &str); 8] = [
+    ("load", "load"),
+    ("displacement", "displacement"),
+    ("force", "force"),
+    ("angle", "angle"),
+    ("torque", "torque"),
+    ("trap_x", "force along x of trap"),
+    ("trap_y", "force along y of trap"),
+    ("trap_z", "force along z of trap"),
+];
+
 /// The names of what types have, in their order: NAME, or TYPE.NAME where several types have one of this name. Of each type its name and the
 /// names of what it has.
 pub fn names_by_type(types: &[(&str, Vec<String>)]) -> Vec<String> {

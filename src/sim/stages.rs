@@ -163,7 +163,9 @@ impl Step<'_> {
     /// Writes the forces of a stage to `y`.
     fn push(&self, block: &mut Block, stage: Stage, y: &mut [f64], [spare, spare2]: [&mut [f64]; 2]) {
         let (kind, share) = (self.kind, share_of_stage(self.order));
-        let time = if stage == Stage::First { self.start } else { self.start + self.dt };
+        // With what the first stage takes in advance of how forces change with time, and the second gives back, eq. (step.14).
+        let ahead = gamma(kind, self.order) * self.dt;
+        let time = if stage == Stage::First { self.start + ahead } else { self.start + self.dt - ahead };
         let x = match (&self.displacements, stage) {
             (None, Stage::First) => block.start,
             (None, Stage::Second) => &*block.x,
