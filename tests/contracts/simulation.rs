@@ -477,6 +477,7 @@ fn a_state_that_names_what_is_not_there_is_refused() {
     type Spoil<'a> = &'a dyn Fn(&mut State);
     let spoilt: [(&str, Spoil); 4] = [
         ("its time is NaN s", &|state| state.time = f64::NAN),
+        ("its time is -0.5 s", &|state| state.time = -0.5),
         ("its contacts are", &|state| state.contact.planes.push(PlaneBond { plane: u32::MAX, ..bond })),
         ("its contacts are", &|state| state.contact.released.push(1_000_000)),
         ("the cells of type", &|state| state.kinds[0].balance.push(AtomBalance::NONE)),
