@@ -166,8 +166,8 @@ fn a_displacement_moves_atoms_on_its_course_and_leaves_them_free_where_it_says_n
     let kind = compiled(folder.path(), B, plot).unwrap().model.kinds.remove(0);
     let [slips, held] = &kind.moved[..] else { panic!("{:?}", kind.moved) };
     assert_eq!((slips.name.as_str(), slips.atoms.as_slice()), ("lml1", &[0, 1][..]));
-    assert_eq!(slips.displaced([0.0, 2.0]), pseudopod::Vec3::new(0.0, 0.0, -1.0));
-    assert_eq!(held.displaced([0.0, 5.0]), pseudopod::Vec3::new(0.0, 2e-3, 0.0));
+    assert_eq!(slips.gone(2.0), pseudopod::Vec3::new(0.0, 0.0, -1.0));
+    assert_eq!(held.gone(5.0), pseudopod::Vec3::new(0.0, 2e-3, 0.0));
     assert_eq!(kind.held[..9], [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
     assert!(kind.held[9..].iter().all(|factor| *factor == 1.0));
     let own = plot.replace(
@@ -277,7 +277,7 @@ fn loads_that_are_told_in_lml_are_read_as_the_same_loads() {
     assert_eq!(told.held, read.held);
     let displaced = |kind: &pseudopod::sim::Kind, atom: u32| -> pseudopod::Vec3 {
         let own = kind.moved.iter().filter(|moved| moved.atoms.contains(&atom));
-        own.map(|moved| moved.displaced([0.0, 0.3])).sum()
+        own.map(|moved| moved.gone(0.3)).sum()
     };
     for atom in 0..12 {
         assert!((displaced(told, atom) - displaced(read, atom)).norm() < 1e-15, "{atom}");
