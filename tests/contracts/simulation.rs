@@ -475,7 +475,7 @@ fn a_state_that_names_what_is_not_there_is_refused() {
     // As it may come from a file with good checksums.
     let bond = PlaneBond { atom: 0, plane: 0, force: [0.0; 3], stored: 0.0 };
     type Spoil<'a> = &'a dyn Fn(&mut State);
-    let spoilt: [(&str, Spoil); 4] = [
+    let spoilt: [(&str, Spoil); 5] = [
         ("its time is NaN s", &|state| state.time = f64::NAN),
         ("its time is -0.5 s", &|state| state.time = -0.5),
         ("its contacts are", &|state| state.contact.planes.push(PlaneBond { plane: u32::MAX, ..bond })),
