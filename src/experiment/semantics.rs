@@ -13,6 +13,7 @@ mod chemistry;
 mod contact;
 mod measures;
 mod pseudopods;
+mod rigid;
 mod scene;
 
 pub(super) struct Check<'a> {
@@ -37,7 +38,7 @@ pub(super) fn check(document: &Document) -> (Vec<Fault>, Vec<Late>) {
         check.pseudopods(&path, cell);
         check.applied(&path, &cell.applied);
         check.moved_by_scheme(&path, cell);
-        check.rigid(&path, cell, &document.experiment);
+        check.rigid(&path, cell);
         if let Some(turn) = &cell.orientation {
             check.direction(&format!("{path}.orientation.axis"), turn.axis);
         }

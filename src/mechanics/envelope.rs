@@ -6,6 +6,9 @@
 use super::lanes::{BlockWork, LANES, Real, dispatch};
 use super::stiffness::StiffnessMatrix;
 
+/// Rows of a matrix of so many atoms are summed one number after the other.
+const SMALL: usize = 64;
+
 /// L of A = L Lᵀ in rows that start at their first non-zero column, in the order `order`.
 #[derive(Debug, Clone)]
 pub(super) struct Envelope {
@@ -51,6 +54,12 @@ impl Envelope {
         (&row[..row.len() - 1], row[row.len() - 1])
     }
 
+    /// Whether rows are too short for sums in parts to pay.
+    #[inline(always)]
+    fn is_small(&self) -> bool {
+        self.order.len() <= SMALL
+    }
+
     /// Solves in place for rows of `width` numbers an atom; `scratch` is as long as `values`.
     pub fn solve(&self, width: usize, values: &mut [f64], scratch: &mut [f64]) {
         if width.is_multiple_of(LANES) {
@@ -68,6 +77,7 @@ impl BlockWork for Factoring<'_> {
     type Output = ();
     #[inline(always)]
     fn run<T: Real>(self, _: T::Token, _: usize) {
+        let is_small = self.0.is_small();
         let Envelope { order, first, start, values } = self.0;
         for i in 0..order.len() {
             let (done, rest) = values.split_at_mut(start[i] as usize);
@@ -78,11 +88,12 @@ impl BlockWork for Factoring<'_> {
                 let from = low.max(first[j] as usize);
                 let mine = &row[from - low..j - low];
                 let theirs = &other[from - first[j] as usize..j - first[j] as usize];
-                let [dot] = products(mine, [theirs]);
+                let [dot] = if is_small { [plainly(mine, theirs)] } else { products(mine, [theirs]) };
                 row[j - low] = (row[j - low] - dot) * other[other.len() - 1];
             }
             let last = row.len() - 1;
-            let [squares] = products(&row[..last], [&row[..last]]);
+            let all = &row[..last];
+            let [squares] = if is_small { [plainly(all, all)] } else { products(all, [all]) };
             row[last] = 1.0 / (row[last] - squares).sqrt();
         }
     }
@@ -182,6 +193,13 @@ fn solve_columns<const W: usize>(envelope: &Envelope, mut columns: [&mut [f64]; 
     for i in 0..envelope.order.len() {
         let (row, inverse) = envelope.row(i);
         let first = envelope.first[i] as usize;
+        if envelope.is_small() {
+            for column in &mut columns {
+                let rest = row.iter().zip(&column[first..i]).fold(column[i], |rest, (l, b)| rest - l * b);
+                column[i] = rest * inverse;
+            }
+            continue;
+        }
         let sums = products(row, columns.each_ref().map(|column| &column[first..i]));
         for (column, sum) in columns.iter_mut().zip(sums) {
             column[i] = (column[i] - sum) * inverse;
@@ -196,6 +214,12 @@ fn solve_columns<const W: usize>(envelope: &Envelope, mut columns: [&mut [f64]; 
             column[first..i].iter_mut().zip(row).for_each(|(a, l)| *a -= l * value);
         }
     }
+}
+
+/// The sum of products of a few numbers, one after the other.
+#[inline(always)]
+fn plainly(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
 /// Sums of products of a row with each of several columns as long, in a fixed order of [`LANES`] partial sums: compilers may take

@@ -4,7 +4,7 @@
 //! eight cells at a time: a solve works on rows of 24 numbers. Small meshes keep the dense inverse (one product, no
 //! chains of dependent operations); larger ones an envelope Cholesky factor after a reverse Cuthill–McKee ordering.
 
-use super::envelope::{Envelope, products};
+use super::envelope::Envelope;
 use super::lanes::{BlockWork, LANES, Real, dispatch};
 use super::stiffness::StiffnessMatrix;
 
@@ -51,38 +51,13 @@ impl Factor {
                 dispatch(LANES, WideProduct { atoms: self.atoms, inverse, from: scratch, to: values });
             }
             Method::Dense(inverse) => {
-                dispatch(LANES, NarrowProduct { atoms: self.atoms, width, inverse, values, columns: scratch });
-            }
-        }
-    }
-}
-
-/// The product for a few right sides, each made a column.
-struct NarrowProduct<'a> {
-    atoms: usize,
-    width: usize,
-    inverse: &'a [f64],
-    values: &'a mut [f64],
-    columns: &'a mut [f64],
-}
-
-impl BlockWork for NarrowProduct<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<T: Real>(self, _: T::Token, _: usize) {
-        let Self { atoms, width, inverse, values, columns } = self;
-        for (atom, row) in values.chunks_exact(width).enumerate() {
-            row.iter().enumerate().for_each(|(c, value)| columns[c * atoms + atom] = *value);
-        }
-        for (row, to) in inverse.chunks_exact(atoms).zip(values.chunks_exact_mut(width)) {
-            let mut done = 0;
-            while done + 3 <= width {
-                let column = |c: usize| &columns[(done + c) * atoms..][..atoms];
-                to[done..done + 3].copy_from_slice(&products(row, [column(0), column(1), column(2)]));
-                done += 3;
-            }
-            for c in done..width {
-                [to[c]] = products(row, [&columns[c * atoms..][..atoms]]);
+                scratch.copy_from_slice(values);
+                for (row, to) in inverse.chunks_exact(self.atoms).zip(values.chunks_exact_mut(width)) {
+                    to.fill(0.0);
+                    for (entry, from) in row.iter().zip(scratch.chunks_exact(width)) {
+                        to.iter_mut().zip(from).for_each(|(t, s)| *t += entry * s);
+                    }
+                }
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The stage that gives rigid bodies back their shape: what moves them in a step is linear in their rotation, eq. (rigid.2).
+//! The stage that gives rigid bodies back their shape: what moves them in a step, eq. (rigid.1), is linear in their rotation, eq. (rigid.2).
 
 use nalgebra::Matrix3;
 

@@ -130,7 +130,7 @@ fn chemistry_scales_elastic_forces_and_nothing_else() {
 fn forces_with_a_course_tell_where_it_bends() {
     for case in &cases() {
         let kinks: Vec<f64> = case.force.kinks().collect();
-        let expected = if case.force.handle().is_some() { vec![0.0, 1.0] } else { Vec::new() };
+        let expected = if case.force.course().is_some() { vec![0.0, 1.0] } else { Vec::new() };
         assert_eq!(kinks, expected, "{}", case.name);
     }
 }

@@ -89,12 +89,6 @@ moved = [{ name = "lift", atoms = [7], axes = ["z"], direction = [0, 0, 1], disp
 loads = [{ name = "press", all = true, direction = [-0.7, -0.7, -0.2], force = [["0 s", "8 pN"], ["3.05 s", "9 pN"]] }]
 chemistry = ["pin", "skin"]
 
-[cells.bead]
-mesh = { shape = "icosphere", radius = "1.5 um", level = 1 }
-placement = { at = [["4.9 um", "4.9 um", "5 um"]] }
-mechanics = { drag = "5 pN s/um", rigid = {} }
-traps = [{ name = "hold", stiffness = "20 pN/um", at = ["4.9 um", "4.9 um", "5 um"], direction = [-1, -1, 0], displacement = [["0 s", "0 um"], ["1.05 s", "1 um"]] }]
-
 [[planes]]
 name = "floor"
 point = ["0 um", "0 um", "0 um"]

@@ -197,7 +197,7 @@ fn driven() -> Vec<Case> {
     let fibres = Force::Fibres(Fibres::new("trunk", pairs, 3.0, course()));
     let gravity = Force::Gravity(Gravity { acceleration: Vec3::new(0.3, -0.2, -9.0) });
     let attraction = Force::Attraction(Attraction { to: Vec3::new(4.0, -1.0, 0.5), stiffness: 0.6 });
-    let displacement = Course::through(vec![(-1.0, 0.0), (3.0, 4.0)]).expect("times rise");
+    let displacement = Course::through(vec![(0.0, 1.0), (1.0, 2.0)]).expect("times rise");
     let translation = Some(Translation { direction: Vec3::new(0.0, 0.6, 0.8), displacement });
     let trap = Force::Trap(Trap { name: "trap".into(), stiffness: 3.0, at: Vec3::new(1.0, 2.0, -0.5), translation });
     let outer = |name, force, bounded| Case {
