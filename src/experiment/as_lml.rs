@@ -60,10 +60,9 @@ fn held(kind: &Kind, first: u32, loads: &mut Vec<Load>) {
     let mut by_axes: BTreeMap<(Option<usize>, [bool; 3]), Vec<u32>> = BTreeMap::new();
     for (atom, factors) in (0..).zip(kind.held.as_chunks::<3>().0) {
         let axes = factors.map(|factor| factor == 0.0);
-        let of_atom = kind.moved.iter().find(|moved| moved.atoms.binary_search(&atom).is_ok());
-        let turns = of_atom.is_some_and(|moved| moved.rotation.is_some());
+        let course = kind.moved.iter().position(|moved| moved.atoms.binary_search(&atom).is_ok());
+        let turns = course.is_some_and(|number| kind.moved[number].rotation.is_some());
         if axes != [false; 3] && !turns {
-            let course = kind.moved.iter().position(|moved| Some(moved) == of_atom);
             by_axes.entry((course, axes)).or_default().push(first + atom);
         }
     }

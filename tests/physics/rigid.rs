@@ -193,3 +193,28 @@ fn a_box_rests_on_the_floor_with_its_weight_and_stays_level() {
     assert!((height - 1.0).abs() < 1e-6, "{height}");
     assert!((floor + 19.62).abs() < 1e-4, "{floor}");
 }
+
+#[test]
+fn scratch_is_scratch_where_bodies_are_rigid() {
+    let text = "title = \"a bead on a cell\"\n[run]\nuntil = \"4 s\"\n[contact]\n\
+         [[planes]]\nname = \"floor\"\npoint = [\"0 um\", \"0 um\", \"0 um\"]\nnormal = [0, 0, 1]\n[cells.cell]\n\
+         mesh = { shape = \"icosphere\", radius = \"5 um\", level = 1 }\nplacement = { at = [[\"0 um\", \"0 um\", \"5.05 um\"]] }\n\
+         mechanics = { drag = \"20 pN s/um\", shape_memory = { shape_modulus = \"10 pN/um\" } }\n[cells.bead]\n\
+         mesh = { shape = \"icosphere\", radius = \"2 um\", level = 1 }\nplacement = { at = [[\"0 um\", \"0 um\", \"12.1 um\"], [\"9 um\", \"0 um\", \"2.05 um\"]] }\n\
+         mechanics = { drag = \"10 pN s/um\", rigid = {} }\nnumber = 2\n\
+         loads = [{ name = \"press\", cap = { direction = [1, 0, 0], number = 3 }, direction = [-1, 0, -1], force = \"4 pN\" }]\n";
+    let course = |is_poisoned: bool| {
+        let (model, mut state) = simulation(text).into_parts();
+        let mut ws = Workspace::new(&model);
+        for _ in 0..40 {
+            if is_poisoned {
+                ws.poison(&model);
+            }
+            step(&model, &mut state, &mut ws).unwrap_or_else(|trouble| panic!("{trouble}"));
+        }
+        state.kinds.iter().map(|now| now.positions.to_vec()).collect::<Vec<_>>()
+    };
+    let plain = course(false);
+    assert!(plain.iter().flatten().all(|x| x.is_finite()));
+    assert!(plain == course(true));
+}
