@@ -25,7 +25,7 @@ fn pair(order: Order, dt: f64, own: bool) -> (Model, State) {
     kind.drag = 0.5;
     kind.bound_stiffness();
     if own {
-        kind.use_tangent();
+        kind.use_tangent(false);
     }
     assert_eq!(kind.tangent.is_some(), own);
     // What says whether steps are coupled: here all are.

@@ -40,6 +40,7 @@ mod rigid;
 mod scheme;
 pub mod seeding;
 mod skeleton;
+mod softest;
 mod solver;
 mod stages;
 pub mod state;

@@ -53,6 +53,11 @@ impl Solver {
         Self { mobility, going, factors: of(gamma), filters, own: Vec::new() }
     }
 
+    /// Solves A y = f for one cell in place, whatever moves it as a whole; scratch has the same size.
+    pub fn solve_elastic(&self, y: &mut [f64], scratch: &mut [f64]) {
+        solve_axes(&self.factors, 1, y, scratch);
+    }
+
     /// Factors ζ/dt + γJ for the cell of a kind that stands alone, with its tangent stiffness J in this shape (µm), elastic forces so
     /// many times as strong. Without a shape each block of cells has its own system, and nothing is factored.
     pub fn of_one(kind: &Kind, tangent: &Tangent, shape: &[f64], dt: f64, (gamma, elastic): (f64, f64)) -> Self {

@@ -17,6 +17,7 @@ mod fibres;
 mod forces;
 mod friction;
 mod glossary;
+mod indentation;
 mod inertial;
 mod levels;
 mod made_fibres;

@@ -30,7 +30,7 @@ fn row(order: Order, dt: f64, has_tangent: bool) -> Model {
     kind.moved = vec![Moved { name: "end".into(), atoms: vec![2], translation, rotation: None }];
     kind.bound_stiffness();
     if has_tangent {
-        kind.use_tangent();
+        kind.use_tangent(false);
     }
     let mut model =
         Model::of(vec![kind], Integrator { method: Method::Implicit { order }, size: StepSize::Fixed(dt) }, 1.0);

@@ -136,7 +136,8 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let integrator = steps::integrator(document, &mut kinds)?;
     let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach));
     if contact.as_ref().is_none_or(|contact| contact.law.moves_as_steps()) {
-        kinds.iter_mut().for_each(Kind::use_tangent);
+        let have_tools = contact.is_some() && kinds.iter().any(|kind| kind.rigid.is_some() || !kind.moved.is_empty());
+        kinds.iter_mut().for_each(|kind| kind.use_tangent(have_tools));
     }
     // What a file of loads moves is not in the document.
     let are_moved = kinds.iter().any(|kind| !kind.moved.is_empty());

@@ -28,7 +28,7 @@ fn cells(count: usize, order: Order) -> (Model, State) {
     let mut kind = Kind::new("ball", ball, vec![membrane]);
     kind.drag = 0.5;
     kind.bound_stiffness();
-    kind.use_tangent();
+    kind.use_tangent(false);
     assert!(kind.tangent.is_some());
     let kind = kind.for_cells(count);
     let reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
