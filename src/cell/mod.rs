@@ -42,6 +42,19 @@ pub enum BehaviourState {
     Pseudopods(PodState),
 }
 
+impl BehaviourState {
+    /// Whether all that a cell waits for is still to come: from clocks far below zero it would go through run after run without end.
+    pub fn can_go_on(&self) -> bool {
+        // What round-off may leave below zero, s.
+        let is_left = |left: f64| left > -1e-6;
+        match self {
+            Self::Brownian(walk) => is_left(walk.left),
+            Self::Bias => true,
+            Self::Pseudopods(state) => state.clocks().all(is_left),
+        }
+    }
+}
+
 /// What came to an end in a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ended {

@@ -174,6 +174,11 @@ impl PodState {
         [(front(&self.pod), of_first)].into_iter().chain(beside.map(move |pod| (front(&pod), 1.0)))
     }
 
+    /// What is left of all phases, and until another begins, s.
+    pub(super) fn clocks(&self) -> impl Iterator<Item = f64> {
+        [self.pod.left, self.wait].into_iter().chain(self.beside.iter().flatten().map(|pod| pod.left))
+    }
+
     /// The pseudopods that are there.
     pub(super) fn there(&self) -> impl Iterator<Item = &Pod> {
         [&self.pod].into_iter().chain(self.beside.iter().flatten()).filter(|pod| pod.is_there())

@@ -47,6 +47,9 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
         if now.behaviours.len() != kind.behaviours.len() || !kind.behaviours.iter().zip(&now.behaviours).all(own) {
             return mismatch(format!("the cells of type `{}` do something else by themselves", kind.name));
         }
+        if !now.behaviours.iter().flatten().all(BehaviourState::can_go_on) {
+            return mismatch(format!("what the cells of type `{}` wait for is over", kind.name));
+        }
     }
     if !state.contact.fits(numbered(model, state)) {
         return mismatch("its contacts are those of other cells".to_owned());

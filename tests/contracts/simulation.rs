@@ -2,6 +2,7 @@
 //! names; cells that do what a program sets.
 
 use crate::turns::take_turn;
+use pseudopod::cell::BehaviourState;
 use pseudopod::experiment::Document;
 use pseudopod::output::ResultFile;
 use pseudopod::run::{Quiet, ResumeOptions, RunOptions, run};
@@ -475,7 +476,17 @@ fn a_state_that_names_what_is_not_there_is_refused() {
     // As it may come from a file with good checksums.
     let bond = PlaneBond { atom: 0, plane: 0, force: [0.0; 3], stored: 0.0 };
     type Spoil<'a> = &'a dyn Fn(&mut State);
-    let spoilt: [(&str, Spoil); 5] = [
+    let late = |state: &mut State, late: f64| {
+        let all = state.kinds.iter_mut().flat_map(|kind| kind.behaviours.iter_mut().flatten());
+        for behaviour in all {
+            if let BehaviourState::Brownian(walk) = behaviour {
+                walk.left = late;
+            }
+        }
+    };
+    let spoilt: [(&str, Spoil); 7] = [
+        ("what the cells of type", &|state| late(state, -1e9)),
+        ("what the cells of type", &|state| late(state, f64::NAN)),
         ("its time is NaN s", &|state| state.time = f64::NAN),
         ("its time is -0.5 s", &|state| state.time = -0.5),
         ("its contacts are", &|state| state.contact.planes.push(PlaneBond { plane: u32::MAX, ..bond })),
