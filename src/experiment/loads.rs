@@ -2,6 +2,7 @@
 
 use super::compile::{Builder, course, unit};
 use super::moved::Moved;
+use super::pressure::Pressure;
 use super::rigid::Trap;
 use super::selection::{Linked, Selection};
 use super::semantics::Check;
@@ -27,6 +28,9 @@ pub struct Applied {
     /// Forces applied to some atoms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<Load>,
+    /// Pressures on some facets, along their normals.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pressures: Vec<Pressure>,
     /// Springs that draw the bodies of a rigid type to points.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub traps: Vec<Trap>,
@@ -197,6 +201,10 @@ impl Applied {
             let load = load::Load::new(&load.name, shares, direction, course(load.force.points()));
             to.forces.push(mechanics::Force::Load(load));
         }
+        for (i, pressure) in self.pressures.iter().enumerate() {
+            let force = pressure.compiled(&format!("pressures[{i}]"), to);
+            to.forces.push(mechanics::Force::Pressure(force));
+        }
         to.forces.extend(self.traps.iter().map(|trap| mechanics::Force::Trap(trap.compiled())));
         for (i, fibre) in self.fibres.iter().enumerate() {
             let pairs = to.pairs(&format!("fibres[{i}]"), &fibre.linked);
@@ -214,6 +222,7 @@ impl Check<'_> {
         self.links(path, applied);
         self.fibres(path, applied);
         self.moved(path, &applied.moved);
+        self.pressures(path, &applied.pressures);
         self.loads(path, applied);
     }
 

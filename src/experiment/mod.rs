@@ -47,6 +47,7 @@ mod moved;
 mod pictures;
 mod placement;
 mod population;
+mod pressure;
 mod pseudopods;
 mod read;
 mod rigid;
@@ -79,6 +80,7 @@ pub use moved::{Moved, Rotation};
 pub use pictures::{FieldLine, MeasureCurve, Picture, Plot, PlotKind, PlotTable, View};
 pub use placement::Placement;
 pub use population::{Added, Removed};
+pub use pressure::{Beyond, Pressure};
 pub use pseudopods::{ContactInhibition, InhibitedBy, PodFibres, Pseudopods};
 pub use rigid::{Rigid, Trap};
 pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
@@ -152,9 +154,9 @@ impl Experiment {
         self.output.tractions || self.cells.values().any(|cell| !cell.applied.moved.is_empty())
     }
 
-    /// Whether a series is of what is moved or of a trap, or may be of a load in a file.
+    /// Whether a series is of what is moved, of a trap or of a pressure, or may be of a load in a file.
     pub(super) fn is_of_what_is_moved(&self, series: &str) -> bool {
-        let own = [self.series_of_moved(), self.series_of_traps()].concat();
+        let own = [self.series_of_moved(), self.series_of_traps(), self.series_of_pressures()].concat();
         self.may_be_of_load_file(series) || own.iter().any(|name| name == series)
     }
 
@@ -182,6 +184,14 @@ impl Experiment {
         let types: Vec<(&str, Vec<String>)> =
             self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
         series_of_traps(&types)
+    }
+
+    /// Names of the series of pressures.
+    pub(super) fn series_of_pressures(&self) -> Vec<String> {
+        let own = |cell: &CellType| cell.applied.pressures.iter().map(|own| own.name.clone()).collect();
+        let types: Vec<(&str, Vec<String>)> =
+            self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
+        names_by_type(&types).into_iter().map(|name| format!("pressure.{name}")).collect()
     }
 
     /// Names of the series of loads.

@@ -125,7 +125,10 @@ impl Check<'_> {
         let with = self.document.experiment.on_demand();
         let (pairs, of_cells) = (self.series_of_pairs(), cell_series(with).collect::<Vec<String>>());
         let experiment = &self.document.experiment;
-        let loads = [experiment.series_of_loads(), experiment.series_of_moved(), experiment.series_of_traps()].concat();
+        let pressures = experiment.series_of_pressures();
+        let loads =
+            [experiment.series_of_loads(), experiment.series_of_moved(), experiment.series_of_traps(), pressures]
+                .concat();
         let contact = self.document.experiment.contact.as_ref();
         let contacts = contact.is_some();
         let of_model = contact.into_iter().flat_map(|contact| contact_quantities(contact.recorded()));

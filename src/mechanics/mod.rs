@@ -22,6 +22,7 @@ pub mod membrane;
 pub mod modes;
 pub mod moved;
 pub mod ordering;
+pub mod pressure;
 pub mod restoring;
 pub mod rigid;
 pub mod shape_memory;
@@ -63,6 +64,8 @@ pub enum Force {
     Barrier(barrier::Barrier),
     /// A load with a course in time on some atoms.
     Load(load::Load),
+    /// A pressure with a course in time on some facets.
+    Pressure(pressure::Pressure),
     /// Contractile fibres.
     Fibres(fibres::Fibres),
     /// Weight.
@@ -83,25 +86,26 @@ impl Force {
         match self {
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => true,
             Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) => true,
-            Self::Load(_) | Self::Fibres(_) | Self::Gravity(_) | Self::Attraction(_) | Self::Trap(_) => false,
+            Self::Load(_) | Self::Fibres(_) | Self::Gravity(_) | Self::Attraction(_) => false,
+            Self::Pressure(_) | Self::Trap(_) => false,
         }
     }
 
     /// Whether something outside of the cell exerts it: what a cell does to itself has neither sum nor torque.
     pub fn is_outer(&self) -> bool {
         match self {
-            Self::Load(_) | Self::Gravity(_) | Self::Attraction(_) | Self::Trap(_) => true,
+            Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Attraction(_) | Self::Trap(_) => true,
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) | Self::Ordering(_) => false,
             Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) | Self::Fibres(_) => false,
         }
     }
 
-    /// Whether it is, at any instant, the gradient of the energy that it tells. Not so are the documents' shape memories and pulls
-    /// that keep order.
+    /// Whether it is, at any instant, the gradient of the energy that it tells. Not so are the documents' shape memories, pulls
+    /// that keep order, and pressures on a part of a surface.
     pub fn is_conservative(&self) -> bool {
         match self {
             Self::ShapeMemory(force) => force.is_gradient(),
-            Self::Angles(_) | Self::Ordering(_) => false,
+            Self::Angles(_) | Self::Ordering(_) | Self::Pressure(_) => false,
             _ => true,
         }
     }
@@ -110,6 +114,7 @@ impl Force {
     pub fn course(&self) -> Option<&Course> {
         match self {
             Self::Load(force) => Some(&force.force),
+            Self::Pressure(force) => Some(&force.pressure),
             Self::Fibres(force) => Some(&force.activation),
             Self::Trap(force) => force.course(),
             _ => None,
@@ -144,7 +149,7 @@ impl Force {
             Self::Fibres(force) => force.add_stiffness(matrix),
             Self::Attraction(force) => force.add_stiffness(matrix),
             // What a trap does to a body as a whole is in the step beside K, eq. (rigid.4).
-            Self::Load(_) | Self::Gravity(_) | Self::Trap(_) => {}
+            Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Trap(_) => {}
         }
     }
 
@@ -174,7 +179,7 @@ impl Force {
         match self {
             Self::Fibres(force) => Some(force.largest_stiffness()),
             Self::Attraction(force) => Some(force.stiffness),
-            Self::Load(_) | Self::Gravity(_) | Self::Trap(_) => Some(0.0),
+            Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Trap(_) => Some(0.0),
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => None,
             Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) => None,
         }
@@ -184,6 +189,7 @@ impl Force {
     fn strength(&self, context: &Context, set: &[f64; LANES]) -> [f64; LANES] {
         match self {
             Self::Load(force) => force.strength(context.time, set),
+            Self::Pressure(force) => [force.pressure.at(context.time); LANES],
             Self::Fibres(force) => force.activation(context.time, set),
             Self::Gravity(_) => [context.mass; LANES],
             Self::Trap(force) => [force.gone(context.time); LANES],
@@ -205,6 +211,7 @@ impl Force {
             Self::Springs(force) => force.add_forces(x, f),
             Self::Barrier(force) => force.add_forces(x, f),
             Self::Load(force) => force.add_forces(strength, x, f),
+            Self::Pressure(force) => force.add_forces(strength, x, f),
             Self::Fibres(force) => force.add_forces(strength, x, f),
             Self::Gravity(force) => force.add_forces(strength, x, f),
             Self::Attraction(force) => force.add_forces(x, f),

@@ -1,8 +1,9 @@
 //! Series of what types of cells have by names: loads, and atoms that are moved on courses.
 
 /// What the series of things with names begin with, and what a chart calls them: `load.NAME` and its like.
-pub const NAMED: [(&str, &str); 8] = [
+pub const NAMED: [(&str, &str); 9] = [
     ("load", "load"),
+    ("pressure", "pressure"),
     ("displacement", "displacement"),
     ("force", "force"),
     ("angle", "angle"),

@@ -8,6 +8,7 @@ use crate::mechanics::fibres::Fibres;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::load::Load;
 use crate::mechanics::moved::Moved;
+use crate::mechanics::pressure::Pressure;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::sum::stiffness;
 use crate::mechanics::tangent::Tangent;
@@ -184,6 +185,14 @@ impl Kind {
     pub fn traps(&self) -> impl Iterator<Item = &Trap> {
         self.forces.iter().filter_map(|force| match force {
             Force::Trap(trap) => Some(trap),
+            _ => None,
+        })
+    }
+
+    /// Pressures on its cells.
+    pub fn pressures(&self) -> impl Iterator<Item = &Pressure> {
+        self.forces.iter().filter_map(|force| match force {
+            Force::Pressure(pressure) => Some(pressure),
             _ => None,
         })
     }

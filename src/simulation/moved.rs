@@ -1,8 +1,8 @@
-//! What is recorded of atoms that are moved on courses, how far they are and the force that it takes, and of traps.
+//! What is recorded of atoms that are moved on courses, how far they are and the force that it takes, of pressures and of traps.
 
 use crate::Vec3;
 use crate::mechanics::moved::Moved;
-use crate::recorded::{Motion, series_of_moved, series_of_traps};
+use crate::recorded::{Motion, names_by_type, series_of_moved, series_of_traps};
 use crate::sim::{Kind, KindState, Model, State};
 
 /// Names and units of their series.
@@ -42,6 +42,18 @@ fn force_and_torque(kind: &Kind, now: &KindState, moved: &Moved, time: f64) -> (
     let all = (0..now.cells()).flat_map(|cell| moved.atoms.iter().map(move |atom| (cell, *atom as usize)));
     all.filter_map(|(cell, atom)| of_atom(cell, atom))
         .fold((Vec3::zeros(), Vec3::zeros()), |(force, torque), own| (force + own.0, torque + own.1))
+}
+
+/// Names and units of the series of pressures: `pressure.NAME`.
+pub fn names_of_pressures(model: &Model) -> Vec<(String, String)> {
+    let own = |kind: &Kind| kind.pressures().map(|pressure| pressure.name.clone()).collect();
+    let types: Vec<(&str, Vec<String>)> = model.kinds.iter().map(|kind| (kind.name.as_str(), own(kind))).collect();
+    names_by_type(&types).into_iter().map(|name| (format!("pressure.{name}"), "pN/um^2".to_owned())).collect()
+}
+
+/// Adds the pressures at this instant.
+pub fn record_pressures(model: &Model, state: &State, values: &mut Vec<f64>) {
+    values.extend(model.kinds.iter().flat_map(Kind::pressures).map(|own| own.pressure.at(state.time)));
 }
 
 /// Names and units of the series of traps.

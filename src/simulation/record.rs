@@ -30,7 +30,8 @@ pub fn outline_of(model: &Model) -> Layout {
     let kind = |kind: &Kind| CellType { name: kind.name.clone(), atoms: kind.atoms() as u32, ..CellType::default() };
     let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     let loads = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned()));
-    layout.scene_series = loads.chain(moved::names(model)).chain(moved::names_of_traps(model)).collect();
+    let named = [moved::names(model), moved::names_of_traps(model), moved::names_of_pressures(model)];
+    layout.scene_series = loads.chain(named.into_iter().flatten()).collect();
     layout.contacts = model.contact.is_some();
     layout.tractions = model.keeps_tractions;
     layout.fibres = model.kinds.iter().any(|kind| kind.fibre_budget > 0);
@@ -193,6 +194,7 @@ impl Recorder {
         frame.scene = self.loads.iter().filter_map(at).map(|load| load.force.at(state.time)).collect();
         moved::record(model, state, &mut frame.scene);
         moved::record_traps(model, state, &mut frame.scene);
+        moved::record_pressures(model, state, &mut frame.scene);
         if let Some(contact) = &model.contact {
             self.touch.look(model, &contact.scene_of(&state.kinds), state, ws, dt, &mut frame);
         }

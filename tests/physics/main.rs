@@ -31,6 +31,7 @@ mod ordering;
 mod own_stiffness;
 mod own_stiffness_touching;
 mod population;
+mod pressure;
 mod pseudopods;
 mod receptors;
 mod rigid;

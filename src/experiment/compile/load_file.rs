@@ -126,9 +126,8 @@ impl On<'_> {
         }
         match load.kind {
             LoadKind::Pressure if load.direction.is_none() => {
-                let help =
-                    "give the direction of the traction by x, y and z; pressure within a cell follows from its volume";
-                Err(self.fault(load, "has no direction, and a pressure along the normals is not there", help))
+                let help = "give the direction of the traction by x, y and z, or put `pressures` into the document, which act along normals";
+                Err(self.fault(load, "has no direction, and does not tell on which side the pressure is higher", help))
             }
             _ if !acts => Ok(()),
             LoadKind::Force => {

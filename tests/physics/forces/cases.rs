@@ -19,6 +19,7 @@ use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
 use pseudopod::mechanics::moved::Translation;
 use pseudopod::mechanics::ordering::Ordering;
+use pseudopod::mechanics::pressure::{Beyond, Pressure};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::mechanics::springs::{Spring, Springs};
 use pseudopod::mechanics::stiffness::StiffnessMatrix;
@@ -48,7 +49,7 @@ pub struct Case {
 pub const EDGE: f64 = 1.75;
 
 /// How many forces there are.
-pub const FORCES: usize = 13;
+pub const FORCES: usize = 14;
 
 /// A number below [`FORCES`] for each force: one that is new must be named here, counted above and given a case below.
 pub fn number(force: &Force) -> usize {
@@ -66,6 +67,7 @@ pub fn number(force: &Force) -> usize {
         Force::Gravity(_) => 10,
         Force::Attraction(_) => 11,
         Force::Trap(_) => 12,
+        Force::Pressure(_) => 13,
     }
 }
 
@@ -200,6 +202,11 @@ fn driven() -> Vec<Case> {
     let displacement = Course::through(vec![(0.0, 1.0), (1.0, 2.0)]).expect("times rise");
     let translation = Some(Translation { direction: Vec3::new(0.0, 0.6, 0.8), displacement });
     let trap = Force::Trap(Trap { name: "trap".into(), stiffness: 3.0, at: Vec3::new(1.0, 2.0, -0.5), translation });
+    let above = Beyond { point: Vec3::new(0.0, 0.0, 1.3), direction: Vec3::new(0.6, 0.0, 0.8) };
+    let pressure = |beyond| {
+        let facets = icosphere(5.0, 1).facets;
+        Force::Pressure(Pressure { name: "pressure".into(), facets, pressure: course(), beyond })
+    };
     let outer = |name, force, bounded| Case {
         internal: false,
         turns_nothing: false,
@@ -213,5 +220,7 @@ fn driven() -> Vec<Case> {
         outer("gravity", gravity, false),
         outer("attraction", attraction, true),
         outer("trap", trap, false),
+        outer("pressure", pressure(None), false),
+        outer("pressure beyond a plane", pressure(Some(above)), false),
     ]
 }
