@@ -11,7 +11,7 @@ use crate::mechanics::{rigid, volume};
 /// What is taken of the least ratio that was found, so that it is one below all.
 const COVERED: f64 = 0.8;
 
-/// Rounds at most. Where K is two hundred times too large for some shape, 60 to 80 find it.
+/// Rounds at most.
 const ROUNDS: usize = 150;
 
 /// Rounds between two looks at what has been found.
