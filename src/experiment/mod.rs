@@ -88,7 +88,7 @@ pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
 pub use volume::{VolumeControl, VolumeRule};
 
-use crate::recorded::{Motion, NAMED, OnDemand, names_by_type, series_of_moved, series_of_traps};
+use crate::recorded::{Motion, NAMED, OnDemand, names_by_type, series_of_moved, series_of_pressures, series_of_traps};
 use crate::units::Time;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -191,7 +191,7 @@ impl Experiment {
         let own = |cell: &CellType| cell.applied.pressures.iter().map(|own| own.name.clone()).collect();
         let types: Vec<(&str, Vec<String>)> =
             self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
-        names_by_type(&types).into_iter().map(|name| format!("pressure.{name}")).collect()
+        series_of_pressures(&types)
     }
 
     /// Names of the series of loads.

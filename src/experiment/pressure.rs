@@ -28,7 +28,7 @@ pub struct Pressure {
     pub beyond: Option<Beyond>,
 }
 
-/// What is beyond a plane, as within the mouth of a pipette.
+/// What is beyond a plane, as within the mouth of a pipette; beside that, too, if a cell gets there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Beyond {
@@ -45,7 +45,7 @@ impl Pressure {
         let chosen = |facet: &&[u32; 3]| facet.iter().all(|atom| atoms.binary_search(atom).is_ok());
         let facets: Vec<[u32; 3]> = to.rest().facets.iter().filter(chosen).copied().collect();
         if facets.is_empty() && !atoms.is_empty() {
-            let found = format!("no facet has all its atoms among those that `{path}` chooses");
+            let found = "no facet of the mesh has all three of its atoms among those that are chosen";
             to.fault(path, "acts on no facet", found, "choose more atoms: a wider cap, or all = true");
         }
         let beyond = self.beyond.as_ref().map(|beyond| pressure::Beyond {

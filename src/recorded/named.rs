@@ -1,4 +1,4 @@
-//! Series of what types of cells have by names: loads, and atoms that are moved on courses.
+//! Series of what types of cells have by names: loads, pressures, traps, and atoms that are moved on courses.
 
 /// What the series of things with names begin with, and what a chart calls them: `load.NAME` and its like.
 pub const NAMED: [(&str, &str); 9] = [
@@ -50,6 +50,11 @@ pub fn series_of_moved(types: &[(&str, Vec<Motion>)]) -> Vec<(String, &'static s
 pub fn series_of_traps(types: &[(&str, Vec<String>)]) -> Vec<String> {
     let series = |name: String| ["x", "y", "z"].map(|axis| format!("trap_{axis}.{name}"));
     names_by_type(types).into_iter().flat_map(series).collect()
+}
+
+/// Names of the series of pressures, in pN/µm²: `pressure.NAME`. Of each type its name and the names of its pressures.
+pub fn series_of_pressures(types: &[(&str, Vec<String>)]) -> Vec<String> {
+    names_by_type(types).into_iter().map(|name| format!("pressure.{name}")).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! How stiff the cells of a kind are: the constant stiffness K of the implicit step, and how it stands to the true one, J.
 
 use super::kind::Kind;
-use super::softest::{measure_softest_ratio, stiffness_along};
+use super::softest::{COVERED, any_direction, measure_softest_ratio, stiffness_along};
 use crate::Vec3;
 use crate::mechanics::implicit::Factor;
 use crate::mechanics::stiffness::StiffnessMatrix;
@@ -14,9 +14,6 @@ const POWER_ROUNDS: usize = 150;
 
 /// The largest ratio of the true stiffness at rest to the constant one of the implicit step.
 const LARGEST_RATIO: f64 = 0.75;
-
-/// What is taken of the least ratio that was found, so that it is one below all.
-const COVERED: f64 = 0.8;
 
 /// Below this part of K the true stiffness of some shape is so small that K tells nothing of it.
 const LEAST_TOLD: f64 = 0.02;
@@ -54,9 +51,9 @@ impl Kind {
     /// Lets each cell have its own stiffness, eq. (step.10), where K overestimates the shear of a membrane too far; `touched` by tools, a
     /// single one sooner. Not for cells that contacts move by the drag of their atoms alone.
     pub fn use_tangent(&mut self, touched: bool) {
-        let is_touched = || touched && self.lanes == 1;
-        let is_soft = || is_touched() && measure_softest_ratio(self, LARGEST_RATIO) <= LEAST_TOLD_OF_TOUCHED;
-        if self.shears() && (!self.is_told() || is_soft()) {
+        let is_alone = touched && self.lanes == 1;
+        let creeps = |least: f64| measure_softest_ratio(self, LARGEST_RATIO) <= least;
+        if self.has_soft_shear() || is_alone && self.shears() && creeps(LEAST_TOLD_OF_TOUCHED) {
             self.tangent = Some(Tangent::new(&self.forces, &self.rest.positions));
         }
     }
@@ -118,8 +115,7 @@ impl Kind {
 
     /// The largest eigenvalue of P J, J the stiffness in the shape `x` and P the change that `precondition` makes in place.
     fn power_iteration(&self, x: &[Vec3], mut precondition: impl FnMut(&mut [f64])) -> f64 {
-        // Any vector will do that is not an eigenvector of a smaller value; this one has no symmetry.
-        let mut v: Vec<f64> = (0..3 * x.len()).map(|i| ((i * 7919 + 13) % 101) as f64 / 50.5 - 1.0).collect();
+        let mut v = any_direction(3 * x.len());
         let mut largest: f64 = 0.0;
         for round in 0..POWER_ROUNDS {
             volume::hold(1, &self.held, &mut v);

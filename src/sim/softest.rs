@@ -9,7 +9,7 @@ use crate::mechanics::sum::measure_elastic;
 use crate::mechanics::{rigid, volume};
 
 /// What is taken of the least ratio that was found, so that it is one below all.
-const COVERED: f64 = 0.8;
+pub const COVERED: f64 = 0.8;
 
 /// Rounds at most.
 const ROUNDS: usize = 150;
@@ -37,7 +37,7 @@ pub fn measure_softest_ratio(kind: &Kind, largest: f64) -> f64 {
         }
     };
     // `w` is K⁻¹ `r`, and each pair of them is scaled so that w·r = 1, which is the square of w in the metric of K.
-    let mut r: Vec<f64> = (0..x.len()).map(|i| ((i * 7919 + 13) % 101) as f64 / 50.5 - 1.0).collect();
+    let mut r = any_direction(x.len());
     let (mut w, mut before) = (Vec::new(), vec![0.0; x.len()]);
     let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     keep(&mut r);
@@ -70,6 +70,11 @@ pub fn measure_softest_ratio(kind: &Kind, largest: f64) -> f64 {
     }
     let found = softest(&diagonal, &beside).map_or(largest, |(found, _)| found);
     COVERED * found.clamp(0.0, largest)
+}
+
+/// What an iteration begins with: any vector will do that is not an eigenvector of a smaller value, and this one has no symmetry.
+pub fn any_direction(size: usize) -> Vec<f64> {
+    (0..size).map(|i| ((i * 7919 + 13) % 101) as f64 / 50.5 - 1.0).collect()
 }
 
 /// J v, of elastic forces in the shape `x` (µm): a difference of forces. The atoms go a millionth of an edge times v.

@@ -2,7 +2,7 @@
 
 use crate::Vec3;
 use crate::mechanics::moved::Moved;
-use crate::recorded::{Motion, names_by_type, series_of_moved, series_of_traps};
+use crate::recorded::{Motion, series_of_moved, series_of_pressures, series_of_traps};
 use crate::sim::{Kind, KindState, Model, State};
 
 /// Names and units of their series.
@@ -48,7 +48,7 @@ fn force_and_torque(kind: &Kind, now: &KindState, moved: &Moved, time: f64) -> (
 pub fn names_of_pressures(model: &Model) -> Vec<(String, String)> {
     let own = |kind: &Kind| kind.pressures().map(|pressure| pressure.name.clone()).collect();
     let types: Vec<(&str, Vec<String>)> = model.kinds.iter().map(|kind| (kind.name.as_str(), own(kind))).collect();
-    names_by_type(&types).into_iter().map(|name| (format!("pressure.{name}"), "pN/um^2".to_owned())).collect()
+    series_of_pressures(&types).into_iter().map(|name| (name, "pN/um^2".to_owned())).collect()
 }
 
 /// Adds the pressures at this instant.
