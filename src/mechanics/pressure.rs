@@ -119,6 +119,7 @@ mod tests {
             }
             let found = beyond(heights);
             let off = (0..3).map(|k| (found[k] - wanted[k] / count).abs()).fold(0.0, f64::max);
+            // A row of points along a cut is a 900th of the height, and counts on one side of it.
             assert!(off < 3e-3, "{heights:?}: {found:?}, {:?}", wanted.map(|w| w / count));
         }
     }

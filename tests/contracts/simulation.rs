@@ -484,7 +484,17 @@ fn a_state_that_names_what_is_not_there_is_refused() {
             }
         }
     };
-    let spoilt: [(&str, Spoil); 7] = [
+    let late_pods = |state: &mut State, late: f64, waits: bool| {
+        let all = state.kinds.iter_mut().flat_map(|kind| kind.behaviours.iter_mut().flatten());
+        for behaviour in all {
+            if let BehaviourState::Pseudopods(pods) = behaviour {
+                *(if waits { &mut pods.wait } else { &mut pods.pod.left }) = late;
+            }
+        }
+    };
+    let spoilt: [(&str, Spoil); 9] = [
+        ("what the cells of type", &|state| late_pods(state, -1e9, false)),
+        ("what the cells of type", &|state| late_pods(state, f64::NAN, true)),
         ("what the cells of type", &|state| late(state, -1e9)),
         ("what the cells of type", &|state| late(state, f64::NAN)),
         ("its time is NaN s", &|state| state.time = f64::NAN),
