@@ -12,8 +12,8 @@ use hdf5_sys::h5d::H5Dwrite_chunk;
 use ndarray::IxDyn;
 use rayon::prelude::*;
 
-use super::container::set_text;
 use super::packing::{LEVEL, pack, packer};
+use super::texts::set_text;
 
 /// Most numbers in a piece of a small dataset: 8 kB.
 pub(super) const SMALL_PIECE: usize = 1024;

@@ -1,11 +1,9 @@
-//! The few things that the result file needs of HDF5: how files are opened, texts, and errors people understand.
+//! The few things that the result file needs of HDF5: how files are opened, and errors people understand.
 
 use std::path::Path;
 
 use hdf5::file::FileBuilder;
-use hdf5::types::VarLenUnicode;
-use hdf5::{File, Group, H5Type, Location};
-use ndarray::Array1;
+use hdf5::{File, H5Type, Location};
 
 use super::vetting::vet;
 use crate::error::{Error, Fault, Result};
@@ -169,46 +167,12 @@ pub(super) fn machine_error(path: &Path, what: &str, text: &str) -> Error {
     }
 }
 
-/// A text as HDF5 stores it. HDF5 ends texts at a zero byte, so that one is replaced.
-pub(super) fn stored(text: &str) -> VarLenUnicode {
-    text.replace('\0', "\u{fffd}").parse().unwrap_or_default()
-}
-
-/// A text of a file: its bytes need not be what they claim to be.
-pub(super) fn checked(text: &VarLenUnicode) -> hdf5::Result<String> {
-    String::from_utf8(text.as_bytes().to_vec()).map_err(|_| "a text in it is not UTF-8".into())
-}
-
-/// Sets an attribute that is a text.
-pub(super) fn set_text(on: &Location, name: &str, text: &str) -> hdf5::Result<()> {
-    on.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&stored(text))
-}
-
-/// Reads an attribute that is a text.
-pub(super) fn text(on: &Location, name: &str) -> hdf5::Result<String> {
-    checked(&on.attr(name)?.read_scalar::<VarLenUnicode>()?)
-}
-
 /// Sets an attribute that is a number, new or not.
 pub(super) fn set_number<T: H5Type>(on: &Location, name: &str, value: T) -> hdf5::Result<()> {
     match on.attr(name) {
         Ok(attribute) => attribute.write_scalar(&value),
         Err(_) => on.new_attr::<T>().create(name)?.write_scalar(&value),
     }
-}
-
-/// Writes a list of texts.
-pub(super) fn write_texts(file: &Group, path: &str, texts: &[&str]) -> hdf5::Result<hdf5::Dataset> {
-    let texts: Array1<VarLenUnicode> = texts.iter().map(|text| stored(text)).collect();
-    let mut builder = file.new_dataset_builder().with_data(&texts).obj_track_times(false);
-    builder.lcpl().create_intermediate_group(true);
-    builder.create(path)
-}
-
-/// Reads a list of texts.
-pub(super) fn read_texts(file: &Group, path: &str) -> hdf5::Result<Vec<String>> {
-    let texts = file.dataset(path)?.read_raw::<VarLenUnicode>()?;
-    texts.iter().map(checked).collect()
 }
 
 #[cfg(test)]

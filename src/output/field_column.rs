@@ -6,9 +6,10 @@ use hdf5::{Dataset, Extent, Group, SimpleExtents};
 use rayon::prelude::*;
 
 use super::column::{LARGE_PIECE, PACKED_TOGETHER, write_piece_at};
-use super::container::{set_number, set_text};
+use super::container::set_number;
 use super::field_layout::FieldLayout;
 use super::packing::{LEVEL, pack_bytes, packer};
+use super::texts::set_text;
 
 /// Where a species lies and how its frames are cut into pieces.
 pub(super) struct FieldColumn {

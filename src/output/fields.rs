@@ -9,9 +9,10 @@ use hdf5::types::FixedAscii;
 use hdf5::{Attribute, File, Group};
 
 use super::Layout;
-use super::container::{set_number, set_text, text};
+use super::container::set_number;
 use super::field_column::FieldColumn;
 use super::field_layout::FieldLayout;
+use super::texts::{set_text, text};
 use super::versions::make;
 use crate::error::{Error, Fault, Result};
 

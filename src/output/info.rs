@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use hdf5::Group;
 use serde_json::{Map, Value, json};
 
-use super::container::text;
 use super::field_layout::FieldLayout;
 use super::reader::ResultFile;
 use super::systems::{SystemLayout, SystemScope};
+use super::texts::text;
 use super::{Cell, Layout, Part, Population};
 use crate::error::Result;
 

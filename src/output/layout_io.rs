@@ -5,8 +5,9 @@ use hdf5::{File, Group};
 
 use super::catalogue::{CATALOGUE, Entry, Filled, TRACTION, entry};
 use super::column::{Number, Plan, write_integers, write_vectors};
-use super::container::{self, FORMAT, FORMAT_ATTRIBUTE, read_texts, set_number, set_text, text, write_texts};
+use super::container::{FORMAT, FORMAT_ATTRIBUTE, set_number};
 use super::header::Header;
+use super::texts::{self, read_text, read_texts, set_text, text, write_texts};
 use super::{CellType, Layout};
 
 impl Entry {
@@ -43,18 +44,17 @@ pub(super) fn write_header(file: &File, header: &Header) -> hdf5::Result<()> {
     }
     // A dataset, because an attribute may not be longer than 64 kB.
     let experiment = file.new_dataset::<VarLenUnicode>().obj_track_times(false).create("/provenance/experiment")?;
-    experiment.write_scalar(&container::stored(&header.experiment))?;
+    experiment.write_scalar(&texts::stored(&header.experiment))?;
     described(&experiment, "/provenance/experiment")
 }
 
 /// Reads the header.
 pub(super) fn read_header(file: &File) -> hdf5::Result<Header> {
     let group = file.group("provenance")?;
-    let experiment = file.dataset("/provenance/experiment")?.read_scalar::<VarLenUnicode>()?;
     Ok(Header {
         document: text(&group, "document")?,
         title: text(&group, "title")?,
-        experiment: container::checked(&experiment)?,
+        experiment: read_text(file, "/provenance/experiment")?,
         sets: read_texts(file, "/provenance/sets")?,
         equations: match file.link_exists("/provenance/equations") {
             true => read_texts(file, "/provenance/equation_files")?

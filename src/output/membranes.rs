@@ -4,7 +4,7 @@
 use hdf5::File;
 use serde::{Deserialize, Serialize};
 
-use super::container::text;
+use super::texts::text;
 
 /// A substance on membranes that is recorded.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

@@ -47,6 +47,7 @@ mod reopening;
 mod replacement;
 mod systems;
 mod tables;
+mod texts;
 mod versions;
 mod vetting;
 mod vtk_xml;

@@ -4,7 +4,8 @@
 use hdf5::File;
 use serde::{Deserialize, Serialize};
 
-use super::container::{set_number, set_text, text};
+use super::container::set_number;
+use super::texts::{set_text, text};
 
 /// A system of chemistry whose quantities are recorded.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
