@@ -10,6 +10,7 @@ mod contact_fuzz;
 mod contact_inhibition;
 mod contact_models;
 mod contact_order;
+mod corners;
 mod coupling;
 mod coupling_line;
 mod events;

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::inherit::Inherited;
 use super::laws::{Faced, Facing, Strength, area_between};
 use super::rows::{Pairing, Pull, Row};
 use super::scene::ContactScene;
@@ -37,6 +38,8 @@ pub struct Written<'a> {
     pub controls: &'a Controls,
     /// The areas of contact around atoms; where surfaces do not attract each other that at rest is taken.
     pub facing: &'a [Facing],
+    /// What contacts of edges have taken over from others.
+    pub inherited: &'a Inherited,
 }
 
 /// A row, and the force that it carried in the last step, pN.
@@ -88,7 +91,7 @@ fn row(
 impl Written<'_> {
     /// Tells the rows of some atoms on facets.
     fn atoms(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
-        let &Self { model, found, before, controls, facing } = self;
+        let &Self { model, found, before, controls, facing, .. } = self;
         let scene = &model.scene;
         let skin = SKIN * scene.reach.proximity;
         let begin = found.atoms[numbers.start].atom;
@@ -144,7 +147,7 @@ impl Written<'_> {
 
     /// Tells the rows of some edges on edges.
     fn edges(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
-        let &Self { model, found, before, .. } = self;
+        let &Self { model, found, before, inherited, .. } = self;
         let scene = &model.scene;
         let skin = SKIN * scene.reach.proximity;
         let begin = found.edges[numbers.start].edges;
@@ -168,13 +171,13 @@ impl Written<'_> {
                 [0.0; 3],
                 0.0,
             );
-            put(number, (row, same.map_or([0.0; 3], |bond| bond.force)));
+            put(number, (row, same.map_or_else(|| inherited.of(number), |bond| bond.force)));
         }
     }
 
     /// Tells the rows of some atoms on planes.
     fn planes(&self, numbers: Range<usize>, put: &impl Fn(usize, Known)) {
-        let &Self { model, found, before, controls, facing } = self;
+        let &Self { model, found, before, controls, facing, .. } = self;
         let scene = &model.scene;
         let key = |number: usize| (found.planes[number].atom, found.planes[number].plane);
         let mut body = scene.body_of_atom(key(numbers.start).0) as usize;

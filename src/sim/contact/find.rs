@@ -40,6 +40,7 @@ pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
         Touching { scene: &contact.scene, controls: &state.chemistry.controls, found: &s.found, positions: &s.start };
     contact.law.find(&model.kinds, now, &state.contact, state.time, &mut s.law);
     order_rows(contact, s);
+    s.inherited.find(contact, &s.found, &state.contact);
     let facing = &s.law.cohesion.facing;
     let from = Written {
         model: contact,
@@ -47,6 +48,7 @@ pub fn locate_contacts(model: &Model, state: &State, ws: &mut Workspace) {
         before: &state.contact,
         controls: &state.chemistry.controls,
         facing,
+        inherited: &s.inherited,
     };
     match s.is_in_turns {
         true => write_rows(from, |row| s.mobility.turns.of_row(row), &mut s.rows, &mut s.pulls),

@@ -16,6 +16,7 @@ mod depth;
 mod find;
 mod gather;
 mod hold;
+mod inherit;
 mod laws;
 mod mobility;
 mod model;

@@ -1,5 +1,6 @@
 //! Scratch of the contacts.
 
+use super::inherit::Inherited;
 use super::laws::LawScratch;
 use super::mobility::Mobility;
 use super::momentum::Momentum;
@@ -54,6 +55,8 @@ pub struct ContactScratch {
     pub(super) before: Vec<Vec3>,
     /// Gradients of the volumes that are kept, µm².
     pub(super) gradient: Vec<[f64; 3]>,
+    /// What contacts of edges have taken over from others.
+    pub(super) inherited: Inherited,
     /// What the law of contact found besides.
     pub law: LawScratch,
     /// Positions in the stage that is being made, µm; under laws with forces only.
