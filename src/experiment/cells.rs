@@ -151,6 +151,20 @@ pub enum Mesh {
         #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
         side: Length,
     },
+    /// A profile turned about the z axis: a pipette, a ring, a tip, a cone, a cylinder.
+    Lathe {
+        /// Corners of the profile, each its distance from the axis and its height. With both ends on the axis it makes a body without a hole; with
+        /// no corner on the axis it is closed from the last to the first, and makes a ring.
+        #[schemars(length(min = 3, max = 1000))]
+        profile: Vec<[Length; 2]>,
+        /// The radius to which corners beside the axis are rounded.
+        #[schemars(extend("x-minimum" = 0, "x-maximum" = 1e6))]
+        #[serde(default, skip_serializing_if = "is_sharp")]
+        rounding: Length,
+        /// Atoms around the axis where the profile is widest; rings are as far from each other as these are.
+        #[schemars(range(min = 6, max = 10000))]
+        around: u32,
+    },
     /// A surface from a file: OBJ, STL, PLY or PML.
     File {
         /// The file, relative to the document.
@@ -163,6 +177,11 @@ pub enum Mesh {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         component: Option<OneOrMany<String>>,
     },
+}
+
+/// Whether corners are not rounded.
+fn is_sharp(rounding: &Length) -> bool {
+    rounding.value() == 0.0
 }
 
 impl Mesh {

@@ -28,7 +28,7 @@ pub struct Pressure {
     pub beyond: Option<Beyond>,
 }
 
-/// What is beyond a plane, as within the mouth of a pipette; beside that, too, if a cell gets there.
+/// What is beyond a plane, as within the mouth of a pipette.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Beyond {
@@ -36,6 +36,11 @@ pub struct Beyond {
     pub point: [Length; 3],
     /// The direction, at right angles to the plane, in which what is beyond lies; its length does not matter.
     pub direction: [f64; 3],
+    /// How far from the axis through the point, along the direction, it acts: some radius within the wall of a pipette. Everywhere beyond the plane
+    /// when absent.
+    #[schemars(extend("x-exclusive-minimum" = 0, "x-maximum" = 1e6))]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius: Option<Length>,
 }
 
 impl Pressure {
@@ -51,6 +56,7 @@ impl Pressure {
         let beyond = self.beyond.as_ref().map(|beyond| pressure::Beyond {
             point: Vec3::from(beyond.point.map(|length| length.value())),
             direction: unit(beyond.direction),
+            radius: beyond.radius.map(|radius| radius.value()),
         });
         let pressure = course(self.pressure.points());
         pressure::Pressure { name: self.name.clone(), facets, pressure, beyond }

@@ -5,6 +5,7 @@ mod check;
 mod curvature;
 mod export;
 mod import;
+mod lathe;
 mod measure;
 mod occupied;
 mod orient;
@@ -21,6 +22,7 @@ pub use check::{Boundary, LEAST_FACET_QUALITY, MeshFault, SurfaceRules, check_su
 pub use curvature::{gaussian_curvature, mean_curvature, mixed_areas};
 pub use export::{OfAtoms, export_surface, write_obj, write_ply, write_stl};
 pub use import::{read_checked_surface, read_surface};
+pub use lathe::{Profile, ProfileFault, lathe};
 pub use measure::{
     area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,
     mean_edge_length, smallest_angle, volume, volume_gradient,

@@ -1,7 +1,7 @@
-//! Pressure on facets, along their normals wherever these are, eqs. (loads.2) and (loads.3).
+//! Pressure on facets, along their normals wherever these are, eqs. (loads.2) to (loads.4).
 
 use super::course::Course;
-use super::lanes::{Real, Vectors, VectorsMut};
+use super::lanes::{Real, V3, Vectors, VectorsMut};
 use crate::Vec3;
 
 /// Where a pressure acts: beyond a plane.
@@ -11,6 +11,8 @@ pub struct Beyond {
     pub point: Vec3,
     /// Unit normal to the side on which it acts.
     pub direction: Vec3,
+    /// How far from the axis through the point along the normal it acts, µm; everywhere beyond the plane if not said.
+    pub radius: Option<f64>,
 }
 
 /// A pressure on facets of every cell of a kind.
@@ -41,16 +43,32 @@ impl Pressure {
             let push = (b - a).cross(c - a).times(pressure * -0.5);
             let weights = match &self.beyond {
                 None => [third; 3],
-                Some(Beyond { point, direction }) => beyond(corners.map(|corner| {
-                    let [along_x, along_y, along_z] = [0, 1, 2].map(|axis| direction[axis]);
-                    corner.x * along_x + corner.y * along_y + corner.z * along_z + -point.dot(direction)
-                })),
+                Some(plane) => plane.weights(x.token, corners),
             };
             for (atom, weight) in facet.iter().zip(weights) {
                 f.add(*atom as usize, push.times(weight));
             }
         }
         T::constant(x.token, 0.0)
+    }
+}
+
+impl Beyond {
+    /// What of a pressure on a facet each of its corners bears.
+    #[inline(always)]
+    fn weights<T: Real>(&self, token: T::Token, corners: [V3<T>; 3]) -> [T; 3] {
+        let &Self { point, direction, radius } = self;
+        let [point, direction] = [point, direction].map(|vector| V3::constant(token, vector.into()));
+        let from = corners.map(|corner| corner - point);
+        let heights = from.map(|from| from.dot(direction));
+        let weights = beyond(heights);
+        let Some(radius) = radius else { return weights };
+        let [a, b, c] = [0, 1, 2].map(|i| from[i] - direction.times(heights[i]));
+        let middle = a + b + c;
+        let outwards = middle.times(T::constant(token, 1.0) / (middle.squared().sqrt() + TINY));
+        // The circle stands for its tangent where the facet is.
+        let [p, q, r] = beyond([a, b, c].map(|across| -across.dot(outwards) + radius));
+        weights.map(|weight| weight * (p + q + r))
     }
 }
 

@@ -63,7 +63,7 @@ fn a_pressure_beyond_a_plane_draws_with_the_area_of_the_cut() {
     let ball = icosphere(5.0, 4);
     let direction = Vec3::new(0.48, 0.6, 0.64);
     for height in [-3.0, 0.2, 3.7] {
-        let beyond = Beyond { point: height * direction, direction };
+        let beyond = Beyond { point: height * direction, direction, radius: None };
         let f = forces(ball.facets.clone(), Some(beyond), &ball.positions);
         let sum: Vec3 = f.iter().sum();
         let lid = std::f64::consts::PI * (25.0 - height * height);
@@ -72,6 +72,22 @@ fn a_pressure_beyond_a_plane_draws_with_the_area_of_the_cut() {
         assert!((sum - wanted).norm() < 4e-3 * wanted.norm(), "{sum} {wanted}");
         let torque: Vec3 = ball.positions.iter().zip(&f).map(|(x, f)| x.cross(f)).sum();
         assert!(torque.norm() < 2e-3 * wanted.norm(), "{torque}");
+    }
+}
+
+/// A cap of a ball above a plane is drawn by the circle in which a cylinder around the axis cuts it, or the plane does where that is smaller.
+#[test]
+fn a_pressure_within_a_radius_draws_with_the_area_of_the_circle() {
+    let ball = icosphere(5.0, 4);
+    let direction = Vec3::new(0.48, 0.6, 0.64);
+    for (height, radius) in [(3.0, 2.0), (3.0, 3.5), (3.0, 4.5), (-4.0, 2.5)] {
+        let beyond = Beyond { point: height * direction, direction, radius: Some(radius) };
+        let f = forces(ball.facets.clone(), Some(beyond), &ball.positions);
+        let sum: Vec3 = f.iter().sum();
+        // Below the middle of the ball the cylinder leaves the ring between both out: what is drawn is the top of the ball.
+        let wanted = -2.5 * std::f64::consts::PI * f64::min(radius * radius, 25.0 - height * height) * direction;
+        println!("{height} {radius}: {}", (sum - wanted).norm() / wanted.norm());
+        assert!((sum - wanted).norm() < 6e-3 * wanted.norm(), "{height} {radius}: {sum} {wanted}");
     }
 }
 

@@ -3,6 +3,7 @@
 use super::super::{CellType, Document, Mesh, VolumeRule};
 use super::builder::Built;
 use super::far;
+use super::lathe;
 use super::model::{self, is_model};
 use super::numbers::unit;
 use crate::Vec3;
@@ -22,6 +23,9 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
             geometry::sheet(size[0].value(), size[1].value(), divisions[0], divisions[1])
         }
         Mesh::Triangle { side } => triangle(side.value()),
+        Mesh::Lathe { profile, rounding, around } => {
+            lathe::surface(document, &format!("cells.{name}.mesh"), (profile, *rounding, *around), faults)?
+        }
         Mesh::File { path, unit, component } => {
             let free = cell.mechanics.volume.rule == Some(VolumeRule::Free);
             let rules = if free { &SurfaceRules::SHEET } else { &SurfaceRules::CELL };

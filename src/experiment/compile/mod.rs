@@ -7,6 +7,7 @@ mod contact;
 mod far;
 mod forces;
 mod held;
+mod lathe;
 mod load_file;
 mod mesh;
 mod model;

@@ -1,5 +1,7 @@
 //! How large an experiment is, from the numbers of its documents alone: told before anything is made that no memory holds.
 
+use std::f64::consts::PI;
+
 use super::super::{CellType, Document, Mesh};
 use super::schedule::schedule;
 use crate::error::{Error, Fault, Result};
@@ -216,6 +218,18 @@ fn of_mesh(document: &Document, mesh: &Mesh) -> [f64; 2] {
             [(x + 1.0) * (y + 1.0), 2.0 * x * y]
         }
         Mesh::Triangle { .. } => [3.0, 1.0],
+        // As if all rings were as wide as the widest.
+        Mesh::Lathe { profile, rounding, around } => {
+            let corners: Vec<[f64; 2]> = profile.iter().map(|corner| corner.map(|length| length.value())).collect();
+            let widest = corners.iter().map(|corner| corner[0]).fold(0.0, f64::max);
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+            let outline: f64 = sides.map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).sum();
+            let around = f64::from(*around);
+            let of_a_corner = if rounding.value() == 0.0 { 1.0 } else { 6.0 };
+            let rings = of_a_corner * corners.len() as f64
+                + if widest > 0.0 { outline * around / (2.0 * PI * widest) } else { 0.0 };
+            [rings * around, 2.0 * rings * around]
+        }
         Mesh::File { path, .. } => {
             let length = std::fs::metadata(document.resolve(path)).map_or(0.0, |file| file.len() as f64);
             [length / FILE_BYTES, 2.0 * length / FILE_BYTES]
@@ -246,7 +260,7 @@ pub fn bytes(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Surface, box_surface, icosphere, octasphere, sheet};
+    use crate::geometry::{Profile, Surface, box_surface, icosphere, lathe, octasphere, sheet};
     use std::path::Path;
 
     fn document(cells: &str) -> Document {
@@ -272,6 +286,12 @@ mod tests {
         .map(told);
         assert_eq!(box_told, made(box_surface([1.0, 2.0, 3.0], [2, 3, 5])));
         assert_eq!(sheet_told, made(sheet(1.0, 2.0, 2, 3)));
+        let told = told(
+            "shape = \"lathe\", profile = [[\"2 um\", 0], [\"3 um\", 0], [\"3 um\", \"9 um\"], [\"2 um\", \"9 um\"]], rounding = \"0.5 um\", around = 32",
+        );
+        let corners = &[[2.0, 0.0], [3.0, 0.0], [3.0, 9.0], [2.0, 9.0]];
+        let made = made(lathe(Profile { corners, rounding: 0.5, around: 32 }).expect("a surface"));
+        assert!((0..2).all(|i| (1.0..2.0).contains(&(told[i] / made[i]))), "no fewer: {told:?} {made:?}");
     }
 
     /// What is said of so many cells on a machine of 24 GB, and what is marked.

@@ -202,7 +202,7 @@ fn driven() -> Vec<Case> {
     let displacement = Course::through(vec![(0.0, 1.0), (1.0, 2.0)]).expect("times rise");
     let translation = Some(Translation { direction: Vec3::new(0.0, 0.6, 0.8), displacement });
     let trap = Force::Trap(Trap { name: "trap".into(), stiffness: 3.0, at: Vec3::new(1.0, 2.0, -0.5), translation });
-    let above = Beyond { point: Vec3::new(0.0, 0.0, 1.3), direction: Vec3::new(0.6, 0.0, 0.8) };
+    let above = Beyond { point: Vec3::new(0.0, 0.0, 1.3), direction: Vec3::new(0.6, 0.0, 0.8), radius: None };
     let pressure = |beyond| {
         let facets = icosphere(5.0, 1).facets;
         Force::Pressure(Pressure { name: "pressure".into(), facets, pressure: course(), beyond })
@@ -222,5 +222,6 @@ fn driven() -> Vec<Case> {
         outer("trap", trap, false),
         outer("pressure", pressure(None), false),
         outer("pressure beyond a plane", pressure(Some(above)), false),
+        outer("pressure in a mouth", pressure(Some(Beyond { radius: Some(2.2), ..above })), false),
     ]
 }
