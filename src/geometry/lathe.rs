@@ -1,9 +1,12 @@
 //! Surfaces of revolution: pipettes, rings, tips, cones and cylinders.
 
-use super::{Surface, volume};
+use super::{LEAST_FACET_QUALITY, Surface, facet_qualities, volume};
 use crate::Vec3;
 use crate::elementary::turn as turn_by;
 use std::f64::consts::PI;
+
+/// A corner turns by more than this, rad, or is not rounded.
+const STRAIGHT: f64 = 1e-6;
 
 /// The fewest atoms of a ring around the axis.
 const FEWEST: u32 = 6;
@@ -38,6 +41,8 @@ pub enum ProfileFault {
     Crosses(usize, usize),
     /// The sides beside a corner are too short for the rounding; the largest for which they are long enough, µm.
     Rounding(usize, f64),
+    /// Corners are so near each other that facets are slivers, the worst around this corner.
+    Slivers(usize),
 }
 
 /// Turns a profile about the z axis. Rings of atoms are as far from each other as atoms of the widest one are, and have fewer atoms where they
@@ -70,7 +75,22 @@ pub fn lathe(profile: Profile) -> Result<Surface, ProfileFault> {
     if volume(&surface) < 0.0 {
         surface.facets.iter_mut().for_each(|facet| facet.swap(1, 2));
     }
-    Ok(surface)
+    match sliver(&surface) {
+        None => Ok(surface),
+        Some(at) => {
+            let from = |corner: &[f64; 2]| (corner[0] - at[0]).hypot(corner[1] - at[1]);
+            let near = (0..corners.len()).min_by(|a, b| from(&corners[*a]).total_cmp(&from(&corners[*b])));
+            Err(ProfileFault::Slivers(near.unwrap_or_default()))
+        }
+    }
+}
+
+/// Where the worst facet is a sliver, its distance from the axis and its height.
+fn sliver(surface: &Surface) -> Option<[f64; 2]> {
+    let qualities = facet_qualities(surface).into_iter().enumerate();
+    let (worst, quality) = qualities.min_by(|one, other| one.1.total_cmp(&other.1))?;
+    let first = surface.corners(surface.facets[worst])[0];
+    (!(quality >= LEAST_FACET_QUALITY)).then(|| [first.x.hypot(first.y), first.z])
 }
 
 /// Looks whether a closed surface comes of a profile; says whether it is a ring.
@@ -94,15 +114,21 @@ fn check(corners: &[[f64; 2]]) -> Result<bool, ProfileFault> {
     if let Some(twice) = (0..sides).find(|number| side(*number)[0] == side(*number)[1]) {
         return Err(ProfileFault::Twice((twice + 1) % corners.len()));
     }
-    for one in 0..sides {
-        for other in one + 1..sides {
-            let meet = other == one + 1 || (is_ring && one == 0 && other == sides - 1);
-            if if meet { fold_back(side(one), side(other)) } else { cross(side(one), side(other)) } {
-                return Err(ProfileFault::Crosses(one, other));
-            }
-        }
+    match crossing(corners, is_ring) {
+        Some((one, other)) => Err(ProfileFault::Crosses(one, other)),
+        None => Ok(is_ring),
     }
-    Ok(is_ring)
+}
+
+/// Two sides that cross each other, touch without having an end in common, or lie on each other.
+fn crossing(points: &[[f64; 2]], is_ring: bool) -> Option<(usize, usize)> {
+    let sides = if is_ring { points.len() } else { points.len() - 1 };
+    let side = |number: usize| [points[number], points[(number + 1) % points.len()]];
+    let pairs = (0..sides).flat_map(|one| (one + 1..sides).map(move |other| (one, other)));
+    pairs.into_iter().find(|&(one, other)| {
+        let meet = other == one + 1 || (is_ring && one == 0 && other == sides - 1);
+        if meet { fold_back(side(one), side(other)) } else { cross(side(one), side(other)) }
+    })
 }
 
 /// Twice the area of a triangle, positive where it runs counter-clockwise.
@@ -128,7 +154,8 @@ fn fold_back([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     turn(corner) == 0.0 && along > 0.0
 }
 
-/// Rounds corners by arcs of circles that touch both sides.
+/// Rounds corners by arcs of circles that touch both sides. What points into a corner is sharper than it and recedes farther, so that no arc crosses
+/// a side.
 fn round(corners: &[[f64; 2]], is_ring: bool, radius: f64) -> Result<Vec<[f64; 2]>, ProfileFault> {
     let count = corners.len();
     let is_corner = |number: usize| is_ring || (number > 0 && number < count - 1);
@@ -145,11 +172,12 @@ fn round(corners: &[[f64; 2]], is_ring: bool, radius: f64) -> Result<Vec<[f64; 2
         let [(one, _), (other, _)] = sides(number);
         0.5 * (one[0] * other[0] + one[1] * other[1]).clamp(-1.0, 1.0).acos()
     };
-    let taken = |number: usize| if is_corner(number) { radius / half_angle(number).tan() } else { 0.0 };
+    let is_round = |number: usize| is_corner(number) && PI - 2.0 * half_angle(number) > STRAIGHT;
+    let taken = |number: usize| if is_round(number) { radius / half_angle(number).tan() } else { 0.0 };
     let mut points = Vec::new();
     for number in 0..count {
         let at = corners[number];
-        if radius == 0.0 || !is_corner(number) {
+        if radius == 0.0 || !is_round(number) {
             points.push(at);
             continue;
         }
@@ -329,6 +357,16 @@ mod tests {
     }
 
     #[test]
+    fn a_corner_on_a_straight_side_changes_nothing() {
+        let plain = made(&PIPETTE, 0.4, 32);
+        let [a, b, c, d] = PIPETTE;
+        let with_more = made(&[a, b, [3.0, 4.5], c, d], 0.4, 32);
+        assert!((volume(&plain) - volume(&with_more)).abs() < 0.01 && (area(&plain) - area(&with_more)).abs() < 0.05);
+        let widest = with_more.positions.iter().map(|x| x.x.hypot(x.y)).fold(0.0, f64::max);
+        assert!((widest - 3.0).abs() < 1e-12, "{widest}");
+    }
+
+    #[test]
     fn what_makes_no_surface_is_told() {
         use ProfileFault::*;
         assert_eq!(fault(&[[1.0, 0.0], [2.0, 0.0]], 0.0), TooFew);
@@ -341,5 +379,6 @@ mod tests {
         assert_eq!(fault(&[[1.0, 0.0], [3.0, 0.0], [3.0, 1.0], [2.0, 0.0]], 0.0), Crosses(0, 2));
         let Rounding(_, most) = fault(&PIPETTE, 0.6) else { panic!("too round") };
         assert!((most - 0.5).abs() < 1e-12, "{most}");
+        assert_eq!(fault(&[[0.0, 0.0], [1e-7, 0.0], [3.0, 0.0], [3.0, 4.0], [0.0, 4.0]], 0.0), Slivers(1));
     }
 }

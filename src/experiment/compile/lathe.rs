@@ -68,6 +68,12 @@ pub fn surface(
             format!("`{key}.profile` crosses itself: its side {} meets the one {}", side(other), side(one)),
             "give the corners in their order along the outline",
         ),
+        Err(ProfileFault::Slivers(number)) => fault(
+            &at(number),
+            "facets are slivers here",
+            format!("facets around `{key}.profile[{number}]` are slivers"),
+            "leave out corners that are much nearer to each other than atoms around the axis are, or raise `around`",
+        ),
         Err(ProfileFault::Rounding(number, most)) => fault(
             "rounding",
             "too large",
