@@ -90,7 +90,7 @@ fn sliver(surface: &Surface) -> Option<[f64; 2]> {
     let qualities = facet_qualities(surface).into_iter().enumerate();
     let (worst, quality) = qualities.min_by(|one, other| one.1.total_cmp(&other.1))?;
     let first = surface.corners(surface.facets[worst])[0];
-    (!(quality >= LEAST_FACET_QUALITY)).then(|| [first.x.hypot(first.y), first.z])
+    (quality < LEAST_FACET_QUALITY || quality.is_nan()).then(|| [first.x.hypot(first.y), first.z])
 }
 
 /// Looks whether a closed surface comes of a profile; says whether it is a ring.
@@ -248,7 +248,8 @@ impl Ring {
     fn new([r, z]: [f64; 2], number: usize, widest: f64, around: u32, positions: &mut Vec<Vec3>) -> Self {
         let wanted = (f64::from(around) * r / widest).round() as u32;
         let atoms = if r == 0.0 { 1 } else { wanted.max(FEWEST) };
-        let ring = Self { first: positions.len() as u32, atoms, begin: if number % 2 == 0 { 0.0 } else { 0.5 } };
+        let ring =
+            Self { first: positions.len() as u32, atoms, begin: if number.is_multiple_of(2) { 0.0 } else { 0.5 } };
         positions.extend((0..atoms).map(|atom| {
             let [cos, sin] = turn_by(ring.turns(atom));
             Vec3::new(r * cos, r * sin, z)
