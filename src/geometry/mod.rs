@@ -10,6 +10,7 @@ mod measure;
 mod occupied;
 mod orient;
 mod principal;
+mod profile;
 mod red_cell;
 mod sheet;
 mod spheres;
@@ -22,7 +23,7 @@ pub use check::{Boundary, LEAST_FACET_QUALITY, MeshFault, SurfaceRules, check_su
 pub use curvature::{gaussian_curvature, mean_curvature, mixed_areas};
 pub use export::{OfAtoms, export_surface, write_obj, write_ply, write_stl};
 pub use import::{read_checked_surface, read_surface};
-pub use lathe::{Profile, ProfileFault, lathe};
+pub use lathe::lathe;
 pub use measure::{
     area, area_vectors, atom_areas, atom_normals, bounding_box, centre_of_volume, facet_areas, facet_qualities,
     mean_edge_length, smallest_angle, volume, volume_gradient,
@@ -30,6 +31,7 @@ pub use measure::{
 pub use occupied::{Occupied, point_in_box};
 pub use orient::orient_outwards;
 pub use principal::{PrincipalAxes, principal_axes, principal_extents};
+pub use profile::{Profile, ProfileFault};
 pub use red_cell::{RED_CELL_DIAMETER, red_cell, red_cell_area, red_cell_half_thickness, red_cell_volume};
 pub use sheet::sheet;
 pub use spheres::{MAX_ICOSPHERE_LEVEL, icosphere, octasphere};

@@ -87,6 +87,7 @@ fn a_pressure_within_a_radius_draws_with_the_area_of_the_circle() {
         // Below the middle of the ball the cylinder leaves the ring between both out: what is drawn is the top of the ball.
         let wanted = -2.5 * std::f64::consts::PI * f64::min(radius * radius, 25.0 - height * height) * direction;
         println!("{height} {radius}: {}", (sum - wanted).norm() / wanted.norm());
+        // Chords and tangents a facet (0.35 µm) long: with the sagittas of both a circle of 2 µm has 0.4 % more or less.
         assert!((sum - wanted).norm() < 6e-3 * wanted.norm(), "{height} {radius}: {sum} {wanted}");
     }
 }

@@ -79,11 +79,17 @@ mod tests {
     use super::super::model::ContactModel;
     use super::*;
     use crate::contact::{Normal, Reach};
-    use crate::geometry::{Surface, icosphere};
+    use crate::geometry::icosphere;
     use crate::sim::kind::Kind;
     use crate::sim::state::KindState;
 
     const REACH: Reach = Reach { proximity: 0.1, depth: 0.1, margin: 0.1 };
+
+    /// Two balls of 12 atoms and 30 edges each.
+    fn two_balls() -> (ContactModel, Vec<KindState>) {
+        let kind = || Kind::new("ball", icosphere(1.0, 0), Vec::new());
+        (ContactModel::new(&[kind(), kind()], &[], REACH), vec![KindState { ids: vec![0], ..KindState::default() }; 2])
+    }
 
     fn near(edges: [u32; 2]) -> EdgeContact {
         EdgeContact { edges, along: [0.5; 2], gap: 0.01, normal: Normal([0.0, 0.0, 1.0]) }
@@ -95,9 +101,8 @@ mod tests {
 
     /// What contacts of these edges of two balls take over from bonds.
     fn taken_over(pairs: &[[u32; 2]], bonds: &[EdgeBond]) -> Vec<[f32; 3]> {
-        let surfaces: [Surface; 2] = [icosphere(1.0, 0), icosphere(1.0, 0)];
-        let model = ContactModel::new(&surfaces.map(|rest| Kind::new("ball", rest, Vec::new())), &[], REACH);
-        let scene = model.scene_of(&vec![KindState { ids: vec![0], ..KindState::default() }; 2]);
+        let (model, cells) = two_balls();
+        let scene = model.scene_of(&cells);
         let found = Contacts { edges: pairs.iter().map(|pair| near(*pair)).collect(), ..Contacts::default() };
         let before = ContactState { edges: bonds.to_vec(), ..ContactState::default() };
         let mut inherited = Inherited::default();
@@ -108,9 +113,8 @@ mod tests {
     /// Edges of the first ball, the first of which ends where the others do but the last, and one of the second, with one that ends where it does,
     /// and one that does not.
     fn edges() -> ([u32; 4], [u32; 3]) {
-        let surfaces: [Surface; 2] = [icosphere(1.0, 0), icosphere(1.0, 0)];
-        let model = ContactModel::new(&surfaces.map(|rest| Kind::new("ball", rest, Vec::new())), &[], REACH);
-        let scene = model.scene_of(&vec![KindState { ids: vec![0], ..KindState::default() }; 2]);
+        let (model, cells) = two_balls();
+        let scene = model.scene_of(&cells);
         let ends = |edge: u32| scene.scene.edge_atoms(scene.scene.body_of_edge(edge), edge);
         let meet = |one: u32, other: u32| ends(one).iter().any(|atom| ends(other).contains(atom));
         let [a, b] = [1..30, 31..60].map(|rest| {
@@ -157,9 +161,6 @@ mod tests {
         let ([gone, one, other, _], [there, ..]) = edges();
         let mut bonds = [bond([gone, there], [0.0, 0.0, 5.0]), bond([one, there], [1.0, 0.0, 1.0])];
         bonds.sort_unstable_by_key(|bond| bond.edges);
-        let ([first, ..], _) = edges();
-        assert_eq!(first, gone);
-        let beside_both = taken_over(&[[other, there]], &bonds);
-        assert_eq!(beside_both, [[1.0, 0.0, 6.0]]);
+        assert_eq!(taken_over(&[[other, there]], &bonds), [[1.0, 0.0, 6.0]], "the heir is beside both");
     }
 }
