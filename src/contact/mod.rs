@@ -53,7 +53,7 @@ pub use reference::detect_all_pairs;
 pub use scene::{Body, Plane, Reach, Scene};
 pub use shape::{Shape, Sides};
 pub use swept::{atom_meets_facet, edges_meet};
-pub use travel::{Stride, Travel};
+pub use travel::{Itself, Stride, Travel};
 
 #[cfg(test)]
 mod analytic_tests;

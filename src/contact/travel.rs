@@ -19,6 +19,10 @@ const FARTHEST: f64 = 32.0;
 /// How much farther than is needed bodies are listed as near, over how far they go: the list lasts for some steps.
 const SPARE: f64 = 3.0;
 
+/// The least cosine between the normal of a facet and the direction to it from the middle of its body at which that is far from touching itself:
+/// walls of grooves are steeper.
+const ROUND: f64 = 0.25;
+
 /// Bodies that a thread takes at once, at least.
 const BODIES_PER_JOB: usize = 64;
 
@@ -31,10 +35,23 @@ pub struct Travel {
     pub farthest: f64,
 }
 
+/// Whether a body may touch itself.
+#[derive(Debug, Clone, Copy)]
+pub enum Itself<'a> {
+    /// Never: it is rigid.
+    Never,
+    /// A closed surface of these facets: not where it is round enough.
+    Closed(&'a [[u32; 3]]),
+    /// Wherever it may fold to.
+    Anywhere,
+}
+
 /// How a body moves in a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Stride {
     motion: Motion,
+    /// How far atoms go beside the mean of all, where it may come to touch itself, over what is safe.
+    to_itself: f64,
     /// Its box where the step begins.
     bounds: Bounds,
     /// How far atoms go that are near planes, over what is safe.
@@ -43,35 +60,47 @@ pub struct Stride {
 
 impl Stride {
     /// None, of nothing.
-    pub const NONE: Self = Self { motion: Motion::NONE, bounds: Bounds::EMPTY, to_planes: 0.0 };
+    pub const NONE: Self = Self { motion: Motion::NONE, to_itself: 0.0, bounds: Bounds::EMPTY, to_planes: 0.0 };
 
     /// That of so many atoms, which go from one position to another, µm.
     #[inline]
-    pub fn of(scene: &Scene, atoms: usize, from: impl Fn(usize) -> Vec3, to: impl Fn(usize) -> Vec3) -> Self {
+    pub fn of(
+        scene: &Scene,
+        (atoms, itself): (usize, Itself),
+        from: impl Fn(usize) -> Vec3,
+        to: impl Fn(usize) -> Vec3,
+    ) -> Self {
         let safe = scene.safe_travel();
-        let (mut low, mut high, mut sum) =
-            (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY), Vec3::zeros());
+        let (mut low, mut high, mut sum, mut middle) =
+            (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY), Vec3::zeros(), Vec3::zeros());
         let (mut farthest, mut to_planes): (f64, f64) = (0.0, 0.0);
         for atom in 0..atoms {
             let (start, end) = (from(atom), to(atom));
             let displacement = end - start;
-            (low, high, sum) = (low.inf(&start), high.sup(&start), sum + displacement);
+            (low, high, sum, middle) = (low.inf(&start), high.sup(&start), sum + displacement, middle + start);
             farthest = farthest.max(displacement.norm_squared());
             for plane in &scene.planes {
                 let height = (start - plane.point).dot(&plane.normal);
-                to_planes = to_planes.max(displacement.norm() / safe.max(height));
+                let towards = -displacement.dot(&plane.normal);
+                to_planes = to_planes.max(towards / safe.max(height));
             }
         }
-        let mean = sum / atoms.max(1) as f64;
+        let [mean, middle] = [sum, middle].map(|sum| sum / atoms.max(1) as f64);
         let beside = (0..atoms).map(|atom| (to(atom) - from(atom) - mean).norm_squared()).fold(0.0, f64::max);
         let motion = Motion { mean, beside: beside.sqrt(), farthest: farthest.sqrt() };
-        Self { motion, bounds: Bounds::between(low, high), to_planes }
+        let to_itself = motion.beside.min(motion.farthest) / safe;
+        let stays_round = || match itself {
+            Itself::Never => true,
+            Itself::Closed(facets) => is_round(facets, from, middle) && is_round(facets, to, middle + mean),
+            Itself::Anywhere => false,
+        };
+        let to_itself = if to_itself < LEAST || stays_round() { 0.0 } else { to_itself };
+        Self { motion, to_itself, bounds: Bounds::between(low, high), to_planes }
     }
 
     /// What it goes by itself, over what is safe: towards planes, beside itself, and from what is near.
     fn alone(&self, safe: f64) -> f64 {
-        let Motion { beside, farthest, .. } = self.motion;
-        self.to_planes.max(beside.min(farthest) / safe).max(farthest / (FARTHEST * safe))
+        self.to_planes.max(self.to_itself).max(self.motion.farthest / (FARTHEST * safe))
     }
 
     /// What two bodies go beside each other, over what is safe: what would bring them to each other, or twice the safe travel where that is
@@ -89,6 +118,15 @@ impl Stride {
     fn reach(&self, safe: f64, spare: f64) -> Bounds {
         self.bounds.grown((self.motion.farthest / LEAST).min(FARTHEST * safe) + spare)
     }
+}
+
+/// Whether all facets of a closed surface look so far away from a point within, eq. (contacts.15), that the surface, which each ray from there meets once, cannot touch itself.
+fn is_round(facets: &[[u32; 3]], at: impl Fn(usize) -> Vec3, middle: Vec3) -> bool {
+    facets.iter().all(|facet| {
+        let [a, b, c] = facet.map(|atom| at(atom as usize) - middle);
+        let (normal, outwards) = ((b - a).cross(&(c - a)), a + b + c);
+        normal.dot(&outwards) > ROUND * normal.norm() * outwards.norm()
+    })
 }
 
 /// How far bodies go beside those that they may meet, over what is safe, eq. (contacts.6), where they move by these strides, one a body; 0

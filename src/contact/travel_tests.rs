@@ -1,7 +1,8 @@
 //! How far a step may go: what it is held against.
 
-use super::test_scenes::{Dice, packed_stage, stage};
-use super::{Detector, Plane, Reach, Scene, Sides, Stride, atom_meets_facet, closest_on_facet};
+use super::inside::passes_through;
+use super::test_scenes::{Dice, deform, packed_stage, stage};
+use super::{Detector, Itself, Plane, Reach, Scene, Sides, Stride, atom_meets_facet, closest_on_facet};
 use crate::Vec3;
 
 const REACH: Reach = Reach { proximity: 0.2, depth: 0.2, margin: 0.1 };
@@ -10,7 +11,9 @@ fn measure(detector: &mut Detector, scene: &Scene, before: &[Vec3], after: &[Vec
     let strides: Vec<Stride> = (0..scene.bodies.len() as u32)
         .map(|body| {
             let [before, after] = [before, after].map(|at| scene.of_body(body, at));
-            Stride::of(scene, before.len(), |atom| before[atom], |atom| after[atom])
+            let shape = scene.shape(body);
+            let itself = if shape.closed { Itself::Closed(&shape.facets) } else { Itself::Anywhere };
+            Stride::of(scene, (before.len(), itself), |atom| before[atom], |atom| after[atom])
         })
         .collect();
     detector.travel(scene, &strides).share
@@ -109,5 +112,46 @@ fn atoms_near_planes_go_no_farther_than_is_safe_and_those_far_from_them_no_farth
     let lowest = ball.positions.iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
     assert!((share(lowest - 0.05, Vec3::z() * -0.1) - 1.0).abs() < 1e-9);
     assert!((share(lowest - 1.0, Vec3::z() * -0.5) - 0.5).abs() < 1e-9);
+    // Along it and away from it as far as anywhere.
+    assert_eq!(share(lowest - 0.05, Vec3::new(0.5, 0.0, 0.3)), 0.0);
     assert!((share(-1e9, Vec3::z() * -3.2) - 1.0).abs() < 1e-6, "far from everything it goes as far as is looked at");
+}
+
+/// Whether an edge of a body goes through a facet of it with which it shares no atom.
+fn is_through_itself(scene: &Scene, positions: &[Vec3]) -> bool {
+    let shape = scene.shape(0);
+    shape.edges.iter().any(|edge| {
+        let [from, to] = edge.map(|atom| positions[atom as usize]);
+        let mut others = shape.facets.iter().filter(|facet| !facet.iter().any(|atom| edge.contains(atom)));
+        others.any(|facet| passes_through(from, to, facet.map(|atom| positions[atom as usize])))
+    })
+}
+
+#[test]
+fn what_stays_round_deforms_as_far_as_it_likes_and_does_not_go_through_itself_and_what_does_not_goes_a_little() {
+    let ball = crate::geometry::icosphere(1.0, 1);
+    let mut dice = Dice(17);
+    let (mut far, mut held, mut wild) = (0, 0, 0);
+    for number in 0..80 {
+        let bends = [dice.roll(), dice.roll()];
+        let noise = 0.15 * f64::from(number % 4);
+        let before = deform(&ball, &mut dice, 0.5 * bends[0], 0.2 * noise);
+        let mut after = deform(&ball, &mut dice, f64::from(number % 3) * bends[1], noise);
+        let stage = stage(&[(&ball, Sides::Outer, before.clone())], Vec::new(), REACH);
+        if is_through_itself(&stage.scene, &before) {
+            continue;
+        }
+        wild += usize::from(is_through_itself(&stage.scene, &after));
+        let share = measure(&mut Detector::default(), &stage.scene, &before, &after);
+        if share > 1.0 {
+            held += 1;
+            after.iter_mut().zip(&before).for_each(|(after, before)| *after = before + (*after - before) / share);
+        }
+        let share = measure(&mut Detector::default(), &stage.scene, &before, &after);
+        assert!(share < 1.0 + 1e-9, "{share}");
+        let farthest = before.iter().zip(&after).map(|(x, y)| (y - x).norm()).fold(0.0, f64::max);
+        far += usize::from(farthest > 3.0 * stage.scene.safe_travel());
+        assert!(!is_through_itself(&stage.scene, &after), "{number}: {farthest}");
+    }
+    assert!(far > 10 && held > 10 && wild > 3, "a test of nothing: {far} {held} {wild}");
 }

@@ -16,7 +16,7 @@ use super::sweep::{sweep_contacts, sweep_depths};
 use super::vectors::V4;
 use super::volumes::{InModes, VolumeRow, sweep_volumes};
 use crate::Vec3;
-use crate::contact::{Stride, Travel};
+use crate::contact::{Itself, Stride, Travel};
 use crate::sim::kind::VolumeRule;
 use crate::sim::model::Model;
 use crate::sim::state::{KindState, State, vector};
@@ -218,11 +218,16 @@ pub fn travel(model: &Model, from: &State, to: &State, ws: &mut Workspace) -> Tr
     for ((kind, now), next) in model.kinds.iter().zip(&from.kinds).zip(&to.kinds) {
         let (own, others) = rest.split_at_mut(now.cells());
         rest = others;
+        let itself = match (&kind.rigid, kind.closed) {
+            (Some(_), _) => Itself::Never,
+            (None, true) => Itself::Closed(&kind.rest.facets),
+            (None, false) => Itself::Anywhere,
+        };
         own.par_iter_mut().with_min_len(CELLS_PER_JOB).enumerate().for_each(|(cell, stride)| {
             let position = |x: &[f64], atom: usize| vector(kind, x, cell, atom);
             let ends = [&now.positions, &next.positions].map(|x| move |atom| position(x, atom));
             let [start, end] = ends;
-            *stride = Stride::of(scene, kind.atoms(), start, end);
+            *stride = Stride::of(scene, (kind.atoms(), itself), start, end);
         });
     }
     s.detector.travel(scene, &s.strides)
