@@ -16,6 +16,11 @@ pub fn go_back(now: &mut [f64], before: &[f64], share: f64) {
     now.iter_mut().zip(before).for_each(|(now, before)| *now = before + share * (*now - before));
 }
 
+/// Whether a number is nothing, so that documents need not say it.
+pub(crate) fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
 const LN2_HIGH: f64 = 0.693_147_180_369_123_8; // the first 33 bits of ln 2, so that k·LN2_HIGH is exact
 const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5·2^52: adding it leaves a whole number in the low bits

@@ -16,6 +16,7 @@ mod noise;
 pub mod over;
 pub mod pattern;
 pub mod recording;
+mod relaxation;
 pub mod sensing;
 pub mod sobol_indices;
 pub mod speed_persistence;

@@ -65,7 +65,7 @@ impl Recording {
             let stored = name.strip_prefix(CHEMISTRY).filter(|_| !in_file(name)).unwrap_or(name);
             if of_scene.iter().any(|known| known == stored) {
                 recording.scene.insert(name.to_owned(), file.scene_series(stored)?);
-            } else if name == "speed" || of_cells.iter().any(|known| known == stored) {
+            } else if of_cells.iter().any(|known| known == stored) {
                 recording.cells.insert(name.to_owned(), file.cell_series(stored)?);
             }
         }

@@ -73,6 +73,17 @@ impl Table {
         self.columns.first().map_or(0, Vec::len)
     }
 
+    /// Adds a number to all of a column.
+    ///
+    /// # Errors
+    /// When there is no such column.
+    pub fn shift(&mut self, name: &str, by: f64) -> Result<()> {
+        self.column(name)?;
+        let columns = self.names.iter().zip(&mut self.columns).filter(|(known, _)| *known == name);
+        columns.flat_map(|(_, column)| column).for_each(|value| *value += by);
+        Ok(())
+    }
+
     /// A column by its name; NaN where nothing was measured.
     ///
     /// # Errors

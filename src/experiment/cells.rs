@@ -25,6 +25,10 @@ pub struct CellType {
     pub colour: Option<Colour>,
     /// The surface at rest.
     pub mesh: Mesh,
+    /// By how much the mesh is drawn out along x, y and z before it is turned: so is the cell at rest, an ellipsoid from a sphere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 0.1, max = 10.0)))]
+    pub stretch: Option<[f64; 3]>,
     /// How the surface is turned before it is placed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orientation: Option<Orientation>,
@@ -65,6 +69,7 @@ impl CellType {
             number: None,
             colour: None,
             mesh,
+            stretch: None,
             orientation: None,
             placement: None,
             added: Vec::new(),

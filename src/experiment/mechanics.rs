@@ -4,6 +4,7 @@ use super::compile::Builder;
 use super::membrane::Membrane;
 use super::rigid::Rigid;
 use super::selection::Selection;
+use super::viscosity::Viscosity;
 use super::volume::VolumeControl;
 use crate::geometry;
 use crate::mechanics::angles::Angles;
@@ -35,6 +36,9 @@ pub struct Mechanics {
     /// A spring on every edge of the mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub springs: Option<Springs>,
+    /// The surface is viscous.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub viscosity: Option<Viscosity>,
     /// The cell never changes its shape: a tool, or a bead.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rigid: Option<Rigid>,

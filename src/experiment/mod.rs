@@ -56,6 +56,7 @@ mod schema;
 mod selection;
 mod semantics;
 mod tree;
+mod viscosity;
 mod volume;
 
 pub use crate::analysis::measures::{self, Measure, MeasureKind};
@@ -80,12 +81,13 @@ pub use moved::{Moved, Rotation};
 pub use pictures::{FieldLine, MeasureCurve, Picture, Plot, PlotKind, PlotTable, View};
 pub use placement::Placement;
 pub use population::{Added, Removed};
-pub use pressure::{Beyond, Pressure};
+pub use pressure::{Beyond, Pressure, Profile};
 pub use pseudopods::{ContactInhibition, InhibitedBy, PodFibres, Pseudopods};
 pub use rigid::{Rigid, Trap};
-pub use scene::{Environment, Integrator, Method, Output, Plane, Run};
+pub use scene::{Environment, Equilibrium, Integrator, Method, Output, Plane, Run};
 pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
+pub use viscosity::Viscosity;
 pub use volume::{VolumeControl, VolumeRule};
 
 use crate::recorded::{Motion, NAMED, OnDemand, names_by_type, series_of_moved, series_of_pressures, series_of_traps};
@@ -146,7 +148,8 @@ impl Experiment {
     /// What is recorded of cells that not all runs have.
     pub(crate) fn on_demand(&self) -> OnDemand {
         let fibres = self.cells.values().any(|cell| cell.fibre_budget() > 0);
-        OnDemand { tractions: self.keeps_tractions(), fibres }
+        let viscosity = self.cells.values().any(|cell| cell.mechanics.viscosity.is_some_and(Viscosity::is_any));
+        OnDemand { tractions: self.keeps_tractions(), fibres, viscosity }
     }
 
     /// Whether tractions are recorded: where they are asked for, and where atoms are moved, whose forces are among them.
@@ -209,7 +212,7 @@ impl Experiment {
             description: None,
             reference: None,
             seed: 0,
-            run: Run { until, integrator: Integrator::default() },
+            run: Run { until, equilibrium: None, integrator: Integrator::default() },
             cells: IndexMap::new(),
             chemistry: IndexMap::new(),
             environment: Environment::default(),

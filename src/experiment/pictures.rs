@@ -244,6 +244,9 @@ pub struct PlotTable {
     pub file: PathBuf,
     /// Its column along x.
     pub x: String,
+    /// What is added to its column along x, as where it counts from an instant within the run.
+    #[serde(default, skip_serializing_if = "crate::elementary::is_zero")]
+    pub x_shift: f64,
     /// Its columns along y, one or several.
     pub y: OneOrMany<String>,
     /// The columns with the lower ends of the bars, in the order of `y`.

@@ -4,11 +4,14 @@ use super::compile::{Builder, course, unit};
 use super::selection::Selection;
 use super::semantics::Check;
 use crate::Vec3;
+use crate::analysis::table::Table;
+use crate::error::{Error, Fault, Result};
 use crate::mechanics::pressure;
 use crate::units::{Length, Stress};
 use crate::values::Course;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// A pressure on facets of every cell of the type, along their normals wherever these are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,6 +29,24 @@ pub struct Pressure {
     /// Where it acts; everywhere when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beyond: Option<Beyond>,
+    /// How it differs over the surface; alike everywhere when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Profile>,
+}
+
+/// A pressure that differs with the angle from an axis, as that of light on a cell in a beam.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Profile {
+    /// The axis in space; its length does not matter.
+    pub axis: [f64; 3],
+    /// The table (CSV with a line of column names), relative to the document.
+    #[schemars(extend("x-text" = "file"))]
+    pub table: PathBuf,
+    /// Its column of angles between the axis and the direction in which a facet lies from the mean of the atoms of its cell, degrees, rising from 0 to 180.
+    pub angle_column: String,
+    /// Its column of what the pressure is multiplied by there.
+    pub factor_column: String,
 }
 
 /// What is beyond a plane, as within the mouth of a pipette.
@@ -59,7 +80,36 @@ impl Pressure {
             radius: beyond.radius.map(|radius| radius.value()),
         });
         let pressure = course(self.pressure.points());
-        pressure::Pressure { name: self.name.clone(), facets, pressure, beyond }
+        let profile = self.profile.as_ref().and_then(|profile| {
+            let told = profile
+                .compiled(to)
+                .map_err(|error| to.faults_at(&format!("{path}.profile.table"), "this table", error));
+            told.ok()
+        });
+        pressure::Pressure { name: self.name.clone(), facets, pressure, beyond, profile }
+    }
+}
+
+impl Profile {
+    /// What it means.
+    ///
+    /// # Errors
+    /// A table that cannot be read, lacks a column, or does not rise from 0 to 180 degrees.
+    fn compiled(&self, to: &Builder) -> Result<pressure::Profile> {
+        let table = Table::read(&to.resolve(&self.table))?;
+        let (angles, factors) = (table.column(&self.angle_column)?, table.column(&self.factor_column)?);
+        let reach = angles.first() == Some(&0.0) && angles.last() == Some(&180.0);
+        if !reach || !angles.is_sorted_by(|one, other| one < other) || factors.iter().any(|factor| !factor.is_finite())
+        {
+            let found =
+                "the angles of a profile rise from 0 in the first row to 180 in the last, and each has its factor";
+            let help =
+                "order the rows by the angle, add those of 0 and 180 degrees, and leave out those without a number";
+            return Err(Error::input(Fault::new(found).help(help)));
+        }
+        let cosines = angles.iter().rev().map(|angle| angle.to_radians().cos()).collect();
+        let factors = factors.iter().rev().copied().collect();
+        Ok(pressure::Profile { axis: unit(self.axis), cosines, factors, atoms: to.rest().positions.len() })
     }
 }
 
@@ -72,6 +122,9 @@ impl Check<'_> {
             self.course(&format!("{path}.pressure"), &pressure.pressure.points());
             if let Some(beyond) = &pressure.beyond {
                 self.direction(&format!("{path}.beyond.direction"), beyond.direction);
+            }
+            if let Some(profile) = &pressure.profile {
+                self.direction(&format!("{path}.profile.axis"), profile.axis);
             }
             if let Some(other) = pressures[..index].iter().position(|other| other.name == pressure.name) {
                 let message = format!("`{path}.name` is the name of pressure {other} too");

@@ -1,6 +1,6 @@
 //! The run itself: duration, integrator, what acts everywhere, what is recorded.
 
-use crate::units::{Acceleration, Length, Time};
+use crate::units::{Acceleration, Force, Length, Time};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,9 +11,21 @@ pub struct Run {
     /// Simulated time at the end.
     #[schemars(extend("x-exclusive-minimum" = 0))]
     pub until: Time,
+    /// Ends the run before, once the cells are in mechanical equilibrium.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub equilibrium: Option<Equilibrium>,
     /// How the atoms are moved in time.
     #[serde(default)]
     pub integrator: Integrator,
+}
+
+/// When cells count as being in equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Equilibrium {
+    /// The largest force on an atom that may be out of balance: what its drag answers, and what is viscous, in the mean over a step.
+    #[schemars(extend("x-exclusive-minimum" = 0))]
+    pub force: Force,
 }
 
 /// How the atoms are moved in time.

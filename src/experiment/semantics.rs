@@ -5,7 +5,9 @@ use super::cut_short::Late;
 use super::document::{Document, near_file};
 use crate::error::Fault;
 use crate::error::words;
-use crate::recorded::{CONTACTS, ContactQuantity, NAMED, OnDemand, Recorded, Touch, cell_series, contact_quantities};
+use crate::recorded::{
+    CONTACTS, ContactQuantity, NAMED, OUT_OF_BALANCE, OnDemand, Recorded, Touch, cell_series, contact_quantities,
+};
 use std::path::Path;
 
 mod cells;
@@ -39,6 +41,7 @@ pub(super) fn check(document: &Document) -> (Vec<Fault>, Vec<Late>) {
         check.applied(&path, &cell.applied);
         check.moved_by_scheme(&path, cell);
         check.rigid(&path, cell);
+        check.viscosity(&path, cell);
         if let Some(turn) = &cell.orientation {
             check.direction(&format!("{path}.orientation.axis"), turn.axis);
         }
@@ -126,9 +129,15 @@ impl Check<'_> {
         let (pairs, of_cells) = (self.series_of_pairs(), cell_series(with).collect::<Vec<String>>());
         let experiment = &self.document.experiment;
         let pressures = experiment.series_of_pressures();
-        let loads =
-            [experiment.series_of_loads(), experiment.series_of_moved(), experiment.series_of_traps(), pressures]
-                .concat();
+        let balance: Vec<String> = experiment.run.equilibrium.map(|_| OUT_OF_BALANCE.to_owned()).into_iter().collect();
+        let loads = [
+            balance,
+            experiment.series_of_loads(),
+            experiment.series_of_moved(),
+            experiment.series_of_traps(),
+            pressures,
+        ]
+        .concat();
         let contact = self.document.experiment.contact.as_ref();
         let contacts = contact.is_some();
         let of_model = contact.into_iter().flat_map(|contact| contact_quantities(contact.recorded()));
@@ -141,7 +150,11 @@ impl Check<'_> {
         if known().any(|name| name == text) || self.document.experiment.may_be_of_load_file(text) {
             return;
         }
-        if cell_series(OnDemand { tractions: false, ..OnDemand::ALL }).any(|name| name == text) {
+        if cell_series(OnDemand { viscosity: true, ..OnDemand::default() }).any(|name| name == text) {
+            let message = format!("`{path}`: there is no series \"{text}\" where nothing is viscous");
+            return self.fault(path, "not recorded", message, "add `viscosity` to the mechanics of a type");
+        }
+        if cell_series(OnDemand { fibres: true, ..OnDemand::default() }).any(|name| name == text) {
             let message = format!("`{path}`: there is no series \"{text}\" without fibres that are made at run time");
             return self.fault(
                 path,

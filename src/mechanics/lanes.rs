@@ -7,7 +7,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Simd, WithSimd, bytemuck};
 
 /// Lanes of a block of cells that share a mesh. One AVX-512 register, two AVX2 registers.
 pub const LANES: usize = 8;
@@ -47,6 +47,8 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// Whether any lane is less than the constant.
     fn any_less(self, bound: f64) -> bool;
+    /// What a function makes of each lane by itself: for what is looked up, not for arithmetic.
+    fn map(self, by: impl Fn(f64) -> f64) -> Self;
 }
 
 impl Real for f64 {
@@ -87,6 +89,10 @@ impl Real for f64 {
     #[inline(always)]
     fn any_less(self, bound: f64) -> bool {
         self < bound
+    }
+    #[inline(always)]
+    fn map(self, by: impl Fn(f64) -> f64) -> f64 {
+        by(self)
     }
 }
 
@@ -137,6 +143,12 @@ impl<S: Simd> Real for Lane<S> {
     #[inline(always)]
     fn any_less(self, bound: f64) -> bool {
         self.simd.reduce_min_f64s(self.value) < bound
+    }
+    #[inline(always)]
+    fn map(mut self, by: impl Fn(f64) -> f64) -> Self {
+        let lanes: &mut [f64] = bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.value));
+        lanes.iter_mut().for_each(|lane| *lane = by(*lane));
+        self
     }
 }
 

@@ -34,6 +34,7 @@ pub mod sum;
 pub mod tangent;
 pub mod tension;
 pub mod trap;
+pub mod viscosity;
 pub mod volume;
 
 use crate::Vec3;

@@ -15,6 +15,19 @@ pub struct Beyond {
     pub radius: Option<f64>,
 }
 
+/// How a pressure differs with the angle between an axis in space and the direction in which a facet lies from the mean of all atoms of its cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// Unit axis.
+    pub axis: Vec3,
+    /// Cosines of angles, rising from −1 to 1.
+    pub cosines: Vec<f64>,
+    /// What the pressure is multiplied by there; straight between them.
+    pub factors: Vec<f64>,
+    /// Atoms of a cell.
+    pub atoms: usize,
+}
+
 /// A pressure on facets of every cell of a kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pressure {
@@ -26,6 +39,8 @@ pub struct Pressure {
     pub pressure: Course,
     /// Where it acts; everywhere if not said.
     pub beyond: Option<Beyond>,
+    /// How it differs over the surface; alike everywhere if not said.
+    pub profile: Option<Profile>,
 }
 
 /// Far below any length, and yet no zero to divide by.
@@ -36,11 +51,15 @@ impl Pressure {
     #[inline(always)]
     pub fn add_forces<T: Real>(&self, pressure: T, x: &Vectors<T>, f: &mut VectorsMut<T>) -> T {
         let third = T::constant(x.token, 1.0 / 3.0);
+        let centre = self.profile.as_ref().map(|profile| profile.centre(x));
         for facet in &self.facets {
             let corners = facet.map(|atom| x.get(atom as usize));
             let [a, b, c] = corners;
             // Of a vector of the whole area, which looks outwards.
-            let push = (b - a).cross(c - a).times(pressure * -0.5);
+            let mut push = (b - a).cross(c - a).times(pressure * -0.5);
+            if let (Some(profile), Some(centre)) = (&self.profile, centre) {
+                push = push.times(profile.factor(x.token, (a + b + c).scaled(1.0 / 3.0) - centre));
+            }
             let weights = match &self.beyond {
                 None => [third; 3],
                 Some(plane) => plane.weights(x.token, corners),
@@ -50,6 +69,34 @@ impl Pressure {
             }
         }
         T::constant(x.token, 0.0)
+    }
+}
+
+impl Profile {
+    /// The mean of the atoms, µm.
+    #[inline(always)]
+    fn centre<T: Real>(&self, x: &Vectors<T>) -> V3<T> {
+        let mut sum = V3::zero(x.token);
+        for atom in 0..self.atoms {
+            sum += x.get(atom);
+        }
+        sum.scaled(1.0 / self.atoms as f64)
+    }
+
+    /// What the pressure on a facet is multiplied by that lies so from the centre.
+    #[inline(always)]
+    fn factor<T: Real>(&self, token: T::Token, from: V3<T>) -> T {
+        let along = from.dot(V3::constant(token, self.axis.into()));
+        (along / (from.squared().sqrt() + TINY)).map(|cosine| self.at(cosine))
+    }
+
+    /// What it is multiplied by at an angle with this cosine.
+    fn at(&self, cosine: f64) -> f64 {
+        let last = self.cosines.len() - 1;
+        let after = self.cosines.partition_point(|known| *known < cosine).clamp(1, last);
+        let [low, high] = [after - 1, after];
+        let share = ((cosine - self.cosines[low]) / (self.cosines[high] - self.cosines[low])).clamp(0.0, 1.0);
+        self.factors[low] + share * (self.factors[high] - self.factors[low])
     }
 }
 

@@ -7,7 +7,7 @@ use ndarray::Array2;
 use super::catalogue::CAME_LATER;
 use super::{Cell, Known, ResultFile, SystemScope};
 use crate::error::Result;
-use crate::recorded::{SPEED, cell_quantities};
+use crate::recorded::{cell_quantities, derived};
 
 impl ResultFile {
     /// All cells that were ever recorded, by ascending id: the columns of [`cell_series`](Self::cell_series).
@@ -74,10 +74,10 @@ impl ResultFile {
 
     /// The rows that some frames have in the dataset of a series, with what may lie between them.
     fn rows_of_cells(&self, name: &str, frames: Range<usize>) -> Result<Vec<f64>> {
-        if name == SPEED {
-            let component = |ending: &str| self.rows_of_cells(&format!("velocity_{ending}"), frames.clone());
-            let (x, y, z) = (component("x")?, component("y")?, component("z")?);
-            return Ok(x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt()).collect());
+        if let Some(derived) = derived(name) {
+            let [x, y, z] = derived.components.map(|component| self.rows_of_cells(component, frames.clone()));
+            let vectors = x?.into_iter().zip(y?).zip(z?);
+            return Ok(vectors.map(|((x, y), z)| (derived.by)([x, y, z])).collect());
         }
         let (path, component) = self.find_series(name).ok_or_else(|| self.unknown(name))?;
         let rows = self.census().rows(frames.start).start..self.census().rows(frames.end - 1).end;

@@ -16,7 +16,7 @@ use crate::error::{Error, Fault, Result};
 /// First bytes of a checkpoint.
 const MAGIC: &[u8; 8] = b"PSEUDCKP";
 /// Version of the arrangement of the bytes.
-const VERSION: u32 = 19;
+const VERSION: u32 = 20;
 /// Where the checkpoint of a finished run stands in the result file.
 pub(super) const DATASET: &str = "/checkpoint";
 

@@ -2,7 +2,7 @@
 
 use super::contacts::{series_of_frame, values_of_frame};
 use super::{Frame, Layout, SystemScope};
-use crate::recorded::{SPEED, Values, cell_quantities, cell_series, cell_unit};
+use crate::recorded::{Values, cell_quantities, cell_series, cell_unit, derived};
 
 /// What prefix quantities of chemistry may have.
 const CHEMISTRY: &str = "chemistry.";
@@ -71,9 +71,8 @@ impl Frame {
     }
 
     fn of_cells(&self, layout: &Layout, name: &str) -> Option<Vec<f64>> {
-        if name == SPEED {
-            let speed = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
-            return Some(self.records.iter().map(|cell| speed(cell.velocity)).collect());
+        if let Some(derived) = derived(name) {
+            return Some(self.records.iter().map(|cell| (derived.by)((derived.vector)(cell))).collect());
         }
         let (values, (component, _)) = cell_quantities(layout.on_demand())
             .find_map(|quantity| Some((quantity.values, quantity.component(name)?)))?;

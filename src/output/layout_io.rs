@@ -9,6 +9,7 @@ use super::container::{FORMAT, FORMAT_ATTRIBUTE, set_number};
 use super::header::Header;
 use super::texts::{self, read_text, read_texts, set_text, text, write_texts};
 use super::{CellType, Layout};
+use crate::recorded::VISCOUS;
 
 impl Entry {
     /// What the dataset of this row is when it is made.
@@ -128,6 +129,7 @@ pub(super) fn read_layout(file: &File) -> hdf5::Result<Layout> {
         contacts: file.link_exists("contacts"),
         tractions: file.dataset(TRACTION[0].path).is_ok(),
         fibres: file.link_exists("fibres"),
+        viscosity: file.dataset(VISCOUS[0].dataset).is_ok(),
     })
 }
 

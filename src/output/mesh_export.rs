@@ -9,7 +9,7 @@ use super::container::machine_error;
 use super::vtk_xml::{Numbers, opening, time_value, write_array};
 use super::{Cell, ResultFile, catalogue};
 use crate::error::Result;
-use crate::recorded::{SPEED, Values, cell_quantities, cell_unit};
+use crate::recorded::{DERIVED, Values, cell_quantities};
 
 /// VTK's number for a triangle.
 const TRIANGLE: u8 = 5;
@@ -170,8 +170,10 @@ fn quantities_of_cells(result: &ResultFile, frame: usize) -> Result<Vec<Quantity
             }
         });
     }
-    let speed = result.cell_values(SPEED, frame)?;
-    all.push(Quantity::number(SPEED.to_owned(), cell_unit(SPEED).unwrap_or_default().to_owned(), speed));
+    for derived in &DERIVED {
+        let values = result.cell_values(derived.name, frame)?;
+        all.push(Quantity::number(derived.name.to_owned(), derived.unit.to_owned(), values));
+    }
     for name in result.cell_quantities() {
         let (unit, values) = (result.units(&name)?, result.cell_values(&name, frame)?);
         all.push(Quantity::number(name, unit, values));

@@ -101,12 +101,14 @@ pub struct Layout {
     pub tractions: bool,
     /// Whether fibres may be made at run time, so that those that are there are recorded.
     pub fibres: bool,
+    /// Whether some cells are viscous, so that what that takes is recorded.
+    pub viscosity: bool,
 }
 
 impl Layout {
     /// What is recorded of cells that not all runs have.
     pub fn on_demand(&self) -> OnDemand {
-        OnDemand { tractions: self.tractions, fibres: self.fibres }
+        OnDemand { tractions: self.tractions, fibres: self.fibres, viscosity: self.viscosity }
     }
 }
 

@@ -19,7 +19,7 @@ use super::texts::text;
 use super::whole::whole_frames;
 use super::{Cell, FibreRow, Layout, PseudopodEvent, Tractions};
 use crate::error::{Error, Fault, Result};
-use crate::recorded::{CONTACTS, NAMED, SPEED, cell_label, cell_series, cell_unit};
+use crate::recorded::{CONTACTS, NAMED, cell_label, cell_series, cell_unit, derived};
 
 /// A result file opened for reading. Arrays are read when they are asked for.
 pub struct ResultFile {
@@ -264,7 +264,7 @@ impl ResultFile {
         if name == "time" {
             return Ok(super::catalogue::entry("/time").unit.to_string());
         }
-        let known = self.series_names().iter().any(|known| known == name) || name == SPEED;
+        let known = self.series_names().iter().any(|known| known == name) || derived(name).is_some();
         cell_unit(name).filter(|_| known).map(str::to_owned).ok_or_else(|| self.unknown(name))
     }
 

@@ -163,7 +163,7 @@ fn kind_of(found: &TypeDescriptor) -> Option<Kind> {
 
 /// What a result has at a path; nothing is said of what it does not have.
 fn expected(path: &str) -> Option<Expected> {
-    let of_cells = cell_quantities(OnDemand { tractions: true, fibres: true });
+    let of_cells = cell_quantities(OnDemand::ALL);
     if let Some(quantity) = of_cells.into_iter().find(|quantity| quantity.dataset == path) {
         return Some(match quantity.values {
             Values::Number(..) => (Kind::Floats, ROWS),

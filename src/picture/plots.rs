@@ -189,7 +189,8 @@ fn measures(result: &ResultFile, x: &[f64], log_x: bool, curves: &[MeasureCurve]
 
 /// The points and bars of a measured table.
 fn measured(document: &Document, text: &PlotTable) -> Result<Vec<Series>> {
-    let table = Table::read(&document.resolve(&text.file))?;
+    let mut table = Table::read(&document.resolve(&text.file))?;
+    table.shift(&text.x, text.x_shift)?;
     let x = table.column(&text.x)?;
     let ends = |columns: &Option<OneOrMany<String>>, i: usize| -> Result<Option<Vec<f64>>> {
         let name = columns.as_ref().and_then(|columns| columns.as_slice().get(i));

@@ -19,6 +19,8 @@ pub struct CellRecord {
     pub area: f64,
     /// Elastic energy, pN·µm.
     pub energy: f64,
+    /// What viscosity has taken since the cell is there, pN·µm; 0 in runs in which nothing is viscous.
+    pub dissipated: f64,
     /// Extents of the axis-aligned bounding box, µm.
     pub size: [f64; 3],
     /// Extents along the principal axes of the atoms, longest first, µm.
@@ -110,6 +112,13 @@ pub const CELL: &[CellQuantity] = &[
         "Share of the atoms that are near another cell; 0 without contacts."),
     row("/cells/aggregate", "1", Number(|c| c.aggregate, "aggregate"),
         "Aggregate of a cell: the smallest id of the cells that it touches, and that these touch; its own where it is alone."),
+];
+
+/// What is recorded of cells in runs in which some are viscous.
+#[rustfmt::skip]
+pub const VISCOUS: &[CellQuantity] = &[
+    row("/cells/dissipated", "pN um", Number(|c| c.dissipated, "energy lost to viscosity"),
+        "What the viscosity of its membrane has taken of its energy since the cell is there."),
 ];
 
 impl CellQuantity {

@@ -1,5 +1,8 @@
 //! Series of what types of cells have by names: loads, pressures, traps, and atoms that are moved on courses.
 
+/// The series of the scene that tells how far from equilibrium its cells are, where a run ends there, pN.
+pub const OUT_OF_BALANCE: &str = "out_of_balance";
+
 /// What the series of things with names begin with, and what a chart calls them: `load.NAME` and its like.
 pub const NAMED: [(&str, &str); 9] = [
     ("load", "load"),

@@ -209,10 +209,15 @@ fn drive(ready: Ready, writer: ResultWriter, result: &Path, report: &mut dyn Rep
             Start::Resumed => {}
         }
         recording.begin(simulation);
+        // A run that was killed when it was at rest makes no other step.
+        let until = if simulation.is_at_rest() { simulation.time() } else { until };
         let ended = simulation.run_with(until, |simulation, made| recording.look(simulation, made));
         recording.end();
         match ended {
-            Ok(ControlFlow::Continue(())) => recording.save(simulation)?,
+            Ok(ControlFlow::Continue(()) | ControlFlow::Break(Stop::AtRest)) => {
+                recording.tell_rest(simulation);
+                recording.save(simulation)?;
+            }
             Ok(ControlFlow::Break(Stop::Machine(error))) => return Err(error),
             Ok(ControlFlow::Break(Stop::Within(trouble))) => return Err(recording.keep_last(trouble, simulation)),
             Ok(ControlFlow::Break(Stop::Passed(trouble))) => return Err(recording.keep_good(trouble, simulation)),

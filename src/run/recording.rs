@@ -11,6 +11,7 @@ use crate::output::{Frame, ResultWriter};
 use crate::sim::contact::{check_passed, help_at};
 use crate::sim::{State, StepReport, Trouble};
 use crate::simulation::{Recorder, Simulation, SimulationError, passed};
+use crate::units::{Dimension, pretty};
 
 /// Looks on while a simulation goes.
 pub struct Recording<'a> {
@@ -31,6 +32,8 @@ pub struct Recording<'a> {
 
 /// Why a run ended before its end, though its steps could be made.
 pub enum Stop {
+    /// The cells are in the equilibrium that was asked for.
+    AtRest,
     /// The file could not be written.
     Machine(Error),
     /// Cells have passed through each other since they were looked at last.
@@ -76,7 +79,8 @@ impl<'a> Recording<'a> {
     /// After a step.
     pub fn look(&mut self, simulation: &mut Simulation, made: &StepReport) -> ControlFlow<Stop> {
         let (before, after) = (std::mem::replace(&mut self.time, simulation.time()), simulation.time());
-        let last = after >= simulation.end();
+        let rests = simulation.is_at_rest();
+        let last = rests || after >= simulation.end();
         self.limited += u64::from(made.limited);
         let schedule = Arc::clone(&self.schedule);
         let mut due = schedule.due(before, after).peekable();
@@ -102,7 +106,7 @@ impl<'a> Recording<'a> {
             or_stop(self.save(simulation))?;
         }
         self.report.step(after, simulation.steps());
-        ControlFlow::Continue(())
+        if rests { ControlFlow::Break(Stop::AtRest) } else { ControlFlow::Continue(()) }
     }
 
     /// Records an instant within the step.
@@ -111,6 +115,17 @@ impl<'a> Recording<'a> {
             Ok(frame) => or_stop(self.writer.append(&frame)),
             Err(trouble) => ControlFlow::Break(Stop::Within(trouble)),
         }
+    }
+
+    /// Says how far from equilibrium a run ended that asks for it.
+    pub fn tell_rest(&mut self, simulation: &Simulation) {
+        let (Some(asked), Some(found)) = (simulation.model().rest, simulation.out_of_balance()) else { return };
+        let [asked, found] = [asked, found].map(|force| pretty(force, Dimension::FORCE));
+        let time = pretty(simulation.time(), Dimension::TIME);
+        self.report.notice(&match simulation.is_at_rest() {
+            true => format!("in equilibrium after {time}: no force on an atom is more than {found} out of balance"),
+            false => format!("not in equilibrium after {time}: a force on an atom is {found} out of balance, and {asked} is asked for"),
+        });
     }
 
     /// No more steps are made.

@@ -13,6 +13,7 @@ use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::sum::stiffness;
 use crate::mechanics::tangent::Tangent;
 use crate::mechanics::trap::Trap;
+use crate::mechanics::viscosity::Viscosity;
 
 /// The cells that share a mesh and a material.
 #[derive(Debug, Clone)]
@@ -29,6 +30,8 @@ pub struct Kind {
     pub stiffness: StiffnessMatrix,
     /// The least ratio of the true stiffness at rest to K, over all shapes that a cell can take; 0 where some have none.
     pub softest_ratio: f64,
+    /// What resists being deformed at a rate.
+    pub viscosity: Option<Viscosity>,
     /// How each cell's own stiffness is made and factored, where K does not tell how stiff its shapes are.
     pub tangent: Option<Tangent>,
     /// Largest eigenvalue of the true stiffness at rest, pN/µm.
@@ -104,6 +107,7 @@ impl Kind {
             largest_stiffness: stiffness.largest(),
             stiffness,
             softest_ratio: 0.0,
+            viscosity: None,
             tangent: None,
             forces,
             drag: 1.0,
@@ -240,6 +244,12 @@ impl Kind {
             factors.iter().all(|factor| *factor == factors[0]).then_some(factors[0] == 0.0)
         };
         (0..self.atoms()).map(held).collect()
+    }
+    /// Adds `factor` times V(x) v to `f`, V that of a viscous membrane whose atoms are at `x` (µm); nothing where none is.
+    pub fn add_resistance(&self, lanes: usize, factor: f64, [x, v]: [&[f64]; 2], f: &mut [f64]) {
+        if let Some(viscosity) = &self.viscosity {
+            viscosity.add_to(lanes, factor, [x, v], f);
+        }
     }
     /// Whether its surface resists shear and change of area as a membrane does.
     pub fn has_membrane(&self) -> bool {

@@ -49,12 +49,15 @@ impl Kind {
     }
 
     /// Lets each cell have its own stiffness, eq. (step.10), where K overestimates the shear of a membrane too far; `touched` by tools, a
-    /// single one sooner. Not for cells that contacts move by the drag of their atoms alone.
+    /// single one sooner, and where a membrane is viscous, whose part of the matrix is each cell's own. Not for cells that contacts move by the drag of their atoms alone.
     pub fn use_tangent(&mut self, touched: bool) {
         let is_alone = touched && self.lanes == 1;
         let creeps = |least: f64| measure_softest_ratio(self, LARGEST_RATIO) <= least;
-        if self.has_soft_shear() || is_alone && self.shears() && creeps(LEAST_TOLD_OF_TOUCHED) {
-            self.tangent = Some(Tangent::new(&self.forces, &self.rest.positions));
+        if self.viscosity.is_some()
+            || self.has_soft_shear()
+            || is_alone && self.shears() && creeps(LEAST_TOLD_OF_TOUCHED)
+        {
+            self.tangent = Some(Tangent::new(&self.forces, self.viscosity.as_ref(), &self.rest.positions));
         }
     }
 

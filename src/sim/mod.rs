@@ -11,6 +11,7 @@ mod coupled;
 mod coupled_scratch;
 #[cfg(test)]
 mod coupled_tests;
+mod dissipation;
 mod elasticity;
 pub mod fibre_state;
 mod fibres;
@@ -36,6 +37,7 @@ mod pressure;
 pub mod projection;
 mod protrude;
 mod refresh;
+mod rest;
 mod rigid;
 mod scheme;
 pub mod seeding;
@@ -51,6 +53,7 @@ mod traction;
 pub mod trouble;
 mod turning;
 mod velocity;
+mod viscous;
 mod within;
 pub mod workspace;
 

@@ -24,6 +24,8 @@ pub struct Model {
     pub integrator: Integrator,
     /// End of the run, s.
     pub until: f64,
+    /// The run ends before, once nothing more happens and the largest force out of balance on an atom is below this, pN.
+    pub rest: Option<f64>,
     /// Times at which a course bends, rising; a step ends there.
     pub kinks: Vec<f64>,
     /// Cells that come and go at given times, in rising order of these; a step ends there.
@@ -77,6 +79,7 @@ impl Model {
             chemistry: Chemistry::default(),
             integrator,
             until,
+            rest: None,
             changes: Vec::new(),
             keeps_tractions: false,
         }
@@ -86,6 +89,12 @@ impl Model {
     pub fn instants(&self) -> impl Iterator<Item = f64> {
         let changes = self.changes.iter().map(|change| change.time);
         self.kinks.iter().copied().chain([self.until]).chain(changes)
+    }
+
+    /// Whether anything is still to happen after a time, s.
+    pub fn is_awaited(&self, time: f64) -> bool {
+        let after = time + self.clock_slack();
+        self.kinks.iter().any(|kink| *kink > after) || self.changes.iter().any(|change| change.time > after)
     }
 
     /// What the clock cannot tell apart, s: the round-off of adding many steps.

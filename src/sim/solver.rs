@@ -64,7 +64,8 @@ impl Solver {
         let mut own = Vec::new();
         if !shape.is_empty() {
             own.resize(tangent.len(1), 0.0);
-            let scales = Scales { diagonal: kind.drag / dt, gamma, elastic: &[elastic], held: &kind.held };
+            let (diagonal, held) = (kind.drag / dt, &kind.held[..]);
+            let scales = Scales { diagonal, gamma, elastic: &[elastic], held, viscous: None };
             tangent.factor(&kind.forces, 1, shape, scales, &mut own);
         }
         Self { mobility: dt / kind.drag, going: 1.0, factors: Vec::new(), filters: Vec::new(), own }
@@ -140,7 +141,9 @@ impl<'a> System<'a> {
                 solve_with(solve, kind, kind.lanes, (x, self.whole(kind, turning)), error, rigid, scratch);
             }
             Self::Own { .. } => {
+                scratch.copy_from_slice(error);
                 error.iter_mut().for_each(|error| *error /= mobility);
+                kind.add_resistance(kind.lanes, 1.0 / (kind.drag * mobility), [x, scratch], error);
                 solve_turning(kind, kind.lanes, self, (x, turning), error, rigid, scratch);
             }
         }

@@ -81,6 +81,7 @@ impl Step<'_> {
             gamma: gamma(kind, self.order),
             elastic: &elastic[..kind.lanes],
             held: &kind.held,
+            viscous: kind.viscosity.as_ref().map(|viscosity| (viscosity, 1.0 / dt)),
         };
         let factor = &mut factor[..tangent.len(kind.lanes)];
         if !has_factor {
@@ -211,18 +212,20 @@ impl Step<'_> {
         [spare, spare2]: [&mut [f64]; 2],
     ) {
         let &Self { model, kind, order, .. } = self;
-        let Block { x, start, volume, target, pressure, touch, .. } = block;
         if stage == Stage::Second {
             let back = 2.0 / system.mobility();
             y.iter_mut().zip(first).for_each(|(y, k)| *y -= back * k);
         }
+        self.resist(block, stage, y, first, spare);
+        let bulged = self.bulged(block, stage, spare);
+        let Block { x, start, volume, target, pressure, touch, .. } = block;
         // All that is left of forces on a rigid body is how they turn it where it is then.
         let frame = if kind.rigid.is_some() && stage == Stage::Second { &**x } else { &**start };
         solve_turning(kind, kind.lanes, system, (frame, turning), y, spare, spare2);
         let mut wanted = [0.0; LANES];
         for lane in 0..kind.lanes {
             let missing = target[lane] - volume[lane];
-            wanted[lane] = if stage == Stage::First { missing } else { -missing };
+            wanted[lane] = if stage == Stage::First { missing } else { 2.0 * bulged[lane] - missing };
         }
         let gamma = gamma(kind, order);
         constrain(kind, gamma, gradient, swell, &wanted[..kind.lanes], target, y, pressure);
@@ -234,6 +237,7 @@ impl Step<'_> {
         if let Some(on_held) = &mut block.on_held {
             add_pressure_on_held(kind, block.start, (block.pressure, share_of_stage(order)), on_held, spare);
         }
+        self.resist_on_held(block, stage, (&*y, first), spare);
     }
 }
 

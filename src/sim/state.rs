@@ -27,6 +27,8 @@ pub struct State {
     pub changes: usize,
     /// The step that the error estimate proposes next, s.
     pub next_step: f64,
+    /// The largest force on an atom that was out of balance in the last step, pN, where somebody asks.
+    pub out_of_balance: Option<f64>,
     /// One entry a kind.
     pub kinds: Vec<KindState>,
     /// Motility runs that ended and are not recorded yet: (id of the cell, end s, duration s).
@@ -76,6 +78,8 @@ pub struct KindState {
     pub fibres: FibreState,
     /// Whether a program has set a velocity of any of them, which is then added to what behaviours ask for.
     pub is_biased: bool,
+    /// What viscosity has taken of each cell since it is there, pN·µm; empty where nothing is viscous.
+    pub dissipated: Vec<f64>,
     /// What the atoms of each cell did to what is around them in the last step, cell after cell; empty where that is not kept.
     pub balance: Vec<AtomBalance>,
 }
@@ -126,6 +130,7 @@ impl KindState {
             behaviours: kind.behaviours.iter().map(|behaviour| start_of(&ids, *behaviour, seed)).collect(),
             fibres: FibreState::new(kind, cells),
             is_biased: false,
+            dissipated: vec![0.0; if kind.viscosity.is_some() { cells } else { 0 }],
             balance: Vec::new(),
             ids,
         }
@@ -173,6 +178,7 @@ impl KindState {
         self.stiffness_shape.clone_from(&from.stiffness_shape);
         self.is_biased = from.is_biased;
         self.mean_velocities.resize(from.mean_velocities.len(), [0.0; 3]);
+        self.dissipated.clone_from(&from.dissipated);
         self.balance.clear();
     }
 
@@ -183,6 +189,7 @@ impl KindState {
         for array in [&mut self.positions, &mut self.velocities, &mut self.rest_volumes, &mut self.stiffness_shape] {
             array.fill(f64::NAN);
         }
+        self.dissipated.fill(f64::NAN);
         self.mean_velocities.fill([f64::NAN; 3]);
         self.balance.fill(AtomBalance::UNKNOWN);
         self.behaviours.iter_mut().for_each(Vec::clear);
@@ -200,6 +207,7 @@ impl KindState {
             states.push(behaviour.start(model.seed, id));
         }
         self.fibres.push_cell(kind);
+        self.dissipated.resize(if kind.viscosity.is_some() { self.cells() } else { 0 }, 0.0);
         self.mean_velocities.push([0.0; 3]);
         let kept = if model.keeps_tractions { self.cells() * kind.atoms() } else { 0 };
         self.balance.resize(kept, AtomBalance::NONE);
@@ -246,6 +254,7 @@ impl KindState {
             let of_cell = |cell: &usize| self.balance[cell * kind.atoms()..(cell + 1) * kind.atoms()].iter().copied();
             self.balance = kept.iter().flat_map(of_cell).collect();
         }
+        self.dissipated = kept.iter().filter_map(|cell| self.dissipated.get(*cell).copied()).collect();
         self.ids = kept.iter().map(|cell| self.ids[*cell]).collect();
         self.parents = kept.iter().map(|cell| self.parents[*cell]).collect();
         for states in &mut self.behaviours {
@@ -343,7 +352,7 @@ impl State {
     /// Nothing is allocated where both are as large.
     pub fn begin_from(&mut self, from: &Self) {
         (self.time, self.step, self.next_step) = (from.time, from.step, from.next_step);
-        (self.next_id, self.changes) = (from.next_id, from.changes);
+        (self.next_id, self.changes, self.out_of_balance) = (from.next_id, from.changes, None);
         self.kinds.resize_with(from.kinds.len(), KindState::default);
         self.kinds.iter_mut().zip(&from.kinds).for_each(|(kind, from)| kind.begin_from(from));
     }
@@ -351,7 +360,7 @@ impl State {
     /// Writes NaN over all numbers and forgets what is held in lists.
     pub fn poison(&mut self) {
         (self.time, self.step, self.next_step) = (f64::NAN, u64::MAX, f64::NAN);
-        (self.next_id, self.changes) = (u64::MAX, usize::MAX);
+        (self.next_id, self.changes, self.out_of_balance) = (u64::MAX, usize::MAX, Some(f64::NAN));
         self.kinds.iter_mut().for_each(KindState::poison);
         self.ended_runs.clear();
         self.ended_pseudopods.clear();

@@ -10,6 +10,7 @@ use super::constraints::make_exact;
 use super::contact::{
     carry_forces, check_depth, hold_contacts, keep_contacts, locate_contacts, look_for_depth, travel, turn_over_bonds,
 };
+use super::dissipation::note_dissipation;
 use super::elasticity::gather_elasticity;
 use super::fibres::act_fibres;
 use super::finite::check_finite;
@@ -22,6 +23,7 @@ use super::motion::move_freely;
 use super::plan::{Estimate, Flaw, Halt, Plan, StepReport};
 use super::protrude::{find_grips, push_pseudopods, release_rears};
 use super::refresh::fit_stiffness;
+use super::rest::out_of_balance;
 use super::state::State;
 use super::traction::{begin_tractions, keep_tractions};
 use super::trouble::Trouble;
@@ -76,6 +78,8 @@ fn make_step(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) ->
     keep_contacts(model, from, to, ws);
     measure_velocities(model, plan.dt, from, to);
     keep_tractions(model, plan.dt, from, to, ws);
+    note_dissipation(model, plan.dt, from, to, ws);
+    to.out_of_balance = model.rest.map(|_| out_of_balance(model, plan.dt, from, to, &ws.buffers));
     let longest = advance_chemistry(model, plan.dt, from, to, ws)?;
     release_rears(model, to);
     note_meetings(model, to, ws);

@@ -79,6 +79,7 @@ impl KindState {
     fn go_back_to(&mut self, from: &Self, share: f64) {
         go_back(&mut self.positions, &from.positions, share);
         go_back(&mut self.velocities, &from.velocities, share);
+        go_back(&mut self.dissipated, &from.dissipated, share);
         self.rest_volumes.clone_from(&from.rest_volumes);
     }
 }

@@ -11,7 +11,7 @@ use crate::sim::{State, Workspace};
 /// First bytes of a checkpoint.
 const MAGIC: &[u8; 8] = b"PSEUDSIM";
 /// Version of the arrangement of the bytes, the state's included.
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 
 impl Simulation {
     /// The simulation at this instant as bytes: [`Simulation::restore`] goes on from them along the same course, to the last

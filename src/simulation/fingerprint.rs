@@ -32,10 +32,10 @@ impl Write for Fnv {
 
 /// The fingerprint of a model: of all that decides the course of a state, and of nothing that follows from the rest.
 pub fn fingerprint(model: &Model) -> u64 {
-    let Model { seed, kinds, planes, contact, chemistry, integrator, until, kinks: _, changes, keeps_tractions } =
+    let Model { seed, kinds, planes, contact, chemistry, integrator, until, rest, kinks: _, changes, keeps_tractions } =
         model;
     let mut hash = Fnv(FNV_START);
-    hash.value(&(seed, integrator, until, planes, changes, keeps_tractions));
+    hash.value(&(seed, integrator, until, rest, planes, changes, keeps_tractions));
     kinds.iter().for_each(|kind| add_kind(&mut hash, kind));
     if let Some(contact) = contact {
         add_contact(&mut hash, contact);
@@ -49,7 +49,7 @@ fn add_kind(hash: &mut Fnv, kind: &Kind) {
     hash.value(&kind.forces);
     hash.value(&(kind.drag, kind.mass, &kind.held, &kind.moved, &kind.rigid, &kind.volume));
     kind.behaviours.iter().for_each(|behaviour| hash.value(behaviour));
-    hash.value(&(kind.fibre_budget, kind.fibre_limit));
+    hash.value(&(kind.fibre_budget, kind.fibre_limit, &kind.viscosity));
 }
 
 fn add_contact(hash: &mut Fnv, contact: &ContactModel) {

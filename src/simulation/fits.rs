@@ -32,6 +32,7 @@ pub fn check_fits(model: &Model, state: &State) -> Result<(), SimulationError> {
             && (now.stiffness_shape.is_empty() || now.stiffness_shape.len() == 3 * kind.atoms())
             && now.mean_velocities.len() == count
             && [0, count * kind.atoms()].contains(&now.balance.len())
+            && now.dissipated.len() == if kind.viscosity.is_some() { count } else { 0 }
             && now.fibres.fits(kind, count)
             && now.parents.len() == count
             && now.ids.is_sorted_by(|one, other| one < other)

@@ -8,7 +8,7 @@ use crate::output::{
     Cell, CellRecord, CellType, FibreRow, FieldLayout, Frame, Layout, MembraneLayout, PseudopodEvent, SystemLayout,
     SystemScope,
 };
-use crate::recorded::{FibresRecord, TractionRecord, contact_quantities, names_by_type};
+use crate::recorded::{FibresRecord, OUT_OF_BALANCE, TractionRecord, contact_quantities, names_by_type};
 use crate::sim::chemistry::{Members, member_cells};
 use crate::sim::contact::find_contacts;
 use crate::sim::kind::Kind;
@@ -32,9 +32,11 @@ pub fn outline_of(model: &Model) -> Layout {
     let loads = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned()));
     let named = [moved::names(model), moved::names_of_traps(model), moved::names_of_pressures(model)];
     layout.scene_series = loads.chain(named.into_iter().flatten()).collect();
+    layout.scene_series.extend(model.rest.map(|_| (OUT_OF_BALANCE.to_owned(), "pN".to_owned())));
     layout.contacts = model.contact.is_some();
     layout.tractions = model.keeps_tractions;
     layout.fibres = model.kinds.iter().any(|kind| kind.fibre_budget > 0);
+    layout.viscosity = model.kinds.iter().any(|kind| kind.viscosity.is_some());
     let of_contacts = model.contact.iter().flat_map(|contact| contact_quantities(contact.law.series()));
     layout.scene_series.extend(of_contacts.map(|row| (row.name.to_owned(), row.unit.to_owned())));
     let plane = |plane: &crate::sim::Plane| (plane.name.clone(), plane.point.into(), plane.normal.into());
@@ -195,6 +197,7 @@ impl Recorder {
         moved::record(model, state, &mut frame.scene);
         moved::record_traps(model, state, &mut frame.scene);
         moved::record_pressures(model, state, &mut frame.scene);
+        frame.scene.extend(model.rest.map(|_| state.out_of_balance.unwrap_or(f64::NAN)));
         if let Some(contact) = &model.contact {
             self.touch.look(model, &contact.scene_of(&state.kinds), state, ws, dt, &mut frame);
         }
@@ -223,6 +226,9 @@ fn cells_of(state: &State) -> Vec<Cell> {
 /// Positions and measures of all cells at this instant, as if they did not touch.
 fn frame_of(model: &Model, state: &State) -> Frame {
     let velocities = mean_velocities(state);
+    let of_kind =
+        |now: &KindState| (0..now.cells()).map(|cell| now.dissipated.get(cell).copied().unwrap_or(0.0)).collect();
+    let dissipated: Vec<f64> = state.kinds.iter().flat_map::<Vec<f64>, _>(of_kind).collect();
     let mut frame = Frame { time: state.time, step: state.step, cells: cells_of(state), ..Frame::default() };
     for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
         frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));
@@ -233,6 +239,7 @@ fn frame_of(model: &Model, state: &State) -> Frame {
             volume_error: cell.volume_error,
             area: cell.area,
             energy: cell.energy,
+            dissipated: dissipated[number],
             size: cell.size.into(),
             principal: cell.principal,
             smallest_facet: cell.smallest_facet,

@@ -113,6 +113,18 @@ impl Simulation {
         &self.notices
     }
 
+    /// How far the cells were from mechanical equilibrium in the step made last: the largest force on an atom that its drag, and what is viscous,
+    /// answered, pN, (step.15); none before the first step, and where the experiment does not ask for an equilibrium.
+    pub fn out_of_balance(&self) -> Option<f64> {
+        self.state.out_of_balance
+    }
+
+    /// Whether the cells are in the equilibrium that the experiment asks for, with nothing more to come. A recorded run ends there.
+    pub fn is_at_rest(&self) -> bool {
+        let is_below = |rest: f64| self.out_of_balance().is_some_and(|force| force < rest);
+        self.model.rest.is_some_and(is_below) && !self.model.is_awaited(self.state.time)
+    }
+
     /// The compiled experiment, in µm, s and pN.
     pub fn model(&self) -> &Model {
         &self.model

@@ -2,6 +2,7 @@
 
 mod contact;
 mod damaged;
+mod equilibrium;
 mod fits;
 mod frame_times;
 mod kept_state;

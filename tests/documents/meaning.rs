@@ -1,7 +1,9 @@
 //! The experiment document: what it says is what is understood, from a file or from Rust.
 
 use proptest::prelude::*;
-use pseudopod::experiment::{Course, Document, Mesh, Selection, When};
+use pseudopod::Vec3;
+use pseudopod::experiment::{Course, Document, Mesh, Selection, When, compile};
+use pseudopod::geometry::{bounding_box, icosphere, volume};
 use pseudopod::units::{Force, Length, LineStiffness, Time};
 use std::path::Path;
 
@@ -27,6 +29,21 @@ fn a_document_is_understood_in_base_units() {
     assert_eq!(experiment.cells["ball"].count(), 100, "the number follows from the grid");
     assert_eq!(experiment.picture.time, When::At(Time::new(12.0)));
     assert_eq!(experiment.environment.gravity.map(|gravity| gravity[2].value()), Some(-9.81e6));
+}
+
+#[test]
+fn a_mesh_is_drawn_out_before_it_is_turned_and_is_so_at_rest() {
+    let text = "title = \"Drawn out\"\n[run]\nuntil = \"1 s\"\n[cells.ball]\n\
+         mesh = { shape = \"icosphere\", radius = \"5 um\", level = 2 }\nstretch = [2, 1, 0.5]\n\
+         orientation = { axis = [0, 0, 1], angle = \"90 deg\" }\nmechanics = { drag = \"1 pN s/um\" }\n";
+    let document = Document::parse("drawn.toml", text, Path::new("."), &[]).unwrap_or_else(|error| panic!("{error}"));
+    let rest = &compile(&document).unwrap_or_else(|error| panic!("{error}")).model.kinds[0].rest;
+    let (low, high) = bounding_box(&rest.positions).unwrap();
+    let (ball, size) = (icosphere(5.0, 2), high - low);
+    let (ball_low, ball_high) = bounding_box(&ball.positions).unwrap();
+    let wanted = (ball_high - ball_low).component_mul(&Vec3::new(2.0, 1.0, 0.5));
+    assert!((size - Vec3::new(wanted.y, wanted.x, wanted.z)).norm() < 1e-12, "{size} {wanted}");
+    assert!((volume(rest) / volume(&ball) - 1.0).abs() < 1e-12);
 }
 
 #[test]

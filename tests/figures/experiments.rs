@@ -25,12 +25,14 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 6] = [
+const SHOWN: [(&str, &str, &str); 8] = [
     ("chemotaxis/experiment.toml", "result.png", "chemotaxis.png"),
     ("chemotaxis/experiment.toml", "result.tracks.png", "chemotaxis_tracks.png"),
     ("optical_tweezers/red_cell.toml", "result.png", "red_cell.png"),
     ("optical_tweezers/red_cell.toml", "result.force_diameter.png", "force_diameter.png"),
+    ("optical_stretcher/experiment.toml", "result.length.png", "optical_stretcher.png"),
     ("persistent_migration/experiment.toml", "result.persistence.png", "persistent_migration.png"),
+    ("red_cell_recovery/experiment.toml", "result.recovery.png", "red_cell_recovery.png"),
     ("sphere_under_gravity/experiment.toml", "result.png", "spheres.png"),
 ];
 
@@ -52,6 +54,17 @@ fn mean_difference(one: &Path, other: &Path) -> f64 {
 #[test]
 fn a_red_cell_stretches_as_mills_measured() {
     experiment_keeps_its_word("optical_tweezers", "red_cell.toml");
+}
+
+#[test]
+fn red_cells_recover_in_the_times_that_hochmuth_measured() {
+    experiment_keeps_its_word("red_cell_recovery", "experiment.toml");
+    experiment_keeps_its_word("red_cell_recovery", "cell2.toml");
+}
+
+#[test]
+fn a_cell_in_an_optical_stretcher_creeps_as_was_measured() {
+    experiment_keeps_its_word("optical_stretcher", "experiment.toml");
 }
 
 #[test]

@@ -43,6 +43,7 @@ mod stability_limits;
 mod step;
 mod tractions;
 mod virtual_adhesives;
+mod viscosity;
 mod walk;
 
 #[path = "../support/contact_scenes.rs"]

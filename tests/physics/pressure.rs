@@ -14,7 +14,7 @@ use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::{State, Workspace, step};
 
 fn forces(facets: Vec<[u32; 3]>, beyond: Option<Beyond>, x: &[Vec3]) -> Vec<Vec3> {
-    let pressure = Pressure { name: "p".into(), facets, pressure: Course::constant(2.5), beyond };
+    let pressure = Pressure { name: "p".into(), facets, pressure: Course::constant(2.5), beyond, profile: None };
     let x: Vec<f64> = x.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
     let mut f = vec![0.0; x.len()];
     measure_forces(
@@ -114,4 +114,36 @@ fn a_shell_is_blown_up_by_suction_as_theory_says() {
     println!("{strain} for {wanted} in {} steps", state.step);
     // Of second order in the strain.
     assert!((strain / wanted - 1.0).abs() < 0.02, "{strain} {wanted}");
+}
+
+/// A pressure that goes with the cosine of the angle from an axis has the sum p ∫ cos θ n dA over a sphere, 4π R² p/3 along the axis, and
+/// one that a table has 1 for everywhere is the pressure itself.
+#[test]
+fn a_pressure_differs_over_a_surface_as_its_table_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..=180).map(|angle| format!("{angle},1,{}\n", f64::from(angle).to_radians().cos())).collect();
+    std::fs::write(folder.path().join("stress.csv"), format!("angle,one,cosine\n{rows}")).unwrap();
+    let forces_by = |profile: &str| -> Vec<Vec3> {
+        let text = format!(
+            "title = \"By a table\"\n[run]\nuntil = \"1 s\"\n[cells.ball]\n\
+             mesh = {{ shape = \"icosphere\", radius = \"5 um\", level = 3 }}\nmechanics = {{ drag = \"1 pN s/um\" }}\n\
+             pressures = [{{ name = \"light\", all = true, pressure = \"-2 Pa\"{profile} }}]\n"
+        );
+        let document = Document::parse("p.toml", &text, folder.path(), &[]).unwrap_or_else(|error| panic!("{error}"));
+        let model = compile(&document).unwrap_or_else(|error| panic!("{error}")).model;
+        let x: Vec<f64> = model.kinds[0].rest.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+        let mut f = vec![0.0; x.len()];
+        let context = Context { cells: 0..1, ..Context::at(0.0) };
+        measure_forces(&model.kinds[0].forces, &context, 1, &x, &mut f, &mut [0.0]);
+        f.chunks_exact(3).map(Vec3::from_column_slice).collect()
+    };
+    let by = |column: &str| {
+        let (axis, table) = ("axis = [0, 3, 4]", "table = \"stress.csv\"");
+        forces_by(&format!(", profile = {{ {axis}, {table}, angle_column = \"angle\", factor_column = \"{column}\" }}"))
+    };
+    assert_eq!(by("one"), forces_by(""));
+    let sum: Vec3 = by("cosine").iter().sum();
+    let wanted = 2.0 * 4.0 * std::f64::consts::PI * 25.0 / 3.0 * Vec3::new(0.0, 0.6, 0.8);
+    // Facets of a ball of 642 atoms.
+    assert!((sum - wanted).norm() < 0.02 * wanted.norm(), "{sum} {wanted}");
 }

@@ -56,8 +56,8 @@ exit 2
   × made_up.vtkhdf has no series `clock.W`
   help: did you mean `clock.U`? there are: position_x, position_y, position_z, velocity_x, velocity_y,
         velocity_z, volume, volume_error, area, energy, size_x, size_y, size_z, principal_1, principal_2,
-        principal_3, smallest_facet, smallest_cosine, contact_share, aggregate, speed, clock.U, clock.V,
-        bath.level
+        principal_3, smallest_facet, smallest_cosine, contact_share, aggregate, speed, aspect_ratio,
+        clock.U, clock.V, bath.level
 
 1 fault
 exit 2

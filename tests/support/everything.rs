@@ -1,5 +1,5 @@
 //! A scene that has everything: two types, contacts that stick by bonds that close and open, walks that turn, pseudopods with fibres and without that heed what they touch, membranes whose moduli chemistry sets, a plane, loads, fibres, a field that cells secrete into
-//! and climb, noise at all levels, systems with events, links both ways, membranes that sense and push at every atom, an atom that is put somewhere and one that is moved on a course.
+//! and climb, noise at all levels, systems with events, links both ways, membranes that sense and push at every atom, a viscous one, an atom that is put somewhere and one that is moved on a course.
 
 use pseudopod::experiment::{Compiled, Document, compile};
 use pseudopod::geometry::icosphere;
@@ -83,7 +83,7 @@ chemistry = ["own", "skin"]
 [cells.ball]
 mesh = { shape = "icosphere", radius = "4 um", level = 1 }
 placement = { at = [["9 um", "9 um", "4.02 um"]] }
-mechanics = { drag = "15 pN s/um", shape_memory = { shape_modulus = "10 pN/um" }, membrane = { law = "neo_hookean", shear = "4 pN/um", area = "4 pN/um" } }
+mechanics = { drag = "15 pN s/um", shape_memory = { shape_modulus = "10 pN/um" }, membrane = { law = "neo_hookean", shear = "4 pN/um", area = "4 pN/um" }, viscosity = { shear = "1 uN s/m", area = "2 uN s/m" } }
 pseudopods = { pressure = "0.3 Pa", contraction = "1 pN", pause = "0.1 s", protrusion = "0.3 s", retraction = "0.3 s" }
 moved = [{ name = "lift", atoms = [7], axes = ["z"], direction = [0, 0, 1], displacement = [["0 s", "0 um"], ["1.03 s", "0.05 um"], ["3 s", "0.02 um"]] }]
 loads = [{ name = "press", all = true, direction = [-0.7, -0.7, -0.2], force = [["0 s", "8 pN"], ["3.05 s", "9 pN"]] }]

@@ -18,6 +18,9 @@ pub struct Comparison {
     pub table: PathBuf,
     /// Its column along x.
     pub x_column: String,
+    /// What is added to its column along x, as where it counts from an instant within the run.
+    #[serde(default, skip_serializing_if = "crate::elementary::is_zero")]
+    pub x_shift: f64,
     /// Its column along y.
     pub y_column: String,
     /// Its column with the lower ends of the bars.
@@ -85,7 +88,9 @@ impl Comparison {
 
     fn open(&self, run: &Finished) -> Result<(Table, Curve)> {
         let curve = run.recording.curve(&self.x, &self.y, self.cells.as_deref())?;
-        Ok((Table::read(&(run.resolve)(&self.table))?, curve))
+        let mut table = Table::read(&(run.resolve)(&self.table))?;
+        table.shift(&self.x_column, self.x_shift)?;
+        Ok((table, curve))
     }
 }
 
@@ -107,6 +112,7 @@ mod tests {
         let comparison = Comparison {
             table: file.path().to_owned(),
             x_column: "F".into(),
+            x_shift: 0.0,
             y_column: "A".into(),
             low_column: Some("low".into()),
             high_column: Some("high".into()),
@@ -152,6 +158,7 @@ mod tests {
         let comparison = Comparison {
             table: file.clone(),
             x_column: "F_pN".into(),
+            x_shift: 0.0,
             y_column: "A_um".into(),
             low_column: Some("Amin".into()),
             high_column: Some("Amax".into()),

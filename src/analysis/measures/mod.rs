@@ -20,6 +20,7 @@ mod period;
 mod persistence;
 mod pseudopods;
 mod rayleigh;
+mod recovery_time;
 mod reduction;
 mod run_length;
 mod segregation;
@@ -57,6 +58,7 @@ pub use period::Period;
 pub use persistence::{Persistence, PersistenceStatistic};
 pub use pseudopods::PseudopodTurns;
 pub use rayleigh::{Rayleigh, RayleighStatistic};
+pub use recovery_time::{RecoveryLaw, RecoveryStatistic, RecoveryTime};
 pub use reduction::Reduction;
 pub use run_length::RunLength;
 pub use segregation::{Segregation, SegregationStatistic};
@@ -157,6 +159,8 @@ pub enum MeasureKind {
     Period(Period),
     /// How fast a wave leaves a point: the fit of a line to its times of arrival against distances, µm/s.
     WaveSpeed(WaveSpeed),
+    /// The time in which a series, or a column of a measured table, comes to rest, s.
+    RecoveryTime(RecoveryTime),
     /// The wavelength of a pattern in a flat field, from its spectrum, µm.
     Wavelength(Wavelength),
     /// How much cells of a type touch each other beyond chance: the segregation index, from below 0 (mixed) to 1 (apart),
@@ -196,6 +200,7 @@ impl MeasureKind {
             Self::ChemotacticIndex(index) => index.series(),
             Self::Distance(distance) => distance.series(),
             Self::Period(period) => period.series(),
+            Self::RecoveryTime(recovery) => recovery.series(),
             Self::WaveSpeed(wave) => wave.series(),
             Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) => Vec::new(),
             Self::Engulfment(_) => Vec::new(),
@@ -222,6 +227,7 @@ impl MeasureKind {
             Self::ChemotacticIndex(index) => index.check(at),
             Self::Distance(distance) => distance.check(at),
             Self::Period(period) => period.check(at),
+            Self::RecoveryTime(recovery) => recovery.check(at),
             Self::WaveSpeed(wave) => wave.check(at),
             Self::Wavelength(pattern) => pattern.check(at),
             Self::Segregation(segregation) => segregation.check(at),
@@ -262,6 +268,7 @@ impl MeasureKind {
             Self::ChemotacticIndex(index) => index.evaluate(run.recording),
             Self::Distance(distance) => distance.evaluate(run.recording),
             Self::Period(period) => period.evaluate(run.recording),
+            Self::RecoveryTime(recovery) => recovery.evaluate(run),
             Self::WaveSpeed(wave) => wave.evaluate(run),
             Self::Wavelength(pattern) => pattern.evaluate(run),
             Self::Segregation(segregation) => segregation.evaluate(run),

@@ -5,9 +5,10 @@ use super::super::selection::{LinkPattern, Linked, Selection};
 use super::model::FromModel;
 use super::select::{self, mirrored};
 use crate::Vec3;
-use crate::error::Fault;
+use crate::error::{Error, Fault};
 use crate::geometry::{Surface, Topology};
 use crate::mechanics::Force;
+use std::path::{Path, PathBuf};
 
 /// A surface as its mesh is made, and turned as the document says.
 pub struct Built {
@@ -55,6 +56,23 @@ impl<'a> Builder<'a> {
     pub fn fault(&mut self, path: &str, label: &str, found: impl Into<String>, help: impl Into<String>) {
         let location = self.document.location(&format!("{}.{path}", self.key), label);
         self.faults.push(location.into_iter().fold(Fault::new(found).help(help), Fault::at));
+    }
+
+    /// A path as the document writes it, from where it stands.
+    pub fn resolve(&self, path: &Path) -> PathBuf {
+        self.document.resolve(path)
+    }
+
+    /// Tells the faults of a file at a key of the type that names it.
+    pub fn faults_at(&mut self, path: &str, label: &str, error: Error) {
+        let location = self.document.location(&format!("{}.{path}", self.key), label);
+        let Error::Input(found) = error else {
+            return self.fault(path, label, error.to_string(), "give another file");
+        };
+        self.faults.extend(found.into_iter().map(|fault| match (&fault.location, &location) {
+            (None, Some(location)) => fault.at(location.clone()),
+            _ => fault,
+        }));
     }
 
     /// The atoms that the selection at a key means, each once, rising; those that the mesh does not have are faults.

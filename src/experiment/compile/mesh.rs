@@ -14,7 +14,7 @@ use nalgebra::{Unit, UnitQuaternion};
 /// The surface of a type, or nothing and a fault.
 pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Vec<Fault>) -> Option<Built> {
     let mut from_model = None;
-    let plain = match &cell.mesh {
+    let mut plain = match &cell.mesh {
         Mesh::RedCell { diameter, level } => geometry::red_cell(diameter.value(), u32::from(*level)),
         Mesh::Icosphere { radius, level } => geometry::icosphere(radius.value(), u32::from(*level)),
         Mesh::Octasphere { radius, divisions } => geometry::octasphere(radius.value(), *divisions),
@@ -66,6 +66,9 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
             }
         }
     };
+    if let Some(stretch) = cell.stretch {
+        plain.positions.iter_mut().for_each(|x| x.component_mul_assign(&Vec3::from(stretch)));
+    }
     let before = faults.len();
     far::check_width(document, &format!("cells.{name}"), &cell.mesh, &plain, faults);
     if faults.len() > before {

@@ -153,6 +153,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
         chemistry,
         planes,
         until: experiment.run.until.value(),
+        rest: experiment.run.equilibrium.map(|equilibrium| equilibrium.force.value()),
         keeps_tractions,
     };
     let schedule = schedule::schedule(document);
@@ -183,6 +184,7 @@ fn compile_kind(
     far::check(document, &key, cell, &kind.rest, kind.closed, faults);
     (kind.held, kind.moved) = held::held(document, &key, cell, &kind.rest, (&from_file.held, from_file.moved), faults);
     kind.rigid = cell.mechanics.rigid.map(|rigid| rigid.compiled());
+    kind.viscosity = cell.mechanics.viscosity.and_then(|viscosity| viscosity.compiled(&kind.rest.facets));
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
     kind.behaviours = cell.motility.behaviours();
     let pods = pseudopods::pseudopods(document, &key, cell, &kind, faults);

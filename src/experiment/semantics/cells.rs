@@ -1,7 +1,7 @@
 //! What must hold within a type of cells.
 
 use super::Check;
-use crate::experiment::{CellType, Course, Linked, Method, Placement, Selection, VolumeRule};
+use crate::experiment::{CellType, ContactModel, Course, Linked, Method, Placement, Selection, VolumeRule};
 use std::collections::HashSet;
 
 impl Check<'_> {
@@ -34,6 +34,24 @@ impl Check<'_> {
             let message = format!("`{path}.moved` needs the implicit scheme");
             let help = "remove run.integrator.method; in other schemes atoms can be fixed, and pulled by loads";
             self.fault("run.integrator.method", "moves no atoms on courses", message, help);
+        }
+    }
+
+    /// Only the matrix of the implicit step knows what is viscous, and only contacts that move cells by it.
+    pub(super) fn viscosity(&mut self, path: &str, cell: &CellType) {
+        if cell.mechanics.viscosity.is_none() {
+            return;
+        }
+        let (experiment, key) = (&self.document.experiment, format!("{path}.mechanics.viscosity"));
+        if experiment.run.integrator.method != Method::Implicit {
+            let message = format!("`{key}` needs the implicit scheme");
+            self.fault("run.integrator.method", "knows no viscosity", message, "remove run.integrator.method");
+        }
+        let model = experiment.contact.as_ref().map(|contact| contact.model);
+        if let Some(ContactModel::VirtualAdhesives | ContactModel::Penalty) = model {
+            let message = format!("`{key}`: this model of contacts moves atoms by their drag alone");
+            let help = "use another model of contacts, such as model = \"cohesion\"";
+            self.fault("contact.model", "knows no viscosity", message, help);
         }
     }
 

@@ -10,6 +10,40 @@ use std::collections::HashSet;
 const MOST_FRAMES: f64 = 1e7;
 
 impl Check<'_> {
+    /// An equilibrium is one of forces that drag alone answers, and of cells that do nothing by themselves.
+    fn equilibrium(&mut self) {
+        let experiment = &self.document.experiment;
+        if experiment.run.equilibrium.is_none() {
+            return;
+        }
+        let key = "run.equilibrium";
+        let mut never = |path: &str, label: &str, why: &str, help: &str| {
+            self.fault(path, label, format!("`{key}` is never reached: {why}"), help);
+        };
+        if experiment.run.integrator.method.is_inertial() {
+            let why = "with mass, forces are out of balance wherever something swings";
+            never(
+                "run.integrator.method",
+                "moves masses",
+                why,
+                "take the method \"implicit\", with drag instead of mass",
+            );
+        }
+        if !experiment.chemistry.is_empty() {
+            never("chemistry", "goes on", "chemistry goes on", "remove `equilibrium`, or [chemistry]");
+        }
+        for (name, cell) in &experiment.cells {
+            if cell.motility.brownian.is_some() {
+                let path = format!("cells.{name}.motility");
+                never(&path, "walks on", "these cells walk", "remove `equilibrium`, or the motility");
+            }
+            if cell.pseudopods.is_some() {
+                let path = format!("cells.{name}.pseudopods");
+                never(&path, "crawls on", "these cells crawl", "remove `equilibrium`, or the pseudopods");
+            }
+        }
+    }
+
     pub(super) fn scene(&mut self) {
         let experiment = &self.document.experiment;
         let mut names = HashSet::new();
@@ -27,6 +61,7 @@ impl Check<'_> {
                 self.fault(&format!("plot[{index}].name"), "taken", message, help);
             }
         }
+        self.equilibrium();
         let view = &experiment.picture.view;
         let (from, up) = (crate::Vec3::from(view.from), crate::Vec3::from(view.up));
         self.direction("picture.view.from", view.from);

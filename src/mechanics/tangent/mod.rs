@@ -15,6 +15,7 @@ mod tests;
 use super::Force;
 use super::lanes::{BlockWork, LANES, Real, Vectors, VectorsMut, dispatch};
 use super::stiffness::StiffnessMatrix;
+use super::viscosity::Viscosity;
 use crate::Vec3;
 use matrix::Blocks;
 pub use pattern::Pattern;
@@ -38,12 +39,18 @@ pub struct Scales<'a> {
     pub elastic: &'a [f64],
     /// One factor an atom and axis, 0 where held; empty when nothing is held.
     pub held: &'a [f64],
+    /// Viscosity of the membrane, and one over the step, 1/s.
+    pub viscous: Option<(&'a Viscosity, f64)>,
 }
 
 impl Tangent {
-    /// Finds the pattern for the cells of a mesh with this rest shape (µm) and these forces.
-    pub fn new(forces: &[Force], rest: &[Vec3]) -> Self {
+    /// Finds the pattern for the cells of a mesh with this rest shape (µm), these forces and this viscosity.
+    pub fn new(forces: &[Force], viscosity: Option<&Viscosity>, rest: &[Vec3]) -> Self {
         let mut whole = StiffnessMatrix::new(rest.len());
+        for &[a, b, c] in viscosity.into_iter().flat_map(Viscosity::facets) {
+            // Only where entries are counts here.
+            [(a, b), (b, c), (c, a)].into_iter().for_each(|(i, j)| whole.add_spring(i as usize, j as usize, 1.0));
+        }
         let mut constant = [StiffnessMatrix::new(rest.len()), StiffnessMatrix::new(rest.len())];
         for force in forces {
             force.add_stiffness(rest, rest, &mut whole);
@@ -136,6 +143,9 @@ impl BlockWork for Make<'_> {
             }
             if is_factored {
                 blocks.scale(T::constant(token, scales.gamma));
+                if let Some((viscosity, per_step)) = scales.viscous {
+                    viscosity.add_blocks(per_step, &x, &mut blocks);
+                }
                 for atom in 0..pattern.atoms() as u32 {
                     blocks.add_isotropic(atom, atom, T::constant(token, scales.diagonal));
                 }

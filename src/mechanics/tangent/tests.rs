@@ -10,9 +10,9 @@ use crate::mechanics::tension::Tension;
 
 /// The tangent stiffness of one cell, by columns of the whole matrix.
 fn whole(forces: &[Force], rest: &[Vec3], x: &[f64]) -> nalgebra::DMatrix<f64> {
-    let tangent = Tangent::new(forces, rest);
+    let tangent = Tangent::new(forces, None, rest);
     let mut values = vec![0.0; tangent.len(1)];
-    let scales = Scales { diagonal: 0.0, gamma: 1.0, elastic: &[], held: &[] };
+    let scales = Scales { diagonal: 0.0, gamma: 1.0, elastic: &[], held: &[], viscous: None };
     dispatch(1, Make { tangent: &tangent, forces, x, scales, values: &mut values, is_factored: false });
     let size = x.len();
     let mut matrix = nalgebra::DMatrix::zeros(size, size);
@@ -152,7 +152,7 @@ fn its_factor_solves_with_atoms_that_are_held_and_in_every_lane() {
     let ball = icosphere(5.0, 2);
     let rest = &ball.positions;
     let forces = [Force::Membrane(Membrane::new(rest, &ball.facets, laws()[0]))];
-    let tangent = Tangent::new(&forces, rest);
+    let tangent = Tangent::new(&forces, None, rest);
     let size = 3 * rest.len();
     let mut held = vec![1.0; size];
     (30..36).chain([91]).for_each(|at| held[at] = 0.0);
@@ -170,7 +170,7 @@ fn its_factor_solves_with_atoms_that_are_held_and_in_every_lane() {
         let lanes: Vec<Vec<f64>> = (0..LANES).map(of).collect();
         (0..size).flat_map(|at| lanes.iter().map(move |lane| lane[at]).collect::<Vec<_>>()).collect()
     };
-    let scales = Scales { diagonal: 2.0, gamma: 0.7, elastic: &elastic, held: &held };
+    let scales = Scales { diagonal: 2.0, gamma: 0.7, elastic: &elastic, held: &held, viscous: None };
     let mut factor = vec![f64::NAN; tangent.len(LANES)];
     tangent.factor(&forces, LANES, &interleaved(&shape), scales, &mut factor);
     let mut y = interleaved(&side);

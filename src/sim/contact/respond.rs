@@ -150,6 +150,8 @@ impl OfKind<'_> {
             self.answer(&system, volume.as_ref(), x, y, spare, spare2);
             if self.order == Order::Second {
                 first.copy_from_slice(y);
+                // Of the drag and of what is viscous.
+                kind.add_resistance(LANES, 1.0 / kind.drag, [x, y], first);
                 self.answer(&system, volume.as_ref(), x, first, spare, spare2);
                 let back = 0.5 / system.mobility();
                 y.iter_mut().zip(&*first).for_each(|(y, first)| *y = 1.5 * *y - back * first);

@@ -11,6 +11,7 @@ use crate::geometry::icosphere;
 use crate::mechanics::Force;
 use crate::mechanics::integrator::{Integrator, Method, Order, StepSize};
 use crate::mechanics::membrane::{Membrane, MembraneLaw};
+use crate::mechanics::viscosity::Viscosity;
 use crate::sim::implicit::advance_implicitly;
 use crate::sim::kind::Kind;
 use crate::sim::model::Model;
@@ -20,13 +21,15 @@ use crate::sim::workspace::Workspace;
 /// A step in which the softest shapes take back as much as is left, and dilation two hundred times that, s.
 const DT: f64 = 0.05;
 
-/// Cells at rest, each turned by another angle, whose membrane resists area a hundred times more than shear.
-fn cells(count: usize, order: Order) -> (Model, State) {
+/// Cells at rest, each turned by another angle, whose membrane resists area a hundred times more than shear, and its rates as much as drag does if it
+/// is viscous.
+fn cells(count: usize, order: Order, is_viscous: bool) -> (Model, State) {
     let ball = icosphere(5.0, 1);
     let law = MembraneLaw::Skalak { shear: 3.0, area: 500.0 };
     let membrane = Force::Membrane(Membrane::new(&ball.positions, &ball.facets, law));
     let mut kind = Kind::new("ball", ball, vec![membrane]);
     kind.drag = 0.5;
+    kind.viscosity = is_viscous.then(|| Viscosity::new(&kind.rest.facets, 0.4, 1.0));
     kind.bound_stiffness();
     kind.use_tangent(false);
     assert!(kind.tangent.is_some());
@@ -78,8 +81,9 @@ fn stepped(model: &Model, state: &State, order: Order, forces: &[Vec3], ws: &mut
 
 #[test]
 fn columns_are_what_the_step_makes_of_a_force_and_symmetric_and_positive() {
-    for (count, order) in [(1, Order::First), (1, Order::Second), (9, Order::Second)] {
-        let (model, state) = cells(count, order);
+    let all = [(1, Order::First), (1, Order::Second), (9, Order::Second)];
+    for ((count, order), is_viscous) in all.into_iter().flat_map(|of| [(of, false), (of, true)]) {
+        let (model, state) = cells(count, order, is_viscous);
         let mut ws = Workspace::new(&model);
         let atoms = count * model.kinds[0].atoms();
         let free = stepped(&model, &state, order, &vec![Vec3::zeros(); atoms], &mut ws).1;

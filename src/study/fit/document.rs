@@ -119,6 +119,9 @@ pub struct Data {
     /// Its column along x.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub x_column: Option<String>,
+    /// What is added to its column along x, as where it counts from an instant within the run.
+    #[serde(default, skip_serializing_if = "crate::elementary::is_zero")]
+    pub x_shift: f64,
     /// Its column along y.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub y_column: Option<String>,

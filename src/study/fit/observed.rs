@@ -275,7 +275,8 @@ impl Reader<'_> {
             let message = format!("the data `{name}` lack a table");
             return self.wrong("y", "and what was measured?", message, "add `table`, `x_column` and `y_column`");
         };
-        let read = Table::read(&self.document.resolve(table)).map_err(|error| self.at_the_table(error))?;
+        let mut read = Table::read(&self.document.resolve(table)).map_err(|error| self.at_the_table(error))?;
+        read.shift(x_column, self.data.x_shift)?;
         let (x, y) = (read.column(x_column)?, read.column(y_column)?);
         let errors: Vec<f64> = match (error_column, low_column, high_column, error) {
             (Some(column), None, None, None) => read.column(column)?.to_vec(),

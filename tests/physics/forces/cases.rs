@@ -205,7 +205,7 @@ fn driven() -> Vec<Case> {
     let above = Beyond { point: Vec3::new(0.0, 0.0, 1.3), direction: Vec3::new(0.6, 0.0, 0.8), radius: None };
     let pressure = |beyond| {
         let facets = icosphere(5.0, 1).facets;
-        Force::Pressure(Pressure { name: "pressure".into(), facets, pressure: course(), beyond })
+        Force::Pressure(Pressure { name: "pressure".into(), facets, pressure: course(), beyond, profile: None })
     };
     let outer = |name, force, bounded| Case {
         internal: false,

@@ -1,0 +1,41 @@
+//! How far cells are from mechanical equilibrium: the force that drag and viscosity answer, eq. (step.15).
+
+use rayon::prelude::*;
+
+use super::kind::Kind;
+use super::model::Model;
+use super::scheme::larger;
+use super::state::{KindState, State};
+use super::thread_buffers::ThreadBuffers;
+use crate::mechanics::lanes::LANES;
+
+/// The largest force on an atom that was out of balance in the mean over a step of `dt` (s) from one state to another, pN: what its drag answered,
+/// and what is viscous.
+pub fn out_of_balance(model: &Model, dt: f64, from: &State, to: &State, buffers: &ThreadBuffers) -> f64 {
+    let kinds = model.kinds.iter().zip(from.kinds.iter().zip(&to.kinds));
+    kinds.map(|(kind, (from, to))| largest(kind, dt, (from, to), buffers)).fold(0.0, larger)
+}
+
+fn largest(kind: &Kind, dt: f64, (from, to): (&KindState, &KindState), buffers: &ThreadBuffers) -> f64 {
+    let (length, lanes) = (kind.block_len(), kind.lanes);
+    let blocks = from.positions.par_chunks_exact(length).zip(to.positions.par_chunks_exact(length));
+    let of_block = |(start, end): (&[f64], &[f64])| {
+        buffers.enter(length, |[gone, force, ..]| {
+            for (number, (start, end)) in start.iter().zip(end).enumerate() {
+                gone[number] = end - start;
+                force[number] = kind.drag / dt * gone[number];
+            }
+            kind.add_resistance(lanes, 1.0 / dt, [end, gone], force);
+            let mut largest: f64 = 0.0;
+            for atom in force.chunks_exact(3 * lanes) {
+                let mut squares = [0.0; LANES];
+                for row in atom.chunks_exact(lanes) {
+                    squares.iter_mut().zip(row).for_each(|(square, force)| *square += force * force);
+                }
+                largest = squares[..lanes].iter().copied().fold(largest, larger);
+            }
+            largest.sqrt()
+        })
+    };
+    blocks.map(of_block).reduce(|| 0.0, larger)
+}
