@@ -38,8 +38,9 @@ _SOUGHT = (
     "aggregate",
 )
 
-#: The component of a vector that is its length.
+#: The component of a vector that is its length, and the one that is its first component over its second.
 LENGTH = -1
+RATIO = -2
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Column:
 
     name: str
     path: str
-    #: Which component of a vector it is, or its LENGTH.
+    #: Which component of a vector it is, or its LENGTH or RATIO.
     component: int | None
     unit: str
     description: str
@@ -57,6 +58,10 @@ class Column:
         """Its numbers, from the rows of its dataset."""
         if self.component == LENGTH:
             return np.asarray(np.linalg.norm(values, axis=1))
+        if self.component == RATIO:
+            # Of what has no width there is none.
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return np.asarray(values[:, 0] / values[:, 1])
         return values if self.component is None else values[:, self.component]
 
 
@@ -104,6 +109,9 @@ class Tables:
                 self._add(found, ending if name == "position" else f"{name}_{ending}", path, component)
             if name == "velocity":
                 found["speed"] = Column("speed", path, LENGTH, self.file.unit(path), "length of the velocity")
+            if name == "principal":
+                words = "longest over middle extent along the principal axes"
+                found["aspect_ratio"] = Column("aspect_ratio", path, RATIO, "1", words)
         for system in self.systems("cells"):
             for quantity in self.file.names(f"/chemistry/{system}"):
                 self._add(found, f"{system}.{quantity}", f"/chemistry/{system}/{quantity}", None)
