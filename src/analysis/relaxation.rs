@@ -1,11 +1,17 @@
 //! The time in which a curve comes to rest: the fit of an exponential, or of the recovery of a red cell's length over width.
 
-/// What comes to rest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How something comes to rest, eq. (analysis.40).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
 pub enum Law {
-    /// `y = y∞ + b e^(-t/τ)`.
+    /// As an exponential.
+    #[default]
     Exponential,
-    /// `(r − r∞)/(r + r∞) = Λ e^(-t/τ)` of the length over width r of a membrane that keeps its area (Hochmuth, Worthy & Evans 1979).
+    /// As the length over width of a membrane that keeps its area.
     LengthOverWidth,
 }
 
@@ -23,7 +29,7 @@ pub struct Relaxation {
 /// Times τ that are looked at first, from a tenth of the mean interval to ten times the whole.
 const FIRST: usize = 60;
 
-/// Times Λ that are looked at first.
+/// Sizes Λ that are looked at first.
 const SIZES: usize = 24;
 
 /// Rounds of the golden section.

@@ -124,7 +124,7 @@ impl<'a> Recording<'a> {
         let time = pretty(simulation.time(), Dimension::TIME);
         self.report.notice(&match simulation.is_at_rest() {
             true => format!("in equilibrium after {time}: no force on an atom is more than {found} out of balance"),
-            false => format!("not in equilibrium after {time}: a force on an atom is {found} out of balance, and {asked} is asked for"),
+            false => format!("not in equilibrium after {time}: a force on an atom is {found} out of balance, and {asked} is asked for: let it go on longer, with a later `until`"),
         });
     }
 

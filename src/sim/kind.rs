@@ -30,7 +30,7 @@ pub struct Kind {
     pub stiffness: StiffnessMatrix,
     /// The least ratio of the true stiffness at rest to K, over all shapes that a cell can take; 0 where some have none.
     pub softest_ratio: f64,
-    /// What resists being deformed at a rate.
+    /// What resists being deformed at a rate: in the matrix of each cell, so that [`Kind::use_tangent`] must be called once it is set.
     pub viscosity: Option<Viscosity>,
     /// How each cell's own stiffness is made and factored, where K does not tell how stiff its shapes are.
     pub tangent: Option<Tangent>,

@@ -7,15 +7,18 @@ use super::model::Model;
 use super::scheme::larger;
 use super::state::{KindState, State};
 use super::thread_buffers::ThreadBuffers;
+use super::workspace::Workspace;
 use crate::mechanics::lanes::LANES;
 
-/// The largest force on an atom that was out of balance in the mean over a step of `dt` (s) from one state to another, pN: what its drag answered,
-/// and what is viscous.
-pub fn out_of_balance(model: &Model, dt: f64, from: &State, to: &State, buffers: &ThreadBuffers) -> f64 {
+/// Where a run ends at rest, notes the largest force on an atom that was out of balance in the mean over the step of `dt` (s) that led from one state
+/// to another: what its drag answered, and what is viscous.
+pub fn note_balance(model: &Model, dt: f64, from: &State, to: &mut State, ws: &Workspace) {
     let kinds = model.kinds.iter().zip(from.kinds.iter().zip(&to.kinds));
-    kinds.map(|(kind, (from, to))| largest(kind, dt, (from, to), buffers)).fold(0.0, larger)
+    let of_kind = |(kind, ends): (&Kind, (&KindState, &KindState))| largest(kind, dt, ends, &ws.buffers);
+    to.out_of_balance = model.rest.map(|_| kinds.map(of_kind).fold(0.0, larger));
 }
 
+/// The largest over the cells of a kind, pN.
 fn largest(kind: &Kind, dt: f64, (from, to): (&KindState, &KindState), buffers: &ThreadBuffers) -> f64 {
     let (length, lanes) = (kind.block_len(), kind.lanes);
     let blocks = from.positions.par_chunks_exact(length).zip(to.positions.par_chunks_exact(length));

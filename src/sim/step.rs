@@ -23,7 +23,7 @@ use super::motion::move_freely;
 use super::plan::{Estimate, Flaw, Halt, Plan, StepReport};
 use super::protrude::{find_grips, push_pseudopods, release_rears};
 use super::refresh::fit_stiffness;
-use super::rest::out_of_balance;
+use super::rest::note_balance;
 use super::state::State;
 use super::traction::{begin_tractions, keep_tractions};
 use super::trouble::Trouble;
@@ -79,7 +79,7 @@ fn make_step(model: &Model, from: &State, to: &mut State, ws: &mut Workspace) ->
     measure_velocities(model, plan.dt, from, to);
     keep_tractions(model, plan.dt, from, to, ws);
     note_dissipation(model, plan.dt, from, to, ws);
-    to.out_of_balance = model.rest.map(|_| out_of_balance(model, plan.dt, from, to, &ws.buffers));
+    note_balance(model, plan.dt, from, to, ws);
     let longest = advance_chemistry(model, plan.dt, from, to, ws)?;
     release_rears(model, to);
     note_meetings(model, to, ws);

@@ -226,9 +226,6 @@ fn cells_of(state: &State) -> Vec<Cell> {
 /// Positions and measures of all cells at this instant, as if they did not touch.
 fn frame_of(model: &Model, state: &State) -> Frame {
     let velocities = mean_velocities(state);
-    let of_kind =
-        |now: &KindState| (0..now.cells()).map(|cell| now.dissipated.get(cell).copied().unwrap_or(0.0)).collect();
-    let dissipated: Vec<f64> = state.kinds.iter().flat_map::<Vec<f64>, _>(of_kind).collect();
     let mut frame = Frame { time: state.time, step: state.step, cells: cells_of(state), ..Frame::default() };
     for (number, (cell, velocity)) in measure_cells(model, state).into_iter().zip(velocities).enumerate() {
         frame.positions.extend(cell.positions.iter().map(|p| <[f64; 3]>::from(*p)));
@@ -239,7 +236,7 @@ fn frame_of(model: &Model, state: &State) -> Frame {
             volume_error: cell.volume_error,
             area: cell.area,
             energy: cell.energy,
-            dissipated: dissipated[number],
+            dissipated: 0.0,
             size: cell.size.into(),
             principal: cell.principal,
             smallest_facet: cell.smallest_facet,
@@ -255,6 +252,10 @@ fn frame_of(model: &Model, state: &State) -> Frame {
     }
     if model.kinds.iter().any(|kind| kind.fibre_budget > 0) {
         record_fibres(model, state, &mut frame);
+    }
+    for now in &state.kinds {
+        let own = frame.records.iter_mut().skip(now.first_cell).zip(&now.dissipated);
+        own.for_each(|(record, dissipated)| record.dissipated = *dissipated);
     }
     record_chemistry(model, state, &mut frame);
     record_membranes(model, state, &mut frame);

@@ -2,9 +2,9 @@
 
 mod chemotactic_index;
 mod experiments;
+mod fits;
 #[path = "../support/index_table.rs"]
 mod index_table;
-mod red_cell_fit;
 #[path = "../support/shared.rs"]
 mod shared;
 mod sorting_statistics;

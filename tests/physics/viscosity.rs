@@ -130,8 +130,8 @@ fn kelvin_and_voigt_let_every_shape_go_in_the_same_time() {
             let end = run_to_end(&model, start.clone());
             let share = left(&ball, degree, &end.kinds[0].cell(&model.kinds[0], 0)) / left(&ball, degree, &start);
             println!("level {level}, degree {degree}: {share} in {} steps", end.step);
-            // Of second order in how far it is deformed (2e-3).
-            assert!((share * std::f64::consts::E - 1.0).abs() < 4e-3, "level {level}, degree {degree}: {share}");
+            // Of first order in how far it is deformed, a part of 2e-3.
+            assert!((share * std::f64::consts::E - 1.0).abs() < 2e-3, "level {level}, degree {degree}: {share}");
         }
     }
 }
@@ -160,6 +160,7 @@ fn a_viscous_drop_lets_modes_go_at_the_rates_of_theory_with_second_order_of_the_
             println!("degree {degree}, level {level}: {found} of the rate of theory");
             found - 1.0
         });
+        // A mesh of half the edges is off by a quarter, as far as the next order leaves it.
         assert!(off[2].abs() < 0.02, "{off:?}");
         assert!(off[1].abs() < 0.35 * off[0].abs() && off[2].abs() < 0.35 * off[1].abs(), "{off:?}");
     }
@@ -224,7 +225,8 @@ fn steps_of_viscous_cells_keep_their_order_however_far_these_deform() {
             let stretched = finest.kinds[0].positions.iter().skip(2).step_by(3).copied().fold(0.0, f64::max) / 5.0;
             println!("{order:?}: {found}, {:e} in steps of 1/64 s, stretched {stretched}", farthest(&fine, &finest));
             assert!(stretched > 1.3, "it deforms far: {stretched}");
-            assert!((found - wanted).abs() < 0.25, "{order:?}: {found}");
+            // Halvings differ from the limit by the next order's term.
+            assert!((found - wanted).abs() < 0.2, "{order:?}: {found}");
         }
     }
 }
@@ -251,9 +253,11 @@ fn what_draws_a_viscous_cell_is_told_with_what_is_viscous() {
         let (work, left) = (held * 2.0 * dt, to.balance.iter().map(AtomBalance::left).sum::<Vec3>());
         println!("{order:?}: {work} of {wanted} pN µm, {viscous} by viscosity; left {:e} of {held} pN", left.norm());
         assert!(viscous > 0.3 * wanted, "{viscous} of {wanted}");
-        // The force in the mean over a step is right to the order of the scheme.
-        assert!((work / wanted - 1.0).abs() < 0.01, "{order:?}: {work} {wanted}");
-        assert!(left.norm() < 1e-3 * held, "{order:?}: {left}, {held} pN hold it");
+        // The force in the mean over a step is right to the order of the scheme: 6e-3 and 1.4e-5 off.
+        let near = if order == Order::First { 0.01 } else { 1e-4 };
+        assert!((work / wanted - 1.0).abs() < near, "{order:?}: {work} {wanted}");
+        // Round-off of sums over 42 atoms.
+        assert!(left.norm() < 1e-12 * held, "{order:?}: {left}, {held} pN hold it");
     }
 }
 
@@ -306,6 +310,7 @@ fn several_viscous_cells_go_as_one_does() {
     });
     let [(alone, lost), (last, lost_by_last)] = &ends;
     let off = alone.iter().zip(last).map(|(one, other)| (one - other).norm()).fold(0.0, f64::max);
+    // Registers of several cells round otherwise, and steps carry that on.
     assert!(off < 1e-9 && (lost / lost_by_last - 1.0).abs() < 1e-9, "{off}, {lost} and {lost_by_last}");
 }
 

@@ -41,6 +41,7 @@ mod wavelength;
 
 pub use super::fields::OverBoxes;
 pub use super::over::Over;
+pub use crate::analysis::relaxation::Law as RecoveryLaw;
 pub use chemotactic_index::ChemotacticIndex;
 pub use comparison::Comparison;
 pub use declared::Declared;
@@ -58,7 +59,7 @@ pub use period::Period;
 pub use persistence::{Persistence, PersistenceStatistic};
 pub use pseudopods::PseudopodTurns;
 pub use rayleigh::{Rayleigh, RayleighStatistic};
-pub use recovery_time::{RecoveryLaw, RecoveryStatistic, RecoveryTime};
+pub use recovery_time::{RecoveryStatistic, RecoveryTime};
 pub use reduction::Reduction;
 pub use run_length::RunLength;
 pub use segregation::{Segregation, SegregationStatistic};

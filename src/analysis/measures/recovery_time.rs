@@ -35,7 +35,7 @@ pub struct RecoveryTime {
     pub y_column: Option<String>,
     /// How it comes to rest.
     #[serde(default)]
-    pub law: RecoveryLaw,
+    pub law: Law,
     /// Only from this time on; from the first on when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<Time>,
@@ -45,18 +45,6 @@ pub struct RecoveryTime {
     /// Which number of the fit.
     #[serde(default)]
     pub statistic: RecoveryStatistic,
-}
-
-/// How something comes to rest.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(inline)]
-pub enum RecoveryLaw {
-    /// As an exponential.
-    #[default]
-    Exponential,
-    /// As the length over width of a membrane that keeps its area.
-    LengthOverWidth,
 }
 
 /// Which number of the fit.
@@ -123,11 +111,7 @@ impl RecoveryTime {
         let slack = 1e-9 * times.iter().fold(0.0, |most: f64, time| most.max(time.abs()));
         let within = |(time, value): &(f64, f64)| (from - slack..=to + slack).contains(time) && value.is_finite();
         let (times, values): (Vec<f64>, Vec<f64>) = times.into_iter().zip(values).filter(within).unzip();
-        let law = match self.law {
-            RecoveryLaw::Exponential => Law::Exponential,
-            RecoveryLaw::LengthOverWidth => Law::LengthOverWidth,
-        };
-        let found = relaxation::fit(law, &times, &values).ok_or_else(|| {
+        let found = relaxation::fit(self.law, &times, &values).ok_or_else(|| {
             let found = format!("no time can be told in which this comes to rest from {} points", times.len());
             let help = "four are needed, and some of them where it is nearly at rest; look at it with plot, and set `from` and `to`";
             Error::input(Fault::new(found).help(help))
@@ -155,7 +139,7 @@ mod tests {
         table: None,
         x_column: None,
         y_column: None,
-        law: RecoveryLaw::Exponential,
+        law: Law::Exponential,
         from: None,
         to: None,
         statistic: RecoveryStatistic::Time,

@@ -1,7 +1,7 @@
 //! What must hold within a type of cells.
 
 use super::Check;
-use crate::experiment::{CellType, ContactModel, Course, Linked, Method, Placement, Selection, VolumeRule};
+use crate::experiment::{CellType, ContactModel, Course, Linked, Method, Placement, Selection, Viscosity, VolumeRule};
 use std::collections::HashSet;
 
 impl Check<'_> {
@@ -39,7 +39,7 @@ impl Check<'_> {
 
     /// Only the matrix of the implicit step knows what is viscous, and only contacts that move cells by it.
     pub(super) fn viscosity(&mut self, path: &str, cell: &CellType) {
-        if cell.mechanics.viscosity.is_none() {
+        if !cell.mechanics.viscosity.is_some_and(Viscosity::is_any) {
             return;
         }
         let (experiment, key) = (&self.document.experiment, format!("{path}.mechanics.viscosity"));
