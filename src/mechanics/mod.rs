@@ -27,6 +27,7 @@ pub mod restoring;
 pub mod rigid;
 pub mod shape_memory;
 pub mod shape_modulus;
+pub mod solid;
 pub mod springs;
 pub mod stability;
 pub mod stiffness;
@@ -61,6 +62,8 @@ pub enum Force {
     Bending(bending::Bending),
     /// Springs on edges and links between any two atoms.
     Springs(springs::Springs),
+    /// A body filled with an elastic material.
+    Solid(solid::Solid),
     /// The barrier against folding and collapsing facets.
     Barrier(barrier::Barrier),
     /// A load with a course in time on some atoms.
@@ -86,7 +89,7 @@ impl Force {
     pub fn is_elastic(&self) -> bool {
         match self {
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => true,
-            Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) => true,
+            Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Barrier(_) => true,
             Self::Load(_) | Self::Fibres(_) | Self::Gravity(_) | Self::Attraction(_) => false,
             Self::Pressure(_) | Self::Trap(_) => false,
         }
@@ -97,7 +100,7 @@ impl Force {
         match self {
             Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Attraction(_) | Self::Trap(_) => true,
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) | Self::Ordering(_) => false,
-            Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) | Self::Fibres(_) => false,
+            Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Barrier(_) | Self::Fibres(_) => false,
         }
     }
 
@@ -146,6 +149,7 @@ impl Force {
             Self::Ordering(force) => force.add_stiffness(x, matrix),
             Self::Bending(force) => force.add_stiffness(x, matrix),
             Self::Springs(force) => force.add_stiffness(matrix),
+            Self::Solid(force) => force.add_stiffness(matrix),
             Self::Barrier(force) => force.add_stiffness(matrix),
             Self::Fibres(force) => force.add_stiffness(matrix),
             Self::Attraction(force) => force.add_stiffness(matrix),
@@ -157,7 +161,7 @@ impl Force {
     /// Whether it has a tangent stiffness of its own, eq. (step.10).
     pub fn has_tangent(&self) -> bool {
         match self {
-            Self::Membrane(_) | Self::Bending(_) | Self::Springs(_) => true,
+            Self::Membrane(_) | Self::Bending(_) | Self::Springs(_) | Self::Solid(_) => true,
             Self::Tension(force) => force.has_tangent(),
             _ => false,
         }
@@ -170,6 +174,7 @@ impl Force {
             Self::Membrane(force) => force.add_tangent(x, blocks),
             Self::Bending(force) => force.add_tangent(x, blocks),
             Self::Springs(force) => force.add_tangent(x, blocks),
+            Self::Solid(force) => force.add_tangent(x, blocks),
             Self::Tension(force) if force.has_tangent() => force.add_tangent(x, blocks),
             _ => {}
         }
@@ -182,7 +187,7 @@ impl Force {
             Self::Attraction(force) => Some(force.stiffness),
             Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Trap(_) => Some(0.0),
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => None,
-            Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Barrier(_) => None,
+            Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Barrier(_) => None,
         }
     }
 
@@ -210,6 +215,7 @@ impl Force {
             Self::Ordering(force) => force.add_forces(x, f),
             Self::Bending(force) => force.add_forces(x, f),
             Self::Springs(force) => force.add_forces(x, f),
+            Self::Solid(force) => force.add_forces(x, f),
             Self::Barrier(force) => force.add_forces(x, f),
             Self::Load(force) => force.add_forces(strength, x, f),
             Self::Pressure(force) => force.add_forces(strength, x, f),
