@@ -229,8 +229,9 @@ pub(super) fn find_plane_contacts(scene: &Scene, positions: &[Vec3], body: u32, 
     if scene.planes.is_empty() {
         return;
     }
-    let first = scene.bodies[body as usize].first_atom;
-    for (position, atom) in scene.of_body(body, positions).iter().zip(first..) {
+    let (first, shape) = (scene.bodies[body as usize].first_atom, scene.shape(body));
+    let atoms = scene.of_body(body, positions).iter().zip(first..);
+    for (position, atom) in atoms.filter(|(_, atom)| shape.is_outer((atom - first) as usize)) {
         for (plane, number) in scene.planes.iter().zip(0..) {
             let gap = (position - plane.point).dot(&plane.normal);
             if gap < scene.reach.proximity {

@@ -91,7 +91,7 @@ impl Lists {
         for body in scene.bodies_of(batch) {
             let shape = scene.shape(body);
             let here = scene.of_body(body, positions);
-            for atom in 0..shape.atoms {
+            for atom in (0..shape.atoms).filter(|atom| shape.is_outer(*atom)) {
                 let bounds = Bounds::around(&here[atom..=atom], self.reach);
                 for (&other, position) in boxes.neighbours.of(body).iter().zip(0..) {
                     if bounds.meets(&boxes.bounds[other as usize]) {

@@ -16,7 +16,7 @@ pub fn detect_all_pairs(scene: &Scene, positions: &[Vec3], contacts: &mut Contac
     let (mut lows, mut words, mut pairs) = (Vec::new(), Words::default(), Vec::new());
     for body in 0..bodies {
         let shape = scene.shape(body);
-        for atom in 0..shape.atoms as u32 {
+        for atom in (0..shape.atoms as u32).filter(|atom| shape.is_outer(*atom as usize)) {
             for other in 0..bodies {
                 let facets = 0..scene.shape(other).facets.len() as u32;
                 let facets = facets.filter(|&facet| other != body || !shape.is_near(atom, facet));

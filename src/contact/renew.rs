@@ -117,7 +117,7 @@ impl Lists {
             let here = &points[..shape.atoms];
             let neighbours = boxes.neighbours.of(body);
             let there = |first: u32, other: u32| &points[first as usize..][..scene.shape(other).atoms];
-            for atom in 0..shape.atoms {
+            for atom in (0..shape.atoms).filter(|atom| shape.is_outer(*atom)) {
                 let (bounds, owner) = (Bounds::around(&here[atom..=atom], self.reach), first_atom + atom as u32);
                 for ((&other, origin), position) in neighbours.iter().zip(&*origins).zip(0..) {
                     match *origin {

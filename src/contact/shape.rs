@@ -141,6 +141,12 @@ impl Shape {
         }
     }
 
+    /// Whether an atom is on the surface; those inside a filled body touch nothing.
+    #[inline]
+    pub fn is_outer(&self, atom: usize) -> bool {
+        self.around_first[atom] < self.around_first[atom + 1]
+    }
+
     /// The facets around an atom, sorted.
     pub fn around(&self, atom: usize) -> &[u32] {
         &self.around[self.around_first[atom] as usize..self.around_first[atom + 1] as usize]

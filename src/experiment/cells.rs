@@ -170,6 +170,30 @@ pub enum Mesh {
         #[schemars(range(min = 6, max = 10000))]
         around: u32,
     },
+    /// A filled box, centred, of hexahedra that are cut into five tetrahedra each: a gel, a beam, a block of tissue.
+    Block {
+        /// Lengths of its edges along x, y and z.
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
+        size: [Length; 3],
+        /// Parts that the edges are divided into.
+        #[schemars(inner(range(min = 1, max = 200)))]
+        divisions: [u32; 3],
+    },
+    /// A filled cylinder about the z axis, centred, of rings of wedges that are cut into three tetrahedra each.
+    Rod {
+        /// Distance of its outer atoms from the axis.
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
+        radius: Length,
+        /// Its length along the axis.
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
+        length: Length,
+        /// Rings around the axis; a layer has 6 wedges in the first, 18 in the second, 30 in the third.
+        #[schemars(range(min = 1, max = 100))]
+        rings: u32,
+        /// Layers along the axis.
+        #[schemars(range(min = 1, max = 1000))]
+        layers: u32,
+    },
     /// A surface from a file: OBJ, STL, PLY or PML.
     File {
         /// The file, relative to the document.
@@ -181,6 +205,9 @@ pub enum Mesh {
         /// The component of a PML file whose facets are meant, or several; the one that is a closed surface when absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         component: Option<OneOrMany<String>>,
+        /// Whether the body is filled: made of the tetrahedra, pyramids, wedges and hexahedra of a PML file, of the component or of all.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        filled: bool,
     },
 }
 
@@ -190,6 +217,11 @@ fn is_sharp(rounding: &Length) -> bool {
 }
 
 impl Mesh {
+    /// Whether there are atoms inside.
+    pub fn is_filled(&self) -> bool {
+        matches!(self, Self::Block { .. } | Self::Rod { .. } | Self::File { filled: true, .. })
+    }
+
     /// Whether the surface has a border, as far as that is known without reading a file.
     pub fn is_open(&self) -> bool {
         matches!(self, Self::Sheet { .. } | Self::Triangle { .. })

@@ -4,6 +4,7 @@ use super::compile::Builder;
 use super::membrane::Membrane;
 use super::rigid::Rigid;
 use super::selection::Selection;
+use super::solid::Solid;
 use super::viscosity::Viscosity;
 use super::volume::VolumeControl;
 use crate::geometry;
@@ -36,6 +37,9 @@ pub struct Mechanics {
     /// A spring on every edge of the mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub springs: Option<Springs>,
+    /// An elastic material that fills the body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solid: Option<Solid>,
     /// The surface is viscous.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<Viscosity>,
@@ -152,6 +156,9 @@ impl Mechanics {
         }
         if let Some(springs) = &self.springs {
             springs.add(to);
+        }
+        if let Some(solid) = &self.solid {
+            solid.add(to);
         }
     }
 }

@@ -55,6 +55,7 @@ mod scene;
 mod schema;
 mod selection;
 mod semantics;
+mod solid;
 mod tree;
 mod viscosity;
 mod volume;
@@ -87,6 +88,7 @@ pub use rigid::{Rigid, Trap};
 pub use scene::{Environment, Equilibrium, Integrator, Method, Output, Plane, Run};
 pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
+pub use solid::{Material, Solid, VolumeOver};
 pub use viscosity::Viscosity;
 pub use volume::{VolumeControl, VolumeRule};
 

@@ -1,6 +1,6 @@
 //! Which atoms of a cell are meant: some of them, or pairs.
 
-use crate::units::Angle;
+use crate::units::{Angle, Length};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ pub struct Cap {
     pub extent: CapExtent,
 }
 
-/// How large a cap is: give one of the three.
+/// How large a cap is: give one of the four.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CapExtent {
@@ -37,6 +37,8 @@ pub enum CapExtent {
     Fraction(#[schemars(range(max = 1.0), extend("exclusiveMinimum" = 0))] f64),
     /// The atoms seen from the centre within this angle of the direction.
     Angle(#[schemars(extend("x-exclusive-minimum" = 0, "x-maximum" = std::f64::consts::PI))] Angle),
+    /// The atoms that lie no farther than this below the furthest one, along the direction: a side of a block.
+    Depth(#[schemars(extend("x-exclusive-minimum" = 0, "x-maximum" = 1e6))] Length),
 }
 
 /// Which atoms are linked: give one of the two.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct VolumeControl {
-    /// The rule; exact for closed surfaces and free for open ones when absent.
+    /// The rule; when absent exact for closed surfaces, and free for open ones and where a material with Poisson's ratio fills the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rule: Option<VolumeRule>,
     /// Bulk modulus of the compressible rule.

@@ -54,6 +54,7 @@ impl Kind {
         let is_alone = touched && self.lanes == 1;
         let creeps = |least: f64| measure_softest_ratio(self, LARGEST_RATIO) <= least;
         if self.viscosity.is_some()
+            || self.is_filled()
             || self.has_soft_shear()
             || is_alone && self.shears() && creeps(LEAST_TOLD_OF_TOUCHED)
         {
@@ -64,6 +65,11 @@ impl Kind {
     /// Whether K overestimates the shear of a membrane so far that cells creep where they have no stiffness of their own.
     pub fn has_soft_shear(&self) -> bool {
         self.shears() && !self.is_told()
+    }
+
+    /// Whether an elastic material fills its cells.
+    pub fn is_filled(&self) -> bool {
+        self.forces.iter().any(|force| matches!(force, Force::Solid(_)))
     }
 
     /// Whether a membrane resists shear.

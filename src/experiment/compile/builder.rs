@@ -16,8 +16,21 @@ pub struct Built {
     pub plain: Surface,
     /// Turned.
     pub turned: Surface,
+    /// What fills it, if anything does: then atoms inside follow those of the surface.
+    pub inside: Option<Inside>,
     /// The physical model that it came from, if it did.
     pub model: Option<FromModel>,
+}
+
+/// What fills a body, see [`Solid`](crate::geometry::Solid).
+#[derive(Debug)]
+pub struct Inside {
+    /// Its tetrahedra.
+    pub tetrahedra: Vec<[u32; 4]>,
+    /// Where those of each cell begin.
+    pub cells: Vec<u32>,
+    /// The edges of the cells.
+    pub edges: Vec<[u32; 2]>,
 }
 
 /// Makes the forces on a type of cells.
@@ -50,6 +63,11 @@ impl<'a> Builder<'a> {
     /// The mesh at rest before it is turned.
     pub fn plain(&self) -> &'a Surface {
         &self.built.plain
+    }
+
+    /// What fills the body, if anything does.
+    pub fn inside(&self) -> Option<&'a Inside> {
+        self.built.inside.as_ref()
     }
 
     /// Tells a fault at a key of the type.

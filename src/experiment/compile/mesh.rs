@@ -1,19 +1,25 @@
 //! Builds the surface of a type of cells.
 
 use super::super::{CellType, Document, Mesh, VolumeRule};
-use super::builder::Built;
+use super::builder::{Built, Inside};
 use super::far;
 use super::lathe;
 use super::model::{self, is_model};
 use super::numbers::unit;
 use crate::Vec3;
 use crate::error::{Error, Fault};
+use crate::geometry::solid::{self, Solid};
 use crate::geometry::{self, Surface, SurfaceRules};
 use nalgebra::{Unit, UnitQuaternion};
 
 /// The surface of a type, or nothing and a fault.
 pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Vec<Fault>) -> Option<Built> {
-    let mut from_model = None;
+    let (mut from_model, mut inside) = (None, None);
+    let mut filled = |solid: Solid| {
+        let Solid { surface, tetrahedra, cells, edges } = solid;
+        inside = Some(Inside { tetrahedra, cells, edges });
+        surface
+    };
     let mut plain = match &cell.mesh {
         Mesh::RedCell { diameter, level } => geometry::red_cell(diameter.value(), u32::from(*level)),
         Mesh::Icosphere { radius, level } => geometry::icosphere(radius.value(), u32::from(*level)),
@@ -26,21 +32,32 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
         Mesh::Lathe { profile, rounding, around } => {
             lathe::surface(document, &format!("cells.{name}.mesh"), (profile, *rounding, *around), faults)?
         }
-        Mesh::File { path, unit, component } => {
+        Mesh::Block { size, divisions } => filled(solid::block(size.map(|x| x.value()), *divisions)),
+        Mesh::Rod { radius, length, rings, layers } => {
+            filled(solid::rod(radius.value(), length.value(), *rings, *layers))
+        }
+        Mesh::File { path, unit, component, filled: is_filled } => {
             let free = cell.mechanics.volume.rule == Some(VolumeRule::Free);
             let rules = if free { &SurfaceRules::SHEET } else { &SurfaceRules::CELL };
             let key = format!("cells.{name}.mesh");
             let file = document.resolve(path);
-            if component.is_some() && !is_model(path) {
-                let message = format!("`{key}.component` has no meaning for `{}`", path.display());
-                let fault =
-                    Fault::new(message).help("only PML files, which end in .pml, have components: leave it out");
-                let location = document.location(&format!("{key}.component"), "not of this file");
-                faults.push(location.into_iter().fold(fault, Fault::at));
+            let of_models =
+                [("component", component.is_some(), "components"), ("filled", *is_filled, "cells that fill a body")];
+            if let Some((own, _, what)) = of_models.into_iter().find(|(_, there, _)| *there).filter(|_| !is_model(path))
+            {
+                let message = format!("`{key}.{own}` has no meaning for `{}`", path.display());
+                let help = format!("only PML files, which end in .pml, have {what}: leave it out");
+                let location = document.location(&format!("{key}.{own}"), "not of this file");
+                faults.push(location.into_iter().fold(Fault::new(message).help(help), Fault::at));
                 return None;
             }
-            let outcome = if is_model(path) {
-                let told = document.says(&format!("{key}.unit")).then_some(*unit);
+            let told = document.says(&format!("{key}.unit")).then_some(*unit);
+            let outcome = if *is_filled {
+                model::solid(&file, told, component.as_ref()).map(|(solid, read)| {
+                    from_model = Some(read);
+                    filled(solid)
+                })
+            } else if is_model(path) {
                 model::surface(&file, told, component.as_ref(), rules).map(|(surface, read)| {
                     from_model = Some(read);
                     surface
@@ -79,7 +96,7 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
         let axis = Unit::new_unchecked(unit(orientation.axis));
         geometry::rotate(&mut turned, &UnitQuaternion::from_axis_angle(&axis, orientation.angle.value()));
     }
-    Some(Built { plain, turned, model: from_model })
+    Some(Built { plain, turned, inside, model: from_model })
 }
 
 /// One equilateral facet in the plane z = 0: atoms 0 and 1 on its base, atom 2 above it along y.

@@ -32,7 +32,7 @@ pub use schedule::Schedule;
 pub use size::Size;
 pub use start::{PushedApart, Settling, settle_start, settle_start_told};
 
-use super::{CellType, Document, Experiment, VolumeRule as Rule};
+use super::{CellType, Document, Experiment, Solid, VolumeRule as Rule};
 use crate::Vec3;
 use crate::error::{Error, Fault, Result};
 use crate::field::Fields;
@@ -195,7 +195,11 @@ fn compile_kind(
 
 fn volume_rule(document: &Document, key: &str, cell: &CellType, kind: &Kind, faults: &mut Vec<Fault>) -> VolumeRule {
     let control = &cell.mechanics.volume;
-    let rule = control.rule.unwrap_or(if kind.closed { Rule::Exact } else { Rule::Free });
+    // What fills a body may resist changes of its volume by itself.
+    let has_bulk = cell.mechanics.solid.as_ref().is_some_and(Solid::has_bulk);
+    let is_driven = control.target.is_some() || control.ratio.is_some();
+    let usual = if kind.closed && (!has_bulk || is_driven) { Rule::Exact } else { Rule::Free };
+    let rule = control.rule.unwrap_or(usual);
     if rule != Rule::Free && !kind.closed {
         let fault = Fault::new(format!("the surface of `{}` is open and encloses no volume", kind.name))
             .help("use volume = { rule = \"free\" }, or a closed mesh");

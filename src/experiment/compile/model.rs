@@ -1,8 +1,10 @@
 //! A physical model in place of a mesh.
 
 use super::super::Document;
+use crate::Vec3;
 use crate::error::{Error, Fault, Result};
-use crate::geometry::{Surface, SurfaceRules, check_surface};
+use crate::geometry::{Solid, SolidFault, Surface, SurfaceRules, check_surface};
+use crate::physical_model::Read;
 use crate::physical_model::pml::{Component, LENGTH_UNIT, PhysicalModel, Wanted};
 use crate::values::{LengthUnit, OneOrMany};
 use std::collections::{BTreeMap, BTreeSet};
@@ -45,30 +47,69 @@ pub fn surface(
     rules: &SurfaceRules,
 ) -> Result<(Surface, FromModel)> {
     let read = PhysicalModel::open(path)?;
-    let model = read.document;
     let file = path.display().to_string();
-    let wanted = component.map_or(Wanted::TheOnly, |names| Wanted::Named(names.as_slice()));
-    let mut chosen = model.surface(&file, wanted).map_err(Error::input)?;
-    let unit = match (unit, model.properties.get(LENGTH_UNIT)) {
-        (Some(unit), _) => unit,
-        (None, None) => USUAL_UNIT,
-        (None, Some(text)) => text.parse::<LengthUnit>().map_err(|error| {
-            let message = format!("`{LENGTH_UNIT}` of PML file `{file}` is no unit of length: {}", error.message);
-            Error::input(Fault::new(message).help("give the `unit` beside the path"))
-        })?,
-    };
+    let mut chosen = read.document.surface(&file, wanted(component)).map_err(Error::input)?;
+    let unit = unit_of(&read.document, unit, &file)?;
     chosen.surface.positions.iter_mut().for_each(|position| *position *= unit.micrometres());
     let mesh = format!("the surface in PML file `{file}`");
     check_surface(&chosen.surface, rules)
         .map_err(|faults| Error::Input(faults.into_iter().map(|fault| fault.into_fault(&mesh)).collect()))?;
     let numbers = chosen.indices.iter().copied().zip(0..).collect();
-    let from = FromModel {
-        numbers,
-        indices: model.all_atoms().map(|atom| atom.index).collect(),
-        named: named(&model),
-        notice: read.warnings.in_a_sentence(&file),
-    };
-    Ok((chosen.surface, from))
+    Ok((chosen.surface, FromModel::of(&read, numbers, &file)))
+}
+
+/// The filled body of a model, µm, as all cells of a type have it at rest.
+///
+/// # Errors
+/// As [`PhysicalModel::open`] and [`PhysicalModel::solid`], a unit in the model that is none, and every fault of the cells and of the surface around
+/// them.
+pub fn solid(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    component: Option<&OneOrMany<String>>,
+) -> Result<(Solid, FromModel)> {
+    let read = PhysicalModel::open(path)?;
+    let file = path.display().to_string();
+    let chosen = read.document.solid(&file, wanted(component)).map_err(Error::input)?;
+    let unit = unit_of(&read.document, unit, &file)?;
+    let positions: Vec<Vec3> = chosen.positions.iter().map(|position| position * unit.micrometres()).collect();
+    let told = |fault: SolidFault| Fault::new(format!("the body in PML file `{file}`: {fault}")).help(fault.help());
+    let (solid, numbers) = Solid::of_cells(&positions, &chosen.cells)
+        .map_err(|faults| Error::Input(faults.into_iter().map(told).collect()))?;
+    let mut around = solid.surface.clone();
+    around.positions.truncate(solid.outer_atoms());
+    let mesh = format!("the surface around the body in PML file `{file}`");
+    check_surface(&around, &SurfaceRules::CELL)
+        .map_err(|faults| Error::Input(faults.into_iter().map(|fault| fault.into_fault(&mesh)).collect()))?;
+    let numbers = chosen.indices.iter().zip(numbers).filter_map(|(index, number)| Some((*index, number?))).collect();
+    Ok((solid, FromModel::of(&read, numbers, &file)))
+}
+
+fn wanted(component: Option<&OneOrMany<String>>) -> Wanted<'_> {
+    component.map_or(Wanted::TheOnly, |names| Wanted::Named(names.as_slice()))
+}
+
+/// The unit of a model's coordinates: as a document says, or as the model does.
+fn unit_of(model: &PhysicalModel, told: Option<LengthUnit>, file: &str) -> Result<LengthUnit> {
+    match (told, model.properties.get(LENGTH_UNIT)) {
+        (Some(unit), _) => Ok(unit),
+        (None, None) => Ok(USUAL_UNIT),
+        (None, Some(text)) => text.parse::<LengthUnit>().map_err(|error| {
+            let message = format!("`{LENGTH_UNIT}` of PML file `{file}` is no unit of length: {}", error.message);
+            Error::input(Fault::new(message).help("give the `unit` beside the path"))
+        }),
+    }
+}
+
+impl FromModel {
+    fn of(read: &Read<PhysicalModel>, numbers: BTreeMap<u32, u32>, file: &str) -> Self {
+        Self {
+            numbers,
+            indices: read.document.all_atoms().map(|atom| atom.index).collect(),
+            named: named(&read.document),
+            notice: read.warnings.in_a_sentence(file),
+        }
+    }
 }
 
 /// The atoms of all that has a name; blanks at the ends of names do not count.

@@ -58,6 +58,11 @@ fn cap_atoms(cap: &Cap, rest: &Surface) -> Vec<u32> {
             let number = (fraction * rest.positions.len() as f64).round() as usize;
             order.truncate(number.max(1));
         }
+        CapExtent::Depth(depth) => {
+            let top = order.first().map_or(0.0, height);
+            // A side that is told by its exact depth is meant as a whole.
+            order.retain(|atom| height(atom) >= top - depth.value() - 1e-9 * size);
+        }
         CapExtent::Angle(angle) => order.retain(|atom| {
             let away = rest.positions[*atom as usize] - centre;
             away.dot(&direction) >= (angle.value().cos() - 1e-12) * away.norm()

@@ -230,6 +230,14 @@ fn of_mesh(document: &Document, mesh: &Mesh) -> [f64; 2] {
                 + if widest > 0.0 { outline * around / (2.0 * PI * widest) } else { 0.0 };
             [rings * around, 2.0 * rings * around]
         }
+        Mesh::Block { divisions, .. } => {
+            let [x, y, z] = divisions.map(f64::from);
+            [(x + 1.0) * (y + 1.0) * (z + 1.0), 4.0 * (x * y + y * z + z * x)]
+        }
+        Mesh::Rod { rings, layers, .. } => {
+            let (rings, layers) = (f64::from(*rings), f64::from(*layers));
+            [(1.0 + 3.0 * rings * (rings + 1.0)) * (layers + 1.0), 12.0 * rings * (rings + layers)]
+        }
         Mesh::File { path, .. } => {
             let length = std::fs::metadata(document.resolve(path)).map_or(0.0, |file| file.len() as f64);
             [length / FILE_BYTES, 2.0 * length / FILE_BYTES]

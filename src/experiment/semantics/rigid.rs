@@ -15,6 +15,7 @@ impl Check<'_> {
             ("mechanics.shape_memory", mechanics.shape_memory.is_some()),
             ("mechanics.membrane", mechanics.membrane.is_some()),
             ("mechanics.springs", mechanics.springs.is_some()),
+            ("mechanics.solid", mechanics.solid.is_some()),
             ("mechanics.viscosity", mechanics.viscosity.is_some()),
             ("mechanics.barrier", mechanics.barrier != Default::default()),
             ("mechanics.volume", mechanics.volume != Default::default()),

@@ -110,12 +110,7 @@ pub fn names(positions: &[Vec3], cells: &[SolidCell]) -> Result<(), Vec<SolidFau
     }
     let mut faults = Vec::new();
     for (number, cell) in cells.iter().enumerate() {
-        let atoms: &[u32] = match cell {
-            SolidCell::Tetrahedron(atoms) => atoms,
-            SolidCell::Pyramid(atoms) => atoms,
-            SolidCell::Wedge(atoms) => atoms,
-            SolidCell::Hexahedron(atoms) => atoms,
-        };
+        let atoms = cell.atoms();
         let unknown = atoms.iter().find(|&&atom| atom as usize >= positions.len());
         let twice = (1..atoms.len()).find(|&k| atoms[..k].contains(&atoms[k]));
         faults.extend(unknown.map(|&atom| SolidFault::AtomOutOfRange { cell: number, atom, count: positions.len() }));

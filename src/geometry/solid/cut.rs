@@ -50,6 +50,12 @@ fn two_colours(cells: &[SolidCell]) -> Option<HashMap<u32, bool>> {
     Some(colours)
 }
 
+/// The edges of a cell.
+pub fn edges(cell: &SolidCell) -> Vec<[u32; 2]> {
+    let faces = faces(cell);
+    faces.iter().flat_map(|face| (0..face.len()).map(|k| [face[k], face[(k + 1) % face.len()]])).collect()
+}
+
 /// Five tetrahedra of a hexahedron: one of every other corner, and what is left at the four corners between. `odd` says that the corners of
 /// the large one are those beside the first.
 fn five([a, b, c, d, e, f, g, h]: [u32; 8], odd: bool) -> [[u32; 4]; 5] {

@@ -25,6 +25,8 @@ pub struct Solid {
     pub tetrahedra: Vec<[u32; 4]>,
     /// Where the tetrahedra of each cell begin, and at the end how many there are.
     pub cells: Vec<u32>,
+    /// The edges of the cells as they were before they were cut, smaller atom first, sorted.
+    pub edges: Vec<[u32; 2]>,
 }
 
 /// A cell of a body, by the numbers of its atoms in the order of VTK: the base first, then what is above it.
@@ -38,6 +40,28 @@ pub enum SolidCell {
     Wedge([u32; 6]),
     /// Four atoms around the base, and those above each.
     Hexahedron([u32; 8]),
+}
+
+impl SolidCell {
+    /// Its atoms.
+    pub fn atoms(&self) -> &[u32] {
+        match self {
+            Self::Tetrahedron(atoms) => atoms,
+            Self::Pyramid(atoms) => atoms,
+            Self::Wedge(atoms) => atoms,
+            Self::Hexahedron(atoms) => atoms,
+        }
+    }
+
+    /// The same cell of atoms with other numbers.
+    pub fn renumbered(&self, number: impl Fn(u32) -> u32) -> Self {
+        match self {
+            Self::Tetrahedron(atoms) => Self::Tetrahedron(atoms.map(number)),
+            Self::Pyramid(atoms) => Self::Pyramid(atoms.map(number)),
+            Self::Wedge(atoms) => Self::Wedge(atoms.map(number)),
+            Self::Hexahedron(atoms) => Self::Hexahedron(atoms.map(number)),
+        }
+    }
 }
 
 impl Solid {
@@ -64,12 +88,31 @@ impl Solid {
             facets: outside.iter().map(|facet| facet.map(number)).collect(),
         };
         let tetrahedra = tetrahedra.iter().map(|atoms| atoms.map(number)).collect();
-        Ok((Self { surface, tetrahedra, cells: starts }, numbers))
+        let mut edges: Vec<[u32; 2]> =
+            cells.iter().flat_map(cut::edges).map(|edge| edge.map(number)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        Ok((Self { surface, tetrahedra, cells: starts, edges }, numbers))
     }
 
     /// How many atoms are on the surface: they are the first.
     pub fn outer_atoms(&self) -> usize {
         self.surface.facets.iter().flatten().max().map_or(0, |last| *last as usize + 1)
+    }
+
+    /// All pairs of atoms of one cell, smaller first, sorted: Moore's neighbourhood where cells are hexahedra.
+    pub fn pairs_within_cells(&self) -> Vec<[u32; 2]> {
+        let of_cell = |range: &[u32]| {
+            let mut atoms: Vec<u32> = self.tetrahedra[range[0] as usize..range[1] as usize].concat();
+            atoms.sort_unstable();
+            atoms.dedup();
+            let with_later = |(k, &a): (usize, &u32)| atoms[k + 1..].iter().map(move |&b| [a, b]).collect::<Vec<_>>();
+            atoms.iter().enumerate().flat_map(with_later).collect::<Vec<_>>()
+        };
+        let mut pairs: Vec<[u32; 2]> = self.cells.windows(2).flat_map(of_cell).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
     }
 
     /// Volumes of the tetrahedra, µm³.

@@ -9,11 +9,13 @@ mod read;
 mod read_structures;
 mod references;
 mod seen;
+mod solid;
 mod surface;
 mod types;
 mod write;
 
 pub use make::{LENGTH_UNIT, model_of_surfaces};
+pub use solid::ModelSolid;
 pub use surface::{ModelSurface, Wanted};
 pub use types::{CellType, Mode};
 

@@ -27,6 +27,25 @@ pub struct ModelSurface {
     pub indices: Vec<u32>,
 }
 
+/// Cells of which something is made, for those who look for it and for messages.
+pub(super) struct Sought {
+    /// What they are called.
+    pub words: &'static str,
+    /// Whether a component has some.
+    pub is_in: fn(&StructuralComponent) -> bool,
+    /// The components that have some.
+    pub listed: fn(&[&StructuralComponent]) -> String,
+    /// What is made of cells of which types.
+    pub made_of: &'static str,
+}
+
+const FACETS: Sought = Sought {
+    words: "facets",
+    is_in: has_facets,
+    listed: |all| listed(all.iter().copied().filter(|component| has_facets(component))),
+    made_of: "the surface of a cell is made of cells of type TRIANGLE or QUAD",
+};
+
 /// So many components are listed in a message.
 const LISTED: usize = 12;
 
@@ -39,7 +58,7 @@ impl PhysicalModel {
     pub fn surface(&self, file: &str, wanted: Wanted) -> Result<ModelSurface, Fault> {
         let chosen = match wanted {
             Wanted::TheOnly => vec![self.only_surface(file)?],
-            Wanted::Named(names) => self.named(file, names)?,
+            Wanted::Named(names) => self.named(file, names, &FACETS)?,
         };
         let facets: Vec<[u32; 3]> = chosen.iter().flat_map(|component| facets_of(component)).collect();
         let mut used: HashMap<u32, u32> = facets.iter().flatten().map(|atom| (*atom, 0)).collect();
@@ -61,7 +80,7 @@ impl PhysicalModel {
             with_facets.iter().copied().filter(|component| is_closed(component)).collect();
         match (closed.as_slice(), with_facets.as_slice()) {
             ([only], _) | ([], [only]) => Ok(only),
-            ([], []) => Err(self.no_facets(format!("PML file `{file}` has no facets"))),
+            ([], []) => Err(self.none_of(&FACETS, format!("PML file `{file}` has no facets"))),
             (several, all) => {
                 let found = match several.len() {
                     0 => format!("{} components with facets, none of them closed", all.len()),
@@ -78,7 +97,13 @@ impl PhysicalModel {
         }
     }
 
-    fn named(&self, file: &str, names: &[String]) -> Result<Vec<&StructuralComponent>, Fault> {
+    /// The components with these names and all in them that have such cells, each once.
+    pub(super) fn named(
+        &self,
+        file: &str,
+        names: &[String],
+        what: &Sought,
+    ) -> Result<Vec<&StructuralComponent>, Fault> {
         let all = self.all_components();
         let mut chosen: Vec<&StructuralComponent> = Vec::new();
         for name in names {
@@ -89,17 +114,19 @@ impl PhysicalModel {
                 let known = all.iter().filter_map(|component| component.name()).map(str::trim);
                 let meant =
                     words::meant(name, known).map_or(String::new(), |meant| format!("did you mean `{meant}`? "));
-                let with_facets = self.structural_components().into_iter().filter(|component| has_facets(component));
-                let help = format!("{meant}with facets there are {}", listed(with_facets));
+                let help =
+                    format!("{meant}with {} there are {}", what.words, (what.listed)(&self.structural_components()));
                 return Err(Fault::new(format!("PML file `{file}` has no component `{name}`")).help(help));
             }
             for component in found {
                 let mut within = Vec::new();
                 component.add_structural(&mut within);
-                chosen.extend(within.into_iter().filter(|component| has_facets(component)));
+                chosen.extend(within.into_iter().filter(|component| (what.is_in)(component)));
             }
             if chosen.len() == before {
-                return Err(self.no_facets(format!("component `{name}` of PML file `{file}` has no facets")));
+                return Err(
+                    self.none_of(what, format!("component `{name}` of PML file `{file}` has no {}", what.words))
+                );
             }
         }
         // A component that is named itself and by a group around it is meant once.
@@ -112,12 +139,11 @@ impl PhysicalModel {
         Ok(unique)
     }
 
-    /// The fault of facets that are missing: which components have some, or what kinds of cells there are instead.
-    fn no_facets(&self, message: String) -> Fault {
+    /// The fault of cells that are missing: which components have some, or what kinds of cells there are instead.
+    pub(super) fn none_of(&self, what: &Sought, message: String) -> Fault {
         let all = self.structural_components();
-        if all.iter().any(|component| has_facets(component)) {
-            let with_facets = all.into_iter().filter(|component| has_facets(component));
-            return Fault::new(message).help(format!("with facets there are {}", listed(with_facets)));
+        if all.iter().any(|component| (what.is_in)(component)) {
+            return Fault::new(message).help(format!("with {} there are {}", what.words, (what.listed)(&all)));
         }
         let mut kinds: Vec<&str> = Vec::new();
         for cell in all.iter().flat_map(|component| &component.cells) {
@@ -125,10 +151,7 @@ impl PhysicalModel {
                 kinds.push(cell.kind.word());
             }
         }
-        Fault::new(message).help(format!(
-            "the surface of a cell is made of cells of type TRIANGLE or QUAD; the model has {}",
-            words::all_of(kinds)
-        ))
+        Fault::new(message).help(format!("{}; the model has {}", what.made_of, words::all_of(kinds)))
     }
 }
 
