@@ -4,7 +4,7 @@ use super::compile::Builder;
 use super::membrane::Membrane;
 use super::rigid::Rigid;
 use super::selection::Selection;
-use super::solid::Solid;
+use super::solid::{Neighbours, Solid};
 use super::viscosity::Viscosity;
 use super::volume::VolumeControl;
 use crate::geometry;
@@ -68,13 +68,16 @@ pub struct ShapeMemory {
     /// The atoms that remember; all when absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub only: Option<Selection>,
+    /// Who is whose neighbour in a filled body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub neighbours: Option<Neighbours>,
 }
 
 impl ShapeMemory {
     /// Shape memory of this modulus, with the exact reaction and in the triplet form.
     pub fn of_modulus(modulus: LineStiffness) -> Self {
         let strength = ShapeStrength::ShapeModulus(modulus);
-        Self { strength, reaction: Reaction::Exact, form: Form::Triplets, only: None }
+        Self { strength, reaction: Reaction::Exact, form: Form::Triplets, only: None, neighbours: None }
     }
 }
 
@@ -112,13 +115,16 @@ pub enum Form {
     Angles,
 }
 
-/// A spring on every edge of the mesh, at rest in the shape of the mesh.
+/// A spring on every edge of the mesh, or between all neighbours of a filled body, at rest in the shape of the mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Springs {
     /// Stiffness of each spring.
     #[schemars(extend("x-minimum" = 0))]
     pub stiffness: LineStiffness,
+    /// Which pairs of atoms of a filled body have one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub neighbours: Option<Neighbours>,
 }
 
 /// An energy that rises without bound before a facet collapses or an edge folds, and is zero in ordinary deformation.
@@ -166,7 +172,10 @@ impl Mechanics {
 impl ShapeMemory {
     fn add(&self, to: &mut Builder) {
         let rest = to.rest();
-        let mut rings: Vec<Vec<u32>> = to.topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
+        let mut rings = match to.pairs_of("mechanics.shape_memory.neighbours", self.neighbours) {
+            Some(pairs) => neighbours_of(rest.positions.len(), &pairs),
+            None => to.topology.rings.iter().map(|ring| ring.atoms.clone()).collect(),
+        };
         let stiffness = match self.strength {
             ShapeStrength::Stiffness(stiffness) => Some(stiffness.value()),
             ShapeStrength::ShapeModulus(modulus) => stiffness_of_modulus(rest, &rings, modulus.value()),
@@ -200,9 +209,22 @@ impl ShapeMemory {
 
 impl Springs {
     fn add(&self, to: &mut Builder) {
-        let springs = springs::Springs::on_edges(&to.rest().positions, &to.topology.edges, self.stiffness.value());
+        let pairs = to.pairs_of("mechanics.springs.neighbours", self.neighbours);
+        let edges = pairs.as_ref().unwrap_or(&to.topology.edges);
+        let springs = springs::Springs::on_edges(&to.rest().positions, edges, self.stiffness.value());
         to.forces.push(Force::Springs(springs));
     }
+}
+
+/// The neighbours of each of so many atoms, rising, from pairs.
+fn neighbours_of(atoms: usize, pairs: &[[u32; 2]]) -> Vec<Vec<u32>> {
+    let mut all = vec![Vec::new(); atoms];
+    for &[a, b] in pairs {
+        all[a as usize].push(b);
+        all[b as usize].push(a);
+    }
+    all.iter_mut().for_each(|own| own.sort_unstable());
+    all
 }
 
 /// The energy scale of the barrier where the document names none: this part of the elastic energy that moves an atom

@@ -88,7 +88,7 @@ pub use rigid::{Rigid, Trap};
 pub use scene::{Environment, Equilibrium, Integrator, Method, Output, Plane, Run};
 pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
-pub use solid::{Material, Solid, VolumeOver};
+pub use solid::{Material, Neighbours, Solid, VolumeOver};
 pub use viscosity::Viscosity;
 pub use volume::{VolumeControl, VolumeRule};
 

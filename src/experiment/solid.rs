@@ -1,6 +1,7 @@
 //! Filled bodies of an elastic material. What documents say of them, and the force that it means.
 
-use super::compile::Builder;
+use super::compile::{Builder, Inside};
+use crate::geometry::solid::pairs_within;
 use crate::mechanics::Force;
 use crate::mechanics::solid;
 use crate::mechanics::solid::dilation::{Dilation, DilationLaw, Parts};
@@ -59,6 +60,34 @@ pub enum VolumeOver {
     Cells,
     /// All tetrahedra around an atom.
     Atoms,
+}
+
+/// Who is whose neighbour in a filled body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum Neighbours {
+    /// Both ends of an edge of a cell: six around an atom of a lattice of hexahedra (von Neumann's).
+    #[default]
+    Edges,
+    /// All atoms of a cell: 26 around an atom of a lattice of hexahedra (Moore's).
+    Cells,
+    /// Both ends of an edge of a tetrahedron.
+    Tetrahedra,
+}
+
+impl Neighbours {
+    /// The pairs of neighbours in a body, smaller first, sorted.
+    pub(super) fn pairs(self, inside: &Inside) -> Vec<[u32; 2]> {
+        match self {
+            Self::Edges => inside.edges.clone(),
+            Self::Cells => pairs_within(&inside.tetrahedra, &inside.cells),
+            Self::Tetrahedra => {
+                let each: Vec<u32> = (0..=inside.tetrahedra.len() as u32).collect();
+                pairs_within(&inside.tetrahedra, &each)
+            }
+        }
+    }
 }
 
 impl Solid {

@@ -67,9 +67,13 @@ impl Kind {
         self.shears() && !self.is_told()
     }
 
-    /// Whether an elastic material fills its cells.
-    pub fn is_filled(&self) -> bool {
-        self.forces.iter().any(|force| matches!(force, Force::Solid(_)))
+    /// Whether its cells are filled: with an elastic material, or with atoms inside that springs hold.
+    fn is_filled(&self) -> bool {
+        let outer = self.rest.facets.iter().flatten().max().map_or(0, |last| *last as usize + 1);
+        let has_inside = outer > 0 && outer < self.atoms();
+        let fills =
+            |force: &Force| matches!(force, Force::Solid(_)) || has_inside && matches!(force, Force::Springs(_));
+        self.forces.iter().any(fills)
     }
 
     /// Whether a membrane resists shear.

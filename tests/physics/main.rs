@@ -38,6 +38,7 @@ mod receptors;
 mod rigid;
 mod sensing;
 mod soft_cells;
+mod solids;
 mod sphere;
 mod stability_limits;
 mod step;

@@ -6,6 +6,7 @@
 mod chemotactic_index;
 mod comparison;
 mod declared;
+mod displacement;
 mod distance;
 mod engulfment;
 mod field_value;
@@ -45,6 +46,7 @@ pub use crate::analysis::relaxation::Law as RecoveryLaw;
 pub use chemotactic_index::ChemotacticIndex;
 pub use comparison::Comparison;
 pub use declared::Declared;
+pub use displacement::{Displacement, DisplacementError, ErrorStatistic};
 pub use distance::Distance;
 pub use engulfment::{Engulfment, EngulfmentStatistic};
 pub use field_value::FieldValue;
@@ -156,6 +158,10 @@ pub enum MeasureKind {
     ChemotacticIndex(ChemotacticIndex),
     /// How far the centres of the cells of two types are apart, µm.
     Distance(Distance),
+    /// How far the atom that was nearest to a point has gone, µm.
+    Displacement(Displacement),
+    /// How far atoms are from where points were measured to go, over how far those went.
+    DisplacementError(DisplacementError),
     /// The mean time between upward crossings of the middle between the smallest and the largest value, s.
     Period(Period),
     /// How fast a wave leaves a point: the fit of a line to its times of arrival against distances, µm/s.
@@ -204,7 +210,7 @@ impl MeasureKind {
             Self::RecoveryTime(recovery) => recovery.series(),
             Self::WaveSpeed(wave) => wave.series(),
             Self::RunLengthP(_) | Self::FieldValue(_) | Self::Wavelength(_) | Self::Segregation(_) => Vec::new(),
-            Self::Engulfment(_) => Vec::new(),
+            Self::Engulfment(_) | Self::Displacement(_) | Self::DisplacementError(_) => Vec::new(),
             Self::Fronts(_) | Self::Gaps(_) | Self::Pseudopods(_) | Self::Traction(_) => Vec::new(),
         };
         names.into_iter().filter(|name| *name != "time").collect()
@@ -227,6 +233,8 @@ impl MeasureKind {
             Self::FieldValue(value) => value.check(at),
             Self::ChemotacticIndex(index) => index.check(at),
             Self::Distance(distance) => distance.check(at),
+            Self::Displacement(gone) => gone.check(at),
+            Self::DisplacementError(error) => error.check(at),
             Self::Period(period) => period.check(at),
             Self::RecoveryTime(recovery) => recovery.check(at),
             Self::WaveSpeed(wave) => wave.check(at),
@@ -268,6 +276,8 @@ impl MeasureKind {
             Self::FieldValue(value) => value.evaluate(run),
             Self::ChemotacticIndex(index) => index.evaluate(run.recording),
             Self::Distance(distance) => distance.evaluate(run.recording),
+            Self::Displacement(gone) => gone.evaluate(run),
+            Self::DisplacementError(error) => error.evaluate(run),
             Self::Period(period) => period.evaluate(run.recording),
             Self::RecoveryTime(recovery) => recovery.evaluate(run),
             Self::WaveSpeed(wave) => wave.evaluate(run),

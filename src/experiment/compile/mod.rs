@@ -24,7 +24,7 @@ mod spacing;
 mod start;
 mod steps;
 
-pub(super) use builder::Builder;
+pub(super) use builder::{Builder, Inside};
 pub use chemistry::load_profile;
 pub use notices::notices;
 pub(super) use numbers::{course, unit};

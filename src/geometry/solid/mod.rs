@@ -100,25 +100,27 @@ impl Solid {
         self.surface.facets.iter().flatten().max().map_or(0, |last| *last as usize + 1)
     }
 
-    /// All pairs of atoms of one cell, smaller first, sorted: Moore's neighbourhood where cells are hexahedra.
-    pub fn pairs_within_cells(&self) -> Vec<[u32; 2]> {
-        let of_cell = |range: &[u32]| {
-            let mut atoms: Vec<u32> = self.tetrahedra[range[0] as usize..range[1] as usize].concat();
-            atoms.sort_unstable();
-            atoms.dedup();
-            let with_later = |(k, &a): (usize, &u32)| atoms[k + 1..].iter().map(move |&b| [a, b]).collect::<Vec<_>>();
-            atoms.iter().enumerate().flat_map(with_later).collect::<Vec<_>>()
-        };
-        let mut pairs: Vec<[u32; 2]> = self.cells.windows(2).flat_map(of_cell).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        pairs
-    }
-
     /// Volumes of the tetrahedra, µm³.
     pub fn volumes(&self) -> impl Iterator<Item = f64> + '_ {
         self.tetrahedra.iter().map(|&atoms| tetrahedron_volume(atoms.map(|atom| self.surface.positions[atom as usize])))
     }
+}
+
+/// All pairs of atoms that a cell has, smaller first, sorted: Moore's neighbourhood where cells are hexahedra. Cell `k` has the tetrahedra from
+/// `cells[k]` to before `cells[k + 1]`.
+pub fn pairs_within(tetrahedra: &[[u32; 4]], cells: &[u32]) -> Vec<[u32; 2]> {
+    let mut pairs = Vec::new();
+    for range in cells.windows(2) {
+        let mut atoms = tetrahedra[range[0] as usize..range[1] as usize].concat();
+        atoms.sort_unstable();
+        atoms.dedup();
+        for (k, &a) in atoms.iter().enumerate() {
+            pairs.extend(atoms[k + 1..].iter().map(|&b| [a, b]));
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
 }
 
 /// The volume of a tetrahedron, µm³; negative where it is turned inside out.

@@ -61,26 +61,37 @@ struct Part {
 pub struct Dilation {
     law: DilationLaw,
     parts: Vec<Part>,
+    /// The parts that each tetrahedron belongs to.
+    parts_of: Vec<Vec<u32>>,
+    /// What of a tetrahedron counts in each of them.
+    share: f64,
 }
 
 impl Dilation {
     /// Over these parts of a body at rest (µm), of which cell `k` has the tetrahedra from `cells[k]` to before `cells[k + 1]`.
     pub fn new(rest: &[Vec3], tetrahedra: &[[u32; 4]], cells: &[u32], law: DilationLaw, parts: Parts) -> Self {
-        let (groups, share): (Vec<Vec<[u32; 4]>>, f64) = match parts {
-            Parts::Tetrahedra => (tetrahedra.iter().map(|atoms| vec![*atoms]).collect(), 1.0),
-            Parts::Cells => {
-                let of = |range: &[u32]| tetrahedra[range[0] as usize..range[1] as usize].to_vec();
-                (cells.windows(2).map(of).collect(), 1.0)
-            }
+        let numbers = 0..tetrahedra.len() as u32;
+        let groups: Vec<Vec<u32>> = match parts {
+            Parts::Tetrahedra => numbers.map(|number| vec![number]).collect(),
+            Parts::Cells => cells.windows(2).map(|range| (range[0]..range[1]).collect()).collect(),
             Parts::Atoms => {
-                let mut around: BTreeMap<u32, Vec<[u32; 4]>> = BTreeMap::new();
-                for atoms in tetrahedra {
-                    atoms.iter().for_each(|atom| around.entry(*atom).or_default().push(*atoms));
+                let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+                for (atoms, number) in tetrahedra.iter().zip(numbers) {
+                    atoms.iter().for_each(|atom| around.entry(*atom).or_default().push(number));
                 }
-                (around.into_values().collect(), 0.25)
+                around.into_values().collect()
             }
         };
-        Self { law, parts: groups.iter().map(|group| Part::new(rest, group, share)).collect() }
+        let share = if parts == Parts::Atoms { 0.25 } else { 1.0 };
+        let mut parts_of = vec![Vec::new(); tetrahedra.len()];
+        for (group, part) in groups.iter().zip(0..) {
+            group.iter().for_each(|number| parts_of[*number as usize].push(part));
+        }
+        let made = |group: &Vec<u32>| {
+            let own: Vec<[u32; 4]> = group.iter().map(|number| tetrahedra[*number as usize]).collect();
+            Part::new(rest, &own, share)
+        };
+        Self { law, parts: groups.iter().map(made).collect(), parts_of, share }
     }
 
     /// The law.
@@ -106,7 +117,8 @@ impl Dilation {
         energy
     }
 
-    /// Adds what of the second derivative is never negative: that of volumes along their gradients.
+    /// Adds what of the second derivative is never negative: that along the gradients of volumes. What is due to how these gradients turn is added
+    /// with what each tetrahedron has, see [`Dilation::slope_of`].
     #[inline(always)]
     pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
         for part in &self.parts {
@@ -119,6 +131,17 @@ impl Dilation {
                 }
             }
         }
+    }
+
+    /// The slope of the energy by the volume of a tetrahedron, Pa.
+    #[inline(always)]
+    pub fn slope_of<T: Real>(&self, tetrahedron: usize, x: &Vectors<T>) -> T {
+        let mut sum = T::constant(x.token, 0.0);
+        for &part in &self.parts_of[tetrahedron] {
+            let [_, slope, _] = self.law.at(self.parts[part as usize].dilation(x));
+            sum += slope;
+        }
+        sum * self.share
     }
 
     /// Adds nothing to each pair of atoms that a part joins, so that the matrix has room for them.

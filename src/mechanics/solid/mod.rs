@@ -84,13 +84,17 @@ impl Solid {
     /// Adds the tangent stiffness of each tetrahedron, without what is negative of it, and that of volumes, eq. (solids.7).
     #[inline(always)]
     pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
-        for element in &self.elements {
+        for (number, element) in self.elements.iter().enumerate() {
             let frame = match self.elastic.law {
                 // It knows no turns.
                 SolidLaw::Linear => Principal::of(x.token, identity(x.token)),
                 _ => Principal::of(x.token, element.deformation(x)),
             };
-            let bent = self.elastic.curvatures(x.token, frame.stretches).positive(x.token);
+            let mut bent = self.elastic.curvatures(x.token, frame.stretches);
+            if let Some(dilation) = self.dilation.as_ref().filter(|_| self.elastic.law != SolidLaw::Linear) {
+                bent = bent.with_volume(dilation.slope_of(number, x), frame.stretches);
+            }
+            let bent = bent.positive(x.token);
             for i in 0..4 {
                 let on_i = frame.part(x.token, element.gradients[i]);
                 for j in 0..=i {

@@ -145,6 +145,18 @@ pub struct Curvatures<T> {
 }
 
 impl<T: Real> Curvatures<T> {
+    /// With those of `slope` times the volume over that at rest, at these stretches.
+    #[inline(always)]
+    pub fn with_volume(mut self, slope: T, stretches: [T; 3]) -> Self {
+        for k in 0..3 {
+            let across = slope * stretches[k];
+            self.stretch[1][k] += across;
+            self.twist[k] += across;
+            self.flip[k] -= across;
+        }
+        self
+    }
+
     /// Without what is negative.
     #[inline(always)]
     pub fn positive(self, token: T::Token) -> Self {

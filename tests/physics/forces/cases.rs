@@ -21,6 +21,9 @@ use pseudopod::mechanics::moved::Translation;
 use pseudopod::mechanics::ordering::Ordering;
 use pseudopod::mechanics::pressure::{Beyond, Pressure};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
+use pseudopod::mechanics::solid::Solid;
+use pseudopod::mechanics::solid::dilation::{Dilation, DilationLaw, Parts};
+use pseudopod::mechanics::solid::law::{Elastic, SolidLaw};
 use pseudopod::mechanics::springs::{Spring, Springs};
 use pseudopod::mechanics::stiffness::StiffnessMatrix;
 use pseudopod::mechanics::sum::measure_forces;
@@ -49,7 +52,7 @@ pub struct Case {
 pub const EDGE: f64 = 1.75;
 
 /// How many forces there are.
-pub const FORCES: usize = 14;
+pub const FORCES: usize = 15;
 
 /// A number below [`FORCES`] for each force: one that is new must be named here, counted above and given a case below.
 pub fn number(force: &Force) -> usize {
@@ -68,6 +71,7 @@ pub fn number(force: &Force) -> usize {
         Force::Attraction(_) => 11,
         Force::Trap(_) => 12,
         Force::Pressure(_) => 13,
+        Force::Solid(_) => 14,
     }
 }
 
@@ -160,6 +164,36 @@ fn case(name: &'static str, force: Force) -> Case {
 }
 
 fn elastic() -> Vec<Case> {
+    on_surfaces().into_iter().chain(filled()).collect()
+}
+
+/// The cell filled by tetrahedra between its first atom and all facets that this is not on.
+fn filled() -> Vec<Case> {
+    let Surface { positions, facets } = cell();
+    let beyond = facets.iter().filter(|facet| !facet.contains(&0));
+    let tetrahedra: Vec<[u32; 4]> = beyond.map(|&[a, b, c]| [0, a, b, c]).collect();
+    // In cells of four.
+    let starts: Vec<u32> =
+        (0..=tetrahedra.len() as u32).filter(|start| start % 4 == 0).chain([tetrahedra.len() as u32]).collect();
+    let solid = |law, dilation: Option<(DilationLaw, Parts)>| {
+        let over = dilation.map(|(law, parts)| Dilation::new(&positions, &tetrahedra, &starts, law, parts));
+        Force::Solid(Solid::new(&positions, &tetrahedra, Elastic { law, shear: 1.4, lame: 2.1 }, over))
+    };
+    let bulk = |parts| Some((DilationLaw::Bulk(3.0), parts));
+    // It takes a turn for a strain.
+    let linear = Case { internal: false, turns_nothing: false, ..case("solid, linear", solid(SolidLaw::Linear, None)) };
+    let slight = |name, force| Case { shake: 0.03, ..case(name, force) };
+    vec![
+        linear,
+        slight("solid, corotational", solid(SolidLaw::Corotational, None)),
+        slight("solid, St Venant-Kirchhoff", solid(SolidLaw::StVenantKirchhoff, bulk(Parts::Cells))),
+        slight("solid, neo-Hookean", solid(SolidLaw::NeoHookean, bulk(Parts::Tetrahedra))),
+        slight("solid, volumes around atoms", solid(SolidLaw::NeoHookean, bulk(Parts::Atoms))),
+        slight("solid, penalty", solid(SolidLaw::Corotational, Some((DilationLaw::Penalty(30.0), Parts::Tetrahedra)))),
+    ]
+}
+
+fn on_surfaces() -> Vec<Case> {
     let Surface { positions, facets } = cell();
     let topology = Topology::of(&Surface { positions: positions.clone(), facets: facets.clone() });
     let rings: Vec<Vec<u32>> = topology.rings.iter().map(|ring| ring.atoms.clone()).collect();
