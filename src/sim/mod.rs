@@ -52,6 +52,7 @@ mod thread_buffers;
 mod traction;
 pub mod trouble;
 mod turning;
+mod upright;
 mod velocity;
 mod viscous;
 mod within;

@@ -16,6 +16,17 @@ pub enum Trouble {
         /// End of the step, s.
         time: f64,
     },
+    /// A tetrahedron of a filled body has no volume left, and its material has no energy there.
+    InsideOut {
+        /// Type of the cell.
+        kind: String,
+        /// Number of the cell within its type.
+        cell: usize,
+        /// Atoms of the tetrahedron.
+        atoms: [u32; 4],
+        /// End of the step, s.
+        time: f64,
+    },
     /// A volume could not be restored.
     Volume {
         /// Type of the cell.
@@ -104,6 +115,10 @@ impl Trouble {
                 "a step that is too large or a force that grows without bound does this: shorten run.integrator.step, \
                  or leave it out so that a stable step is chosen"
             }
+            Self::InsideOut { .. } => {
+                "the body is pressed further than its mesh can follow: load it less, mesh it finer there, take another law \
+                 (corotational bodies come back from inside out), or shorten run.integrator.step if you set one"
+            }
             Self::Volume { .. } => {
                 "the free atoms of the cell cannot hold its volume: fix fewer atoms, load it more slowly, shorten \
                  run.integrator.step if you set one, or use volume = { rule = \"compressible\", … }"
@@ -143,6 +158,10 @@ impl std::fmt::Display for Trouble {
                     "the position of atom {atom} of cell {cell} of type `{kind}` is not a number at t = {time:.6} s"
                 )
             }
+            Self::InsideOut { kind, cell, atoms, time } => write!(
+                f,
+                "the tetrahedron of atoms {atoms:?} of cell {cell} of type `{kind}` is turned inside out at t = {time:.6} s"
+            ),
             Self::Volume { kind, cell, error, time } => write!(
                 f,
                 "the volume of cell {cell} of type `{kind}` is {error:.1e} (relative) off its target at t = {time:.6} s"

@@ -62,6 +62,18 @@ impl Solid {
         self.elements.len()
     }
 
+    /// The atoms of the first tetrahedron without a positive volume at these positions (µm), for laws that have no energy there.
+    pub fn inside_out(&self, position: impl Fn(u32) -> Vec3) -> Option<[u32; 4]> {
+        if self.elastic.law != SolidLaw::NeoHookean {
+            return None;
+        }
+        let has_volume = |atoms: [u32; 4]| {
+            let [a, b, c, d] = atoms.map(&position);
+            (b - a).cross(&(c - a)).dot(&(d - a)) > 0.0
+        };
+        self.elements.iter().map(|element| element.atoms).find(|atoms| !has_volume(*atoms))
+    }
+
     /// Adds the force on every atom, eq. (solids.1), and returns the energy, pN·µm.
     #[inline(always)]
     pub fn add_forces<T: Real>(&self, x: &Vectors<T>, f: &mut VectorsMut<T>) -> T {
