@@ -22,6 +22,8 @@ pub struct Kind {
     pub name: String,
     /// The mesh at rest, around its own origin, µm.
     pub rest: Surface,
+    /// What fills it; nothing fills a surface.
+    pub tetrahedra: Vec<[u32; 4]>,
     /// Whether the surface encloses a volume.
     pub closed: bool,
     /// All forces on its atoms but those of motility, contacts and the rule of its volume, in the order in which they are added up.
@@ -103,6 +105,7 @@ impl Kind {
         let stiffness = stiffness(&forces, &rest.positions, &rest.positions);
         Self {
             name: name.to_owned(),
+            tetrahedra: Vec::new(),
             closed,
             largest_stiffness: stiffness.largest(),
             stiffness,

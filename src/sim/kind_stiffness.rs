@@ -54,7 +54,7 @@ impl Kind {
         let is_alone = touched && self.lanes == 1;
         let creeps = |least: f64| measure_softest_ratio(self, LARGEST_RATIO) <= least;
         if self.viscosity.is_some()
-            || self.is_filled()
+            || self.has_filling()
             || self.has_soft_shear()
             || is_alone && self.shears() && creeps(LEAST_TOLD_OF_TOUCHED)
         {
@@ -67,13 +67,10 @@ impl Kind {
         self.shears() && !self.is_told()
     }
 
-    /// Whether its cells are filled: with an elastic material, or with atoms inside that springs hold.
-    fn is_filled(&self) -> bool {
-        let outer = self.rest.facets.iter().flatten().max().map_or(0, |last| *last as usize + 1);
-        let has_inside = outer > 0 && outer < self.atoms();
-        let fills =
-            |force: &Force| matches!(force, Force::Solid(_)) || has_inside && matches!(force, Force::Springs(_));
-        self.forces.iter().any(fills)
+    /// Whether springs or an elastic material fill its cells, whose true stiffness is known.
+    fn has_filling(&self) -> bool {
+        let fills = |force: &Force| matches!(force, Force::Solid(_) | Force::Springs(_));
+        !self.tetrahedra.is_empty() && self.forces.iter().any(fills)
     }
 
     /// Whether a membrane resists shear.

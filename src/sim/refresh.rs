@@ -75,14 +75,15 @@ fn cover_stiffening(model: &Model, from: &State, ws: &mut Workspace) {
 fn has_turned(kind: &Kind, now: &KindState) -> bool {
     let shape = &now.stiffness_shape;
     let then = |atom: u32| Vec3::from_column_slice(&shape[3 * atom as usize..3 * atom as usize + 3]);
-    shape.is_empty()
-        || kind.rest.facets.iter().any(|&[a, b, c]| {
-            [(a, b), (b, c), (c, a)].into_iter().any(|(i, j)| {
-                let before = then(j) - then(i);
-                let edge = now.position(kind, 0, j as usize) - now.position(kind, 0, i as usize);
-                (edge - before).norm_squared() > TURN * TURN * before.norm_squared()
-            })
-        })
+    let has_turned = |(i, j): (u32, u32)| {
+        let before = then(j) - then(i);
+        let edge = now.position(kind, 0, j as usize) - now.position(kind, 0, i as usize);
+        (edge - before).norm_squared() > TURN * TURN * before.norm_squared()
+    };
+    let of_facet = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)].into_iter().any(has_turned);
+    let inside =
+        |&[a, b, c, d]: &[u32; 4]| [(a, b), (a, c), (a, d), (b, c), (b, d), (c, d)].into_iter().any(has_turned);
+    shape.is_empty() || kind.rest.facets.iter().any(of_facet) || kind.tetrahedra.iter().any(inside)
 }
 
 /// Whether an edge of a single cell has another length than in the shape that K was made for (the rest shape, if none).

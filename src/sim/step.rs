@@ -27,7 +27,7 @@ use super::rest::note_balance;
 use super::state::State;
 use super::traction::{begin_tractions, keep_tractions};
 use super::trouble::Trouble;
-use super::upright::check_upright;
+use super::upright::{change_of_volumes, check_upright};
 use super::velocity::measure_velocities;
 use super::workspace::Workspace;
 
@@ -116,7 +116,7 @@ fn attempt(model: &Model, plan: &Plan, from: &State, to: &mut State, ws: &mut Wo
     correct_velocities(model, dt, to, ws);
     check_finite(model, end, to)?;
     check_upright(model, end, to)?;
-    let error = error.max(turn_over_bonds(model, dt, from, to, ws));
+    let error = error.max(turn_over_bonds(model, dt, from, to, ws)).max(change_of_volumes(model, from, to));
     Ok(Estimate { error, travel: travel(model, from, to, ws) })
 }
 

@@ -178,6 +178,7 @@ fn compile_kind(
     forces.extend(from_file.loads.into_iter().map(Force::Load));
     let atoms = surface.turned.positions.len() as f64;
     let mut kind = Kind::new(name, surface.turned, forces);
+    kind.tetrahedra = surface.inside.map_or(Vec::new(), |inside| inside.tetrahedra);
     kind.drawn_links = drawn;
     kind.drag = cell.mechanics.drag.map_or(0.0, |drag| drag.value()) / atoms;
     kind.mass = cell.mechanics.mass.map_or(0.0, |mass| mass.value()) / atoms;
