@@ -42,6 +42,7 @@ pub(super) fn check(document: &Document) -> (Vec<Fault>, Vec<Late>) {
         check.moved_by_scheme(&path, cell);
         check.rigid(&path, cell);
         check.viscosity(&path, cell);
+        check.filling(&path, cell);
         if let Some(turn) = &cell.orientation {
             check.direction(&format!("{path}.orientation.axis"), turn.axis);
         }

@@ -41,6 +41,7 @@ mod rest;
 mod rigid;
 mod scheme;
 pub mod seeding;
+mod settle;
 mod skeleton;
 mod softest;
 mod solver;

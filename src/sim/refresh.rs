@@ -36,8 +36,9 @@ fn refresh_stiffness(model: &Model, from: &State, to: &mut State, ws: &mut Works
     let cells = from.kinds.iter().zip(&mut to.kinds);
     for ((kind, (now, next)), w) in model.kinds.iter().zip(cells).zip(&mut ws.kinds) {
         let is_due = if kind.tangent.is_some() { has_turned } else { has_changed };
-        // The factor that is kept is that of a block of one lane. What is viscous is so in the shape where a step begins.
-        let is_kept = kind.lanes == 1 && kind.viscosity.is_none();
+        // The factor that is kept is that of a block of one lane. What is viscous is so in the shape where a step begins, and a slender body is so
+        // much stiffer along itself than across that none may have turned.
+        let is_kept = kind.lanes == 1 && kind.viscosity.is_none() && kind.tetrahedra.is_empty();
         let is_alone = now.cells() == 1 && (kind.tangent.is_none() || is_kept);
         if !is_alone {
             next.stiffness_shape.clear();

@@ -121,6 +121,14 @@ impl Step<'_> {
             block.go_on(stage, y, first);
             if let (Stage::Second, Some(kept)) = (stage, &mut block.second) {
                 kept.copy_from_slice(y);
+            } else if stage == Stage::Second && self.settles(block) {
+                let solved = (system, turning.rows());
+                error = self.settle(
+                    block,
+                    solved,
+                    (&*gradient, &*swell),
+                    [&mut *y, &mut *first, &mut *spare, &mut *spare2],
+                );
             } else if stage == Stage::Second && self.asks_for_error() {
                 first.iter_mut().zip(&*y).for_each(|(first, y)| *first = 0.5 * (*first + y));
                 system.filter(kind, (block.start, turning.rows()), first, spare, spare2);

@@ -73,7 +73,10 @@ pub fn solid(
     let chosen = read.document.solid(&file, wanted(component)).map_err(Error::input)?;
     let unit = unit_of(&read.document, unit, &file)?;
     let positions: Vec<Vec3> = chosen.positions.iter().map(|position| position * unit.micrometres()).collect();
-    let told = |fault: SolidFault| Fault::new(format!("the body in PML file `{file}`: {fault}")).help(fault.help());
+    let told = |fault: SolidFault| {
+        let fault = fault.renumbered(|atom| chosen.indices[atom as usize]);
+        Fault::new(format!("the body in PML file `{file}`: {fault}")).help(fault.help())
+    };
     let (solid, numbers) = Solid::of_cells(&positions, &chosen.cells)
         .map_err(|faults| Error::Input(faults.into_iter().map(told).collect()))?;
     let mut around = solid.surface.clone();

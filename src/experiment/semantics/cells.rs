@@ -55,6 +55,34 @@ impl Check<'_> {
         }
     }
 
+    /// What must hold of bodies that are filled, and of what fills them.
+    pub(super) fn filling(&mut self, path: &str, cell: &CellType) {
+        let (mechanics, key) = (&cell.mechanics, format!("{path}.mechanics.solid"));
+        let holds = mechanics.solid.is_some() || mechanics.springs.is_some() || mechanics.shape_memory.is_some();
+        if cell.mesh.is_filled() && !holds && mechanics.rigid.is_none() {
+            let message = format!("nothing holds the atoms inside `{path}`");
+            let help = "give its mechanics a `solid`, `springs` or `shape_memory`, or make it `rigid`";
+            self.fault(&format!("{path}.mesh"), "has atoms inside", message, help);
+        }
+        let Some(solid) = &mechanics.solid else { return };
+        let model = self.document.experiment.contact.as_ref().map(|contact| contact.model);
+        if let Some(ContactModel::VirtualAdhesives | ContactModel::Penalty) = model {
+            let message = format!("`{key}`: this model of contacts moves atoms by their drag alone");
+            let help = "use another model of contacts, such as model = \"cohesion\"";
+            self.fault("contact.model", "knows no filled bodies", message, help);
+        }
+        if solid.poisson.is_none() && solid.volume_over.is_some() {
+            let message = format!("`{key}.volume_over` has no meaning where the material has no Poisson's ratio");
+            let help = "add `poisson`, below 0.5, or remove it: then the volume of the whole is kept exactly";
+            self.fault(&format!("{key}.volume_over"), "not used", message, help);
+        }
+        if solid.poisson.is_none() && mechanics.volume.rule == Some(VolumeRule::Free) {
+            let message = format!("nothing resists changes of the volume of `{path}`");
+            let help = "add `poisson` to the solid, or remove the rule: then the volume of the whole is kept exactly";
+            self.fault(&format!("{path}.mechanics.volume.rule"), "nor does the material", message, help);
+        }
+    }
+
     pub(super) fn placements(&mut self, path: &str, cell: &CellType) {
         let placement = format!("{path}.placement");
         if cell.count() > 0 || cell.added.is_empty() {

@@ -90,6 +90,19 @@ impl fmt::Display for SolidFault {
 }
 
 impl SolidFault {
+    /// The same of atoms that have other numbers where the body comes from.
+    pub fn renumbered(self, number: impl Fn(u32) -> u32) -> Self {
+        match self {
+            Self::Empty => Self::Empty,
+            Self::AtomOutOfRange { cell, atom, count } => Self::AtomOutOfRange { cell, atom, count },
+            Self::RepeatedAtom { cell, atom } => Self::RepeatedAtom { cell, atom: number(atom) },
+            Self::Inverted { cell, atoms } => Self::Inverted { cell, atoms: atoms.map(number) },
+            Self::Flat { cell, atoms, quality } => Self::Flat { cell, atoms: atoms.map(number), quality },
+            Self::CrowdedFace { face, count } => Self::CrowdedFace { face: face.map(number), count },
+            Self::Pieces { count, atoms } => Self::Pieces { count, atoms: atoms.into_iter().map(number).collect() },
+        }
+    }
+
     /// What to do about it.
     pub fn help(&self) -> &'static str {
         match self {

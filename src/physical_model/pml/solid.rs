@@ -25,7 +25,10 @@ const FILLING: Sought = Sought {
         let count = |component: &StructuralComponent| component.cells.iter().filter_map(filling).count();
         let named = all.iter().filter(|component| count(component) > 0).map(|component| {
             let name = component.name.as_deref().map_or("(no name)".to_owned(), |name| format!("`{}`", name.trim()));
-            format!("{name} ({} cells)", count(component))
+            match count(component) {
+                1 => format!("{name} (1 cell)"),
+                count => format!("{name} ({count} cells)"),
+            }
         });
         named.collect::<Vec<_>>().join(", ")
     },
