@@ -105,7 +105,7 @@ impl Kind {
         let stiffness = stiffness(&forces, &rest.positions, &rest.positions);
         Self {
             name: name.to_owned(),
-            tetrahedra: Vec::new(),
+            tetrahedra: forces.iter().find_map(filling).unwrap_or_default(),
             closed,
             largest_stiffness: stiffness.largest(),
             stiffness,
@@ -261,6 +261,14 @@ impl Kind {
     /// Whether any atom is held.
     pub fn is_held(&self) -> bool {
         !self.held.is_empty()
+    }
+}
+
+/// The tetrahedra of an elastic material that fills a body.
+fn filling(force: &Force) -> Option<Vec<[u32; 4]>> {
+    match force {
+        Force::Solid(solid) => Some(solid.tetrahedra().collect()),
+        _ => None,
     }
 }
 

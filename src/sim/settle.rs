@@ -1,4 +1,4 @@
-//! What forces are still out of balance where a step of a filled body ends, and how its stiff shapes settle by that, eqs. (solids.8) and (solids.9).
+//! What forces are still out of balance where a step of a filled body ends, and how it settles by that, eq. (solids.8).
 
 use super::kind::VolumeRule;
 use super::pressure::constrain;
@@ -19,33 +19,27 @@ impl Step<'_> {
         is_filled && block.second.is_none() && self.model.planes.is_empty()
     }
 
-    /// Lets a block settle, and returns the error of the step, µm: that of what drag lets go, eq. (solids.8), and a tenth of what was left of stiff
-    /// shapes.
+    /// Lets a block settle, and returns the error of the step, µm: that of the scheme as it is filtered, and a tenth of what was left of stiff
+    /// shapes. `second` holds the increments of the second stage and `first` those of the first; both are overwritten.
     pub(super) fn settle(
         &self,
         block: &mut Block,
         (system, turning): (&System, &[f64]),
         (gradient, swell): (&[f64], &[f64]),
-        [y, slow, spare, spare2]: [&mut [f64]; 4],
+        [second, first, spare, spare2]: [&mut [f64]; 4],
     ) -> f64 {
         let (kind, lanes) = (self.kind, self.kind.lanes);
-        let mut energy = [0.0; LANES];
-        self.forces.on_block(
-            block.number,
-            self.start + self.dt,
-            (&*block.x, block.rest),
-            (&mut *y, &mut energy[..lanes]),
-            spare,
-        );
+        let (estimate, y) = (first, second);
+        estimate.iter_mut().zip(&*y).for_each(|(first, second)| *first = 0.5 * (*first + second));
+        let (time, mut energy) = (self.start + self.dt, [0.0; LANES]);
+        self.forces.on_block(block.number, time, (&*block.x, block.rest), (&mut *y, &mut energy[..lanes]), spare);
         let rate = 1.0 / system.mobility();
-        let moved = block.x.iter().zip(block.start);
-        y.iter_mut().zip(moved).for_each(|(y, (x, start))| *y -= rate * (x - start));
+        let moved = block.x.iter().zip(block.start).zip(&*estimate);
+        y.iter_mut().zip(moved).for_each(|(y, ((x, start), half))| *y -= rate * (x - start - half));
         self.give_way(block, (system, turning), (gradient, swell), y, [&mut *spare, &mut *spare2]);
-        slow.iter_mut().zip(&*y).for_each(|(slow, y)| *slow = rate * y);
-        self.give_way(block, (system, turning), (gradient, swell), slow, [&mut *spare, &mut *spare2]);
-        y.iter_mut().zip(&*slow).for_each(|(y, slow)| *y -= slow);
         block.x.iter_mut().zip(&*y).for_each(|(x, y)| *x += y);
-        larger(root_mean_square(kind, slow), LEFT * root_mean_square(kind, y))
+        system.filter(kind, (block.start, turning), estimate, spare, spare2);
+        larger(root_mean_square(kind, estimate), LEFT * root_mean_square(kind, y))
     }
 
     /// Turns forces into the displacement that they cause, in place, with volumes kept where they are kept exactly.

@@ -57,9 +57,9 @@ impl Solid {
         self.elastic
     }
 
-    /// How many tetrahedra there are.
-    pub fn tetrahedra(&self) -> usize {
-        self.elements.len()
+    /// The atoms of its tetrahedra.
+    pub fn tetrahedra(&self) -> impl Iterator<Item = [u32; 4]> + '_ {
+        self.elements.iter().map(|element| element.atoms)
     }
 
     /// The atoms of the first tetrahedron without a positive volume at these positions (µm), for laws that have no energy there.
