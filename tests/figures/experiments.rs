@@ -25,15 +25,19 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 8] = [
+const SHOWN: [(&str, &str, &str); 12] = [
+    ("bending_volume/linear.toml", "result.png", "bending_volume.png"),
+    ("cantilever/experiment.toml", "result.deflection.png", "cantilever.png"),
     ("chemotaxis/experiment.toml", "result.png", "chemotaxis.png"),
     ("chemotaxis/experiment.toml", "result.tracks.png", "chemotaxis_tracks.png"),
+    ("cylinder/experiment.toml", "result.force.png", "cylinder.png"),
     ("optical_tweezers/red_cell.toml", "result.png", "red_cell.png"),
     ("optical_tweezers/red_cell.toml", "result.force_diameter.png", "force_diameter.png"),
     ("optical_stretcher/experiment.toml", "result.length.png", "optical_stretcher.png"),
     ("persistent_migration/experiment.toml", "result.persistence.png", "persistent_migration.png"),
     ("red_cell_recovery/experiment.toml", "result.recovery.png", "red_cell_recovery.png"),
     ("sphere_under_gravity/experiment.toml", "result.png", "spheres.png"),
+    ("truth_cube/experiment.toml", "result.png", "truth_cube.png"),
 ];
 
 /// How far the colours of two pictures of one size are apart, in levels of 255; round-off may move an edge by a pixel here and there.
@@ -225,6 +229,28 @@ fn a_ball_rolls_down_a_plane_as_fast_as_drag_allows() {
 #[test]
 fn a_squeezed_drop_takes_its_exact_shape() {
     experiment_keeps_its_word("squeezed_drop", "experiment.toml");
+}
+
+#[test]
+fn a_beam_follows_the_elastica_as_far_as_its_mesh_lets_it() {
+    experiment_keeps_its_word("cantilever", "experiment.toml");
+}
+
+#[test]
+fn a_rod_of_rubber_has_its_exact_force_and_width() {
+    experiment_keeps_its_word("cylinder", "experiment.toml");
+}
+
+#[test]
+fn a_cube_of_rubber_bulges_as_one_of_a_finer_mesh() {
+    experiment_keeps_its_word("truth_cube", "experiment.toml");
+}
+
+#[test]
+fn materials_change_the_volume_of_a_bent_rod_in_the_order_of_the_documents() {
+    for document in ["linear.toml", "experiment.toml", "penalty.toml", "neo_hookean.toml"] {
+        experiment_keeps_its_word("bending_volume", document);
+    }
 }
 
 #[test]

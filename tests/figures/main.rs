@@ -8,3 +8,4 @@ mod index_table;
 #[path = "../support/shared.rs"]
 mod shared;
 mod sorting_statistics;
+mod truth_cube;
