@@ -167,14 +167,14 @@ impl Force {
         }
     }
 
-    /// Adds its tangent stiffness for the cells at `x`, pN/µm, if it has one.
+    /// Adds its tangent stiffness for the cells at `x`, pN/µm, if it has one; of a filled body the `whole` of it, or what is positive.
     #[inline(always)]
-    fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
+    fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>, whole: bool) {
         match self {
             Self::Membrane(force) => force.add_tangent(x, blocks),
             Self::Bending(force) => force.add_tangent(x, blocks),
             Self::Springs(force) => force.add_tangent(x, blocks),
-            Self::Solid(force) => force.add_tangent(x, blocks),
+            Self::Solid(force) => force.add_tangent(x, blocks, whole),
             Self::Tension(force) if force.has_tangent() => force.add_tangent(x, blocks),
             _ => {}
         }

@@ -93,9 +93,9 @@ impl Solid {
         energy
     }
 
-    /// Adds the tangent stiffness of each tetrahedron, without what is negative of it, and that of volumes, eq. (solids.7).
+    /// Adds the tangent stiffness of each tetrahedron, the `whole` of it or without what is negative, and that of volumes, eq. (solids.7).
     #[inline(always)]
-    pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>) {
+    pub fn add_tangent<T: Real>(&self, x: &Vectors<T>, blocks: &mut Blocks<T>, whole: bool) {
         for (number, element) in self.elements.iter().enumerate() {
             let frame = match self.elastic.law {
                 // It knows no turns.
@@ -106,7 +106,7 @@ impl Solid {
             if let Some(dilation) = self.dilation.as_ref().filter(|_| self.elastic.law != SolidLaw::Linear) {
                 bent = bent.with_volume(dilation.slope_of(number, x), frame.stretches);
             }
-            let bent = bent.positive(x.token);
+            let bent = if whole { bent } else { bent.positive(x.token) };
             for i in 0..4 {
                 let on_i = frame.part(x.token, element.gradients[i]);
                 for j in 0..=i {

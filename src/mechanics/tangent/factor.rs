@@ -7,12 +7,16 @@ use crate::mechanics::lanes::{Real, V3, VectorsMut};
 /// The least that a pivot may be, over the diagonal that it began with: a matrix that is not positive by round-off alone has one below.
 const LEAST_PIVOT: f64 = 1e-12;
 
-/// Replaces a positive matrix by its factor L, A = L Lᵀ. Diagonals of L are kept as their inverse.
+/// Replaces a positive matrix by its factor L, A = L Lᵀ. Diagonals of L are kept as their inverse. Returns whether it was positive in all lanes; if not, there is no
+/// factor.
 #[inline(always)]
-pub fn factor<T: Real>(pattern: &Pattern, blocks: &mut Blocks<T>) {
+pub fn factor<T: Real>(pattern: &Pattern, blocks: &mut Blocks<T>) -> bool {
+    let mut is_positive = true;
     let mut targets = pattern.targets().iter();
     for column in pattern.columns() {
-        let diagonal = root(blocks.token, blocks.get(column.atom));
+        let own = blocks.get(column.atom);
+        let diagonal = root(blocks.token, own);
+        is_positive &= !own[0].x.any_less(0.0) && !sank(own[1].y, diagonal[1].y) && !sank(own[2].z, diagonal[2].z);
         blocks.set(column.atom, diagonal);
         for k in 0..column.rows.len() {
             let [a, b, c] = blocks.get(column.first + k);
@@ -30,6 +34,13 @@ pub fn factor<T: Real>(pattern: &Pattern, blocks: &mut Blocks<T>) {
             }
         }
     }
+    is_positive
+}
+
+/// Whether a pivot that began as this came to the least that it may be, from one over its root.
+#[inline(always)]
+fn sank<T: Real>(began: T, inverse: T) -> bool {
+    began.any_less(0.0) || (-(began * inverse * inverse) + 0.5 / LEAST_PIVOT).any_less(0.0)
 }
 
 /// Solves A Y = F in place with the factor.

@@ -73,7 +73,12 @@ impl Tangent {
 
     /// Makes and factors `diagonal + γ·stiffness` for a block of `lanes` cells at `x` (µm).
     pub fn factor(&self, forces: &[Force], lanes: usize, x: &[f64], scales: Scales, values: &mut [f64]) {
-        dispatch(lanes, Make { tangent: self, forces, x, scales, values, is_factored: true });
+        // Of a filled body all that bends counts, where that is positive: the positive part takes a bent beam for several times as stiff.
+        let whole = forces.iter().any(|force| matches!(force, Force::Solid(_)));
+        let positive = dispatch(lanes, Make { tangent: self, forces, x, scales, values, is_factored: true, whole });
+        if whole && !positive {
+            dispatch(lanes, Make { tangent: self, forces, x, scales, values, is_factored: true, whole: false });
+        }
     }
 
     /// Solves in place for a block of `lanes` cells with its factor.
@@ -114,13 +119,17 @@ struct Make<'a> {
     scales: Scales<'a>,
     values: &'a mut [f64],
     is_factored: bool,
+    /// Whether what is negative of the stiffness of filled bodies counts.
+    whole: bool,
 }
 
 impl BlockWork for Make<'_> {
-    type Output = ();
+    /// Whether the matrix could be factored, where it was to be.
+    type Output = bool;
     #[inline(always)]
-    fn run<T: Real>(self, token: T::Token, stride: usize) {
-        let Self { tangent: Tangent { pattern, constant }, forces, x, scales, values, is_factored } = self;
+    fn run<T: Real>(self, token: T::Token, stride: usize) -> bool {
+        let Self { tangent: Tangent { pattern, constant }, forces, x, scales, values, is_factored, whole } = self;
+        let mut is_positive = true;
         let (x, values) = (T::view(token, x), T::view_mut(token, values));
         let mut elastic = [1.0; LANES];
         elastic.iter_mut().zip(scales.elastic).for_each(|(slot, factor)| *slot = *factor);
@@ -131,7 +140,7 @@ impl BlockWork for Make<'_> {
             // What is done in a closure is not compiled for wide registers.
             for force in forces {
                 if force.is_elastic() {
-                    force.add_tangent(&x, &mut blocks);
+                    force.add_tangent(&x, &mut blocks, whole);
                 }
             }
             for &(i, j, value) in &constant[0] {
@@ -152,9 +161,10 @@ impl BlockWork for Make<'_> {
                 if !scales.held.is_empty() {
                     blocks.hold(scales.held);
                 }
-                factor::factor(pattern, &mut blocks);
+                is_positive &= factor::factor(pattern, &mut blocks);
             }
         }
+        is_positive
     }
 }
 

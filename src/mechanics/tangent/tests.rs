@@ -13,7 +13,7 @@ fn whole(forces: &[Force], rest: &[Vec3], x: &[f64]) -> nalgebra::DMatrix<f64> {
     let tangent = Tangent::new(forces, None, rest);
     let mut values = vec![0.0; tangent.len(1)];
     let scales = Scales { diagonal: 0.0, gamma: 1.0, elastic: &[], held: &[], viscous: None };
-    dispatch(1, Make { tangent: &tangent, forces, x, scales, values: &mut values, is_factored: false });
+    dispatch(1, Make { tangent: &tangent, forces, x, scales, values: &mut values, is_factored: false, whole: true });
     let size = x.len();
     let mut matrix = nalgebra::DMatrix::zeros(size, size);
     for i in 0..rest.len() {
@@ -194,4 +194,35 @@ fn its_factor_solves_with_atoms_that_are_held_and_in_every_lane() {
         right -= &matrix * &found;
         assert!(right.amax() < 1e-9, "{lane}: {}", right.amax());
     }
+}
+
+/// A block that is pressed beyond what it bears upright has no factor of its whole stiffness, and takes that of the positive part.
+#[test]
+fn a_stiffness_that_is_not_positive_is_told_and_replaced() {
+    use crate::geometry::solid::block;
+    use crate::mechanics::solid::Solid;
+    use crate::mechanics::solid::law::{Elastic, SolidLaw};
+    let body = block([1.0, 1.0, 4.0], [1, 1, 4]);
+    let rest = &body.surface.positions;
+    let elastic = Elastic { law: SolidLaw::Corotational, shear: 1.0, lame: 0.5 };
+    let forces = [Force::Solid(Solid::new(rest, &body.tetrahedra, elastic, None))];
+    let tangent = Tangent::new(&forces, None, rest);
+    let at = |by: f64| flat(&rest.iter().map(|p| Vec3::new(p.x, p.y, by * p.z)).collect::<Vec<_>>());
+    let made = |x: &[f64], whole: bool| {
+        let mut values = vec![0.0; tangent.len(1)];
+        let scales = Scales { diagonal: 0.05, gamma: 1.0, elastic: &[], held: &[], viscous: None };
+        let work =
+            Make { tangent: &tangent, forces: &forces, x, scales, values: &mut values, is_factored: true, whole };
+        (dispatch(1, work), values)
+    };
+    assert!(made(&at(1.1), true).0, "drawn out it is stable");
+    let pressed = at(0.5);
+    assert!(!made(&pressed, true).0 && made(&pressed, false).0);
+    let mut values = vec![0.0; tangent.len(1)];
+    let scales = Scales { diagonal: 0.05, gamma: 1.0, elastic: &[], held: &[], viscous: None };
+    tangent.factor(&forces, 1, &pressed, scales, &mut values);
+    assert_eq!(values, made(&pressed, false).1);
+    // What is not clipped is the true stiffness.
+    let (found, expected) = (whole(&forces, rest, &at(0.9)), by_differences(&forces, &at(0.9)));
+    assert!((&found - &expected).amax() < 1e-6 * expected.amax(), "off by {}", (&found - &expected).amax());
 }
