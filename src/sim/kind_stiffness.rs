@@ -44,6 +44,12 @@ impl Kind {
 
     /// Sets the stiffness K of the implicit step to the one that fits the rest shape; see [`Kind::stiffness_at`].
     pub fn bound_stiffness(&mut self) {
+        // Bodies of an elastic material have their own, and it takes long to find out how a constant one of so many atoms stands to it.
+        if self.forces.iter().any(|force| matches!(force, Force::Solid(_))) {
+            self.stiffness = stiffness(&self.forces, &self.rest.positions, &self.rest.positions);
+            self.softest_ratio = 0.0;
+            return;
+        }
         self.stiffness = self.stiffness_at(&self.rest.positions);
         self.softest_ratio = self.usual_softest_ratio();
     }

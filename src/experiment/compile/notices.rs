@@ -133,7 +133,8 @@ pub(super) fn unit_advice(unit: LengthUnit, width: f64) -> String {
 fn unusual_width(document: &Document, kind: &Kind) -> Option<String> {
     let (low, high) = bounding_box(&kind.rest.positions)?;
     let width = (high - low).max();
-    if WIDTHS.contains(&width) {
+    // A gel or a block of tissue may be as large as it likes.
+    if WIDTHS.contains(&width) || !kind.tetrahedra.is_empty() {
         return None;
     }
     let advice = match &document.experiment.cells.get(&kind.name)?.mesh {
