@@ -172,7 +172,7 @@ impl Mechanics {
 impl ShapeMemory {
     fn add(&self, to: &mut Builder) {
         let rest = to.rest();
-        let mut rings = match to.pairs_of("mechanics.shape_memory.neighbours", self.neighbours) {
+        let mut rings = match Neighbours::pairs_of(self.neighbours, "mechanics.shape_memory.neighbours", to) {
             Some(pairs) => neighbours_of(rest.positions.len(), &pairs),
             None => to.topology.rings.iter().map(|ring| ring.atoms.clone()).collect(),
         };
@@ -209,7 +209,7 @@ impl ShapeMemory {
 
 impl Springs {
     fn add(&self, to: &mut Builder) {
-        let pairs = to.pairs_of("mechanics.springs.neighbours", self.neighbours);
+        let pairs = Neighbours::pairs_of(self.neighbours, "mechanics.springs.neighbours", to);
         let edges = pairs.as_ref().unwrap_or(&to.topology.edges);
         let springs = springs::Springs::on_edges(&to.rest().positions, edges, self.stiffness.value());
         to.forces.push(Force::Springs(springs));

@@ -77,8 +77,20 @@ pub enum Neighbours {
 }
 
 impl Neighbours {
+    /// The pairs of neighbours in the body of a type, as the document says at a key, or else as they are as a rule; none for a surface, where the key
+    /// has no meaning.
+    pub(super) fn pairs_of(own: Option<Self>, path: &str, to: &mut Builder) -> Option<Vec<[u32; 2]>> {
+        let inside = to.inside();
+        if own.is_some() && inside.is_none() {
+            let found = "on a surface neighbours are those at the ends of an edge";
+            let help = "remove `neighbours`, or take a filled mesh: shape = \"block\" or \"rod\", or a PML file with `filled = true`";
+            to.fault(path, "not of a filled body", found, help);
+        }
+        inside.map(|inside| own.unwrap_or_default().pairs(inside))
+    }
+
     /// The pairs of neighbours in a body, smaller first, sorted.
-    pub(super) fn pairs(self, inside: &Inside) -> Vec<[u32; 2]> {
+    fn pairs(self, inside: &Inside) -> Vec<[u32; 2]> {
         match self {
             Self::Edges => inside.edges.clone(),
             Self::Cells => pairs_within(&inside.tetrahedra, &inside.cells),

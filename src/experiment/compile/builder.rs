@@ -2,7 +2,6 @@
 
 use super::super::Document;
 use super::super::selection::{LinkPattern, Linked, Selection};
-use super::super::solid::Neighbours;
 use super::model::FromModel;
 use super::select::{self, mirrored};
 use crate::Vec3;
@@ -69,18 +68,6 @@ impl<'a> Builder<'a> {
     /// What fills the body, if anything does.
     pub fn inside(&self) -> Option<&'a Inside> {
         self.built.inside.as_ref()
-    }
-
-    /// The pairs of neighbours in a filled body, as the document says at a key, or else as they are as a rule; none for a surface, where the key
-    /// has no meaning.
-    pub fn pairs_of(&mut self, path: &str, neighbours: Option<Neighbours>) -> Option<Vec<[u32; 2]>> {
-        let inside = self.inside();
-        if neighbours.is_some() && inside.is_none() {
-            let found = "on a surface neighbours are those at the ends of an edge";
-            let help = "remove `neighbours`, or take a filled mesh: shape = \"block\" or \"rod\", or a PML file with `filled = true`";
-            self.fault(path, "not of a filled body", found, help);
-        }
-        inside.map(|inside| neighbours.unwrap_or_default().pairs(inside))
     }
 
     /// Tells a fault at a key of the type.

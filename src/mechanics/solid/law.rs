@@ -8,13 +8,13 @@ use crate::elementary::{exp, ln};
 /// the neo-Hookean one, which resists shear alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SolidLaw {
-    /// Linear in displacements: `W = λ/2 tr²E + µ E:E` with E the symmetric part of F − I. It takes a turn for a strain.
+    /// Linear in displacements, eq. (solids.2): `W = λ/2 tr²E + µ E:E` with E the symmetric part of F − I. It takes a turn for a strain.
     Linear,
-    /// Linear in the strain that is left once the rotation R of F = R U is taken out.
+    /// Linear in the strain that is left once the rotation R of F = R U is taken out, eq. (solids.3).
     Corotational,
-    /// St Venant and Kirchhoff: the same W with Green's strain ½ (FᵀF − I). It gives way when compressed far.
+    /// St Venant and Kirchhoff, eq. (solids.4): the same W with Green's strain ½ (FᵀF − I). It gives way when compressed far.
     StVenantKirchhoff,
-    /// Neo-Hookean, of the shape alone: `W = µ/2 (J^(−2/3) tr FᵀF − 3)` with J = det F.
+    /// Neo-Hookean, of the shape alone, eq. (solids.5): `W = µ/2 (J^(−2/3) tr FᵀF − 3)` with J = det F.
     NeoHookean,
 }
 
