@@ -135,9 +135,12 @@ pub fn names(positions: &[Vec3], cells: &[SolidCell]) -> Result<(), Vec<SolidFau
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
+/// Tetrahedra, and where those of each cell begin.
+type Cut = (Vec<[u32; 4]>, Vec<u32>);
+
 /// Turns the tetrahedra of each cell so that their volume is positive, which is so for all or for none of a sound one. Returns them one
 /// after the other, and where those of each cell begin.
-pub fn turned(positions: &[Vec3], cells: Vec<Vec<[u32; 4]>>) -> Result<(Vec<[u32; 4]>, Vec<u32>), Vec<SolidFault>> {
+pub fn turned(positions: &[Vec3], cells: Vec<Vec<[u32; 4]>>) -> Result<Cut, Vec<SolidFault>> {
     let (mut all, mut starts, mut faults) = (Vec::new(), vec![0], Vec::new());
     for (cell, own) in cells.into_iter().enumerate() {
         let corners = |atoms: [u32; 4]| atoms.map(|atom| positions[atom as usize]);
@@ -176,13 +179,13 @@ pub fn quality(corners: [Vec3; 4]) -> f64 {
 /// The faces that one tetrahedron alone has, seen from outside, in the order of their atoms.
 pub fn outside(tetrahedra: &[[u32; 4]]) -> Result<Vec<[u32; 3]>, Vec<SolidFault>> {
     let known = count_faces(tetrahedra);
-    let mut sorted: Vec<(&[u32; 3], &(u32, [u32; 3]))> = known.iter().collect();
-    sorted.sort_unstable_by_key(|(face, _)| **face);
-    let crowded = sorted.iter().filter(|(_, (count, _))| *count > 2).take(TOLD);
+    let mut sorted: Vec<_> = known.iter().collect();
+    sorted.sort_unstable_by_key(|(atoms, _)| **atoms);
+    let crowded = sorted.iter().filter(|(_, face)| face.count > 2).take(TOLD);
     let faults: Vec<SolidFault> =
-        crowded.map(|(face, (count, _))| SolidFault::CrowdedFace { face: **face, count: *count }).collect();
+        crowded.map(|(atoms, face)| SolidFault::CrowdedFace { face: **atoms, count: face.count }).collect();
     if faults.is_empty() {
-        Ok(sorted.iter().filter(|(_, (count, _))| *count == 1).map(|(_, (_, face))| *face).collect())
+        Ok(sorted.iter().filter(|(_, face)| face.count == 1).map(|(_, face)| face.seen).collect())
     } else {
         Err(faults)
     }

@@ -145,13 +145,21 @@ fn renumbered(atoms: usize, outside: &[[u32; 3]], tetrahedra: &[[u32; 4]]) -> Ve
     numbers
 }
 
-/// How many tetrahedra have each face, by its atoms in rising order, with the face as the first of them sees it from outside.
-fn count_faces(tetrahedra: &[[u32; 4]]) -> HashMap<[u32; 3], (u32, [u32; 3])> {
-    let mut known: HashMap<[u32; 3], (u32, [u32; 3])> = HashMap::new();
-    for face in tetrahedra.iter().flat_map(|&atoms| faces(atoms)) {
-        let mut sorted = face;
+/// A face of tetrahedra.
+struct Face {
+    /// How many have it.
+    count: u32,
+    /// As the first of them sees it from outside.
+    seen: [u32; 3],
+}
+
+/// The faces of tetrahedra by their atoms in rising order.
+fn count_faces(tetrahedra: &[[u32; 4]]) -> HashMap<[u32; 3], Face> {
+    let mut known: HashMap<[u32; 3], Face> = HashMap::new();
+    for seen in tetrahedra.iter().flat_map(|&atoms| faces(atoms)) {
+        let mut sorted = seen;
         sorted.sort_unstable();
-        known.entry(sorted).or_insert((0, face)).0 += 1;
+        known.entry(sorted).or_insert(Face { count: 0, seen }).count += 1;
     }
     known
 }
