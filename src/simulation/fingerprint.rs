@@ -45,7 +45,11 @@ pub fn fingerprint(model: &Model) -> u64 {
 }
 
 fn add_kind(hash: &mut Fnv, kind: &Kind) {
-    hash.value(&(&kind.name, kind.lanes, &kind.rest.positions, &kind.rest.facets, &kind.tetrahedra));
+    hash.value(&(&kind.name, kind.lanes, &kind.rest.positions, &kind.rest.facets));
+    // Surfaces have the fingerprint that they had before there were bodies.
+    if !kind.tetrahedra.is_empty() {
+        hash.value(&kind.tetrahedra);
+    }
     hash.value(&kind.forces);
     hash.value(&(kind.drag, kind.mass, &kind.held, &kind.moved, &kind.rigid, &kind.volume));
     kind.behaviours.iter().for_each(|behaviour| hash.value(behaviour));
