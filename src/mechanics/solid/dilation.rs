@@ -154,10 +154,10 @@ impl Dilation {
     }
 
     /// What multiplies the Laplacian of the body so that it is nowhere less stiff at rest, Pa: the square of a mean is at most the mean of
-    /// squares.
-    pub fn modulus(&self) -> f64 {
+    /// squares, and that of a trace three times that of the gradient.
+    pub fn bound(&self) -> f64 {
         match self.law {
-            DilationLaw::Bulk(modulus) => modulus,
+            DilationLaw::Bulk(modulus) => 3.0 * modulus,
             DilationLaw::Penalty(_) => 0.0,
         }
     }

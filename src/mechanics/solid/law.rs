@@ -151,12 +151,11 @@ impl Elastic {
         }
     }
 
-    /// What multiplies the Laplacian of the body so that it is nowhere less stiff than the law at small strain, Pa.
-    pub fn longitudinal(&self) -> f64 {
-        match self.law {
-            SolidLaw::NeoHookean => 4.0 / 3.0 * self.shear,
-            _ => self.lame + 2.0 * self.shear,
-        }
+    /// What multiplies the Laplacian of the body so that it is nowhere less stiff than the law at small strain, Pa: no gradient u of displacements
+    /// has λ tr²u + 2µ |sym u|² above (3λ + 2µ) |u|².
+    pub fn bound(&self) -> f64 {
+        let lame = if self.law == SolidLaw::NeoHookean { 0.0 } else { self.lame.max(0.0) };
+        3.0 * lame + 2.0 * self.shear
     }
 }
 

@@ -121,9 +121,9 @@ impl Solid {
         }
     }
 
-    /// Adds the Laplacian of the body times the modulus of a longitudinal wave, which is nowhere less than the true stiffness at rest.
+    /// Adds the Laplacian of the body times a bound of the moduli, which is nowhere less than the true stiffness at rest.
     pub fn add_stiffness(&self, matrix: &mut StiffnessMatrix) {
-        let modulus = self.elastic.longitudinal() + self.dilation.as_ref().map_or(0.0, Dilation::modulus);
+        let modulus = self.elastic.bound() + self.dilation.as_ref().map_or(0.0, Dilation::bound);
         for element in &self.elements {
             let g = element.gradients.map(Vec3::from);
             for i in 0..4 {
