@@ -9,7 +9,7 @@ use super::numbers::unit;
 use crate::Vec3;
 use crate::error::{Error, Fault};
 use crate::geometry::solid::{self, Solid};
-use crate::geometry::{self, Surface, SurfaceRules};
+use crate::geometry::{self, SolidFault, Surface, SurfaceRules};
 use nalgebra::{Unit, UnitQuaternion};
 
 /// The surface of a type, or nothing and a fault.
@@ -32,9 +32,13 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
         Mesh::Lathe { profile, rounding, around } => {
             lathe::surface(document, &format!("cells.{name}.mesh"), (profile, *rounding, *around), faults)?
         }
-        Mesh::Block { size, divisions } => filled(solid::block(size.map(|x| x.value()), *divisions)),
+        Mesh::Block { size, divisions } => {
+            let made = solid::block(size.map(|x| x.value()), *divisions);
+            filled(sound(document, name, made, faults)?)
+        }
         Mesh::Rod { radius, length, rings, layers } => {
-            filled(solid::rod(radius.value(), length.value(), *rings, *layers))
+            let made = solid::rod(radius.value(), length.value(), *rings, *layers);
+            filled(sound(document, name, made, faults)?)
         }
         Mesh::File { path, unit, component, filled: is_filled } => {
             let free = cell.mechanics.volume.rule == Some(VolumeRule::Free);
@@ -97,6 +101,22 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
         geometry::rotate(&mut turned, &UnitQuaternion::from_axis_angle(&axis, orientation.angle.value()));
     }
     Some(Built { plain, turned, inside, model: from_model })
+}
+
+/// A body that was made, or nothing and the first of its faults.
+fn sound(
+    document: &Document,
+    name: &str,
+    made: Result<Solid, Vec<SolidFault>>,
+    faults: &mut Vec<Fault>,
+) -> Option<Solid> {
+    made.map_err(|found| {
+        let fault = Fault::new(format!("the body of `cells.{name}`: {}", found[0]))
+            .help("let its parts be about as long along all axes: divide more along the longer ones");
+        let location = document.location(&format!("cells.{name}.mesh"), "makes flat tetrahedra");
+        faults.push(location.into_iter().fold(fault, Fault::at));
+    })
+    .ok()
 }
 
 /// One equilateral facet in the plane z = 0: atoms 0 and 1 on its base, atom 2 above it along y.

@@ -1,13 +1,13 @@
 //! Blocks of tissue, gel or a beam.
 
-use super::{Solid, SolidCell};
+use super::{Solid, SolidCell, SolidFault};
 use crate::Vec3;
 
 /// A filled box centred on the origin, with edges of `size` µm along x, y, z that are cut into so many parts.
 ///
-/// # Panics
-/// When a number of divisions is 0 or a length is not positive.
-pub fn block(size: [f64; 3], divisions: [u32; 3]) -> Solid {
+/// # Errors
+/// Flat tetrahedra, where parts are far longer along one axis than along another, or no parts at all.
+pub fn block(size: [f64; 3], divisions: [u32; 3]) -> Result<Solid, Vec<SolidFault>> {
     let [nx, ny, nz] = divisions;
     let number = |i: u32, j: u32, k: u32| (k * (ny + 1) + j) * (nx + 1) + i;
     let along = |axis: usize, i: u32| size[axis] * (f64::from(i) / f64::from(divisions[axis]) - 0.5);
@@ -26,5 +26,5 @@ pub fn block(size: [f64; 3], divisions: [u32; 3]) -> Solid {
             }
         }
     }
-    Solid::of_cells(&positions, &cells).expect("a grid of boxes is sound").0
+    Solid::of_cells(&positions, &cells).map(|(solid, _)| solid)
 }

@@ -1,15 +1,15 @@
 //! Cylinders that are filled.
 
-use super::{Solid, SolidCell};
+use super::{Solid, SolidCell, SolidFault};
 use crate::Vec3;
 use std::f64::consts::TAU;
 
 /// A filled cylinder about the z axis, centred on the origin, of this radius and length (µm): `rings` rings of wedges around the axis, 6, 18, 30 …
 /// in a layer, and `layers` of them. Its cross section is the polygon of 6·`rings` corners on the circle.
 ///
-/// # Panics
-/// When there are no rings or layers, or a length is not positive.
-pub fn rod(radius: f64, length: f64, rings: u32, layers: u32) -> Solid {
+/// # Errors
+/// Flat tetrahedra, where layers are far thicker or thinner than rings are wide, or no rings or layers at all.
+pub fn rod(radius: f64, length: f64, rings: u32, layers: u32) -> Result<Solid, Vec<SolidFault>> {
     let in_layer = 1 + 3 * rings * (rings + 1);
     // Corner `k` of ring `ring` of a layer.
     let number = |ring: u32, k: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) + k % (6 * ring) };
@@ -50,5 +50,5 @@ pub fn rod(radius: f64, length: f64, rings: u32, layers: u32) -> Solid {
             })
         })
         .collect();
-    Solid::of_cells(&positions, &cells).expect("rings of wedges are sound").0
+    Solid::of_cells(&positions, &cells).map(|(solid, _)| solid)
 }

@@ -21,7 +21,7 @@ fn holds_together(solid: &Solid) {
 
 #[test]
 fn a_block_is_filled_by_five_tetrahedra_a_box_that_are_mirrored_from_box_to_box() {
-    let solid = block([2.0, 3.0, 4.0], [2, 3, 4]);
+    let solid = block([2.0, 3.0, 4.0], [2, 3, 4]).expect("a sound body");
     assert_eq!(solid.tetrahedra.len(), 5 * 2 * 3 * 4);
     assert_eq!(solid.surface.positions.len(), 3 * 4 * 5);
     assert_eq!(solid.outer_atoms(), 3 * 4 * 5 - 2 * 3);
@@ -33,7 +33,7 @@ fn a_block_is_filled_by_five_tetrahedra_a_box_that_are_mirrored_from_box_to_box(
 #[test]
 fn a_rod_is_filled_and_its_volume_is_that_of_its_polygon() {
     for rings in 1..5 {
-        let solid = rod(2.0, 5.0, rings, 3);
+        let solid = rod(2.0, 5.0, rings, 3).expect("a sound body");
         holds_together(&solid);
         let corners = f64::from(6 * rings);
         let expected = 5.0 * 0.5 * corners * 4.0 * (std::f64::consts::TAU / corners).sin();

@@ -202,7 +202,7 @@ fn a_stiffness_that_is_not_positive_is_told_and_replaced() {
     use crate::geometry::solid::block;
     use crate::mechanics::solid::Solid;
     use crate::mechanics::solid::law::{Elastic, SolidLaw};
-    let body = block([1.0, 1.0, 4.0], [1, 1, 4]);
+    let body = block([1.0, 1.0, 4.0], [1, 1, 4]).expect("a sound body");
     let rest = &body.surface.positions;
     let elastic = Elastic { law: SolidLaw::Corotational, shear: 1.0, lame: 0.5 };
     let forces = [Force::Solid(Solid::new(rest, &body.tetrahedra, elastic, None))];
