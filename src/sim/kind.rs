@@ -9,6 +9,7 @@ use crate::mechanics::lanes::LANES;
 use crate::mechanics::load::Load;
 use crate::mechanics::moved::Moved;
 use crate::mechanics::pressure::Pressure;
+use crate::mechanics::solid::Solid;
 use crate::mechanics::stiffness::StiffnessMatrix;
 use crate::mechanics::sum::stiffness;
 use crate::mechanics::tangent::Tangent;
@@ -105,7 +106,7 @@ impl Kind {
         let stiffness = stiffness(&forces, &rest.positions, &rest.positions);
         Self {
             name: name.to_owned(),
-            tetrahedra: forces.iter().find_map(filling).unwrap_or_default(),
+            tetrahedra: forces.iter().find_map(solid).map_or(Vec::new(), |solid| solid.tetrahedra().collect()),
             closed,
             largest_stiffness: stiffness.largest(),
             stiffness,
@@ -188,6 +189,11 @@ impl Kind {
         })
     }
 
+    /// The elastic materials that fill its cells.
+    pub fn solids(&self) -> impl Iterator<Item = &Solid> {
+        self.forces.iter().filter_map(solid)
+    }
+
     /// Its traps.
     pub fn traps(&self) -> impl Iterator<Item = &Trap> {
         self.forces.iter().filter_map(|force| match force {
@@ -264,10 +270,10 @@ impl Kind {
     }
 }
 
-/// The tetrahedra of an elastic material that fills a body.
-fn filling(force: &Force) -> Option<Vec<[u32; 4]>> {
+/// The material that a force is, if it is one.
+fn solid(force: &Force) -> Option<&Solid> {
     match force {
-        Force::Solid(solid) => Some(solid.tetrahedra().collect()),
+        Force::Solid(solid) => Some(solid),
         _ => None,
     }
 }

@@ -45,7 +45,7 @@ impl Kind {
     /// Sets the stiffness K of the implicit step to the one that fits the rest shape; see [`Kind::stiffness_at`].
     pub fn bound_stiffness(&mut self) {
         // Bodies of an elastic material have their own, and it takes long to find out how a constant one of so many atoms stands to it.
-        if self.forces.iter().any(|force| matches!(force, Force::Solid(_))) {
+        if self.solids().next().is_some() {
             self.stiffness = stiffness(&self.forces, &self.rest.positions, &self.rest.positions);
             self.softest_ratio = 0.0;
             return;

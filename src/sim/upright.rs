@@ -5,14 +5,11 @@
 
 use rayon::prelude::*;
 
-use super::kind::Kind;
 use super::model::Model;
 use super::state::{KindState, State};
 use super::trouble::Trouble;
 use crate::geometry::solid::tetrahedron_volume;
-use crate::mechanics::Force;
 use crate::mechanics::integrator::StepSize;
-use crate::mechanics::solid::Solid;
 
 /// By how much of its volume at rest a tetrahedron may change in a step.
 const MOST: f64 = 0.5;
@@ -46,7 +43,7 @@ pub fn change_of_volumes(model: &Model, from: &State, to: &State) -> f64 {
 /// The first that there is.
 pub fn check_upright(model: &Model, time: f64, state: &State) -> Result<(), Trouble> {
     for (kind, now) in model.kinds.iter().zip(&state.kinds) {
-        for solid in solids(kind) {
+        for solid in kind.solids() {
             let found = (0..now.cells()).into_par_iter().find_map_first(|cell| {
                 let atoms = solid.inside_out(|atom| now.position(kind, cell, atom as usize))?;
                 Some((cell, atoms))
@@ -57,11 +54,4 @@ pub fn check_upright(model: &Model, time: f64, state: &State) -> Result<(), Trou
         }
     }
     Ok(())
-}
-
-fn solids(kind: &Kind) -> impl Iterator<Item = &Solid> {
-    kind.forces.iter().filter_map(|force| match force {
-        Force::Solid(solid) => Some(solid),
-        _ => None,
-    })
 }

@@ -238,7 +238,7 @@ fn separate_surfaces(surface: &Surface, sides: &[HalfEdge]) -> Option<MeshFault>
 }
 
 /// The representative of an atom's surface; halves the path to it on the path.
-fn root(parents: &mut [u32], mut atom: u32) -> u32 {
+pub(super) fn root(parents: &mut [u32], mut atom: u32) -> u32 {
     while parents[atom as usize] != atom {
         parents[atom as usize] = parents[parents[atom as usize] as usize];
         atom = parents[atom as usize];

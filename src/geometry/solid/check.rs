@@ -1,5 +1,6 @@
 //! What may be wrong with a body of cells.
 
+use super::super::check::root;
 use super::{SolidCell, count_faces, tetrahedron_volume};
 use crate::Vec3;
 use std::fmt;
@@ -193,13 +194,6 @@ pub fn outside(tetrahedra: &[[u32; 4]]) -> Result<Vec<[u32; 3]>, Vec<SolidFault>
 
 /// Whether the body hangs together.
 pub fn pieces(atoms: usize, tetrahedra: &[[u32; 4]]) -> Result<(), Vec<SolidFault>> {
-    fn root(parents: &mut [u32], mut atom: u32) -> u32 {
-        while parents[atom as usize] != atom {
-            parents[atom as usize] = parents[parents[atom as usize] as usize];
-            atom = parents[atom as usize];
-        }
-        atom
-    }
     let mut parents: Vec<u32> = (0..atoms as u32).collect();
     for [first, others @ ..] in tetrahedra {
         for other in others {

@@ -129,7 +129,7 @@ pub fn tetrahedron_volume([a, b, c, d]: [Vec3; 4]) -> f64 {
 }
 
 /// The faces of a tetrahedron, seen from outside.
-fn faces([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
+pub fn faces([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
     [[a, c, b], [a, b, d], [a, d, c], [b, c, d]]
 }
 

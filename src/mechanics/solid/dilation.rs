@@ -7,6 +7,7 @@ use super::super::lanes::{Real, V3, Vectors, VectorsMut};
 use super::super::stiffness::StiffnessMatrix;
 use super::super::tangent::matrix::Blocks;
 use crate::Vec3;
+use crate::geometry::solid::faces;
 use std::collections::BTreeMap;
 
 /// Where volumes are measured.
@@ -166,8 +167,8 @@ impl Dilation {
 impl Part {
     fn new(rest: &[Vec3], tetrahedra: &[[u32; 4]], share: f64) -> Self {
         let mut facets: Vec<[u32; 3]> = Vec::new();
-        for &[a, b, c, d] in tetrahedra {
-            for face in [[a, c, b], [a, b, d], [a, d, c], [b, c, d]] {
+        for &atoms in tetrahedra {
+            for face in faces(atoms) {
                 // Seen from the other side its atoms run the other way round.
                 let is_other =
                     |other: &[u32; 3]| (0..3).any(|k| [face[k], face[(k + 2) % 3], face[(k + 1) % 3]] == *other);

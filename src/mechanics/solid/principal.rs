@@ -1,7 +1,7 @@
 //! How a tetrahedron deforms in its principal directions, and the positive part of the stiffness of an energy there.
 //!
 //! In the frame of its principal stretches the second derivatives of an isotropic energy by the deformation gradient fall apart into a 3 × 3
-//! block of the stretches and, for each pair of directions, a twist and a flip; each is kept where it is positive, eq. (solids.7). After Smith,
+//! block of the stretches and, for each pair of directions, a twist and a flip; each of which may be kept where it is positive alone, eq. (solids.7). After Smith,
 //! de Goes & Kim 2019; for surfaces see `tangent/facet.rs`.
 
 use super::super::lanes::{Real, V3};

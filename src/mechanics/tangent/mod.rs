@@ -3,7 +3,7 @@
 //!
 //! It is the second derivative of the energies, without what is negative of a facet or a hinge and without the bend of curvatures at
 //! atoms, so that it can always be factored and is never far less than the true stiffness. Forces without one of their own take their
-//! constant stiffness.
+//! constant stiffness. Of filled bodies all of it counts, where that can be factored.
 
 pub mod facet;
 mod factor;
