@@ -64,7 +64,7 @@ impl Kind {
             || self.has_soft_shear()
             || is_alone && self.shears() && creeps(LEAST_TOLD_OF_TOUCHED)
         {
-            self.tangent = Some(Tangent::new(&self.forces, self.viscosity.as_ref(), &self.rest.positions));
+            self.tangent = Some(Tangent::new(&self.forces, self.viscosity.as_ref(), &self.rest.positions, self.lanes));
         }
     }
 

@@ -5,7 +5,7 @@ use super::pattern::Pattern;
 use crate::mechanics::lanes::{Real, V3, VectorsMut};
 
 /// The least that a pivot may be, over the diagonal that it began with: a matrix that is not positive by round-off alone has one below.
-const LEAST_PIVOT: f64 = 1e-12;
+pub const LEAST_PIVOT: f64 = 1e-12;
 
 /// Replaces a positive matrix by its factor L, A = L Lᵀ. Diagonals of L are kept as their inverse. Returns whether it was positive in all lanes; if not, there is no
 /// factor.

@@ -5,9 +5,13 @@
 //! atoms, so that it can always be factored and is never far less than the true stiffness. Forces without one of their own take their
 //! constant stiffness. Of filled bodies all of it counts, where that can be factored.
 
+mod dense;
+mod dissection;
 pub mod facet;
 mod factor;
+mod fronts;
 pub mod matrix;
+mod multifrontal;
 mod pattern;
 #[cfg(test)]
 mod tests;
@@ -17,13 +21,20 @@ use super::lanes::{BlockWork, LANES, Real, Vectors, VectorsMut, dispatch};
 use super::stiffness::StiffnessMatrix;
 use super::viscosity::Viscosity;
 use crate::Vec3;
+use fronts::Fronts;
 use matrix::Blocks;
+use multifrontal::{Factorise, SolveMany, SolveOne};
 pub use pattern::Pattern;
+
+/// Bodies that stand alone are factored by fronts from so many atoms on.
+const LARGE: usize = 150;
 
 /// How the tangent stiffness of the cells of a kind is made and factored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tangent {
     pattern: Pattern,
+    /// Where one large body is factored by fronts; the pattern is that of the matrix alone then.
+    fronts: Option<Fronts>,
     /// Constant stiffness of the elastic forces, and of all others, that have no tangent stiffness: entries of the lower triangle.
     constant: [Vec<(u32, u32, f64)>; 2],
 }
@@ -44,8 +55,9 @@ pub struct Scales<'a> {
 }
 
 impl Tangent {
-    /// Finds the pattern for the cells of a mesh with this rest shape (µm), these forces and this viscosity.
-    pub fn new(forces: &[Force], viscosity: Option<&Viscosity>, rest: &[Vec3]) -> Self {
+    /// Finds the pattern for the cells of a mesh with this rest shape (µm), these forces and this viscosity, that stand in blocks of so many
+    /// lanes.
+    pub fn new(forces: &[Force], viscosity: Option<&Viscosity>, rest: &[Vec3], lanes: usize) -> Self {
         let mut whole = StiffnessMatrix::new(rest.len());
         for &[a, b, c] in viscosity.into_iter().flat_map(Viscosity::facets) {
             // Only where entries are counts here.
@@ -63,32 +75,57 @@ impl Tangent {
             rows.flat_map(|i| matrix.row(i).filter(move |(j, _)| *j <= i).map(move |(j, v)| (i as u32, j as u32, v)))
                 .collect()
         };
-        Self { pattern: Pattern::of(&whole), constant: [lower(&constant[0]), lower(&constant[1])] }
+        let (pattern, fronts) = if lanes == 1 && rest.len() >= LARGE {
+            let near = |i: usize| whole.row(i).map(|(j, _)| j as u32).filter(|&j| j as usize != i).collect();
+            let (fronts, pattern) = Fronts::of(&(0..rest.len()).map(near).collect::<Vec<_>>(), rest);
+            (pattern, Some(fronts))
+        } else {
+            (Pattern::of(&whole), None)
+        };
+        Self { pattern, fronts, constant: [lower(&constant[0]), lower(&constant[1])] }
     }
 
     /// Numbers of the factor of a block of so many cells.
     pub fn len(&self, lanes: usize) -> usize {
-        9 * self.pattern.blocks() * lanes
+        9 * self.pattern.blocks() * lanes + self.fronts.as_ref().map_or(0, Fronts::len)
     }
 
     /// Makes and factors `diagonal + γ·stiffness` for a block of `lanes` cells at `x` (µm).
     pub fn factor(&self, forces: &[Force], lanes: usize, x: &[f64], scales: Scales, values: &mut [f64]) {
         // Of a filled body all that bends counts, where that is positive: the positive part takes a bent beam for several times as stiff.
         let whole = forces.iter().any(|force| matches!(force, Force::Solid(_)));
-        let positive = dispatch(lanes, Make { tangent: self, forces, x, scales, values, is_factored: true, whole });
-        if whole && !positive {
-            dispatch(lanes, Make { tangent: self, forces, x, scales, values, is_factored: true, whole: false });
+        if !self.make(lanes, Make { tangent: self, forces, x, scales, values, is_factored: true, whole }) && whole {
+            self.make(lanes, Make { tangent: self, forces, x, scales, values, is_factored: true, whole: false });
         }
+    }
+
+    /// Makes and factors a matrix; returns whether it was positive.
+    fn make(&self, lanes: usize, work: Make) -> bool {
+        let Some(fronts) = &self.fronts else { return dispatch(lanes, work) };
+        let (blocks, factor) = work.values.split_at_mut(9 * self.pattern.blocks());
+        dispatch(1, Make { values: blocks, ..work });
+        dispatch(LANES, Factorise { fronts, pattern: &self.pattern, blocks, factor })
+    }
+
+    /// What of a factor solves take, where fronts made it.
+    fn panels<'a>(&'a self, factor: &'a [f64]) -> Option<(&'a Fronts, &'a [f64])> {
+        self.fronts.as_ref().map(|fronts| (fronts, &factor[9 * self.pattern.blocks()..][..fronts.panels()]))
     }
 
     /// Solves in place for a block of `lanes` cells with its factor.
     pub fn solve(&self, lanes: usize, factor: &[f64], values: &mut [f64]) {
-        dispatch(lanes, Solve { pattern: &self.pattern, factor, values });
+        match self.panels(factor) {
+            Some((fronts, factor)) => dispatch(LANES, SolveOne { fronts, factor, values }),
+            None => dispatch(lanes, Solve { pattern: &self.pattern, factor, values }),
+        }
     }
 
     /// Solves in place for [`LANES`] right sides of one cell with its factor.
     pub fn solve_columns(&self, factor: &[f64], values: &mut [f64]) {
-        dispatch(LANES, SolveColumns { pattern: &self.pattern, factor, values });
+        match self.panels(factor) {
+            Some((fronts, factor)) => dispatch(LANES, SolveMany { fronts, factor, values }),
+            None => dispatch(LANES, SolveColumns { pattern: &self.pattern, factor, values }),
+        }
     }
 }
 
@@ -128,7 +165,8 @@ impl BlockWork for Make<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<T: Real>(self, token: T::Token, stride: usize) -> bool {
-        let Self { tangent: Tangent { pattern, constant }, forces, x, scales, values, is_factored, whole } = self;
+        let Self { tangent: Tangent { pattern, constant, fronts }, forces, x, scales, values, is_factored, whole } =
+            self;
         let mut is_positive = true;
         let (x, values) = (T::view(token, x), T::view_mut(token, values));
         let mut elastic = [1.0; LANES];
@@ -161,7 +199,9 @@ impl BlockWork for Make<'_> {
                 if !scales.held.is_empty() {
                     blocks.hold(scales.held);
                 }
-                is_positive &= factor::factor(pattern, &mut blocks);
+                if fronts.is_none() {
+                    is_positive &= factor::factor(pattern, &mut blocks);
+                }
             }
         }
         is_positive

@@ -1,6 +1,6 @@
 //! Which blocks of the tangent stiffness and of its Cholesky factor are there, found once for a mesh.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use crate::mechanics::stiffness::StiffnessMatrix;
 
@@ -16,7 +16,8 @@ pub struct Pattern {
     starts: Vec<u32>,
     /// The atoms of their rows, in the order of elimination.
     rows: Vec<u32>,
-    /// For every column and every pair of its blocks below the diagonal the block that their product is taken from.
+    /// For every column and every pair of its blocks below the diagonal the block that their product is taken from; none of a matrix that
+    /// fronts factor.
     targets: Vec<u32>,
 }
 
@@ -39,33 +40,36 @@ impl Pattern {
             }
             columns.push((atom, left.into_iter().collect()));
         }
-        Self::of_columns(columns)
+        let mut filled = Self::of_columns(columns);
+        filled.targets = filled.products();
+        filled
     }
 
-    /// The pattern whose columns are these atoms, with the atoms of the rows below.
-    fn of_columns(columns: Vec<(u32, Vec<u32>)>) -> Self {
+    /// The pattern whose columns are these atoms, with the atoms of the rows below, without what a factor fills.
+    pub fn of_columns(columns: Vec<(u32, Vec<u32>)>) -> Self {
         let order: Vec<u32> = columns.iter().map(|column| column.0).collect();
         let mut rank = vec![0; order.len()];
         order.iter().zip(0..).for_each(|(&atom, number)| rank[atom as usize] = number);
         let (mut starts, mut rows) = (vec![0], Vec::new());
-        let mut blocks = BTreeMap::new();
-        for (atom, mut below) in columns {
+        for (_, mut below) in columns {
             below.sort_by_key(|&row| rank[row as usize]);
-            for row in below {
-                blocks.insert((atom, row), (order.len() + rows.len()) as u32);
-                rows.push(row);
-            }
+            rows.extend(below);
             starts.push(rows.len() as u32);
         }
+        Self { order, rank, starts, rows, targets: Vec::new() }
+    }
+
+    /// The blocks that products of pairs of blocks are taken from, column by column.
+    fn products(&self) -> Vec<u32> {
         let mut targets = Vec::new();
-        for column in starts.windows(2) {
-            let below = &rows[column[0] as usize..column[1] as usize];
-            for (number, &j) in below.iter().enumerate() {
+        for column in self.columns() {
+            for (number, &j) in column.rows.iter().enumerate() {
                 targets.push(j);
-                targets.extend(below[number + 1..].iter().map(|&i| blocks[&(j, i)]));
+                let below = column.rows[number + 1..].iter();
+                targets.extend(below.map(|&i| self.block(i, j).expect("what a column fills").0 as u32));
             }
         }
-        Self { order, rank, starts, rows, targets }
+        targets
     }
 
     /// Number of atoms.

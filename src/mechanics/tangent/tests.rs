@@ -10,7 +10,7 @@ use crate::mechanics::tension::Tension;
 
 /// The tangent stiffness of one cell, by columns of the whole matrix.
 fn whole(forces: &[Force], rest: &[Vec3], x: &[f64]) -> nalgebra::DMatrix<f64> {
-    let tangent = Tangent::new(forces, None, rest);
+    let tangent = Tangent::new(forces, None, rest, LANES);
     let mut values = vec![0.0; tangent.len(1)];
     let scales = Scales { diagonal: 0.0, gamma: 1.0, elastic: &[], held: &[], viscous: None };
     dispatch(1, Make { tangent: &tangent, forces, x, scales, values: &mut values, is_factored: false, whole: true });
@@ -152,7 +152,7 @@ fn its_factor_solves_with_atoms_that_are_held_and_in_every_lane() {
     let ball = icosphere(5.0, 2);
     let rest = &ball.positions;
     let forces = [Force::Membrane(Membrane::new(rest, &ball.facets, laws()[0]))];
-    let tangent = Tangent::new(&forces, None, rest);
+    let tangent = Tangent::new(&forces, None, rest, LANES);
     let size = 3 * rest.len();
     let mut held = vec![1.0; size];
     (30..36).chain([91]).for_each(|at| held[at] = 0.0);
@@ -206,7 +206,7 @@ fn a_stiffness_that_is_not_positive_is_told_and_replaced() {
     let rest = &body.surface.positions;
     let elastic = Elastic { law: SolidLaw::Corotational, shear: 1.0, lame: 0.5 };
     let forces = [Force::Solid(Solid::new(rest, &body.tetrahedra, elastic, None))];
-    let tangent = Tangent::new(&forces, None, rest);
+    let tangent = Tangent::new(&forces, None, rest, LANES);
     let at = |by: f64| flat(&rest.iter().map(|p| Vec3::new(p.x, p.y, by * p.z)).collect::<Vec<_>>());
     let made = |x: &[f64], whole: bool| {
         let mut values = vec![0.0; tangent.len(1)];
@@ -225,4 +225,82 @@ fn a_stiffness_that_is_not_positive_is_told_and_replaced() {
     // What is not clipped is the true stiffness.
     let (found, expected) = (whole(&forces, rest, &at(0.9)), by_differences(&forces, &at(0.9)));
     assert!((&found - &expected).amax() < 1e-6 * expected.amax(), "off by {}", (&found - &expected).amax());
+}
+
+/// The matrix of a filled block of 5 x 5 x 8 atoms that is bent, some of its numbers held.
+fn filled() -> (Vec<Vec3>, Vec<Force>, Vec<f64>, Vec<f64>) {
+    use crate::geometry::solid::block;
+    use crate::mechanics::solid::Solid;
+    use crate::mechanics::solid::law::{Elastic, SolidLaw};
+    let body = block([2.0, 2.0, 4.0], [4, 4, 7]).expect("a sound body");
+    let rest = body.surface.positions;
+    let elastic = Elastic { law: SolidLaw::NeoHookean, shear: 1.0, lame: 2.0 };
+    let forces = vec![Force::Solid(Solid::new(&rest, &body.tetrahedra, elastic, None))];
+    let x = flat(&rest.iter().map(|p| Vec3::new(p.x + 0.02 * p.z * p.z, p.y, 1.05 * p.z)).collect::<Vec<_>>());
+    let held = (0..x.len()).map(|at| if at % 17 == 3 || at < 30 { 0.0 } else { 1.0 }).collect();
+    (rest, forces, x, held)
+}
+
+#[test]
+fn fronts_solve_what_columns_solve() {
+    let (rest, forces, x, held) = filled();
+    let scales = Scales { diagonal: 0.3, gamma: 0.7, elastic: &[], held: &held, viscous: None };
+    let [by_columns, by_fronts] = [LANES, 1].map(|lanes| Tangent::new(&forces, None, &rest, lanes));
+    assert!(by_columns.fronts.is_none() && by_fronts.fronts.is_some());
+    let made = |tangent: &Tangent| {
+        let mut values = vec![f64::NAN; tangent.len(1)];
+        tangent.factor(&forces, 1, &x, scales, &mut values);
+        values
+    };
+    let (columns, fronts) = (made(&by_columns), made(&by_fronts));
+    let side = |lane: usize| -> Vec<f64> { (0..x.len()).map(|at| ((at * 7919 + lane) % 101) as f64 - 50.0).collect() };
+    let mut together: Vec<f64> =
+        (0..x.len()).flat_map(|at| (0..LANES).map(move |lane| (at, lane))).map(|(at, lane)| side(lane)[at]).collect();
+    by_fronts.solve_columns(&fronts, &mut together);
+    for lane in 0..LANES {
+        let [mut expected, mut found] = [side(lane), side(lane)];
+        by_columns.solve(1, &columns, &mut expected);
+        by_fronts.solve(1, &fronts, &mut found);
+        let scale = expected.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        for at in 0..x.len() {
+            assert!((found[at] - expected[at]).abs() < 1e-11 * scale, "{at}: {} {}", found[at], expected[at]);
+            let one = together[at * LANES + lane];
+            assert!((one - expected[at]).abs() < 1e-11 * scale, "{at} of {lane}: {one} {}", expected[at]);
+        }
+    }
+}
+
+/// Wide registers take sums in the order in which single numbers are taken.
+#[test]
+fn fronts_make_the_same_bits_with_any_registers() {
+    let (rest, forces, x, held) = filled();
+    let scales = Scales { diagonal: 0.3, gamma: 0.7, elastic: &[], held: &held, viscous: None };
+    let tangent = Tangent::new(&forces, None, &rest, 1);
+    let mut values = vec![0.0; tangent.len(1)];
+    tangent.factor(&forces, 1, &x, scales, &mut values);
+    let fronts = tangent.fronts.as_ref().expect("a body large enough");
+    let (blocks, wide) = values.split_at(9 * tangent.pattern.blocks());
+    let mut plain = vec![0.0; fronts.len()];
+    Factorise { fronts, pattern: &tangent.pattern, blocks, factor: &mut plain }.run::<f64>((), 1);
+    assert_eq!(plain[..fronts.panels()], wide[..fronts.panels()]);
+    let [mut once, mut again] = [x.clone(), x.clone()];
+    SolveOne { fronts, factor: &plain, values: &mut once }.run::<f64>((), 1);
+    dispatch(LANES, SolveOne { fronts, factor: &plain, values: &mut again });
+    assert_eq!(once, again);
+}
+
+#[test]
+fn fronts_tell_a_matrix_that_is_not_positive() {
+    let (rest, forces, x, _) = filled();
+    let tangent = Tangent::new(&forces, None, &rest, 1);
+    let made = |diagonal: f64, x: &[f64]| {
+        let mut values = vec![0.0; tangent.len(1)];
+        let scales = Scales { diagonal, gamma: 1.0, elastic: &[], held: &[], viscous: None };
+        let work =
+            Make { tangent: &tangent, forces: &forces, x, scales, values: &mut values, is_factored: true, whole: true };
+        tangent.make(1, work)
+    };
+    assert!(made(0.3, &x));
+    let pressed: Vec<f64> = x.iter().enumerate().map(|(at, x)| if at % 3 == 2 { 0.4 * x } else { *x }).collect();
+    assert!(!made(0.01, &pressed));
 }

@@ -1,0 +1,315 @@
+//! Makes a factor by fronts, and solves with it.
+
+use super::dense::{self, TILE, WIDTH};
+use super::factor::LEAST_PIVOT;
+use super::fronts::{Front, Fronts, NOTHING, packed};
+use super::pattern::Pattern;
+use crate::mechanics::lanes::{BlockWork, Real};
+
+/// Factors a matrix whose blocks of `pattern` these are.
+pub struct Factorise<'a> {
+    pub fronts: &'a Fronts,
+    pub pattern: &'a Pattern,
+    /// Numbers of the blocks, of which the lower triangle counts.
+    pub blocks: &'a [f64],
+    /// Room for [`Fronts::len`] numbers.
+    pub factor: &'a mut [f64],
+}
+
+impl BlockWork for Factorise<'_> {
+    /// Whether the matrix is positive; where it is not, pivots were raised and the factor is of another matrix.
+    type Output = bool;
+    #[inline(always)]
+    fn run<T: Real>(self, token: T::Token, _: usize) -> bool {
+        let Self { fronts, pattern, blocks, factor } = self;
+        let (panels, stacks) = factor.split_at_mut(fronts.panels());
+        let (even, odd) = stacks.split_at_mut(fronts.stacks[0]);
+        let (mut entries, mut columns, mut is_positive) = (fronts.entries.iter(), pattern.columns(), true);
+        for front in &fronts.fronts {
+            let (own, other) = if front.update.0 == 0 { (&mut *even, &*odd) } else { (&mut *odd, &*even) };
+            let mut parts = Parts {
+                front,
+                panel: &mut panels[front.panel..][..front.panel_len()],
+                update: &mut own[front.update.1..][..front.update_len()],
+            };
+            parts.clear();
+            for (number, column) in columns.by_ref().take(front.columns[1] - front.columns[0]).enumerate() {
+                parts.enter(3 * number, 3 * number, &blocks[9 * column.atom..][..9]);
+                for (block, &row) in (column.first..).zip(entries.by_ref().take(column.rows.len())) {
+                    parts.enter(row as usize, 3 * number, &blocks[9 * block..][..9]);
+                }
+            }
+            for &child in &front.children {
+                let child = &fronts.fronts[child];
+                parts.add(child, &other[child.update.1..][..child.update_len()]);
+            }
+            is_positive &= eliminate::<T>(token, parts, blocks);
+        }
+        is_positive
+    }
+}
+
+/// The numbers of a front.
+struct Parts<'a> {
+    front: &'a Front,
+    panel: &'a mut [f64],
+    update: &'a mut [f64],
+}
+
+impl Parts<'_> {
+    /// Sets all to zero, and the diagonal of padding to one.
+    fn clear(&mut self) {
+        self.panel.fill(0.0);
+        self.update.fill(0.0);
+        let own = self.front.strips[0] * WIDTH;
+        for row in (0..own).filter(|&row| self.front.numbers[row] == NOTHING) {
+            *self.at(row, row) = 1.0;
+        }
+    }
+
+    /// A number of the lower triangle.
+    fn at(&mut self, row: usize, column: usize) -> &mut f64 {
+        let [own, _] = self.front.strips;
+        let (strip, within) = (row / WIDTH, row % WIDTH);
+        if column < own * WIDTH {
+            &mut self.panel[self.front.strip(strip) + column * WIDTH + within]
+        } else {
+            &mut self.update[packed(strip - own) + (column - own * WIDTH) * WIDTH + within]
+        }
+    }
+
+    /// Adds a block of the matrix.
+    fn enter(&mut self, row: usize, column: usize, block: &[f64]) {
+        for (k, value) in block.iter().enumerate() {
+            let (row, column) = (row + k / 3, column + k % 3);
+            if row >= column {
+                *self.at(row, column) += value;
+            }
+        }
+    }
+
+    /// Adds the update of a front whose parent this one is.
+    fn add(&mut self, child: &Front, update: &[f64]) {
+        for (column, &to) in child.lifts.iter().enumerate().filter(|(_, to)| **to != NOTHING) {
+            for strip in column / WIDTH..child.strips[1] {
+                let values = &update[packed(strip) + column * WIDTH..][..WIDTH];
+                for (row, value) in (strip * WIDTH..).zip(values) {
+                    if row >= column && child.lifts[row] != NOTHING {
+                        *self.at(child.lifts[row] as usize, to as usize) += value;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Eliminates the columns of a front: its panel becomes that of the factor, its update what is left for those after.
+#[inline(always)]
+fn eliminate<T: Real>(token: T::Token, Parts { front, panel, update }: Parts, blocks: &[f64]) -> bool {
+    let [own, later] = front.strips;
+    let mut is_positive = true;
+    for j in 0..own {
+        let before = j * TILE;
+        for i in j..own + later {
+            let (first, rest) = panel.split_at_mut(front.strip(i));
+            let (done, tile) = rest.split_at_mut(before);
+            let tile = &mut tile[..TILE];
+            if i == j {
+                dense::subtract::<T>(token, done, done, tile);
+                is_positive &= dense::root(tile, least(front, j, blocks));
+            } else {
+                let columns = &first[front.strip(j)..];
+                dense::subtract::<T>(token, done, &columns[..before], tile);
+                dense::divide::<T>(token, &columns[before..before + TILE], tile);
+            }
+        }
+    }
+    for j in 0..later {
+        let columns = &panel[front.strip(own + j)..][..own * TILE];
+        for i in j..later {
+            let rows = &panel[front.strip(own + i)..][..own * TILE];
+            dense::subtract::<T>(token, rows, columns, &mut update[packed(i) + j * TILE..][..TILE]);
+        }
+    }
+    is_positive
+}
+
+/// The least that the pivots of a strip may be.
+fn least(front: &Front, strip: usize, blocks: &[f64]) -> [f64; WIDTH] {
+    std::array::from_fn(|row| match front.numbers[strip * WIDTH + row] {
+        NOTHING => 0.5,
+        number => {
+            let (atom, axis) = (number as usize / 3, number as usize % 3);
+            (LEAST_PIVOT * blocks[9 * atom + 4 * axis].abs()).max(f64::MIN_POSITIVE)
+        }
+    })
+}
+
+/// Solves for one right side.
+pub struct SolveOne<'a> {
+    pub fronts: &'a Fronts,
+    pub factor: &'a [f64],
+    pub values: &'a mut [f64],
+}
+
+impl BlockWork for SolveOne<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<T: Real>(self, token: T::Token, _: usize) {
+        let Self { fronts, factor, values } = self;
+        for front in &fronts.fronts {
+            let panel = &factor[front.panel..][..front.panel_len()];
+            for strip in 0..front.strips[0] + front.strips[1] {
+                let tiles = strip.min(front.strips[0]);
+                let mut sums = [0.0; WIDTH];
+                for (tile, number) in panel[front.strip(strip)..][..tiles * TILE].chunks_exact(TILE).zip(0..) {
+                    dense::along::<T>(token, tile, &gathered(front, number, values), &mut sums);
+                }
+                let mut own = gathered(front, strip, values);
+                (0..WIDTH).for_each(|row| own[row] -= sums[row]);
+                if strip < front.strips[0] {
+                    dense::forward(&panel[front.strip(strip) + tiles * TILE..][..TILE], &mut own);
+                }
+                scatter(front, strip, &own, values);
+            }
+        }
+        for front in fronts.fronts.iter().rev() {
+            let panel = &factor[front.panel..][..front.panel_len()];
+            for column in (0..front.strips[0]).rev() {
+                let mut sums = [0.0; TILE];
+                for strip in column + 1..front.strips[0] + front.strips[1] {
+                    let tile = &panel[front.strip(strip) + column * TILE..][..TILE];
+                    dense::across::<T>(token, tile, &gathered(front, strip, values), &mut sums);
+                }
+                let mut own = gathered(front, column, values);
+                for (own, sums) in own.iter_mut().zip(sums.as_chunks::<WIDTH>().0) {
+                    let [a, b, c, d, e, f, g, h] = *sums;
+                    *own -= ((a + b) + (c + d)) + ((e + f) + (g + h));
+                }
+                dense::backward(&panel[front.strip(column) + column * TILE..][..TILE], &mut own);
+                scatter(front, column, &own, values);
+            }
+        }
+    }
+}
+
+/// The values of a strip's rows.
+#[inline(always)]
+fn gathered(front: &Front, strip: usize, values: &[f64]) -> [f64; WIDTH] {
+    let numbers = &front.numbers.as_chunks::<WIDTH>().0[strip];
+    let mut own = [0.0; WIDTH];
+    for row in 0..WIDTH {
+        own[row] = values.get(numbers[row] as usize).copied().unwrap_or(0.0);
+    }
+    own
+}
+
+/// Sets the values of a strip's rows.
+#[inline(always)]
+fn scatter(front: &Front, strip: usize, own: &[f64; WIDTH], values: &mut [f64]) {
+    let numbers = &front.numbers.as_chunks::<WIDTH>().0[strip];
+    for row in 0..WIDTH {
+        if let Some(slot) = values.get_mut(numbers[row] as usize) {
+            *slot = own[row];
+        }
+    }
+}
+
+/// Solves for as many right sides as there are lanes, `values[number][lane]`.
+pub struct SolveMany<'a> {
+    pub fronts: &'a Fronts,
+    pub factor: &'a [f64],
+    pub values: &'a mut [f64],
+}
+
+impl BlockWork for SolveMany<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<T: Real>(self, token: T::Token, stride: usize) {
+        let Self { fronts, factor, values } = self;
+        let values = T::view_mut(token, values);
+        for part in 0..stride {
+            let mut sides = Sides::<T> { token, values: &mut *values, stride, part };
+            for front in &fronts.fronts {
+                let panel = &factor[front.panel..][..front.panel_len()];
+                for strip in 0..front.strips[0] + front.strips[1] {
+                    let tiles = strip.min(front.strips[0]);
+                    let mut own = sides.get(front, strip);
+                    let (before, rest) = panel[front.strip(strip)..].split_at(tiles * TILE);
+                    for (tile, number) in before.chunks_exact(TILE).zip(0..) {
+                        let known = sides.get(front, number);
+                        for c in 0..WIDTH {
+                            for row in 0..WIDTH {
+                                own[row] = own[row] - known[c] * tile[c * WIDTH + row];
+                            }
+                        }
+                    }
+                    if strip < front.strips[0] {
+                        for c in 0..WIDTH {
+                            own[c] = own[c] * rest[c * WIDTH + c];
+                            for row in c + 1..WIDTH {
+                                own[row] = own[row] - own[c] * rest[c * WIDTH + row];
+                            }
+                        }
+                    }
+                    sides.set(front, strip, own);
+                }
+            }
+            for front in fronts.fronts.iter().rev() {
+                let panel = &factor[front.panel..][..front.panel_len()];
+                for column in (0..front.strips[0]).rev() {
+                    let mut own = sides.get(front, column);
+                    for strip in column + 1..front.strips[0] + front.strips[1] {
+                        let tile = &panel[front.strip(strip) + column * TILE..][..TILE];
+                        let known = sides.get(front, strip);
+                        for c in 0..WIDTH {
+                            for row in 0..WIDTH {
+                                own[c] = own[c] - known[row] * tile[c * WIDTH + row];
+                            }
+                        }
+                    }
+                    let tile = &panel[front.strip(column) + column * TILE..][..TILE];
+                    for c in (0..WIDTH).rev() {
+                        for row in c + 1..WIDTH {
+                            own[c] = own[c] - own[row] * tile[c * WIDTH + row];
+                        }
+                        own[c] = own[c] * tile[c * WIDTH + c];
+                    }
+                    sides.set(front, column, own);
+                }
+            }
+        }
+    }
+}
+
+/// Right sides that fill a register.
+struct Sides<'a, T: Real> {
+    token: T::Token,
+    values: &'a mut [T::Raw],
+    stride: usize,
+    part: usize,
+}
+
+impl<T: Real> Sides<'_, T> {
+    #[inline(always)]
+    fn get(&self, front: &Front, strip: usize) -> [T; WIDTH] {
+        let numbers = &front.numbers.as_chunks::<WIDTH>().0[strip];
+        let mut own = [T::constant(self.token, 0.0); WIDTH];
+        for row in 0..WIDTH {
+            if numbers[row] != NOTHING {
+                own[row] = T::load(self.token, self.values[numbers[row] as usize * self.stride + self.part]);
+            }
+        }
+        own
+    }
+
+    #[inline(always)]
+    fn set(&mut self, front: &Front, strip: usize, own: [T; WIDTH]) {
+        let numbers = &front.numbers.as_chunks::<WIDTH>().0[strip];
+        for row in 0..WIDTH {
+            if numbers[row] != NOTHING {
+                self.values[numbers[row] as usize * self.stride + self.part] = own[row].raw();
+            }
+        }
+    }
+}
