@@ -13,18 +13,42 @@ pub const TILE: usize = WIDTH * WIDTH;
 #[inline(always)]
 pub fn subtract<T: Real>(token: T::Token, rows: &[f64], columns: &[f64], tile: &mut [f64]) {
     let (rows, tile) = (T::view(token, rows), T::view_mut(token, tile));
+    // Eight sums in flight hide the latency of additions; of two registers of rows each column is looked up once for both.
+    if tile.len() == WIDTH {
+        subtract_part::<T, 1, 8>(token, rows, columns, tile, 0, 0);
+    } else {
+        for part in (0..tile.len() / WIDTH).step_by(2) {
+            subtract_part::<T, 2, 4>(token, rows, columns, tile, part, 0);
+            subtract_part::<T, 2, 4>(token, rows, columns, tile, part, 4);
+        }
+    }
+}
+
+/// The same for some registers of rows and some columns of the tile.
+#[inline(always)]
+fn subtract_part<T: Real, const PARTS: usize, const COLUMNS: usize>(
+    token: T::Token,
+    rows: &[T::Raw],
+    columns: &[f64],
+    tile: &mut [T::Raw],
+    part: usize,
+    first: usize,
+) {
     let stride = tile.len() / WIDTH;
-    for part in 0..stride {
-        let mut sums = [T::constant(token, 0.0); WIDTH];
-        for (row, column) in rows.chunks_exact(stride).zip(columns.as_chunks::<WIDTH>().0) {
-            let row = T::load(token, row[part]);
-            for c in 0..WIDTH {
-                sums[c] += row * column[c];
+    let mut sums = [[T::constant(token, 0.0); COLUMNS]; PARTS];
+    for (row, column) in rows.chunks_exact(stride).zip(columns.as_chunks::<WIDTH>().0) {
+        let row = &row[part..part + PARTS];
+        let column = &column[first..first + COLUMNS];
+        for p in 0..PARTS {
+            for c in 0..COLUMNS {
+                sums[p][c] += T::load(token, row[p]) * column[c];
             }
         }
-        for c in 0..WIDTH {
-            let at = c * stride + part;
-            tile[at] = (T::load(token, tile[at]) - sums[c]).raw();
+    }
+    for p in 0..PARTS {
+        for c in 0..COLUMNS {
+            let at = (first + c) * stride + part + p;
+            tile[at] = (T::load(token, tile[at]) - sums[p][c]).raw();
         }
     }
 }

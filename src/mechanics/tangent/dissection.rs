@@ -4,7 +4,7 @@
 use crate::Vec3;
 
 /// Groups up to this size are eliminated as one.
-const LEAF: usize = 12;
+const LEAF: usize = 24;
 
 /// Where along an axis a part of a mesh may be cut, as shares of its atoms.
 const CUTS: [f64; 5] = [0.5, 0.45, 0.55, 0.4, 0.6];

@@ -90,13 +90,21 @@ impl Parts<'_> {
 
     /// Adds the update of a front whose parent this one is.
     fn add(&mut self, child: &Front, update: &[f64]) {
-        for (column, &to) in child.lifts.iter().enumerate().filter(|(_, to)| **to != NOTHING) {
-            for strip in column / WIDTH..child.strips[1] {
-                let values = &update[packed(strip) + column * WIDTH..][..WIDTH];
-                for (row, value) in (strip * WIDTH..).zip(values) {
-                    if row >= column && child.lifts[row] != NOTHING {
-                        *self.at(child.lifts[row] as usize, to as usize) += value;
-                    }
+        let own = self.front.strips[0];
+        let end = child.lifts.iter().rposition(|to| *to != NOTHING).map_or(0, |last| last + 1);
+        let (lifts, inside) = (&child.lifts[..end], child.lifts.partition_point(|to| (*to as usize) < own * WIDTH));
+        for (row, &to) in lifts.iter().enumerate() {
+            let (strip, within) = (to as usize / WIDTH, to as usize % WIDTH);
+            let values = update[packed(row / WIDTH) + row % WIDTH..].iter().step_by(WIDTH);
+            let mut known = lifts.iter().zip(values).take(row + 1);
+            let panel = &mut self.panel[self.front.strip(strip) + within..];
+            for (&column, value) in known.by_ref().take(inside) {
+                panel[column as usize * WIDTH] += value;
+            }
+            if strip >= own {
+                let update = &mut self.update[packed(strip - own) + within..];
+                for (&column, value) in known {
+                    update[(column as usize - own * WIDTH) * WIDTH] += value;
                 }
             }
         }
