@@ -22,5 +22,5 @@ pub use parse::{Measured, UnitError, parse, parse_as, parse_unit};
 pub(crate) use quantity::Written;
 pub use quantity::{
     Acceleration, Angle, Drag, Energy, Force, Frequency, Length, LineStiffness, Mass, Quantity, Speed, Stress,
-    SurfaceDensity, SurfaceDrag, Time, Volume,
+    SurfaceDensity, SurfaceDrag, Time, Viscosity, Volume,
 };

@@ -187,6 +187,10 @@ pub enum Mesh {
         /// Its length along the axis.
         #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
         length: Length,
+        /// The radius halfway, where it bulges or has a waist: its outline is the arc of a circle. `radius` when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("x-exclusive-minimum" = 0, "x-minimum" = 1e-3, "x-maximum" = 1e6))]
+        middle: Option<Length>,
         /// Rings around the axis; a layer has 6 wedges in the first, 18 in the second, 30 in the third.
         #[schemars(range(min = 1, max = 100))]
         rings: u32,

@@ -40,7 +40,7 @@ pub struct Mechanics {
     /// An elastic material that fills the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub solid: Option<Solid>,
-    /// The surface is viscous.
+    /// The surface is viscous, or what fills the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<Viscosity>,
     /// The cell never changes its shape: a tool, or a bead.
@@ -50,6 +50,15 @@ pub struct Mechanics {
     pub barrier: Barrier,
     /// What happens to the enclosed volume.
     pub volume: VolumeControl,
+}
+
+impl Mechanics {
+    /// Whether anything is viscous.
+    pub(super) fn is_viscous(&self) -> bool {
+        let regions = self.solid.iter().flat_map(|solid| &solid.regions);
+        self.viscosity.is_some_and(Viscosity::is_any)
+            || regions.filter_map(|region| region.viscosity).any(|viscosity| viscosity.value() > 0.0)
+    }
 }
 
 /// Shape memory: the force on an atom is a stiffness times its distance from the target that its neighbours define.

@@ -50,6 +50,7 @@ mod population;
 mod pressure;
 mod pseudopods;
 mod read;
+mod region;
 mod rigid;
 mod scene;
 mod schema;
@@ -150,7 +151,7 @@ impl Experiment {
     /// What is recorded of cells that not all runs have.
     pub(crate) fn on_demand(&self) -> OnDemand {
         let fibres = self.cells.values().any(|cell| cell.fibre_budget() > 0);
-        let viscosity = self.cells.values().any(|cell| cell.mechanics.viscosity.is_some_and(Viscosity::is_any));
+        let viscosity = self.cells.values().any(|cell| cell.mechanics.is_viscous());
         OnDemand { tractions: self.keeps_tractions(), fibres, viscosity }
     }
 

@@ -1,6 +1,7 @@
 //! Filled bodies of an elastic material. What documents say of them, and the force that it means.
 
 use super::compile::{Builder, Inside};
+use super::region::{self, Region};
 use crate::geometry::solid::pairs_within;
 use crate::mechanics::Force;
 use crate::mechanics::solid;
@@ -32,6 +33,9 @@ pub struct Solid {
     #[serde(default)]
     #[schemars(extend("x-minimum" = 0))]
     pub penalty: Stress,
+    /// Parts of the body that are of another material, such as a nucleus.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<Region>,
 }
 
 /// The law of a material's energy; all have the same response at small strain.
@@ -116,10 +120,6 @@ impl Solid {
             return to.fault("mechanics.solid", "nothing to fill", found, help);
         };
         let rest = &to.rest().positions;
-        let young = self.young.value();
-        // E = 3µ where volumes are kept.
-        let shear = young / (2.0 * (1.0 + self.poisson.unwrap_or(0.5)));
-        let bulk = self.poisson.map(|poisson| young / (3.0 * (1.0 - 2.0 * poisson)));
         let law = match self.law {
             Material::Linear => SolidLaw::Linear,
             Material::Corotational => SolidLaw::Corotational,
@@ -132,14 +132,28 @@ impl Solid {
             (Some(VolumeOver::Atoms), _) => Some(Parts::Atoms),
             (Some(VolumeOver::Tetrahedra) | None, _) => None,
         };
-        let over = |law, parts| Dilation::new(rest, &inside.tetrahedra, &inside.cells, law, parts);
-        let dilation = bulk.zip(parts).map(|(bulk, parts)| over(DilationLaw::Bulk(bulk), parts));
-        let lame = if parts.is_some() { 0.0 } else { bulk.unwrap_or(0.0) } - 2.0 / 3.0 * shear;
-        let elastic = Elastic { law, shear, lame };
-        to.forces.push(Force::Solid(solid::Solid::new(rest, &inside.tetrahedra, elastic, dilation)));
+        let of_cells = region::of_cells(&self.regions, inside, &to.plain().positions);
+        region::check(&self.regions, &of_cells, to);
+        let of_regions = self.regions.iter().zip(0..).map(|(region, number)| (Some(number), region.young.value()));
+        for (region, young) in [(None, self.young.value())].into_iter().chain(of_regions) {
+            let Inside { tetrahedra, cells, .. } = region::part(inside, &of_cells, region);
+            if tetrahedra.is_empty() {
+                continue;
+            }
+            // E = 3µ where volumes are kept.
+            let shear = young / (2.0 * (1.0 + self.poisson.unwrap_or(0.5)));
+            let bulk = self.poisson.map(|poisson| young / (3.0 * (1.0 - 2.0 * poisson)));
+            let dilation = bulk
+                .zip(parts)
+                .map(|(bulk, parts)| Dilation::new(rest, &tetrahedra, &cells, DilationLaw::Bulk(bulk), parts));
+            let lame = if parts.is_some() { 0.0 } else { bulk.unwrap_or(0.0) } - 2.0 / 3.0 * shear;
+            let elastic = Elastic { law, shear, lame };
+            to.forces.push(Force::Solid(solid::Solid::new(rest, &tetrahedra, elastic, dilation)));
+        }
         if self.penalty.value() > 0.0 {
             let none = Elastic { law: SolidLaw::Linear, shear: 0.0, lame: 0.0 };
-            let penalty = over(DilationLaw::Penalty(self.penalty.value()), Parts::Tetrahedra);
+            let law = DilationLaw::Penalty(self.penalty.value());
+            let penalty = Dilation::new(rest, &inside.tetrahedra, &inside.cells, law, Parts::Tetrahedra);
             to.forces.push(Force::Solid(solid::Solid::new(rest, &[], none, Some(penalty))));
         }
     }

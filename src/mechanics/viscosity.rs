@@ -3,15 +3,18 @@
 //! On a facet whose atoms move at v the rate of deformation is constant, D = sym(P Σ v_i ⊗ g_i), with P the projection on the facet and g_i the
 //! gradient of the weight of an atom on it. The power that is lost is that of Boussinesq and Scriven, `A (κ tr²D + 2 η |dev D|²)`, and the force
 //! −V(x) v half of its gradient by v. V is symmetric, has no negative eigenvalue and nothing to say to rigid motion, so that these forces have
-//! neither sum nor torque. A drop with such a surface lets its shapes go at the rates of eq. (viscosity.6), which tests hold. Sources: Scriven 1960; Evans & Hochmuth 1976.
+//! neither sum nor torque. What fills a body may be viscous, too, see [`inside`]. A drop with such a surface lets its shapes go at the rates of eq. (viscosity.6), which tests hold. Sources: Scriven 1960; Evans & Hochmuth 1976.
+
+pub mod inside;
 
 use super::lanes::{BlockWork, Real, V3, Vectors, VectorsMut, dispatch};
 use super::tangent::matrix::Blocks;
+use inside::Inside;
 
 /// A facet's smallest doubled area, µm²: below it the plane in which it resists is not defined.
 const NO_AREA: f64 = 1e-100;
 
-/// The viscosity of a membrane, ready for all cells that share its mesh.
+/// The viscosity of a membrane and of what it encloses, ready for all cells that share its mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Viscosity {
     facets: Vec<[u32; 3]>,
@@ -19,6 +22,8 @@ pub struct Viscosity {
     shear: f64,
     /// Surface viscosity κ against dilation, pN·s/µm.
     area: f64,
+    /// What fills the body.
+    inside: Option<Inside>,
 }
 
 /// A facet as its viscosity sees it.
@@ -53,12 +58,25 @@ impl<T: Real> Seen<T> {
 impl Viscosity {
     /// Of a membrane with these facets: surface viscosities against shear and against dilation, pN·s/µm; each may be 0.
     pub fn new(facets: &[[u32; 3]], shear: f64, area: f64) -> Self {
-        Self { facets: facets.to_vec(), shear, area }
+        let is_any = shear > 0.0 || area > 0.0;
+        Self { facets: if is_any { facets.to_vec() } else { Vec::new() }, shear, area, inside: None }
     }
 
-    /// Its facets.
-    pub fn facets(&self) -> &[[u32; 3]] {
-        &self.facets
+    /// The same, filled with what is viscous.
+    pub fn with_inside(self, inside: Inside) -> Self {
+        Self { inside: Some(inside), ..self }
+    }
+
+    /// What fills the body.
+    pub fn inside(&self) -> Option<&Inside> {
+        self.inside.as_ref()
+    }
+
+    /// The pairs of atoms that it ties, some more than once.
+    pub fn pairs(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let of_facets = self.facets.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let of_tetrahedra = self.inside.iter().flat_map(|inside| inside.tetrahedra());
+        of_facets.chain(of_tetrahedra.flat_map(|&[a, b, c, d]| [[a, b], [b, c], [c, a], [a, d], [b, d], [c, d]]))
     }
 
     /// Adds `factor` times V(x) v to `f`, where atoms at `x` (µm) move by `v`, for a block of `lanes` cells: pN for v in µm/s and a factor of 1.
@@ -85,6 +103,9 @@ impl Viscosity {
                     blocks.add(facet[i], facet[j], rows);
                 }
             }
+        }
+        if let Some(inside) = &self.inside {
+            inside.add_blocks(factor, x, blocks);
         }
     }
 }
@@ -119,7 +140,7 @@ impl BlockWork for Apply<'_> {
     type Output = ();
     #[inline(always)]
     fn run<T: Real>(self, token: T::Token, stride: usize) {
-        let Self { viscosity: &Viscosity { ref facets, shear, area }, factor, x, v, f } = self;
+        let Self { viscosity: &Viscosity { ref facets, shear, area, ref inside }, factor, x, v, f } = self;
         let (x, v, f) = (T::view(token, x), T::view(token, v), T::view_mut(token, f));
         for part in 0..stride {
             let x = Vectors::<T>::new(token, x, stride, part);
@@ -137,6 +158,9 @@ impl BlockWork for Apply<'_> {
                     let stress = (seen.within(turned) + drawn).times(T::constant(token, shear)) + g.times(dilation);
                     f.add(*atom as usize, stress.times(seen.area * factor));
                 }
+            }
+            if let Some(inside) = inside {
+                inside.add_to(factor, &x, &v, &mut f);
             }
         }
     }

@@ -39,6 +39,8 @@ pub type Mass = Quantity<-1, 2, 1, 0>;
 pub type Volume = Quantity<3, 0, 0, 0>;
 /// A stress or a modulus, pN/µm² = Pa.
 pub type Stress = Quantity<-2, 0, 1, 0>;
+/// A viscosity, Pa·s = pN·s/µm².
+pub type Viscosity = Quantity<-2, 1, 1, 0>;
 /// How many there are on an area, 1/µm².
 pub type SurfaceDensity = Quantity<-2, 0, 0, 0>;
 /// A rate, 1/s.

@@ -45,6 +45,7 @@ mod step;
 mod tractions;
 mod virtual_adhesives;
 mod viscosity;
+mod viscous_bodies;
 mod walk;
 
 #[path = "../support/contact_scenes.rs"]

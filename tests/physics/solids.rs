@@ -114,7 +114,7 @@ fn a_body_whose_surface_is_held_in_a_deformation_comes_to_rest_in_it() {
 /// A rod that was drawn out and bent relaxes with second order in the step.
 #[test]
 fn the_step_of_a_filled_body_is_of_second_order() {
-    let body = rod(1.0, 4.0, 1, 4).expect("a sound body");
+    let body = rod([1.0, 1.0], 4.0, 1, 4).expect("a sound body");
     for law in LAWS {
         let parts = if law == SolidLaw::NeoHookean { Some(Parts::Cells) } else { None };
         let start: Vec<Vec3> = body

@@ -36,8 +36,20 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
             let made = solid::block(size.map(|x| x.value()), *divisions);
             filled(sound(document, name, made, faults)?)
         }
-        Mesh::Rod { radius, length, rings, layers } => {
-            let made = solid::rod(radius.value(), length.value(), *rings, *layers);
+        Mesh::Rod { radius, length, middle, rings, layers } => {
+            let radii = [radius.value(), middle.unwrap_or(*radius).value()];
+            if (radii[1] - radii[0]).abs() > 0.5 * length.value() {
+                let key = format!("cells.{name}.mesh.middle");
+                let message = format!(
+                    "no arc of a circle goes from {radius} at the ends to {} in the middle",
+                    middle.unwrap_or(*radius)
+                );
+                let help = "let it be at most half of the length away from the radius, or take a longer rod";
+                let location = document.location(&key, "too far from the radius");
+                faults.push(location.into_iter().fold(Fault::new(message).help(help), Fault::at));
+                return None;
+            }
+            let made = solid::rod(radii, length.value(), *rings, *layers);
             filled(sound(document, name, made, faults)?)
         }
         Mesh::File { path, unit, component, filled: is_filled } => {

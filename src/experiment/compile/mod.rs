@@ -177,6 +177,8 @@ fn compile_kind(
     let Builder { mut forces, drawn, .. } = builder;
     forces.extend(from_file.loads.into_iter().map(Force::Load));
     let atoms = surface.turned.positions.len() as f64;
+    let viscosity = cell.mechanics.viscosity.unwrap_or_default();
+    let viscosity = viscosity.compiled(&surface.plain, surface.inside.as_ref(), cell.mechanics.solid.as_ref());
     let mut kind = Kind::new(name, surface.turned, forces);
     kind.tetrahedra = surface.inside.map_or(Vec::new(), |inside| inside.tetrahedra);
     kind.drawn_links = drawn;
@@ -185,7 +187,7 @@ fn compile_kind(
     far::check(document, &key, cell, &kind.rest, kind.closed, faults);
     (kind.held, kind.moved) = held::held(document, &key, cell, &kind.rest, (&from_file.held, from_file.moved), faults);
     kind.rigid = cell.mechanics.rigid.map(|rigid| rigid.compiled());
-    kind.viscosity = cell.mechanics.viscosity.and_then(|viscosity| viscosity.compiled(&kind.rest.facets));
+    kind.viscosity = viscosity;
     kind.volume = volume_rule(document, &key, cell, &kind, faults);
     kind.behaviours = cell.motility.behaviours();
     let pods = pseudopods::pseudopods(document, &key, cell, &kind, faults);

@@ -1,7 +1,7 @@
 //! What must hold within a type of cells.
 
 use super::Check;
-use crate::experiment::{CellType, ContactModel, Course, Linked, Method, Placement, Selection, Viscosity, VolumeRule};
+use crate::experiment::{CellType, ContactModel, Course, Linked, Method, Placement, Selection, VolumeRule};
 use std::collections::HashSet;
 
 impl Check<'_> {
@@ -39,10 +39,16 @@ impl Check<'_> {
 
     /// Only the matrix of the implicit step knows what is viscous, and only contacts that move cells by it.
     pub(super) fn viscosity(&mut self, path: &str, cell: &CellType) {
-        if !cell.mechanics.viscosity.is_some_and(Viscosity::is_any) {
+        if !cell.mechanics.is_viscous() {
             return;
         }
         let (experiment, key) = (&self.document.experiment, format!("{path}.mechanics.viscosity"));
+        let inside = cell.mechanics.viscosity.map_or(0.0, |viscosity| viscosity.inside.value());
+        if inside > 0.0 && !cell.mesh.is_filled() {
+            let message = format!("`{key}.inside` is of what fills a body, and the mesh is a surface");
+            let help = "take shape = \"block\" or \"rod\", or a PML file with `filled = true`; or give the surface `shear` and `area`";
+            self.fault(&format!("{key}.inside"), "nothing to fill", message, help);
+        }
         if experiment.run.integrator.method != Method::Implicit {
             let message = format!("`{key}` needs the implicit scheme");
             self.fault("run.integrator.method", "knows no viscosity", message, "remove run.integrator.method");

@@ -33,7 +33,7 @@ fn a_block_is_filled_by_five_tetrahedra_a_box_that_are_mirrored_from_box_to_box(
 #[test]
 fn a_rod_is_filled_and_its_volume_is_that_of_its_polygon() {
     for rings in 1..5 {
-        let solid = rod(2.0, 5.0, rings, 3).expect("a sound body");
+        let solid = rod([2.0, 2.0], 5.0, rings, 3).expect("a sound body");
         holds_together(&solid);
         let corners = f64::from(6 * rings);
         let expected = 5.0 * 0.5 * corners * 4.0 * (std::f64::consts::TAU / corners).sin();

@@ -155,7 +155,7 @@ fn moduli_are_those_of_small_strain_whatever_volumes_are_measured_over() {
     let (young, poisson, strain) = (3.0, 0.3, 1e-4);
     let shear = young / (2.0 * (1.0 + poisson));
     let bulk = young / (3.0 * (1.0 - 2.0 * poisson));
-    let body = rod(1.0, 3.0, 2, 3).expect("a sound body");
+    let body = rod([1.0, 1.0], 3.0, 2, 3).expect("a sound body");
     let rest = &body.surface.positions;
     let stretched: Vec<Vec3> = rest
         .iter()

@@ -50,7 +50,7 @@ pub struct Scales<'a> {
     pub elastic: &'a [f64],
     /// One factor an atom and axis, 0 where held; empty when nothing is held.
     pub held: &'a [f64],
-    /// Viscosity of the membrane, and one over the step, 1/s.
+    /// Viscosity of the membrane and of the inside, and one over the step, 1/s.
     pub viscous: Option<(&'a Viscosity, f64)>,
 }
 
@@ -59,9 +59,9 @@ impl Tangent {
     /// lanes.
     pub fn new(forces: &[Force], viscosity: Option<&Viscosity>, rest: &[Vec3], lanes: usize) -> Self {
         let mut whole = StiffnessMatrix::new(rest.len());
-        for &[a, b, c] in viscosity.into_iter().flat_map(Viscosity::facets) {
+        for [i, j] in viscosity.into_iter().flat_map(Viscosity::pairs) {
             // Only where entries are counts here.
-            [(a, b), (b, c), (c, a)].into_iter().for_each(|(i, j)| whole.add_spring(i as usize, j as usize, 1.0));
+            whole.add_spring(i as usize, j as usize, 1.0);
         }
         let mut constant = [StiffnessMatrix::new(rest.len()), StiffnessMatrix::new(rest.len())];
         for force in forces {
