@@ -178,6 +178,9 @@ pub enum Mesh {
         /// Parts that the edges are divided into.
         #[schemars(inner(range(min = 1, max = 200)))]
         divisions: [u32; 3],
+        /// Where its parts are finest; all alike when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        finest: Option<Finest>,
     },
     /// A filled cylinder about the z axis, centred, of rings of wedges that are cut into three tetrahedra each.
     Rod {
@@ -213,6 +216,17 @@ pub enum Mesh {
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         filled: bool,
     },
+}
+
+/// Where the parts of a block are finest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Finest {
+    /// A point within it.
+    pub at: [Length; 3],
+    /// How many times as long parts are at the end that is farthest; between they grow with the distance along the axis.
+    #[schemars(range(min = 1, max = 100))]
+    pub ratio: f64,
 }
 
 /// Whether corners are not rounded.

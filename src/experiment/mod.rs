@@ -65,7 +65,7 @@ pub use crate::analysis::measures::{self, Measure, MeasureKind};
 pub use crate::values::{Axis, Colour, Course, LengthUnit, OneOrMany, When};
 pub use along::Checked;
 pub use as_lml::loads_as_lml;
-pub use cells::{CellType, Mesh, Orientation};
+pub use cells::{CellType, Finest, Mesh, Orientation};
 pub use chemistry::{Chemistry, ChemistryLink, Scheme};
 pub use compile::{
     Compiled, Prepared, PushedApart, Schedule, Settling, Size, compile, load_profile, notices, prepare, settle_start,
@@ -89,6 +89,7 @@ pub use rigid::{Rigid, Trap};
 pub use scene::{Environment, Equilibrium, Integrator, Method, Output, Plane, Run};
 pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
+pub use region::Region;
 pub use solid::{Material, Neighbours, Solid, VolumeOver};
 pub use viscosity::Viscosity;
 pub use volume::{VolumeControl, VolumeRule};

@@ -32,8 +32,17 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
         Mesh::Lathe { profile, rounding, around } => {
             lathe::surface(document, &format!("cells.{name}.mesh"), (profile, *rounding, *around), faults)?
         }
-        Mesh::Block { size, divisions } => {
-            let made = solid::block(size.map(|x| x.value()), *divisions);
+        Mesh::Block { size, divisions, finest } => {
+            let size = size.map(|x| x.value());
+            let (at, ratio) = finest.map_or(([0.0; 3], 1.0), |finest| (finest.at.map(|x| x.value()), finest.ratio));
+            if (0..3).any(|axis| at[axis].abs() > 0.5 * size[axis]) {
+                let location = document.location(&format!("cells.{name}.mesh.finest.at"), "not in the block");
+                let message = format!("the parts of `cells.{name}.mesh` are finest at a point that is not within it");
+                let help = "the block is centred on [0, 0, 0]; its surface has points at half of its size";
+                faults.push(location.into_iter().fold(Fault::new(message).help(help), Fault::at));
+                return None;
+            }
+            let made = solid::graded_block(size, *divisions, at, ratio);
             filled(sound(document, name, made, faults)?)
         }
         Mesh::Rod { radius, length, middle, rings, layers } => {
