@@ -29,6 +29,7 @@ pub fn loads_as_lml(model: &Model, cells: &[(usize, u32)]) -> (Loads, Vec<&'stat
                 Force::Springs(_) => untold.push("springs and links"),
                 Force::Fibres(_) => untold.push("fibres"),
                 Force::Trap(_) => untold.push("traps"),
+                Force::Plate(_) => untold.push("flexible plates"),
                 Force::Pressure(_) => untold.push("pressures along normals"),
                 _ => {}
             }

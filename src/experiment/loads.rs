@@ -2,6 +2,7 @@
 
 use super::compile::{Builder, course, unit};
 use super::moved::Moved;
+use super::plate::Plate;
 use super::pressure::Pressure;
 use super::rigid::Trap;
 use super::selection::{Linked, Selection};
@@ -34,6 +35,9 @@ pub struct Applied {
     /// Springs that draw the bodies of a rigid type to points.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub traps: Vec<Trap>,
+    /// Flexible plates that atoms are bonded to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plates: Vec<Plate>,
     /// A file of loads in LML, relative to the document, that act and hold besides. Its atoms are those of the PML file that the mesh is of, or the
     /// atoms of the mesh by number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -206,6 +210,10 @@ impl Applied {
             to.forces.push(mechanics::Force::Pressure(force));
         }
         to.forces.extend(self.traps.iter().map(|trap| mechanics::Force::Trap(trap.compiled())));
+        for (i, plate) in self.plates.iter().enumerate() {
+            let force = plate.compiled(&format!("plates[{i}]"), to);
+            to.forces.push(mechanics::Force::Plate(force));
+        }
         for (i, fibre) in self.fibres.iter().enumerate() {
             let pairs = to.pairs(&format!("fibres[{i}]"), &fibre.linked);
             to.drawn.extend(&pairs);

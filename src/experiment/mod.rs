@@ -46,6 +46,7 @@ mod motility;
 mod moved;
 mod pictures;
 mod placement;
+mod plate;
 mod population;
 mod pressure;
 mod pseudopods;
@@ -82,19 +83,22 @@ pub use motility::{Attraction, Brownian, Motility, Space};
 pub use moved::{Moved, Rotation};
 pub use pictures::{FieldLine, MeasureCurve, Picture, Plot, PlotKind, PlotTable, View};
 pub use placement::Placement;
+pub use plate::Plate;
 pub use population::{Added, Removed};
 pub use pressure::{Beyond, Pressure, Profile};
 pub use pseudopods::{ContactInhibition, InhibitedBy, PodFibres, Pseudopods};
+pub use region::Region;
 pub use rigid::{Rigid, Trap};
 pub use scene::{Environment, Equilibrium, Integrator, Method, Output, Plane, Run};
 pub use schema::{schema, schema_of};
 pub use selection::{Cap, CapExtent, LinkPattern, Linked, Selection};
-pub use region::Region;
 pub use solid::{Material, Neighbours, Solid, VolumeOver};
 pub use viscosity::Viscosity;
 pub use volume::{VolumeControl, VolumeRule};
 
-use crate::recorded::{Motion, NAMED, OnDemand, names_by_type, series_of_moved, series_of_pressures, series_of_traps};
+use crate::recorded::{
+    Motion, NAMED, OnDemand, names_by_type, series_of_moved, series_of_plates, series_of_pressures, series_of_traps,
+};
 use crate::units::Time;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
@@ -163,7 +167,8 @@ impl Experiment {
 
     /// Whether a series is of what is moved, of a trap or of a pressure, or may be of a load in a file.
     pub(super) fn is_of_what_is_moved(&self, series: &str) -> bool {
-        let own = [self.series_of_moved(), self.series_of_traps(), self.series_of_pressures()].concat();
+        let own = [self.series_of_moved(), self.series_of_traps(), self.series_of_plates(), self.series_of_pressures()]
+            .concat();
         self.may_be_of_load_file(series) || own.iter().any(|name| name == series)
     }
 
@@ -191,6 +196,14 @@ impl Experiment {
         let types: Vec<(&str, Vec<String>)> =
             self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
         series_of_traps(&types)
+    }
+
+    /// Names of the series of flexible plates.
+    pub(super) fn series_of_plates(&self) -> Vec<String> {
+        let own = |cell: &CellType| cell.applied.plates.iter().map(|plate| plate.name.clone()).collect();
+        let types: Vec<(&str, Vec<String>)> =
+            self.cells.iter().map(|(kind, cell)| (kind.as_str(), own(cell))).collect();
+        series_of_plates(&types).into_iter().map(|(name, _)| name).collect()
     }
 
     /// Names of the series of pressures.

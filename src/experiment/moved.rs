@@ -123,7 +123,7 @@ impl Check<'_> {
         }
     }
 
-    fn begins_at_zero(&mut self, key: &str, points: Vec<(f64, f64)>, unit: &str) {
+    pub(in crate::experiment) fn begins_at_zero(&mut self, key: &str, points: Vec<(f64, f64)>, unit: &str) {
         self.course(key, &points);
         let begins = points.first().map_or(0.0, |_| course(points.clone()).at(0.0));
         if begins != 0.0 {

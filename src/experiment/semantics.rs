@@ -14,6 +14,7 @@ mod cells;
 mod chemistry;
 mod contact;
 mod measures;
+mod plates;
 mod pseudopods;
 mod rigid;
 mod scene;
@@ -42,6 +43,7 @@ pub(super) fn check(document: &Document) -> (Vec<Fault>, Vec<Late>) {
         check.moved_by_scheme(&path, cell);
         check.rigid(&path, cell);
         check.viscosity(&path, cell);
+        check.plates(&path, cell);
         check.filling(&path, cell);
         if let Some(turn) = &cell.orientation {
             check.direction(&format!("{path}.orientation.axis"), turn.axis);
@@ -136,6 +138,7 @@ impl Check<'_> {
             experiment.series_of_loads(),
             experiment.series_of_moved(),
             experiment.series_of_traps(),
+            experiment.series_of_plates(),
             pressures,
         ]
         .concat();

@@ -22,6 +22,7 @@ pub mod membrane;
 pub mod modes;
 pub mod moved;
 pub mod ordering;
+pub mod plate;
 pub mod pressure;
 pub mod restoring;
 pub mod rigid;
@@ -78,6 +79,8 @@ pub enum Force {
     Attraction(attraction::Attraction),
     /// A spring from the centre of a rigid body to a point.
     Trap(trap::Trap),
+    /// A flexible plate to which atoms are bonded.
+    Plate(plate::Plate),
 }
 
 /// The kinds of forces that chemistry or a program may set, in the order in which messages list them.
@@ -91,14 +94,15 @@ impl Force {
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => true,
             Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Barrier(_) => true,
             Self::Load(_) | Self::Fibres(_) | Self::Gravity(_) | Self::Attraction(_) => false,
-            Self::Pressure(_) | Self::Trap(_) => false,
+            Self::Pressure(_) | Self::Trap(_) | Self::Plate(_) => false,
         }
     }
 
     /// Whether something outside of the cell exerts it: what a cell does to itself has neither sum nor torque.
     pub fn is_outer(&self) -> bool {
         match self {
-            Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Attraction(_) | Self::Trap(_) => true,
+            Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Attraction(_) => true,
+            Self::Trap(_) | Self::Plate(_) => true,
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) | Self::Ordering(_) => false,
             Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Barrier(_) | Self::Fibres(_) => false,
         }
@@ -121,6 +125,7 @@ impl Force {
             Self::Pressure(force) => Some(&force.pressure),
             Self::Fibres(force) => Some(&force.activation),
             Self::Trap(force) => force.course(),
+            Self::Plate(force) => Some(&force.displacement),
             _ => None,
         }
     }
@@ -153,6 +158,7 @@ impl Force {
             Self::Barrier(force) => force.add_stiffness(matrix),
             Self::Fibres(force) => force.add_stiffness(matrix),
             Self::Attraction(force) => force.add_stiffness(matrix),
+            Self::Plate(force) => force.add_stiffness(matrix),
             // What a trap does to a body as a whole is in the step beside K, eq. (rigid.4).
             Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Trap(_) => {}
         }
@@ -161,7 +167,7 @@ impl Force {
     /// Whether it has a tangent stiffness of its own, eq. (step.10).
     pub fn has_tangent(&self) -> bool {
         match self {
-            Self::Membrane(_) | Self::Bending(_) | Self::Springs(_) | Self::Solid(_) => true,
+            Self::Membrane(_) | Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Plate(_) => true,
             Self::Tension(force) => force.has_tangent(),
             _ => false,
         }
@@ -175,6 +181,7 @@ impl Force {
             Self::Bending(force) => force.add_tangent(x, blocks),
             Self::Springs(force) => force.add_tangent(x, blocks),
             Self::Solid(force) => force.add_tangent(x, blocks, whole),
+            Self::Plate(force) => force.add_tangent(x, blocks),
             Self::Tension(force) if force.has_tangent() => force.add_tangent(x, blocks),
             _ => {}
         }
@@ -185,6 +192,7 @@ impl Force {
         match self {
             Self::Fibres(force) => Some(force.largest_stiffness()),
             Self::Attraction(force) => Some(force.stiffness),
+            Self::Plate(force) => Some(force.largest_stiffness()),
             Self::Load(_) | Self::Pressure(_) | Self::Gravity(_) | Self::Trap(_) => Some(0.0),
             Self::ShapeMemory(_) | Self::Angles(_) | Self::Membrane(_) | Self::Tension(_) => None,
             Self::Ordering(_) | Self::Bending(_) | Self::Springs(_) | Self::Solid(_) | Self::Barrier(_) => None,
@@ -199,6 +207,7 @@ impl Force {
             Self::Fibres(force) => force.activation(context.time, set),
             Self::Gravity(_) => [context.mass; LANES],
             Self::Trap(force) => [force.gone(context.time); LANES],
+            Self::Plate(force) => [force.displacement.at(context.time); LANES],
             _ => [1.0; LANES],
         }
     }
@@ -223,6 +232,7 @@ impl Force {
             Self::Gravity(force) => force.add_forces(strength, x, f),
             Self::Attraction(force) => force.add_forces(x, f),
             Self::Trap(force) => force.add_forces(strength, x, f),
+            Self::Plate(force) => force.add_forces(strength, x, f),
         }
     }
 }

@@ -16,6 +16,9 @@ pub use balance::TractionRecord;
 pub use cell::{CELL, CellQuantity, CellRecord, FibresRecord, VISCOUS, Values};
 pub use contacts::{CONTACTS, ContactQuantity, ContactSeries, Recorded, Touch, contact_quantities};
 pub use fibres::FIBRES;
-pub use named::{Motion, NAMED, OUT_OF_BALANCE, names_by_type, series_of_moved, series_of_pressures, series_of_traps};
+pub use named::{
+    Motion, NAMED, OUT_OF_BALANCE, names_by_type, series_of_moved, series_of_plates, series_of_pressures,
+    series_of_traps,
+};
 pub use series::{DERIVED, OnDemand, cell_label, cell_quantities, cell_series, cell_unit, derived};
 pub use traction::TRACTION;

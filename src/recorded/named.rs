@@ -1,10 +1,10 @@
-//! Series of what types of cells have by names: loads, pressures, traps, and atoms that are moved on courses.
+//! Series of what types of cells have by names: loads, pressures, traps, flexible plates, and atoms that are moved on courses.
 
 /// The series of the scene that tells how far from equilibrium its cells are, where a run ends there, pN.
 pub const OUT_OF_BALANCE: &str = "out_of_balance";
 
 /// What the series of things with names begin with, and what a chart calls them: `load.NAME` and its like.
-pub const NAMED: [(&str, &str); 9] = [
+pub const NAMED: [(&str, &str); 11] = [
     ("load", "load"),
     ("pressure", "pressure"),
     ("displacement", "displacement"),
@@ -14,6 +14,8 @@ pub const NAMED: [(&str, &str); 9] = [
     ("trap_x", "force along x of trap"),
     ("trap_y", "force along y of trap"),
     ("trap_z", "force along z of trap"),
+    ("plate_force", "force of plate"),
+    ("plate_displacement", "displacement of plate"),
 ];
 
 /// The names of what types have, in their order: NAME, or TYPE.NAME where several types have one of this name. Of each type its name and the
@@ -52,6 +54,15 @@ pub fn series_of_moved(types: &[(&str, Vec<Motion>)]) -> Vec<(String, &'static s
 /// Names of the series of traps, in pN: `trap_x.NAME`, `trap_y.NAME` and `trap_z.NAME`. Of each type its name and the names of its traps.
 pub fn series_of_traps(types: &[(&str, Vec<String>)]) -> Vec<String> {
     let series = |name: String| ["x", "y", "z"].map(|axis| format!("trap_{axis}.{name}"));
+    names_by_type(types).into_iter().flat_map(series).collect()
+}
+
+/// Names and units of the series of flexible plates: `plate_force.NAME` and `plate_displacement.NAME`. Of each type its name and the names of its
+/// plates.
+pub fn series_of_plates(types: &[(&str, Vec<String>)]) -> Vec<(String, &'static str)> {
+    let series = |name: String| {
+        [("plate_force", "pN"), ("plate_displacement", "um")].map(|(word, unit)| (format!("{word}.{name}"), unit))
+    };
     names_by_type(types).into_iter().flat_map(series).collect()
 }
 

@@ -8,6 +8,7 @@ use crate::mechanics::fibres::Fibres;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::load::Load;
 use crate::mechanics::moved::Moved;
+use crate::mechanics::plate::Plate;
 use crate::mechanics::pressure::Pressure;
 use crate::mechanics::solid::Solid;
 use crate::mechanics::stiffness::StiffnessMatrix;
@@ -198,6 +199,14 @@ impl Kind {
     pub fn traps(&self) -> impl Iterator<Item = &Trap> {
         self.forces.iter().filter_map(|force| match force {
             Force::Trap(trap) => Some(trap),
+            _ => None,
+        })
+    }
+
+    /// Flexible plates that its cells are bonded to.
+    pub fn plates(&self) -> impl Iterator<Item = &Plate> {
+        self.forces.iter().filter_map(|force| match force {
+            Force::Plate(plate) => Some(plate),
             _ => None,
         })
     }

@@ -61,6 +61,7 @@ impl Kind {
         let creeps = |least: f64| measure_softest_ratio(self, LARGEST_RATIO) <= least;
         if self.viscosity.is_some()
             || self.has_filling()
+            || self.plates().next().is_some()
             || self.has_soft_shear()
             || is_alone && self.shears() && creeps(LEAST_TOLD_OF_TOUCHED)
         {

@@ -1,8 +1,8 @@
-//! What is recorded of atoms that are moved on courses, how far they are and the force that it takes, of pressures and of traps.
+//! What is recorded of atoms that are moved on courses, how far they are and the force that it takes, of pressures, traps and flexible plates.
 
 use crate::Vec3;
 use crate::mechanics::moved::Moved;
-use crate::recorded::{Motion, series_of_moved, series_of_pressures, series_of_traps};
+use crate::recorded::{Motion, series_of_moved, series_of_plates, series_of_pressures, series_of_traps};
 use crate::sim::{Kind, KindState, Model, State};
 
 /// Names and units of their series.
@@ -70,6 +70,26 @@ pub fn record_traps(model: &Model, state: &State, values: &mut Vec<f64>) {
             let centre = |cell: usize| now.cell(kind, cell).iter().sum::<Vec3>() / kind.atoms() as f64;
             let force: Vec3 = (0..now.cells()).map(|cell| trap.force(state.time, centre(cell))).sum();
             values.extend(force.iter());
+        }
+    }
+}
+
+/// Names and units of the series of flexible plates.
+pub fn names_of_plates(model: &Model) -> Vec<(String, String)> {
+    let own = |kind: &Kind| kind.plates().map(|plate| plate.name.clone()).collect();
+    let types: Vec<(&str, Vec<String>)> = model.kinds.iter().map(|kind| (kind.name.as_str(), own(kind))).collect();
+    series_of_plates(&types).into_iter().map(|(name, unit)| (name, unit.to_owned())).collect()
+}
+
+/// Adds the forces of plates on their cells at this instant, and how far they have gone; NaN where the cell is gone.
+pub fn record_plates(model: &Model, state: &State, values: &mut Vec<f64>) {
+    for (kind, now) in model.kinds.iter().zip(&state.kinds) {
+        for plate in kind.plates() {
+            let gone = match now.cells() {
+                0 => f64::NAN,
+                _ => plate.gone(state.time, |atom| now.position(kind, 0, atom as usize)),
+            };
+            values.extend([plate.force(state.time, gone), gone]);
         }
     }
 }

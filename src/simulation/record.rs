@@ -30,7 +30,12 @@ pub fn outline_of(model: &Model) -> Layout {
     let kind = |kind: &Kind| CellType { name: kind.name.clone(), atoms: kind.atoms() as u32, ..CellType::default() };
     let mut layout = Layout { types: model.kinds.iter().map(kind).collect(), ..Layout::default() };
     let loads = load_names(model).into_iter().map(|(name, _, _)| (name, "pN".to_owned()));
-    let named = [moved::names(model), moved::names_of_traps(model), moved::names_of_pressures(model)];
+    let named = [
+        moved::names(model),
+        moved::names_of_traps(model),
+        moved::names_of_plates(model),
+        moved::names_of_pressures(model),
+    ];
     layout.scene_series = loads.chain(named.into_iter().flatten()).collect();
     layout.scene_series.extend(model.rest.map(|_| (OUT_OF_BALANCE.to_owned(), "pN".to_owned())));
     layout.contacts = model.contact.is_some();
@@ -196,6 +201,7 @@ impl Recorder {
         frame.scene = self.loads.iter().filter_map(at).map(|load| load.force.at(state.time)).collect();
         moved::record(model, state, &mut frame.scene);
         moved::record_traps(model, state, &mut frame.scene);
+        moved::record_plates(model, state, &mut frame.scene);
         moved::record_pressures(model, state, &mut frame.scene);
         frame.scene.extend(model.rest.map(|_| state.out_of_balance.unwrap_or(f64::NAN)));
         if let Some(contact) = &model.contact {

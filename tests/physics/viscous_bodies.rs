@@ -212,3 +212,35 @@ fn halves_of_a_bar_creep_each_by_its_own_moduli() {
         assert!(((end - middle - 2.0) / stiff - 1.0).abs() < 3e-4, "{end} {middle} {stiff}");
     }
 }
+
+/// A bar between the ground and a flexible plate whose base goes 0.4 µm away: plate, bar and bonds are springs in a row, and the bar creeps as far as
+/// the plate lets it, with τ = 4ηA/3L over the stiffness of both.
+#[test]
+fn a_flexible_plate_reads_what_a_bar_bears() {
+    let text = "title = \"A bar on a plate\"\n[run]\nuntil = \"8 s\"\nintegrator = { step = \"0.02 s\" }\n[output]\nevery = \"1 s\"\n[cells.bar]\n\
+         mesh = { shape = \"block\", size = [\"2 um\", \"2 um\", \"8 um\"], divisions = [2, 2, 8] }\n\
+         placement = { at = [[\"3 um\", 0, \"20 um\"]] }\n\
+         fixed = [{ all = true, axes = [\"x\", \"y\"] }, { cap = { direction = [0, 0, -1], depth = \"0.1 um\" } }]\n\
+         [cells.bar.mechanics]\ndrag = \"1e-6 pN s/um\"\nviscosity = { inside = \"1 kPa s\" }\n\
+         solid = { law = \"linear\", young = \"1 kPa\", poisson = 0 }\n\
+         [[cells.bar.plates]]\nname = \"lever\"\ncap = { direction = [0, 0, 1], depth = \"0.1 um\" }\ndirection = [0, 0, 2]\n\
+         stiffness = \"300 pN/um\"\ndisplacement = [[\"0 s\", \"0 um\"], [\"0.02 s\", \"0.004 um\"]]\n";
+    let mut simulation = Simulation::from_text("bar.toml", text).unwrap_or_else(|error| panic!("{error}"));
+    let mut read = |time: f64| {
+        simulation.run_until(time).unwrap_or_else(|error| panic!("{error}"));
+        ["plate_force.lever", "plate_displacement.lever"].map(|name| simulation.series(name).unwrap()[0])
+    };
+    // E A/L and 4/3 η A/L of the bar, whose bonds are 100 times as stiff as what holds their atoms: 0.5 % of it.
+    let (plate, bar, dashpot, base) = (300.0, 500.0, 4.0 / 3.0 * 500.0, 0.004);
+    let gone = |time: f64| {
+        let end = base * plate / (plate + bar);
+        // The base is there after 0.02 s, in the mean after 0.01 s.
+        end * (1.0 - (-(plate + bar) / dashpot * (time - 0.01)).exp())
+    };
+    for time in [0.5, 8.0] {
+        let [force, displacement] = read(time);
+        println!("{time} s: {displacement} for {} µm, {force} pN", gone(time));
+        assert!((displacement / gone(time) - 1.0).abs() < 6e-3, "{displacement} {}", gone(time));
+        assert!((force - plate * (base - displacement)).abs() < 1e-9, "{force}");
+    }
+}

@@ -134,6 +134,13 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
             cells.map(|((cell, kind), first)| positions::centres(experiment, cell, kind, first)).collect()
         }
     };
+    for (kind, centres) in kinds.iter_mut().zip(&centres) {
+        for force in &mut kind.forces {
+            if let (Force::Plate(plate), Some(centre)) = (force, centres.first()) {
+                plate.at = centre.dot(&plate.direction);
+            }
+        }
+    }
     let integrator = steps::integrator(document, &mut kinds)?;
     let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach));
     if contact.as_ref().is_none_or(|contact| contact.law.moves_as_steps()) {

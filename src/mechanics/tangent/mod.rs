@@ -66,6 +66,9 @@ impl Tangent {
         let mut constant = [StiffnessMatrix::new(rest.len()), StiffnessMatrix::new(rest.len())];
         for force in forces {
             force.add_stiffness(rest, rest, &mut whole);
+            if let Force::Plate(plate) = force {
+                plate.add_pattern(&mut whole);
+            }
             if !force.has_tangent() {
                 force.add_stiffness(rest, rest, &mut constant[usize::from(!force.is_elastic())]);
             }
@@ -185,6 +188,11 @@ impl BlockWork for Make<'_> {
                 blocks.add_isotropic(i, j, T::constant(token, value));
             }
             blocks.scale(T::load(token, T::view(token, &elastic)[part]));
+            for force in forces {
+                if !force.is_elastic() {
+                    force.add_tangent(&x, &mut blocks, whole);
+                }
+            }
             for &(i, j, value) in &constant[1] {
                 blocks.add_isotropic(i, j, T::constant(token, value));
             }

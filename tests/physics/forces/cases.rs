@@ -19,6 +19,7 @@ use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::membrane::{Membrane, MembraneLaw};
 use pseudopod::mechanics::moved::Translation;
 use pseudopod::mechanics::ordering::Ordering;
+use pseudopod::mechanics::plate::{Bonded, Plate};
 use pseudopod::mechanics::pressure::{Beyond, Pressure};
 use pseudopod::mechanics::shape_memory::{Reaction, ShapeMemory};
 use pseudopod::mechanics::solid::Solid;
@@ -52,7 +53,7 @@ pub struct Case {
 pub const EDGE: f64 = 1.75;
 
 /// How many forces there are.
-pub const FORCES: usize = 15;
+pub const FORCES: usize = 16;
 
 /// A number below [`FORCES`] for each force: one that is new must be named here, counted above and given a case below.
 pub fn number(force: &Force) -> usize {
@@ -72,6 +73,7 @@ pub fn number(force: &Force) -> usize {
         Force::Trap(_) => 12,
         Force::Pressure(_) => 13,
         Force::Solid(_) => 14,
+        Force::Plate(_) => 15,
     }
 }
 
@@ -236,6 +238,20 @@ fn driven() -> Vec<Case> {
     let displacement = Course::through(vec![(0.0, 1.0), (1.0, 2.0)]).expect("times rise");
     let translation = Some(Translation { direction: Vec3::new(0.0, 0.6, 0.8), displacement });
     let trap = Force::Trap(Trap { name: "trap".into(), stiffness: 3.0, at: Vec3::new(1.0, 2.0, -0.5), translation });
+    let direction = Vec3::new(0.0, 0.6, 0.8);
+    let bond = |(atom, stiffness): (u32, f64)| Bonded {
+        atom,
+        stiffness,
+        offset: cell().positions[atom as usize].dot(&direction),
+    };
+    let plate = Force::Plate(Plate {
+        name: "plate".into(),
+        bonded: [(3, 20.0), (9, 30.0), (17, 25.0)].map(bond).into(),
+        direction,
+        stiffness: 4.0,
+        at: 0.1,
+        displacement: course(),
+    });
     let above = Beyond { point: Vec3::new(0.0, 0.0, 1.3), direction: Vec3::new(0.6, 0.0, 0.8), radius: None };
     let pressure = |beyond| {
         let facets = icosphere(5.0, 1).facets;
@@ -254,6 +270,7 @@ fn driven() -> Vec<Case> {
         outer("gravity", gravity, false),
         outer("attraction", attraction, true),
         outer("trap", trap, false),
+        outer("plate", plate, true),
         outer("pressure", pressure(None), false),
         outer("pressure beyond a plane", pressure(Some(above)), false),
         outer("pressure in a mouth", pressure(Some(Beyond { radius: Some(2.2), ..above })), false),
