@@ -25,12 +25,13 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 12] = [
+const SHOWN: [(&str, &str, &str); 13] = [
     ("bending_volume/linear.toml", "result.png", "bending_volume.png"),
     ("cantilever/experiment.toml", "result.deflection.png", "cantilever.png"),
     ("chemotaxis/experiment.toml", "result.png", "chemotaxis.png"),
     ("chemotaxis/experiment.toml", "result.tracks.png", "chemotaxis_tracks.png"),
     ("cylinder/experiment.toml", "result.force.png", "cylinder.png"),
+    ("microplates/experiment.toml", "result.elongation.png", "microplates.png"),
     ("optical_tweezers/red_cell.toml", "result.png", "red_cell.png"),
     ("optical_tweezers/red_cell.toml", "result.force_diameter.png", "force_diameter.png"),
     ("optical_stretcher/experiment.toml", "result.length.png", "optical_stretcher.png"),
@@ -64,6 +65,12 @@ fn a_red_cell_stretches_as_mills_measured() {
 fn red_cells_recover_in_the_times_that_hochmuth_measured() {
     experiment_keeps_its_word("red_cell_recovery", "experiment.toml");
     experiment_keeps_its_word("red_cell_recovery", "cell2.toml");
+}
+
+#[test]
+fn microplates_read_what_was_put_in() {
+    experiment_keeps_its_word("microplates", "experiment.toml");
+    experiment_keeps_its_word("microplates", "uniform.toml");
 }
 
 #[test]
