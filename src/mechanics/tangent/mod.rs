@@ -13,6 +13,7 @@ mod fronts;
 pub mod matrix;
 mod multifrontal;
 mod pattern;
+mod substitution;
 #[cfg(test)]
 mod tests;
 
@@ -23,8 +24,9 @@ use super::viscosity::Viscosity;
 use crate::Vec3;
 use fronts::Fronts;
 use matrix::Blocks;
-use multifrontal::{Factorise, SolveMany, SolveOne};
+use multifrontal::Factorise;
 pub use pattern::Pattern;
+use substitution::{SolveMany, SolveOne};
 
 /// Bodies that stand alone are factored by fronts from so many atoms on.
 const LARGE: usize = 150;
