@@ -145,7 +145,10 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach));
     if contact.as_ref().is_none_or(|contact| contact.law.moves_as_steps()) {
         let have_tools = contact.is_some() && kinds.iter().any(|kind| kind.rigid.is_some() || !kind.moved.is_empty());
-        kinds.iter_mut().for_each(|kind| kind.use_tangent(have_tools));
+        for kind in &mut kinds {
+            // What grips a cell touches it, too.
+            kind.use_tangent(have_tools || !kind.moved.is_empty());
+        }
     }
     // What a file of loads moves is not in the document.
     let are_moved = kinds.iter().any(|kind| !kind.moved.is_empty());

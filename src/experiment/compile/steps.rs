@@ -28,8 +28,8 @@ pub fn integrator(document: &Document, kinds: &mut [Kind]) -> Result<Integrator>
     let pods = document.experiment.cells.values().filter_map(|cell| cell.pseudopods.as_ref());
     let cycle = pods.map(Pseudopods::shortest_cycle).fold(f64::INFINITY, f64::min);
     let borne = longest_with_fibres(document, kinds)?;
-    // What is sought is where cells come to rest, in steps as long as they allow.
-    let usual = if document.experiment.run.equilibrium.is_some() { until } else { HUNDREDTH * until };
+    // What is sought is where cells come to rest, in steps as long as they allow; some must be left to see that they do.
+    let usual = if document.experiment.run.equilibrium.is_some() { 5.0 * HUNDREDTH * until } else { HUNDREDTH * until };
     let longest = text.max_step.map_or(usual.min(cycle).min(borne), |step| step.value());
     if let Method::Implicit { order } = method {
         let largest = longest;
