@@ -74,6 +74,17 @@ fn microplates_read_what_was_put_in() {
 }
 
 #[test]
+fn a_shell_dents_as_reissner_found() {
+    experiment_keeps_its_word("indentation", "shell.toml");
+}
+
+#[test]
+#[ignore = "slow: a minute and a half; cargo test --release --test figures a_ball_on_a_gel -- --ignored"]
+fn a_ball_on_a_gel_feels_a_thin_layer() {
+    experiment_keeps_its_word("indentation", "experiment.toml");
+}
+
+#[test]
 fn a_cell_in_an_optical_stretcher_creeps_as_was_measured() {
     experiment_keeps_its_word("optical_stretcher", "experiment.toml");
 }
