@@ -25,7 +25,7 @@ fn experiment_keeps_its_word(folder: &str, document: &str) {
 }
 
 /// Pictures that a README shows as what a command makes: the document, the file beside its result, the picture in docs/pictures.
-const SHOWN: [(&str, &str, &str); 13] = [
+const SHOWN: [(&str, &str, &str); 14] = [
     ("bending_volume/linear.toml", "result.png", "bending_volume.png"),
     ("cantilever/experiment.toml", "result.deflection.png", "cantilever.png"),
     ("chemotaxis/experiment.toml", "result.png", "chemotaxis.png"),
@@ -36,6 +36,7 @@ const SHOWN: [(&str, &str, &str); 13] = [
     ("optical_tweezers/red_cell.toml", "result.force_diameter.png", "force_diameter.png"),
     ("optical_stretcher/experiment.toml", "result.length.png", "optical_stretcher.png"),
     ("persistent_migration/experiment.toml", "result.persistence.png", "persistent_migration.png"),
+    ("plate/experiment.toml", "result.png", "plate.png"),
     ("red_cell_recovery/experiment.toml", "result.recovery.png", "red_cell_recovery.png"),
     ("sphere_under_gravity/experiment.toml", "result.png", "spheres.png"),
     ("truth_cube/experiment.toml", "result.png", "truth_cube.png"),
@@ -71,6 +72,11 @@ fn red_cells_recover_in_the_times_that_hochmuth_measured() {
 fn microplates_read_what_was_put_in() {
     experiment_keeps_its_word("microplates", "experiment.toml");
     experiment_keeps_its_word("microplates", "uniform.toml");
+}
+
+#[test]
+fn a_plate_bends_as_reissner_and_mindlin_say_but_for_its_mesh() {
+    experiment_keeps_its_word("plate", "experiment.toml");
 }
 
 #[test]
