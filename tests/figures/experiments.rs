@@ -75,6 +75,11 @@ fn microplates_read_what_was_put_in() {
 }
 
 #[test]
+fn every_material_passes_the_patch_test() {
+    experiment_keeps_its_word("patch_test", "experiment.toml");
+}
+
+#[test]
 fn a_plate_bends_as_reissner_and_mindlin_say_but_for_its_mesh() {
     experiment_keeps_its_word("plate", "experiment.toml");
 }
