@@ -118,7 +118,7 @@ pub const CELL: &[CellQuantity] = &[
 #[rustfmt::skip]
 pub const VISCOUS: &[CellQuantity] = &[
     row("/cells/dissipated", "pN um", Number(|c| c.dissipated, "energy lost to viscosity"),
-        "What the viscosity of its membrane has taken of its energy since the cell is there."),
+        "What the viscosity of its membrane and of what fills it has taken of its energy since the cell is there."),
 ];
 
 impl CellQuantity {
