@@ -127,9 +127,9 @@ impl Fronts {
             let Some(parent) = *parent else { continue };
             let (first, last) = self.fronts.split_at_mut(parent);
             let (front, parent) = (&mut first[number], &last[0]);
-            let places: BTreeMap<u32, u32> = parent.numbers.iter().copied().zip(0..).collect();
+            let positions: BTreeMap<u32, u32> = parent.numbers.iter().copied().zip(0..).collect();
             let later = &front.numbers[front.strips[0] * WIDTH..];
-            front.lifts = later.iter().map(|row| if *row == NOTHING { NOTHING } else { places[row] }).collect();
+            front.lifts = later.iter().map(|row| if *row == NOTHING { NOTHING } else { positions[row] }).collect();
         }
     }
 
@@ -137,9 +137,9 @@ impl Fronts {
     fn enter(&mut self, pattern: &Pattern) {
         let mut columns = pattern.columns();
         for front in &self.fronts {
-            let places: BTreeMap<u32, u32> = front.numbers.iter().copied().zip(0..).collect();
+            let positions: BTreeMap<u32, u32> = front.numbers.iter().copied().zip(0..).collect();
             for column in columns.by_ref().take(front.columns[1] - front.columns[0]) {
-                self.entries.extend(column.rows.iter().map(|row| places[&(3 * row)]));
+                self.entries.extend(column.rows.iter().map(|row| positions[&(3 * row)]));
             }
         }
     }
