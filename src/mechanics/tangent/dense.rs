@@ -89,7 +89,7 @@ pub fn divide<T: Real>(token: T::Token, diagonal: &[f64], tile: &mut [f64]) {
         for c in 0..WIDTH {
             x[c] = x[c] * diagonal[c * WIDTH + c];
             for other in c + 1..WIDTH {
-                x[other] = x[other] - x[c] * diagonal[c * WIDTH + other];
+                x[other] -= x[c] * diagonal[c * WIDTH + other];
             }
             tile[c * stride + part] = x[c].raw();
         }

@@ -103,7 +103,7 @@ impl BlockWork for SolveMany<'_> {
                         let known = sides.get(front, number);
                         for c in 0..WIDTH {
                             for row in 0..WIDTH {
-                                own[row] = own[row] - known[c] * tile[c * WIDTH + row];
+                                own[row] -= known[c] * tile[c * WIDTH + row];
                             }
                         }
                     }
@@ -111,7 +111,7 @@ impl BlockWork for SolveMany<'_> {
                         for c in 0..WIDTH {
                             own[c] = own[c] * rest[c * WIDTH + c];
                             for row in c + 1..WIDTH {
-                                own[row] = own[row] - own[c] * rest[c * WIDTH + row];
+                                own[row] -= own[c] * rest[c * WIDTH + row];
                             }
                         }
                     }
@@ -127,14 +127,14 @@ impl BlockWork for SolveMany<'_> {
                         let known = sides.get(front, strip);
                         for c in 0..WIDTH {
                             for row in 0..WIDTH {
-                                own[c] = own[c] - known[row] * tile[c * WIDTH + row];
+                                own[c] -= known[row] * tile[c * WIDTH + row];
                             }
                         }
                     }
                     let tile = &panel[front.strip(column) + column * TILE..][..TILE];
                     for c in (0..WIDTH).rev() {
                         for row in c + 1..WIDTH {
-                            own[c] = own[c] - own[row] * tile[c * WIDTH + row];
+                            own[c] -= own[row] * tile[c * WIDTH + row];
                         }
                         own[c] = own[c] * tile[c * WIDTH + c];
                     }
