@@ -180,23 +180,19 @@ impl BlockWork for Make<'_> {
             let x = Vectors::<T>::new(token, x, stride, part);
             let mut blocks = Blocks::<T>::new(token, pattern, &mut *values, stride, part);
             blocks.clear();
-            // What is done in a closure is not compiled for wide registers.
-            for force in forces {
-                if force.is_elastic() {
-                    force.add_tangent(&x, &mut blocks, whole);
+            // What is done in a closure is not compiled for wide registers; elastic forces first, which are scaled, then all others.
+            for (others, constant) in constant.iter().enumerate() {
+                for force in forces {
+                    if force.is_elastic() == (others == 0) {
+                        force.add_tangent(&x, &mut blocks, whole);
+                    }
                 }
-            }
-            for &(i, j, value) in &constant[0] {
-                blocks.add_isotropic(i, j, T::constant(token, value));
-            }
-            blocks.scale(T::load(token, T::view(token, &elastic)[part]));
-            for force in forces {
-                if !force.is_elastic() {
-                    force.add_tangent(&x, &mut blocks, whole);
+                for &(i, j, value) in constant {
+                    blocks.add_isotropic(i, j, T::constant(token, value));
                 }
-            }
-            for &(i, j, value) in &constant[1] {
-                blocks.add_isotropic(i, j, T::constant(token, value));
+                if others == 0 {
+                    blocks.scale(T::load(token, T::view(token, &elastic)[part]));
+                }
             }
             if is_factored {
                 blocks.scale(T::constant(token, scales.gamma));
