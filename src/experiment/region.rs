@@ -72,9 +72,12 @@ pub fn part(inside: &Inside, of_cells: &[Option<usize>], wanted: Option<usize>) 
 /// Tells the regions that hold no cell of the mesh.
 pub fn check(regions: &[Region], of_cells: &[Option<usize>], to: &mut Builder) {
     for (number, region) in regions.iter().enumerate().filter(|(number, _)| !of_cells.contains(&Some(*number))) {
-        let found = format!("no cell of the mesh has its middle in `{}`, or later regions have them all", region.name);
+        let found = format!(
+            "no element (hexahedron, wedge, tetrahedron) of the mesh has its middle in `{}`, or later regions have them all",
+            region.name
+        );
         let help =
-            "give it larger radii or another centre (in the mesh before it is turned), or the mesh smaller cells";
+            "give it larger radii or another centre (in the mesh before it is turned), or the mesh smaller elements";
         to.fault(&format!("mechanics.solid.regions[{number}].radii"), "holds nothing", found, help);
     }
 }

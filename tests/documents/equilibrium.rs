@@ -122,6 +122,9 @@ fn what_creeps_is_not_at_rest() {
         let (found, steps) = last(&dented("equilibrium = { force = \"1e-3 pN\" }", by), series);
         let (wanted, all) = last(&dented("", by), series);
         println!("{series}: {found} in {steps} steps, {wanted} in {all}");
+        // A thousandth of a piconewton is left of ten, and what steps of the default tolerance make of a dent.
         assert!(((found - whole) / (wanted - whole) - 1.0).abs() < 2e-3, "{series}: {found} {wanted}");
+        // A grip has the cell go by its own stiffness; by K it would creep for hundreds of steps.
+        assert!(by != GRIPPED || steps < 60, "{steps} steps");
     }
 }

@@ -19,7 +19,7 @@ use pseudopod::simulation::Simulation;
 const SHEAR: f64 = 3.0;
 const AREA: f64 = 7.0;
 
-fn numbers(vectors: &[Vec3]) -> Vec<f64> {
+pub fn numbers(vectors: &[Vec3]) -> Vec<f64> {
     vectors.iter().flat_map(|v| [v.x, v.y, v.z]).collect()
 }
 
@@ -76,14 +76,14 @@ fn a_sheet_loses_what_boussinesq_and_scriven_say_and_nothing_as_it_goes_and_turn
     assert!(power(&square, &up).abs() < 1e-12);
 }
 
-fn model_of(mut kind: Kind, viscosity: Viscosity, order: Order, size: StepSize, until: f64) -> Model {
+pub fn model_of(mut kind: Kind, viscosity: Viscosity, order: Order, size: StepSize, until: f64) -> Model {
     kind.viscosity = Some(viscosity);
     kind.bound_stiffness();
     kind.use_tangent(false);
     Model::of(vec![kind], Integrator { method: Method::Implicit { order }, size }, until)
 }
 
-fn run_to_end(model: &Model, positions: Vec<Vec3>) -> State {
+pub fn run_to_end(model: &Model, positions: Vec<Vec3>) -> State {
     let mut state = State::new(model, &[vec![positions]]);
     let mut ws = Workspace::new(model);
     while state.time < model.until {
@@ -208,7 +208,7 @@ fn gripped(order: Order, dt: f64) -> Model {
     model
 }
 
-fn farthest(one: &State, other: &State) -> f64 {
+pub fn farthest(one: &State, other: &State) -> f64 {
     let pairs = one.kinds[0].positions.iter().zip(&other.kinds[0].positions);
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }

@@ -1,13 +1,14 @@
 //! Bodies that are filled with what is viscous: what they lose, how fast they let shapes go, the order of the step with them, and regions of
 //! another material.
 
+use crate::viscosity::{farthest, model_of, numbers, run_to_end};
 use nalgebra::Matrix3;
 use pseudopod::Vec3;
 use pseudopod::geometry::Solid as Body;
 use pseudopod::geometry::solid::{block, rod};
 use pseudopod::mechanics::Force;
 use pseudopod::mechanics::course::Course;
-use pseudopod::mechanics::integrator::{Integrator, Method, Order, StepSize};
+use pseudopod::mechanics::integrator::{Order, StepSize};
 use pseudopod::mechanics::load::Load;
 use pseudopod::mechanics::solid::Solid;
 use pseudopod::mechanics::solid::law::{Elastic, SolidLaw};
@@ -16,10 +17,6 @@ use pseudopod::mechanics::viscosity::inside::Inside;
 use pseudopod::sim::observe::measure_cells;
 use pseudopod::sim::{Kind, Model, State, Workspace, step};
 use pseudopod::simulation::Simulation;
-
-fn numbers(vectors: &[Vec3]) -> Vec<f64> {
-    vectors.iter().flat_map(|v| [v.x, v.y, v.z]).collect()
-}
 
 /// A viscosity that is the same in all tetrahedra, Pa·s.
 fn filled(body: &Body, shear: f64) -> Viscosity {
@@ -73,27 +70,11 @@ fn material(body: &Body, law: SolidLaw, shear: f64, lame: f64) -> Force {
     Force::Solid(Solid::new(&body.surface.positions, &body.tetrahedra, elastic, None))
 }
 
-fn kind_of(body: &Body, force: Force, viscosity: Viscosity, drag: f64) -> Kind {
+fn kind_of(body: &Body, force: Force, drag: f64) -> Kind {
     let mut kind = Kind::new("body", body.surface.clone(), vec![force]);
     kind.tetrahedra.clone_from(&body.tetrahedra);
     kind.drag = drag;
-    kind.viscosity = Some(viscosity);
     kind
-}
-
-fn model_of(mut kind: Kind, order: Order, size: StepSize, until: f64) -> Model {
-    kind.bound_stiffness();
-    kind.use_tangent(false);
-    Model::of(vec![kind], Integrator { method: Method::Implicit { order }, size }, until)
-}
-
-fn run_to_end(model: &Model, positions: Vec<Vec3>) -> State {
-    let mut state = State::new(model, &[vec![positions]]);
-    let mut ws = Workspace::new(model);
-    while state.time < model.until {
-        step(model, &mut state, &mut ws).unwrap_or_else(|trouble| panic!("{trouble}"));
-    }
-    state
 }
 
 /// Energy and loss have the same form, µ |dev ε|² and η |dev D|²: every shape goes with e^(-t/τ), τ = η/µ, bent, twisted or drawn out.
@@ -101,9 +82,8 @@ fn run_to_end(model: &Model, positions: Vec<Vec3>) -> State {
 fn kelvin_and_voigt_let_every_shape_go_in_the_same_time() {
     let body = irregular();
     let (shear, time) = (40.0, 2.0);
-    let kind =
-        kind_of(&body, material(&body, SolidLaw::Linear, shear, -2.0 / 3.0 * shear), filled(&body, time * shear), 1e-4);
-    let model = model_of(kind, Order::Second, StepSize::Fixed(0.01 * time), time);
+    let kind = kind_of(&body, material(&body, SolidLaw::Linear, shear, -2.0 / 3.0 * shear), 1e-4);
+    let model = model_of(kind, filled(&body, time * shear), Order::Second, StepSize::Fixed(0.01 * time), time);
     let rest = &body.surface.positions;
     let shapes: [fn(&Vec3) -> Vec3; 3] = [
         |p| Vec3::new(-0.5 * p.x, -0.5 * p.y, p.z),
@@ -117,6 +97,7 @@ fn kelvin_and_voigt_let_every_shape_go_in_the_same_time() {
         let end = run_to_end(&model, start);
         let left = (energy(end.kinds[0].cell(&model.kinds[0], 0)) / before).sqrt();
         println!("shape {number}: {left} in {} steps", end.step);
+        // What drag, steps of τ/100 and deformations of 1e-4 leave.
         assert!((left * std::f64::consts::E - 1.0).abs() < 2e-3, "shape {number}: {left}");
     }
 }
@@ -124,7 +105,7 @@ fn kelvin_and_voigt_let_every_shape_go_in_the_same_time() {
 /// A rod of rubber that is drawn out by a force from the start, half of what it loses by viscosity.
 fn pulled(order: Order, dt: f64) -> Model {
     let body = rod([1.0, 1.0], 4.0, 2, 6).expect("a sound body");
-    let mut kind = kind_of(&body, material(&body, SolidLaw::NeoHookean, 40.0, 0.0), filled(&body, 30.0), 1.0);
+    let mut kind = kind_of(&body, material(&body, SolidLaw::NeoHookean, 40.0, 0.0), 1.0);
     for (name, sign) in [("up", 1.0), ("down", -1.0)] {
         let ends: Vec<u32> =
             (0..).zip(&body.surface.positions).filter(|(_, p)| sign * p.z > 1.99).map(|(atom, _)| atom).collect();
@@ -132,12 +113,7 @@ fn pulled(order: Order, dt: f64) -> Model {
         let atoms = ends.into_iter().map(|atom| (atom, share)).collect();
         kind.forces.push(Force::Load(Load::new(name, atoms, sign * Vec3::z(), Course::constant(150.0))));
     }
-    model_of(kind, order, StepSize::Fixed(dt), 1.0)
-}
-
-fn farthest(one: &State, other: &State) -> f64 {
-    let pairs = one.kinds[0].positions.iter().zip(&other.kinds[0].positions);
-    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    model_of(kind, filled(&body, 30.0), order, StepSize::Fixed(dt), 1.0)
 }
 
 #[test]
@@ -152,6 +128,7 @@ fn steps_of_viscous_bodies_keep_their_order_however_far_these_deform() {
         let stretched = finest.kinds[0].positions.iter().skip(2).step_by(3).copied().fold(0.0, f64::max) / 2.0;
         println!("{order:?}: {found}, {:e} in steps of 1/64 s, stretched {stretched}", farthest(&fine, &finest));
         assert!(stretched > 1.3, "it deforms far: {stretched}");
+        // Halvings differ from the limit by the next order's term.
         assert!((found - wanted).abs() < 0.2, "{order:?}: {found}");
     }
 }
@@ -179,6 +156,7 @@ fn what_viscosity_takes_of_a_body_is_in_the_account_of_energy() {
     let (by_viscosity, lost) = (state.kinds[0].dissipated[0] - taken, begun - energy(&state));
     println!("lost {lost}: {by_viscosity} by viscosity, {by_drag} by drag");
     assert!(by_viscosity > 0.2 * lost && by_drag > 0.02 * lost, "{by_viscosity} {by_drag}");
+    // What a step takes is measured along its chord.
     assert!(((by_viscosity + by_drag) / lost - 1.0).abs() < 2e-4, "{by_viscosity} {by_drag} {lost}");
 }
 
@@ -208,6 +186,7 @@ fn halves_of_a_bar_creep_each_by_its_own_moduli() {
         let creep = |young: f64, viscosity: f64| stress / young * (1.0 - (-0.75 * young * time / viscosity).exp());
         let (soft, stiff) = (4.0 * creep(1e3, 1e3), 2.0 * creep(1e4, 4e3));
         println!("{time} s: {middle} and {}, for {soft} and {stiff}", end - middle - 2.0);
+        // Strains of 1e-4, by which viscosity goes with the present shape, and the second order of steps of τ/25.
         assert!((middle / soft - 1.0).abs() < 3e-4, "{middle} {soft}");
         assert!(((end - middle - 2.0) / stiff - 1.0).abs() < 3e-4, "{end} {middle} {stiff}");
     }
@@ -240,6 +219,7 @@ fn a_flexible_plate_reads_what_a_bar_bears() {
     for time in [0.5, 8.0] {
         let [force, displacement] = read(time);
         println!("{time} s: {displacement} for {} µm, {force} pN", gone(time));
+        // Bonds are springs in the row, too, with 0.5 % of its stiffness.
         assert!((displacement / gone(time) - 1.0).abs() < 6e-3, "{displacement} {}", gone(time));
         assert!((force - plate * (base - displacement)).abs() < 1e-9, "{force}");
     }

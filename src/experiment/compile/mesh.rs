@@ -12,6 +12,11 @@ use crate::geometry::solid::{self, Solid};
 use crate::geometry::{self, SolidFault, Surface, SurfaceRules};
 use nalgebra::{Unit, UnitQuaternion};
 
+/// A fault at a key of the mesh.
+fn refused(document: &Document, key: &str, label: &str, message: String, help: &str) -> Fault {
+    document.location(key, label).into_iter().fold(Fault::new(message).help(help), Fault::at)
+}
+
 /// The surface of a type, or nothing and a fault.
 pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Vec<Fault>) -> Option<Built> {
     let (mut from_model, mut inside) = (None, None);
@@ -36,10 +41,15 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
             let size = size.map(|x| x.value());
             let (at, ratio) = finest.map_or(([0.0; 3], 1.0), |finest| (finest.at.map(|x| x.value()), finest.ratio));
             if (0..3).any(|axis| at[axis].abs() > 0.5 * size[axis]) {
-                let location = document.location(&format!("cells.{name}.mesh.finest.at"), "not in the block");
                 let message = format!("the parts of `cells.{name}.mesh` are finest at a point that is not within it");
-                let help = "the block is centred on [0, 0, 0]; its surface has points at half of its size";
-                faults.push(location.into_iter().fold(Fault::new(message).help(help), Fault::at));
+                let help = "give a point within the block: it is centred on [0, 0, 0] and reaches half of its size to both sides";
+                faults.push(refused(
+                    document,
+                    &format!("cells.{name}.mesh.finest.at"),
+                    "not in the block",
+                    message,
+                    help,
+                ));
                 return None;
             }
             let made = solid::graded_block(size, *divisions, at, ratio);
@@ -48,14 +58,16 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
         Mesh::Rod { radius, length, middle, rings, layers } => {
             let radii = [radius.value(), middle.unwrap_or(*radius).value()];
             if (radii[1] - radii[0]).abs() > 0.5 * length.value() {
-                let key = format!("cells.{name}.mesh.middle");
-                let message = format!(
-                    "no arc of a circle goes from {radius} at the ends to {} in the middle",
-                    middle.unwrap_or(*radius)
-                );
+                let wide = middle.unwrap_or(*radius);
+                let message = format!("no arc of a circle goes from {radius} at the ends to {wide} in the middle");
                 let help = "let it be at most half of the length away from the radius, or take a longer rod";
-                let location = document.location(&key, "too far from the radius");
-                faults.push(location.into_iter().fold(Fault::new(message).help(help), Fault::at));
+                faults.push(refused(
+                    document,
+                    &format!("cells.{name}.mesh.middle"),
+                    "too far from the radius",
+                    message,
+                    help,
+                ));
                 return None;
             }
             let made = solid::rod(radii, length.value(), *rings, *layers);
@@ -72,8 +84,7 @@ pub fn surface(document: &Document, name: &str, cell: &CellType, faults: &mut Ve
             {
                 let message = format!("`{key}.{own}` has no meaning for `{}`", path.display());
                 let help = format!("only PML files, which end in .pml, have {what}: leave it out");
-                let location = document.location(&format!("{key}.{own}"), "not of this file");
-                faults.push(location.into_iter().fold(Fault::new(message).help(help), Fault::at));
+                faults.push(refused(document, &format!("{key}.{own}"), "not of this file", message, &help));
                 return None;
             }
             let told = document.says(&format!("{key}.unit")).then_some(*unit);

@@ -134,13 +134,7 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
             cells.map(|((cell, kind), first)| positions::centres(experiment, cell, kind, first)).collect()
         }
     };
-    for (kind, centres) in kinds.iter_mut().zip(&centres) {
-        for force in &mut kind.forces {
-            if let (Force::Plate(plate), Some(centre)) = (force, centres.first()) {
-                plate.at = centre.dot(&plate.direction);
-            }
-        }
-    }
+    anchor_plates(&mut kinds, &centres);
     let integrator = steps::integrator(document, &mut kinds)?;
     let contact = reach.and_then(|reach| contact::contact(experiment, &kinds, &planes, reach));
     if contact.as_ref().is_none_or(|contact| contact.law.moves_as_steps()) {
@@ -168,6 +162,17 @@ pub fn prepare(document: &Document) -> Result<Prepared> {
     };
     let schedule = schedule::schedule(document);
     Ok(Prepared { model, schedule, centres, size, told, fields })
+}
+
+/// Lets plates begin where their cells do.
+fn anchor_plates(kinds: &mut [Kind], centres: &[Vec<Vec3>]) {
+    for (kind, centres) in kinds.iter_mut().zip(centres) {
+        for force in &mut kind.forces {
+            if let (Force::Plate(plate), Some(centre)) = (force, centres.first()) {
+                plate.at = centre.dot(&plate.direction);
+            }
+        }
+    }
 }
 
 fn compile_kind(

@@ -53,11 +53,16 @@ impl Check<'_> {
             let message = format!("`{key}` needs the implicit scheme");
             self.fault("run.integrator.method", "knows no viscosity", message, "remove run.integrator.method");
         }
-        let model = experiment.contact.as_ref().map(|contact| contact.model);
+        self.not_by_drag_alone(&key, "knows no viscosity");
+    }
+
+    /// What has a stiffness of its own cannot be moved by contacts that know the drag of its atoms alone.
+    pub(super) fn not_by_drag_alone(&mut self, key: &str, label: &str) {
+        let model = self.document.experiment.contact.as_ref().map(|contact| contact.model);
         if let Some(ContactModel::VirtualAdhesives | ContactModel::Penalty) = model {
             let message = format!("`{key}`: this model of contacts moves atoms by their drag alone");
             let help = "use another model of contacts, such as model = \"cohesion\"";
-            self.fault("contact.model", "knows no viscosity", message, help);
+            self.fault("contact.model", label, message, help);
         }
     }
 
@@ -71,12 +76,7 @@ impl Check<'_> {
             self.fault(&format!("{path}.mesh"), "has atoms inside", message, help);
         }
         let Some(solid) = &mechanics.solid else { return };
-        let model = self.document.experiment.contact.as_ref().map(|contact| contact.model);
-        if let Some(ContactModel::VirtualAdhesives | ContactModel::Penalty) = model {
-            let message = format!("`{key}`: this model of contacts moves atoms by their drag alone");
-            let help = "use another model of contacts, such as model = \"cohesion\"";
-            self.fault("contact.model", "knows no filled bodies", message, help);
-        }
+        self.not_by_drag_alone(&key, "knows no filled bodies");
         if solid.poisson.is_none() && solid.volume_over.is_some() {
             let message = format!("`{key}.volume_over` has no meaning where the material has no Poisson's ratio");
             let help = "add `poisson`, below 0.5, or remove it: then the volume of the whole is kept exactly";

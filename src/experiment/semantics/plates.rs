@@ -1,7 +1,7 @@
 //! What must hold of flexible plates.
 
 use super::Check;
-use crate::experiment::{CellType, ContactModel, Method};
+use crate::experiment::{CellType, Method};
 
 impl Check<'_> {
     /// What must hold of the plates of a type.
@@ -37,16 +37,10 @@ impl Check<'_> {
             let message = format!("`{key}` hold cells that deform, and `{path}` is rigid");
             self.fault(&key, "of a rigid body", message, "hold a rigid body by `traps`");
         }
-        let experiment = &self.document.experiment;
-        if experiment.run.integrator.method != Method::Implicit {
+        if self.document.experiment.run.integrator.method != Method::Implicit {
             let message = format!("`{key}` need the implicit scheme");
             self.fault("run.integrator.method", "knows no plates", message, "remove run.integrator.method");
         }
-        let model = experiment.contact.as_ref().map(|contact| contact.model);
-        if let Some(ContactModel::VirtualAdhesives | ContactModel::Penalty) = model {
-            let message = format!("`{key}`: this model of contacts moves atoms by their drag alone");
-            let help = "use another model of contacts, such as model = \"cohesion\"";
-            self.fault("contact.model", "knows no plates", message, help);
-        }
+        self.not_by_drag_alone(&key, "knows no plates");
     }
 }

@@ -28,7 +28,8 @@ use multifrontal::Factorise;
 pub use pattern::Pattern;
 use substitution::{SolveMany, SolveOne};
 
-/// Bodies that stand alone are factored by fronts from so many atoms on.
+/// Bodies that stand alone are factored by fronts from so many atoms on: a choice. Of the smallest that was measured, 343 atoms of a filled body,
+/// a step takes 5 ms.
 const LARGE: usize = 150;
 
 /// How the tangent stiffness of the cells of a kind is made and factored.
